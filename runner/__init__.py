@@ -1,0 +1,22 @@
+"""Config-driven batch experiments for robot-arm control, with reports."""
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from runner.execution import run
+    from runner.store import Run, open_run
+
+__all__ = ["Run", "open_run", "run"]
+
+
+def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the name stands for
+    """Import the simulator only when it is asked for, so that `runner --help` answers at once."""
+    if name == "run":
+        from runner.execution import run
+
+        return run
+    if name in ("Run", "open_run"):
+        from runner import store
+
+        return getattr(store, name)
+    raise AttributeError(f"module 'runner' has no attribute '{name}'")

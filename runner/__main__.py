@@ -1,0 +1,5 @@
+"""`python -m runner` does what `runner` does."""
+
+from runner.cli import main
+
+main()

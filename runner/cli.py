@@ -1,0 +1,75 @@
+"""The door: which command is meant, and how every ending leaves it.
+
+Exit codes: 0 good, 1 a run failed or a check fell short, 2 bad input, 130 interrupted. This module imports little,
+so that help and completion answer at once.
+"""
+
+import importlib
+import sys
+from collections.abc import Sequence
+
+from runner.errors import RunnerError, nearest
+
+HELP = """\
+runner: config-driven experiments for robot-arm control, with reports
+
+  runner robot=macro trajectory=goal             one run; the last line printed is its folder
+  runner -m robot=macro,mini noise.position=1e-4,1e-3
+                                                 a sweep over every combination
+  runner reproduce [thesis|all]                  run what is missing and write the report of a published work
+  runner report DIR... [--html] [--pdf]          a report from stored runs or sweeps
+  runner check DIR [--reference FILE]            is every metric inside its reference band?
+  runner diff A B                                two runs side by side: config and metrics
+  runner list [robots|controllers|trajectories|experiments|plants|noise|presets|torque_limits|metrics|claims|references]
+
+  runner --cfg job [OVERRIDES]                   show the composed config without running it
+  runner --config-dir DIR OVERRIDES              take YAML and URDFs from your own folder, too
+  runner --hydra-help                            all flags of Hydra
+  eval "$(runner -sc install=bash)"              tab completion (also fish, zsh)
+
+Groups: robot, controller, trajectory, plant, noise, torque_limits, preset, experiment. A value is set by its dotted
+key, as in controller.period=0.005; `runner --cfg job` shows all keys. Exit codes: 0 good, 1 a run failed or a
+check fell short, 2 bad input.
+"""
+COMMANDS = ("reproduce", "report", "check", "diff", "list")
+
+
+def main() -> None:
+    """Run the command line and leave the process with its exit code."""
+    sys.exit(dispatch(sys.argv[1:]))
+
+
+def dispatch(arguments: Sequence[str]) -> int:
+    """Run one command line and return its exit code."""
+    first = arguments[0] if arguments else ""
+    try:
+        if first in ("-h", "--help", "help"):
+            print(HELP, end="")
+            return 0
+        if first == "--version":
+            from importlib.metadata import version
+
+            print(version("arm-control-runner"))
+            return 0
+        if first in COMMANDS:
+            return _command(first, arguments[1:])
+        if first and first[0].isalpha() and "=" not in first:
+            raise RunnerError(
+                f"no command '{first}'{nearest(first, COMMANDS)}; commands: {', '.join(COMMANDS)}; a "
+                "run is started by overrides such as robot=macro"
+            )
+        return _command("run", arguments)
+    except RunnerError as error:
+        print(f"runner: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("runner: interrupted; finished runs are stored, the same command goes on from there", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        sys.stderr.close()  # nobody reads on, as in `runner list | head -1`
+        return 0
+
+
+def _command(name: str, arguments: Sequence[str]) -> int:
+    code: int = importlib.import_module(f"runner.commands.{name}").main(list(arguments))
+    return code

@@ -1,0 +1,1 @@
+"""The vocabulary of a run: composing configs, checking them, and what a checked config is."""

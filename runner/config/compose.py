@@ -1,0 +1,89 @@
+"""Composing a config from the groups in conf/ and a list of overrides, with Hydra."""
+
+import os
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hydra import compose as hydra_compose
+from hydra import initialize_config_dir
+from omegaconf import DictConfig, OmegaConf
+
+from runner.config.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.options import groups
+from runner.paths import conf_dir
+
+
+@dataclass(frozen=True)
+class Composed:
+    """A composed config that nobody has checked yet.
+
+    Attributes:
+        resolved: The config as plain data, interpolations resolved.
+        overrides: The overrides that it was composed with, as typed.
+        choices: The option chosen in each group, such as {"robot": "macro"}.
+        config_dirs: Config folders of the user's.
+    """
+
+    resolved: Mapping[str, Any]
+    overrides: tuple[str, ...]
+    choices: Mapping[str, str]
+    config_dirs: tuple[Path, ...]
+
+
+def compose(overrides: Sequence[str], config_dirs: Sequence[Path] = ()) -> Composed:
+    """Compose a config as `runner OVERRIDES` does.
+
+    Args:
+        overrides: Hydra overrides, such as "robot=macro" and "noise.position=1e-3".
+        config_dirs: Config folders of the user's, searched before ours.
+
+    Raises:
+        ConfigError: for an option or key that does not exist, a value that cannot be parsed, a file that is no YAML.
+    """
+    search = [f"hydra.searchpath=[{','.join(f'file://{folder.resolve()}' for folder in config_dirs)}]"]
+    try:
+        with initialize_config_dir(str(conf_dir()), version_base="1.3", job_name="runner"):
+            config = hydra_compose(
+                "config", [*force(overrides), *(search if config_dirs else [])], return_hydra_config=True
+            )
+            return from_hydra(config, overrides, config_dirs)
+    except COMPOSITION_ERRORS as error:
+        raise explain(error, config_dirs) from None
+
+
+def from_hydra(config: DictConfig, overrides: Sequence[str], config_dirs: Sequence[Path]) -> Composed:
+    """Take a config as Hydra made it, its own `hydra` node included."""
+    chosen: Any = OmegaConf.to_container(config.hydra.runtime.choices)
+    resolved: Any = OmegaConf.to_container(config, resolve=False)
+    own = OmegaConf.create({key: value for key, value in resolved.items() if key != "hydra"})
+    choices = {group: name for group, name in chosen.items() if name is not None and not group.startswith("hydra/")}
+    return Composed(_plain(own), tuple(overrides), choices, tuple(config_dirs))
+
+
+def _plain(config: DictConfig) -> dict[str, Any]:
+    resolved: Any = OmegaConf.to_container(config, resolve=True)
+    return dict(resolved)
+
+
+def force(overrides: Sequence[str]) -> list[str]:
+    """Let overrides of unknown keys compose, so that validation finds them all at once and names the nearest key.
+
+    Hydra alone stops at the first, and suggests to add the key, which no part of the runner would read.
+    """
+    names = set(groups())
+    forced = []
+    for override in overrides:
+        match = re.match(r"([A-Za-z_][\w.]*)=", override)
+        own = match is not None and match[1] not in names and not match[1].startswith("hydra")
+        forced.append(f"++{override}" if own else override)
+    return forced
+
+
+def quiet_environment() -> None:
+    """Keep numerical libraries to one thread, and let Hydra's exceptions through; call before importing numpy."""
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
+    os.environ["HYDRA_FULL_ERROR"] = "1"

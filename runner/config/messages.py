@@ -1,0 +1,64 @@
+"""Turning what pydantic says of a bad config into what a user can mend."""
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from pydantic import ValidationError
+
+from runner.errors import nearest
+from runner.registry import StrictModel
+
+_NUMBERS = {
+    "greater_than": "must be above {gt}",
+    "greater_than_equal": "must be {ge} or more",
+    "less_than": "must be below {lt}",
+    "less_than_equal": "must be {le} or less",
+    "finite_number": "must be a finite number",
+    "float_type": "must be a number",
+    "int_type": "must be a whole number",
+    "int_from_float": "must be a whole number",
+    "bool_type": "must be true or false",
+    "string_type": "must be a text",
+    "string_too_short": "must not be empty",
+    "list_type": "must be a list of numbers",
+    "dict_type": "must be a group of keys",
+}
+
+
+def describe(group: str, model: type[StrictModel], error: ValidationError) -> Iterator[str]:
+    """Yield one message for each problem that pydantic found in a group.
+
+    Args:
+        group: Name of the group, "" for the root.
+        model: The model that the group was checked against.
+        error: What pydantic raised.
+    """
+    seen = set()
+    for item in error.errors():
+        location = [
+            str(part) for part in item["loc"] if not str(part).startswith(("list[", "function-", "constrained"))
+        ]
+        key = ".".join([*([group] if group else []), *location])
+        if key not in seen:  # a union reports each of its branches
+            seen.add(key)
+            yield f"{key}: {_explain(model, location, dict(item))}"
+
+
+def _explain(model: type[StrictModel], location: list[str], item: dict[str, Any]) -> str:
+    kind, found, context = item["type"], item["input"], item.get("ctx", {})
+    if kind == "extra_forbidden":
+        keys = list(model.model_fields)
+        return f"unknown key{nearest(location[-1], keys)}; keys: {', '.join(keys)}"
+    if kind == "missing":
+        return "missing"
+    if kind == "literal_error":
+        allowed = re.findall(r"'([^']*)'", context["expected"])
+        return f"found {found!r}{nearest(str(found), allowed)}; allowed: {', '.join(allowed)}"
+    if kind in ("too_short", "too_long"):
+        expected = context.get("min_length", context.get("max_length"))
+        return f"must have {expected} values; found {len(found)}: {found!r}"
+    if kind == "value_error":
+        return f"{context['error']}; found {found!r}"
+    wanted = _NUMBERS.get(kind)
+    return f"{wanted.format(**context) if wanted else item['msg']}; found {found!r}"

@@ -1,0 +1,21 @@
+"""Config of the joint measurement."""
+
+from typing import Literal
+
+from pydantic import NonNegativeFloat
+
+from runner.registry import StrictModel
+
+
+class NoiseConfig(StrictModel):
+    """Noise of the joint encoders.
+
+    Attributes:
+        position: Half-width (uniform) or standard deviation (gaussian) of the joint-position noise, in rad.
+        distribution: Its shape; with none, `position` has no effect.
+        velocity: Whether joint velocities are exact or differences of the measured positions.
+    """
+
+    position: NonNegativeFloat
+    distribution: Literal["uniform", "gaussian", "none"]
+    velocity: Literal["exact", "finite_difference"]

@@ -1,0 +1,39 @@
+"""What stands in the config groups: names and one-line descriptions, read from the files alone."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from runner.paths import conf_dir
+
+
+def groups(config_dirs: Sequence[Path] = ()) -> list[str]:
+    """Return the names of the config groups, sorted."""
+    folders = (*config_dirs, conf_dir())
+    return sorted({entry.name for folder in folders if folder.is_dir() for entry in folder.iterdir() if entry.is_dir()})
+
+
+def group_options(group: str, config_dirs: Sequence[Path] = ()) -> dict[str, str]:
+    """Return the options of a group with their descriptions, sorted by name.
+
+    Args:
+        group: Name of the group, such as "robot".
+        config_dirs: Config folders of the user's.
+
+    Returns:
+        Name of each option, such as "thesis/figure_3_5", and its file's first comment that is no directive.
+    """
+    found: dict[str, str] = {}
+    for folder in (conf_dir(), *config_dirs):
+        root = folder / group
+        for path in sorted(root.rglob("*.yaml")):
+            found[path.relative_to(root).with_suffix("").as_posix()] = _first_comment(path)
+    return dict(sorted(found.items()))
+
+
+def _first_comment(path: Path) -> str:
+    with path.open() as lines:
+        for line in lines:
+            text = line.strip()
+            if text.startswith("#") and not text.startswith(("# @package", "# runner ")):
+                return text.lstrip("# ")
+    return ""

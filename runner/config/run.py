@@ -1,0 +1,62 @@
+"""A checked config, with what the checks already had to build."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
+
+from runner.config.noise import NoiseConfig
+from runner.config.robot import RobotConfig
+from runner.config.torque_limits import TorqueLimitsConfig
+from runner.registry import StrictModel
+from runner.robots import RobotModel
+
+
+class RunSettings(StrictModel):
+    """The keys at the root of a config.
+
+    Attributes:
+        seed: Seed from which, with the repetition, every random number follows.
+        repetitions: Number of closed-loop runs in the job.
+        duration: Length of a run, in s; None leaves it to the trajectory.
+        outputs: Folder in which runs are stored.
+    """
+
+    seed: NonNegativeInt
+    repetitions: PositiveInt
+    duration: PositiveFloat | None
+    outputs: Annotated[str, Field(min_length=1)]
+
+
+@dataclass(frozen=True)
+class RunConfig:
+    """A config in which every check has passed.
+
+    Attributes:
+        settings: The keys at the root.
+        plant: Config of the plant, of the model that its kind names.
+        controller: Config of the controller, likewise.
+        trajectory: Config of the trajectory, likewise.
+        noise: Config of the joint measurement.
+        torque_limits: Config of the torque limits.
+        robot: Config of the robot.
+        model: The robot's rigid-body model.
+        urdf: The robot's URDF text, masses applied.
+        step: Integration step of the plant, in s.
+        steps_per_tick: Integration steps in one controller period.
+        resolved: The composed config as plain data, interpolations resolved.
+    """
+
+    settings: RunSettings
+    plant: Any
+    controller: Any
+    trajectory: Any
+    noise: NoiseConfig
+    torque_limits: TorqueLimitsConfig
+    robot: RobotConfig
+    model: RobotModel
+    urdf: str
+    step: float
+    steps_per_tick: int
+    resolved: Mapping[str, Any]

@@ -1,0 +1,15 @@
+"""Config of the torque limits."""
+
+from runner.config.per_joint import PositivePerJoint
+from runner.registry import StrictModel
+
+
+class TorqueLimitsConfig(StrictModel):
+    """Limits of the joint torques.
+
+    Attributes:
+        max: Largest magnitude of the torque, in N m: one for all joints, or a list with one for each; None is no
+            limit.
+    """
+
+    max: PositivePerJoint | None

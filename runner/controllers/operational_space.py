@@ -1,0 +1,149 @@
+"""Operational-space control of the tip position."""
+
+from typing import Literal
+
+import numpy as np
+import pinocchio as pin
+from pydantic import NonNegativeFloat, PositiveFloat
+from scipy.linalg.lapack import dgesv
+
+from runner.controllers.controller import Controller, FloatArray
+from runner.errors import ConfigError
+from runner.registry import StrictModel
+from runner.robots import RobotModel
+
+
+class OperationalSpaceConfig(StrictModel):
+    """Config of operational-space control.
+
+    Attributes:
+        kind: Its name in the registry.
+        natural_frequency: omega_n of the closed loop in every direction of the tip, in rad/s.
+        damping_ratio: xi of the closed loop.
+        period: Time between two ticks, in s.
+        gravity_compensation: Whether the law holds the gravity term p(x).
+        feedforward: Whether the law follows the desired velocity and acceleration, or sees a moving goal.
+        singularity_damping: Share of the tip's error by which the inverse of J is damped near a singular posture;
+            0 is the law as printed.
+    """
+
+    kind: Literal["operational_space"]
+    natural_frequency: PositiveFloat
+    damping_ratio: PositiveFloat
+    period: PositiveFloat
+    gravity_compensation: bool
+    feedforward: bool
+    singularity_damping: NonNegativeFloat
+
+
+class OperationalSpace:
+    r"""Dynamic decoupling and linear control of the tip of an arm with three joints.
+
+    The thesis writes the law in operational space, eq. (3.32) with (3.40):
+
+    .. math::
+
+        \tau = J^T (\hat\Lambda F^* + \hat\mu + \hat p), \qquad
+        F^* = \ddot x_d - k_v (\dot x - \dot x_d) - k_p (x - x_d)
+
+    With a square, regular J this is the joint-space law
+
+    .. math:: \tau = M J^{-1} (F^* - \dot J \dot q) + V + G,
+
+    inverse dynamics at the joint acceleration J^-1 (F* - dJ/dt dq), which is how it is computed: one linear solve,
+    no inverse. Without feedforward the desired velocity and acceleration are taken as zero, which is the goal law,
+    eq. (3.33). Without gravity compensation the term p (that is G) is left out.
+
+    The law has no answer at a singular posture, and sampled control no finite one beside it: an unlimited goal
+    move of the Macro passes the base axis within a tick and diverges. So where J is nearly singular its inverse is
+    damped (Levenberg-Marquardt): J^T (J J^T + lambda^2 I)^-1 with lambda = singularity_damping |x_d - x|, faded in as
+    the smallest singular value falls below a tenth of the reach. It vanishes with the error, so that neither rest
+    nor close tracking is touched.
+
+    Args:
+        model: The robot; only its URDF-derived constants are read.
+        natural_frequency: omega_n in rad/s; k_p = omega_n^2 (3.37).
+        damping_ratio: xi; k_v = 2 xi omega_n (3.38).
+        gravity_compensation: Whether p(x) is part of the law.
+        feedforward: Whether the desired derivatives are.
+        singularity_damping: Damping near a singular posture, as a share of the tip's error.
+
+    Raises:
+        ConfigError: if the arm has another number of joints than three.
+    """
+
+    def __init__(
+        self,
+        model: RobotModel,
+        natural_frequency: float,
+        damping_ratio: float,
+        gravity_compensation: bool,
+        feedforward: bool,
+        singularity_damping: float,
+    ) -> None:
+        if model.nq != 3:
+            raise ConfigError(
+                [
+                    f"controller.kind: operational_space needs a square Jacobian of the tip position, 3 joints; "
+                    f"the arm has {model.nq} ({', '.join(model.joint_names)})"
+                ]
+            )
+        self._model = pin.Model(model.pin_model)
+        if not gravity_compensation:
+            self._model.gravity.linear = np.zeros(3)
+        self._data = self._model.createData()
+        self._tip = model.tip_frame
+        # A view into Pinocchio's data: each update of the frame refreshes it, without a new object per tick.
+        self._x = self._data.oMf[self._tip].translation
+        self._zero = np.zeros(model.nq)
+        self._k_p = natural_frequency**2
+        self._k_v = 2.0 * damping_ratio * natural_frequency
+        self._weights = np.array([self._k_p, self._k_v, 1.0]) if feedforward else np.array([self._k_p, 0.0, 0.0])
+        self._damping = singularity_damping
+        self._singular_below = 0.1 * model.reach
+
+    def reset(self) -> None:
+        """Do nothing: the law has no memory."""
+
+    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
+        """Return the torques of the law above; see Controller.torque."""
+        model, data = self._model, self._data
+        pin.forwardKinematics(model, data, q, dq, self._zero)
+        pin.computeJointJacobians(model, data)
+        pin.updateFramePlacement(model, data, self._tip)
+        J = pin.getFrameJacobian(model, data, self._tip, pin.LOCAL_WORLD_ALIGNED)[:3]
+        dJ_dq = pin.getFrameClassicalAcceleration(model, data, self._tip, pin.LOCAL_WORLD_ALIGNED).linear
+        F = self._weights.dot(reference)
+        F -= self._k_p * self._x
+        F -= self._k_v * J.dot(dq)
+        F -= dJ_dq
+        lu, _, ddq, info = dgesv(J, F)
+        if self._damping:
+            # |det J| over the other two singular values' largest possible product: a lower bound of the smallest.
+            smallest = 2.0 * abs(lu[0, 0] * lu[1, 1] * lu[2, 2]) / np.vdot(J, J)
+            if smallest < self._singular_below:
+                ddq = self._damped_solve(J, F, reference[0] - self._x, smallest / self._singular_below)
+        elif info:
+            raise np.linalg.LinAlgError("the tip's Jacobian is singular")
+        torque: FloatArray = pin.rnea(model, data, q, dq, ddq)
+        return torque
+
+    def _damped_solve(self, J: FloatArray, F: FloatArray, error: FloatArray, nearness: float) -> FloatArray:
+        damping = self._damping**2 * error.dot(error) * (1.0 - nearness**2)
+        solution: FloatArray = J.T @ np.linalg.solve(J @ J.T + damping * np.eye(3), F)
+        return solution
+
+
+CONFIG = OperationalSpaceConfig
+
+
+def build(config: OperationalSpaceConfig, model: RobotModel) -> Controller:
+    """Make the controller that a config describes."""
+    return OperationalSpace(
+        model,
+        config.natural_frequency,
+        config.damping_ratio,
+        config.gravity_compensation,
+        config.feedforward,
+        config.singularity_damping,
+    )

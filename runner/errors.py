@@ -1,0 +1,49 @@
+"""Errors in the language of robots. Everything a user can mend derives from RunnerError and ends with exit code 2."""
+
+import difflib
+from collections.abc import Iterable
+
+
+class RunnerError(Exception):
+    """Base of all errors that a user can mend: the message says what is wrong, what was found and what is allowed."""
+
+
+class ConfigError(RunnerError):
+    """A config that cannot be run; carries one message per problem.
+
+    Attributes:
+        problems: One text per problem: dotted key, value found, values allowed.
+    """
+
+    def __init__(self, problems: Iterable[str], hint: str = "") -> None:
+        self.problems = tuple(problems)
+        self.hint = hint
+        count = len(self.problems)
+        head = "1 problem in the config:" if count == 1 else f"{count} problems in the config:"
+        lines = [head, *(f"  - {problem}" for problem in self.problems), *([hint] if hint else [])]
+        super().__init__("\n".join(lines))
+
+
+class StoreError(RunnerError):
+    """A run folder, sweep folder or reference file that cannot be read or written."""
+
+
+class SimulationError(Exception):
+    """A closed loop that left the domain of its equations: a result to be stored, not a crash.
+
+    Attributes:
+        reason: What happened.
+        time: When, in s.
+        joint: Name of the joint that left first, or None.
+    """
+
+    def __init__(self, reason: str, time: float, joint: str | None = None) -> None:
+        self.reason, self.time, self.joint = reason, time, joint
+        at = f" at t = {time:.4g} s" + (f", {joint}" if joint else "")
+        super().__init__(f"{reason}{at}")
+
+
+def nearest(name: str, allowed: Iterable[str]) -> str:
+    """Return " (did you mean X?)" for the nearest allowed name, or an empty text when none is near."""
+    matches = difflib.get_close_matches(name, list(allowed), n=1, cutoff=0.5)
+    return f" (did you mean {matches[0]}?)" if matches else ""

@@ -1,0 +1,20 @@
+"""What metrics need to know beside the trace."""
+
+from dataclasses import dataclass
+
+from runner.trajectories import Trajectory
+
+
+@dataclass(frozen=True)
+class MetricContext:
+    """The setting of a run.
+
+    Attributes:
+        trajectory: The desired motion.
+        settling_band: Largest error on each axis of an arm that has settled, in m.
+        period: Time between two rows of the trace, in s.
+    """
+
+    trajectory: Trajectory
+    settling_band: float
+    period: float

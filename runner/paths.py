@@ -1,0 +1,32 @@
+"""Where the configs, robots and templates are: in the checkout beside the package, or inside an installed wheel."""
+
+from functools import cache
+from pathlib import Path
+
+_PACKAGE = Path(__file__).resolve().parent
+
+
+@cache
+def _root() -> Path:
+    checkout = _PACKAGE.parent
+    return checkout if (checkout / "conf" / "config.yaml").is_file() else _PACKAGE / "_data"
+
+
+def package_dir() -> Path:
+    """Return the folder of this package's source."""
+    return _PACKAGE
+
+
+def conf_dir() -> Path:
+    """Return the folder of the Hydra groups."""
+    return _root() / "conf"
+
+
+def robots_dir() -> Path:
+    """Return the folder of our own URDFs."""
+    return _root() / "robots"
+
+
+def templates_dir() -> Path:
+    """Return the folder of the report templates."""
+    return _root() / "reports" / "templates"

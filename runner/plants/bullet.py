@@ -1,0 +1,135 @@
+"""PyBullet as the plant: Featherstone's articulated bodies, semi-implicit Euler."""
+
+import tempfile
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from pydantic import PositiveFloat
+
+from runner.errors import ConfigError
+from runner.plants.plant import Arm, FloatArray, Plant
+from runner.plants.quiet import quiet_stderr
+from runner.registry import StrictModel
+
+with quiet_stderr():  # PyBullet announces its build time
+    import pybullet
+
+# Bullet clamps joint speeds at 100 rad/s by default; a Mini's free goal move is faster than that.
+_NO_SPEED_LIMIT = 1e12
+
+
+class BulletConfig(StrictModel):
+    """Config of the PyBullet plant.
+
+    Attributes:
+        kind: Its name in the registry.
+        step: Integration step, in s; None is a tenth of the fastest controller period.
+    """
+
+    kind: Literal["bullet"]
+    step: PositiveFloat | None
+
+
+class Bullet:
+    """An arm in PyBullet, torque-controlled, without motors, damping, contacts or speed limit.
+
+    Args:
+        arm: The arm.
+        step: Integration step, in s.
+        steps_per_tick: Integration steps for which the torques of one tick are held.
+
+    Raises:
+        ConfigError: if PyBullet cannot load the URDF.
+    """
+
+    def __init__(self, arm: Arm, step: float, steps_per_tick: int) -> None:
+        self.q = np.zeros(arm.model.nq)
+        self.dq = np.zeros(arm.model.nq)
+        self._client = pybullet.connect(pybullet.DIRECT)
+        try:
+            self._body = self._load(arm.urdf)
+            self._joints = self._order_joints(arm.model.joint_names)
+        except ConfigError:
+            self.close()
+            raise
+        self._remove_damping_and_motors()
+        pybullet.setGravity(*arm.model.pin_model.gravity.linear.tolist(), physicsClientId=self._client)
+        # Bullet splits one stepSimulation into the steps: bit-identical to as many calls, and cheaper. Its own
+        # "substeps" start at 2; 0 means none.
+        pybullet.setPhysicsEngineParameter(
+            fixedTimeStep=step * steps_per_tick,
+            numSubSteps=steps_per_tick if steps_per_tick > 1 else 0,
+            physicsClientId=self._client,
+        )
+
+    def _load(self, urdf: str) -> int:
+        # Bullet caches URDFs by file name within a process, so each arm gets a file name of its own.
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "arm.urdf"
+            path.write_text(urdf)
+            flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
+            try:
+                body: int = pybullet.loadURDF(str(path), useFixedBase=True, flags=flags, physicsClientId=self._client)
+            except pybullet.error as error:
+                raise ConfigError([f"robot.urdf: PyBullet cannot load it: {error}"]) from error
+        return body
+
+    def _order_joints(self, names: tuple[str, ...]) -> list[int]:
+        count = pybullet.getNumJoints(self._body, physicsClientId=self._client)
+        infos = [pybullet.getJointInfo(self._body, i, physicsClientId=self._client) for i in range(count)]
+        index = {info[1].decode(): info[0] for info in infos}
+        return [index[name] for name in names]
+
+    def _remove_damping_and_motors(self) -> None:
+        for link in range(-1, pybullet.getNumJoints(self._body, physicsClientId=self._client)):
+            pybullet.changeDynamics(
+                self._body,
+                link,
+                linearDamping=0.0,
+                angularDamping=0.0,
+                jointDamping=0.0,
+                maxJointVelocity=_NO_SPEED_LIMIT,
+                physicsClientId=self._client,
+            )
+        pybullet.setJointMotorControlArray(
+            self._body,
+            self._joints,
+            pybullet.VELOCITY_CONTROL,
+            forces=[0.0] * len(self._joints),
+            physicsClientId=self._client,
+        )
+
+    def reset(self, q: FloatArray, dq: FloatArray) -> None:
+        """Put the arm into a state; see Plant."""
+        for joint, position, velocity in zip(self._joints, q.tolist(), dq.tolist(), strict=True):
+            pybullet.resetJointState(self._body, joint, position, velocity, physicsClientId=self._client)
+        self.q[:], self.dq[:] = q, dq
+
+    def advance(self, tau: FloatArray) -> None:
+        """Hold the torques for one tick; see Plant."""
+        client, body, joints = self._client, self._body, self._joints
+        pybullet.setJointMotorControlArray(
+            body, joints, pybullet.TORQUE_CONTROL, forces=tau.tolist(), physicsClientId=client
+        )
+        pybullet.stepSimulation(client)
+        states = pybullet.getJointStates(body, joints, client)
+        self.q[:] = [state[0] for state in states]
+        self.dq[:] = [state[1] for state in states]
+
+    def close(self) -> None:
+        """Disconnect from the physics server."""
+        pybullet.disconnect(self._client)
+
+
+CONFIG = BulletConfig
+
+
+def build(config: BulletConfig, arm: Arm, step: float, steps_per_tick: int) -> Plant:
+    """Make the plant that a config describes."""
+    return Bullet(arm, step, steps_per_tick)
+
+
+def default_step(tick: float) -> float:
+    """Return the step taken when the config names none, in s: a tenth of the fastest controller period."""
+    return tick / 10.0

@@ -1,0 +1,81 @@
+"""Runge-Kutta integration of the equations of motion as the plant."""
+
+from typing import Literal
+
+import numpy as np
+import pinocchio as pin
+from pydantic import PositiveFloat
+
+from runner.plants.plant import Arm, FloatArray, Plant
+from runner.registry import StrictModel
+
+
+class Rk4Config(StrictModel):
+    """Config of the Runge-Kutta plant.
+
+    Attributes:
+        kind: Its name in the registry.
+        step: Integration step, in s; None is the fastest controller period.
+    """
+
+    kind: Literal["rk4"]
+    step: PositiveFloat | None
+
+
+class Rk4:
+    """An arm integrated by the classical Runge-Kutta scheme on Pinocchio's articulated-body algorithm.
+
+    Fourth order in its step while the torques are held and the motion is smooth: no contact, no stops.
+
+    Args:
+        arm: The arm.
+        step: Integration step, in s.
+        steps_per_tick: Integration steps for which the torques of one tick are held.
+    """
+
+    def __init__(self, arm: Arm, step: float, steps_per_tick: int) -> None:
+        self._model = arm.model.pin_model
+        self._data = self._model.createData()
+        self._step = step
+        self._steps_per_tick = steps_per_tick
+        self.q = np.zeros(arm.model.nq)
+        self.dq = np.zeros(arm.model.nq)
+
+    def reset(self, q: FloatArray, dq: FloatArray) -> None:
+        """Put the arm into a state; see Plant."""
+        self.q[:], self.dq[:] = q, dq
+
+    def advance(self, tau: FloatArray) -> None:
+        """Hold the torques for one tick; see Plant."""
+        model, data, h = self._model, self._data, self._step
+        half = 0.5 * h
+        q, v = self.q, self.dq
+        for _ in range(self._steps_per_tick):
+            # With dq = v the positions' slopes are the intermediate velocities, so four forward dynamics suffice:
+            # q+ = q + h v + h^2/6 (a1 + a2 + a3), v+ = v + h/6 (a1 + 2 a2 + 2 a3 + a4).
+            a1 = pin.aba(model, data, q, v, tau).copy()
+            q_half = q + half * v
+            v2 = v + half * a1
+            a2 = pin.aba(model, data, q_half, v2, tau).copy()
+            v3 = v + half * a2
+            a3 = pin.aba(model, data, q + half * v2, v3, tau).copy()
+            a4 = pin.aba(model, data, q + h * v3, v + h * a3, tau)
+            sum_123 = a1 + a2 + a3
+            q += h * v + (h * h / 6.0) * sum_123
+            v += (h / 6.0) * (sum_123 + a2 + a3 + a4)
+
+    def close(self) -> None:
+        """Hold nothing, release nothing."""
+
+
+CONFIG = Rk4Config
+
+
+def build(config: Rk4Config, arm: Arm, step: float, steps_per_tick: int) -> Plant:
+    """Make the plant that a config describes."""
+    return Rk4(arm, step, steps_per_tick)
+
+
+def default_step(tick: float) -> float:
+    """Return the step taken when the config names none, in s: the fastest controller period itself."""
+    return tick

@@ -1,0 +1,67 @@
+"""Names to parts: what a `kind:` in a config stands for.
+
+A registry holds one line per kind, the module that defines it. The module is imported when the kind is first
+used, and offers `CONFIG`, the pydantic model of its config group, and `build`, which makes the object. Other
+packages add kinds through entry points in the group `runner.<registry>`, each pointing to such a module.
+"""
+
+import importlib
+from collections.abc import Mapping
+from importlib.metadata import entry_points
+from types import ModuleType
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict
+
+from runner.errors import ConfigError, nearest
+
+
+class StrictModel(BaseModel):
+    """Base of every config model: no unknown key, no silent conversion, no NaN or infinity, unchangeable."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+
+
+class Registry:
+    """The kinds of one config group.
+
+    Args:
+        group: Name of the config group, such as "controller".
+        modules: Module name of each kind.
+    """
+
+    def __init__(self, group: str, modules: Mapping[str, str]) -> None:
+        self.group = group
+        self._modules = dict(modules)
+
+    def names(self) -> list[str]:
+        """Return the known kinds, those of other packages included, sorted."""
+        return sorted(self._modules | self._plugins())
+
+    def config_model(self, kind: str) -> type[StrictModel]:
+        """Return the pydantic model of a kind's config.
+
+        Raises:
+            ConfigError: if the kind is unknown.
+        """
+        model: type[StrictModel] = self._module(kind).CONFIG
+        return model
+
+    def build(self, config: Any, *args: Any) -> Any:  # noqa: ANN401 - each registry's caller knows its own type
+        """Make the object that a validated config describes; `args` are what every kind of this group gets."""
+        return self._module(config.kind).build(config, *args)
+
+    def default_step(self, kind: str, tick: float) -> float:
+        """Return the step that a kind of plant takes when its config names none, in s."""
+        step: float = self._module(kind).default_step(tick)
+        return step
+
+    def _module(self, kind: str) -> ModuleType:
+        modules = self._modules if kind in self._modules else self._plugins()
+        if kind not in modules:
+            known = ", ".join(self.names())
+            raise ConfigError([f"{self.group}.kind: '{kind}' is unknown{nearest(kind, self.names())}; known: {known}"])
+        return importlib.import_module(modules[kind])
+
+    def _plugins(self) -> dict[str, str]:
+        return {point.name: point.value for point in entry_points(group=f"runner.{self.group}")}

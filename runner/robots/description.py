@@ -1,0 +1,89 @@
+"""The URDF of a robot as text: found, checked, and with the masses that a config asks for."""
+
+import math
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from runner.errors import ConfigError, nearest
+from runner.paths import robots_dir
+
+
+def find_urdf(name: str, config_dirs: Sequence[Path] = ()) -> Path:
+    """Return the file of a URDF: an absolute path, or a name in a config folder of the user's or among our robots.
+
+    Args:
+        name: Value of `robot.urdf`.
+        config_dirs: Config folders of the user's; each is searched itself and in its sub-folder `robots`.
+
+    Raises:
+        ConfigError: if no such file exists; names the places searched.
+    """
+    places = [place for folder in config_dirs for place in (folder / "robots", folder)] + [robots_dir()]
+    candidates = [Path(name)] if Path(name).is_absolute() else [place / name for place in places]
+    for candidate in candidates:
+        if candidate.is_file():
+            return candidate
+    own = sorted(path.name for path in robots_dir().glob("*.urdf"))
+    raise ConfigError(
+        [
+            f"robot.urdf: no file '{name}'{nearest(name, own)}; looked in "
+            f"{', '.join(str(c.parent) for c in candidates)}; ours: {', '.join(own)}"
+        ]
+    )
+
+
+def read_urdf(path: Path, masses: Mapping[str, float]) -> str:
+    """Return a URDF's text with the given link masses, inertias scaled along (a uniform change of density).
+
+    Args:
+        path: The URDF file.
+        masses: Mass of links by name, in kg; links not named keep theirs.
+
+    Raises:
+        ConfigError: if the file is no URDF, a link named does not exist or has no mass to change, or a link's own
+            mass is negative or not finite.
+    """
+    try:
+        tree = ET.fromstring(path.read_text())  # noqa: S314 - ElementTree resolves no external entities
+    except (ET.ParseError, UnicodeDecodeError) as error:
+        raise ConfigError([f"robot.urdf: {path} is no XML: {error}"]) from error
+    links = {link.get("name", ""): link for link in tree.iter("link")}
+    if tree.tag != "robot" or not links:
+        raise ConfigError([f"robot.urdf: {path} is no URDF: it needs a <robot> with links"])
+    problems = []
+    for name, link in links.items():
+        if link.find("inertial/mass") is None:
+            problems.append(
+                f"robot.urdf: link '{name}' in {path} has no <inertial><mass>; PyBullet would make it 1 kg: write its "
+                "mass, or zero mass and zero inertia"
+            )
+        elif not 0.0 <= _mass(link) < math.inf:
+            problems.append(f"robot.urdf: link '{name}' in {path} has mass {_mass(link):g} kg; allowed: 0 or more")
+    for name, mass in masses.items():
+        if name not in links:
+            problems.append(f"robot.masses.{name}: no such link{nearest(name, links)}; links: {', '.join(links)}")
+        elif _mass(links[name]) == 0.0:
+            problems.append(f"robot.masses.{name}: link '{name}' is massless in {path.name}; its mass cannot be scaled")
+        else:
+            _scale_inertial(links[name], mass)
+    if problems:
+        raise ConfigError(problems)
+    return ET.tostring(tree, encoding="unicode")
+
+
+def _mass(link: ET.Element) -> float:
+    element = link.find("inertial/mass")
+    return math.nan if element is None else float(element.get("value", "nan"))
+
+
+def _scale_inertial(link: ET.Element, mass: float) -> None:
+    element = link.find("inertial/mass")
+    inertia = link.find("inertial/inertia")
+    if element is None:
+        return
+    scale = mass / _mass(link)
+    element.set("value", repr(float(mass)))
+    for key, value in dict({} if inertia is None else inertia.attrib).items():
+        if inertia is not None:
+            inertia.set(key, repr(float(value) * scale))

@@ -1,0 +1,134 @@
+"""A robot arm as its rigid-body model: kinematics and dynamics in joint space and at the tip, by Pinocchio."""
+
+from functools import cached_property
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from runner.errors import ConfigError, nearest
+
+FloatArray = NDArray[np.float64]
+
+STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value (its G(q) shows 9.81 and 19.62)
+
+
+class RobotModel:
+    """Rigid-body model of a fixed-base serial arm with revolute joints.
+
+    Every result is a new array; positions and Jacobians are given in the base frame.
+
+    Args:
+        urdf: The URDF's text.
+        tip: Name of the frame that is controlled, the tool centre point.
+        gravity: Magnitude of gravity along -z of the base, in m/s^2.
+
+    Raises:
+        ConfigError: if the URDF cannot be built, holds a joint that is not revolute, or has no such frame.
+    """
+
+    def __init__(self, urdf: str, tip: str, gravity: float = STANDARD_GRAVITY) -> None:
+        try:
+            self.pin_model = pin.buildModelFromXML(urdf)
+        except (ValueError, RuntimeError) as error:
+            raise ConfigError([f"robot.urdf: Pinocchio cannot build it: {error}"]) from error
+        self.pin_model.gravity.linear = np.array([0.0, 0.0, -gravity])
+        joints = list(self.pin_model.joints)[1:]
+        self.joint_names: tuple[str, ...] = tuple(list(self.pin_model.names)[1:])
+        for name, joint in zip(self.joint_names, joints, strict=True):
+            if joint.nq != 1 or not joint.shortname().startswith("JointModelR"):
+                raise ConfigError(
+                    [f"robot.urdf: joint '{name}' is {joint.shortname()}; allowed: revolute (with wide limits)"]
+                )
+        frames = [frame.name for frame in self.pin_model.frames]
+        if tip not in frames:
+            raise ConfigError([f"robot.tip: no frame '{tip}'{nearest(tip, frames)}; frames: {', '.join(frames)}"])
+        self.tip_frame: int = self.pin_model.getFrameId(tip)
+        self.nq: int = self.pin_model.nq
+        self._data = self.pin_model.createData()
+
+    def tip_position(self, q: FloatArray) -> FloatArray:
+        """Return the tip's position in the base frame, shape (3,), in m."""
+        return self.tip_pose(q)[:3, 3].copy()
+
+    def tip_pose(self, q: FloatArray) -> FloatArray:
+        """Return the tip's homogeneous transform in the base frame, shape (4, 4)."""
+        pin.framesForwardKinematics(self.pin_model, self._data, q)
+        pose: FloatArray = self._data.oMf[self.tip_frame].homogeneous.copy()
+        return pose
+
+    def tip_positions(self, q: FloatArray) -> FloatArray:
+        """Return the tip's positions for rows of joint positions, shapes (T, nq) to (T, 3)."""
+        positions = np.empty((len(q), 3))
+        tip = self._data.oMf[self.tip_frame].translation  # a view that each update refreshes
+        for row, configuration in zip(positions, q, strict=True):
+            pin.forwardKinematics(self.pin_model, self._data, configuration)
+            pin.updateFramePlacement(self.pin_model, self._data, self.tip_frame)
+            row[:] = tip
+        return positions
+
+    def frame_poses(self, q: FloatArray, frames: tuple[str, ...]) -> FloatArray:
+        """Return the transforms of named frames in the base frame, shape (len(frames), 4, 4)."""
+        pin.framesForwardKinematics(self.pin_model, self._data, q)
+        ids = [self.pin_model.getFrameId(name) for name in frames]
+        return np.array([self._data.oMf[index].homogeneous for index in ids])
+
+    def tip_jacobian(self, q: FloatArray) -> FloatArray:
+        """Return the tip's basic Jacobian in the base frame, shape (6, nq): linear rows first (thesis eq. 3.5)."""
+        jacobian: FloatArray = pin.computeFrameJacobian(
+            self.pin_model, self._data, q, self.tip_frame, pin.LOCAL_WORLD_ALIGNED
+        )
+        return jacobian
+
+    def tip_bias_acceleration(self, q: FloatArray, dq: FloatArray) -> FloatArray:
+        """Return the tip's linear acceleration at zero joint acceleration, dJ/dt dq, shape (3,), in m/s^2."""
+        pin.forwardKinematics(self.pin_model, self._data, q, dq, np.zeros(self.nq))
+        acceleration = pin.getFrameClassicalAcceleration(
+            self.pin_model, self._data, self.tip_frame, pin.LOCAL_WORLD_ALIGNED
+        )
+        linear: FloatArray = acceleration.linear.copy()
+        return linear
+
+    def mass_matrix(self, q: FloatArray) -> FloatArray:
+        """Return the joint-space mass matrix M(q), shape (nq, nq), in kg m^2 (thesis eq. 3.11)."""
+        M: FloatArray = np.triu(pin.crba(self.pin_model, self._data, q))  # crba fills the upper triangle only
+        M += np.triu(M, 1).T
+        return M
+
+    def gravity_torque(self, q: FloatArray) -> FloatArray:
+        """Return the gravity term G(q), shape (nq,), in N m (thesis eq. 3.24)."""
+        torque: FloatArray = pin.computeGeneralizedGravity(self.pin_model, self._data, q).copy()
+        return torque
+
+    def coriolis_torque(self, q: FloatArray, dq: FloatArray) -> FloatArray:
+        """Return the centrifugal and Coriolis term V(q, dq), shape (nq,), in N m (thesis eq. 3.12)."""
+        bias: FloatArray = pin.nonLinearEffects(self.pin_model, self._data, q, dq)
+        return bias - self.gravity_torque(q)
+
+    def forward_dynamics(self, q: FloatArray, dq: FloatArray, tau: FloatArray) -> FloatArray:
+        """Return the joint accelerations under the given torques, shape (nq,), in rad/s^2 (thesis eq. 3.25)."""
+        acceleration: FloatArray = pin.aba(self.pin_model, self._data, q, dq, tau).copy()
+        return acceleration
+
+    def energy(self, q: FloatArray, dq: FloatArray) -> float:
+        """Return the mechanical energy, kinetic plus potential, in J."""
+        return float(pin.computeMechanicalEnergy(self.pin_model, self._data, q, dq))
+
+    @property
+    def effort_limits(self) -> FloatArray:
+        """The URDF's effort limits, shape (nq,), in N m."""
+        limits: FloatArray = self.pin_model.upperEffortLimit.copy()
+        return limits
+
+    @cached_property
+    def reach(self) -> float:
+        """Largest distance of the tip from the first joint's axis origin that the link lengths admit, in m."""
+        placements = list(self.pin_model.jointPlacements)[2:]
+        last = self.pin_model.frames[self.tip_frame].placement
+        return float(sum(np.linalg.norm(p.translation) for p in (*placements, last)))
+
+    @cached_property
+    def shoulder(self) -> FloatArray:
+        """Origin of the first joint in the base frame, shape (3,), in m: the centre of the workspace."""
+        origin: FloatArray = self.pin_model.jointPlacements[1].translation.copy()
+        return origin

@@ -1,0 +1,56 @@
+"""Joint encoders: noisy joint positions, and velocities exact or differenced."""
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+class JointEncoders:
+    """The joint measurement of one control loop: a fresh noise draw per joint at each of its ticks.
+
+    All draws are made when the sensor is made, so that equal generators give equal noise whatever the loop does.
+
+    Args:
+        ticks: Number of measurements to come.
+        joints: Number of joints.
+        period: Time between two measurements, in s.
+        amplitude: Half-width (uniform) or standard deviation (gaussian) of the position noise, in rad.
+        distribution: Shape of the position noise.
+        velocity: Whether velocities are exact, or differences of the measured positions over the period.
+        generator: Source of the draws.
+    """
+
+    def __init__(
+        self,
+        ticks: int,
+        joints: int,
+        period: float,
+        amplitude: float,
+        distribution: Literal["uniform", "gaussian", "none"],
+        velocity: Literal["exact", "finite_difference"],
+        generator: np.random.Generator,
+    ) -> None:
+        if distribution == "none":
+            self._noise = np.zeros((ticks, joints))
+        elif distribution == "uniform":
+            self._noise = amplitude * generator.uniform(-1.0, 1.0, (ticks, joints))
+        else:
+            self._noise = amplitude * generator.standard_normal((ticks, joints))
+        self._period = period
+        self._differenced = velocity == "finite_difference"
+        self._last: FloatArray | None = None
+
+    def measure(self, tick: int, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return measured joint positions and velocities, shapes (nq,), from the true ones at a tick.
+
+        A differenced velocity starts from the first measurement: it is zero there, as the arm starts at rest.
+        """
+        measured = q + self._noise[tick]
+        if not self._differenced:
+            return measured, dq
+        velocity = np.zeros_like(q) if self._last is None else (measured - self._last) / self._period
+        self._last = measured
+        return measured, velocity

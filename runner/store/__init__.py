@@ -1,0 +1,22 @@
+"""Stored runs: content-addressed folders, written atomically, readable without the simulator."""
+
+from runner.store.identity import run_hash
+from runner.store.run import Run, is_run, open_run
+from runner.store.sweep import Sweep, is_sweep, open_runs, open_sweep, write_sweep
+from runner.store.writing import RunResult, find_run, prepare, write_run
+
+__all__ = [
+    "Run",
+    "RunResult",
+    "Sweep",
+    "find_run",
+    "is_run",
+    "is_sweep",
+    "open_run",
+    "open_runs",
+    "open_sweep",
+    "prepare",
+    "run_hash",
+    "write_run",
+    "write_sweep",
+]

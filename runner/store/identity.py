@@ -1,0 +1,41 @@
+"""What makes two runs the same run."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from functools import cache
+from importlib.metadata import version
+from typing import Any
+
+from runner.paths import package_dir
+
+# These say where and under which name a run is kept, not what is simulated.
+_LEFT_OUT = ("outputs", "preset")
+# Rooms that come after a stored run: a changed template or claim leaves the physics as it is.
+_NOT_PHYSICS = ("reporting", "claims", "commands", "references", "store")
+
+
+def run_hash(resolved: Mapping[str, Any], urdf: str) -> str:
+    """Return the name of a run's folder: SHA-256 over all that its result follows from.
+
+    That is the resolved config (without outputs and preset, whose values the groups have taken), the URDF's text,
+    the source of the rooms below the store, and the versions of PyBullet and Pinocchio.
+    """
+    content = {
+        "config": {key: value for key, value in resolved.items() if key not in _LEFT_OUT},
+        "urdf": urdf,
+        "source": source_digest(),
+        "engines": {name: version(name) for name in ("pybullet", "pin")},
+    }
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:24]
+
+
+@cache
+def source_digest() -> str:
+    """Return a digest of the package's source, as far as it decides about results."""
+    digest = hashlib.sha256()
+    root = package_dir()
+    for path in sorted(root.rglob("*.py")):
+        if path.relative_to(root).parts[0] not in (*_NOT_PHYSICS, "cli.py", "__main__.py"):
+            digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()

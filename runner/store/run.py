@@ -1,0 +1,123 @@
+"""Reading a stored run."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import yaml
+
+from runner.errors import StoreError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SCHEMA = 1
+
+
+@dataclass(frozen=True)
+class Run:
+    """A stored run.
+
+    Attributes:
+        folder: Its folder.
+        config: Its resolved config.
+        record: The content of metrics.json.
+    """
+
+    folder: Path
+    config: Mapping[str, Any]
+    record: Mapping[str, Any]
+
+    @property
+    def hash(self) -> str:
+        """Its content hash, the folder's name."""
+        return self.folder.name
+
+    @property
+    def status(self) -> str:
+        """Either "ok" or "failed"."""
+        return str(self.record["status"])
+
+    @property
+    def failure(self) -> Mapping[str, Any] | None:
+        """Reason, time, joint and repetition of a failed run."""
+        failure: Mapping[str, Any] | None = self.record.get("failure")
+        return failure
+
+    @property
+    def metrics(self) -> Mapping[str, Mapping[str, Any]]:
+        """Metrics by name: unit, median, min, max and values of each repetition."""
+        metrics: Mapping[str, Mapping[str, Any]] = self.record["metrics"]
+        return metrics
+
+    @property
+    def provenance(self) -> Mapping[str, Any]:
+        """Commit, versions, machine, seed, command, plant step."""
+        provenance: Mapping[str, Any] = self.record["provenance"]
+        return provenance
+
+    @cached_property
+    def urdf(self) -> str:
+        """The URDF's text that was simulated."""
+        return (self.folder / "robot.urdf").read_text()
+
+    @cached_property
+    def trace(self) -> "pd.DataFrame":
+        """Signals of repetition 0, a row per tick; `units` tells the columns' units.
+
+        Raises:
+            StoreError: if the file is missing or damaged.
+        """
+        frame: "pd.DataFrame" = self._table.to_pandas()
+        return frame
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each column of the trace."""
+        return {field.name: (field.metadata or {}).get(b"unit", b"").decode() for field in self._table.schema}
+
+    @cached_property
+    def _table(self) -> Any:  # noqa: ANN401 - pyarrow has no types
+        import pyarrow
+        import pyarrow.parquet
+
+        path = self.folder / "trace.parquet"
+        try:
+            return pyarrow.parquet.ParquetFile(path).read()  # read_table would import pandas, half a second
+        except (OSError, pyarrow.ArrowException) as error:
+            raise StoreError(f"cannot read {path}: {str(error).splitlines()[0]}; run it again to mend it") from error
+
+
+def is_run(folder: Path) -> bool:
+    """Tell whether a folder looks like a run's, finished or not."""
+    return any((folder / name).exists() for name in ("metrics.json", "config.yaml", "trace.parquet"))
+
+
+def open_run(folder: Path) -> Run:
+    """Open a finished run.
+
+    Raises:
+        StoreError: if the folder is no run, or one that was not finished, or is damaged.
+    """
+    if not folder.is_dir():
+        raise StoreError(f"no folder {folder}")
+    record_path = folder / "metrics.json"
+    if not record_path.exists():
+        what = "a run that did not finish" if is_run(folder) else "no stored run"
+        raise StoreError(
+            f"{folder} is {what}: it has no metrics.json; `runner OVERRIDES` makes a run and prints its folder"
+        )
+    try:
+        record = json.loads(record_path.read_text())
+        config = yaml.safe_load((folder / "config.yaml").read_text())
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError, yaml.YAMLError) as error:
+        raise StoreError(f"cannot read the run in {folder}: {' '.join(str(error).split())}") from error
+    needed = {"status", "metrics", "provenance", "repetitions"}
+    if not isinstance(record, dict) or not isinstance(config, dict) or not needed <= set(record):
+        raise StoreError(f"{record_path} is no metrics file: it needs {', '.join(sorted(needed))}")
+    if record.get("schema") != SCHEMA:
+        raise StoreError(f"{record_path} has schema {record.get('schema')!r}; this version reads {SCHEMA}")
+    return Run(folder, config, record)

@@ -1,0 +1,131 @@
+"""Writing a run: its config, its first trace, and last of all the metrics, whose presence means done."""
+
+import io
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from runner.errors import StoreError
+from runner.metrics import Summary
+from runner.store.atomic import write_atomically
+from runner.store.run import SCHEMA, Run, open_run
+from runner.trace import Failure, Trace
+
+
+@dataclass(frozen=True)
+class RunResult:
+    """All that a job leaves to be stored.
+
+    Attributes:
+        resolved: The resolved config.
+        urdf: The URDF's text.
+        trace: The trace of repetition 0.
+        metrics: Metrics over the repetitions.
+        repetitions: Number of repetitions.
+        failure: The first failure and its repetition, or None.
+        timing: What a clock measured.
+        provenance: Commit, versions, machine, seed, command.
+    """
+
+    resolved: Mapping[str, Any]
+    urdf: str
+    trace: Trace
+    metrics: Mapping[str, Summary]
+    repetitions: int
+    failure: tuple[int, Failure] | None
+    timing: Mapping[str, float]
+    provenance: Mapping[str, Any]
+
+
+def prepare(outputs: Path) -> None:
+    """Make sure that runs can be stored in a folder, before anything is computed.
+
+    Raises:
+        StoreError: if it cannot be made or written to.
+    """
+    probe = outputs / "runs" / ".writable"
+    write_atomically(probe, b"")
+    probe.unlink(missing_ok=True)
+
+
+def find_run(outputs: Path, name: str) -> Run | None:
+    """Return the finished run of that hash, or None when it must be simulated: missing, unfinished or damaged."""
+    try:
+        run = open_run(outputs / "runs" / name)
+        _ = run.units  # reads the trace's file
+    except StoreError:
+        return None
+    return run
+
+
+def write_run(outputs: Path, name: str, result: RunResult) -> Run:
+    """Store a run.
+
+    Raises:
+        StoreError: if the disk does not take it.
+    """
+    folder = outputs / "runs" / name
+    record: dict[str, Any] = {
+        "schema": SCHEMA,
+        "status": "ok" if result.failure is None else "failed",
+        "repetitions": result.repetitions,
+    }
+    if result.failure is not None:
+        repetition, failure = result.failure
+        record["failure"] = {**asdict(failure), "repetition": repetition}
+    record["metrics"] = {metric: asdict(summary) for metric, summary in result.metrics.items()}
+    record["timing"] = dict(result.timing)
+    record["provenance"] = dict(result.provenance)
+    write_atomically(folder / "config.yaml", yaml.safe_dump(dict(result.resolved), sort_keys=False).encode())
+    write_atomically(folder / "robot.urdf", result.urdf.encode())
+    write_atomically(folder / "trace.parquet", _parquet(result.trace))
+    write_atomically(folder / "metrics.json", (json.dumps(record, indent=1, allow_nan=False) + "\n").encode())
+    return open_run(folder)
+
+
+def _parquet(trace: Trace) -> bytes:
+    """Return a trace as Parquet: a column per signal, its unit in the column's metadata."""
+    import pyarrow
+    import pyarrow.parquet
+
+    joints = range(trace.q.shape[1])
+    columns: list[tuple[str, str, np.ndarray]] = [("t", "s", trace.t)]
+    for name, unit, values in (("q", "rad", trace.q), ("dq", "rad/s", trace.dq), ("tau", "N m", trace.tau)):
+        columns += [(f"{name}{joint + 1}", unit, values[:, joint]) for joint in joints]
+    tip_signals = (
+        ("tip", "m", trace.tip),
+        ("error", "m", trace.error),
+        ("desired", "m", trace.desired[:, 0]),
+        ("desired_velocity", "m/s", trace.desired[:, 1]),
+        ("desired_acceleration", "m/s^2", trace.desired[:, 2]),
+    )
+    for name, unit, values in tip_signals:
+        columns += [(f"{name}_{axis}", unit, values[:, index]) for index, axis in enumerate("xyz")]
+    schema = pyarrow.schema(
+        [pyarrow.field(name, pyarrow.float64(), metadata={"unit": unit}) for name, unit, _ in columns]
+    )
+    # Arrays made from their buffers: any other way asks pandas about them, whose import takes half a second.
+    arrays = [
+        pyarrow.Array.from_buffers(
+            pyarrow.float64(), len(values), [None, pyarrow.py_buffer(np.ascontiguousarray(values, dtype=np.float64))]
+        )
+        for *_, values in columns
+    ]
+    table = pyarrow.Table.from_arrays(arrays, schema=schema)
+    buffer = io.BytesIO()
+    pyarrow.parquet.write_table(table, buffer, compression="zstd", use_dictionary=False, use_byte_stream_split=True)
+    return buffer.getvalue()
+
+
+def timing(traces_seconds: np.ndarray, wall_s: float, cpu_s: float) -> dict[str, float]:
+    """Return the timing record from the seconds of every tick, shape (N,)."""
+    if len(traces_seconds) == 0:
+        return {"tick_time_median": math.nan, "tick_time_p99": math.nan, "wall_s": wall_s, "cpu_s": cpu_s}
+    median, p99 = np.percentile(traces_seconds, [50, 99])
+    return {"tick_time_median": float(median), "tick_time_p99": float(p99), "wall_s": wall_s, "cpu_s": cpu_s}

@@ -1,0 +1,58 @@
+"""What one closed-loop run leaves behind: every signal at every control tick."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why and where a closed loop left the domain of its equations.
+
+    Attributes:
+        reason: What happened.
+        time: When, in s.
+        joint: Name of the joint that left first, or None where no single one did.
+    """
+
+    reason: str
+    time: float
+    joint: str | None = None
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Signals of one run, a row for each control tick from t = 0 to the end, true values unless said.
+
+    Attributes:
+        t: Times, shape (T,), in s.
+        q: Joint positions, shape (T, nq), in rad.
+        dq: Joint velocities, shape (T, nq), in rad/s.
+        tau: Torques after the limit, held until the next row, shape (T, nq), in N m.
+        tip: Tip positions in the base frame, shape (T, 3), in m.
+        desired: Desired tip position, velocity, acceleration, shape (T, 3, 3): rows in m, m/s, m/s^2.
+        limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
+        joint_names: Names of the joints.
+        tick_seconds: Wall-clock time that each tick took, shape (T - 1,), in s.
+        failure: Why the run ended early, or None.
+    """
+
+    t: FloatArray
+    q: FloatArray
+    dq: FloatArray
+    tau: FloatArray
+    tip: FloatArray
+    desired: FloatArray
+    limits: FloatArray
+    joint_names: tuple[str, ...]
+    tick_seconds: FloatArray
+    failure: Failure | None = None
+
+    @property
+    def error(self) -> FloatArray:
+        """Tip error, desired minus actual, shape (T, 3), in m."""
+        difference: FloatArray = self.desired[:, 0] - self.tip
+        return difference

@@ -1,0 +1,54 @@
+"""A goal position: the desired tip stands at the goal from the first tick on."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from runner.registry import StrictModel
+from runner.trajectories.line import distance_to_segment
+from runner.trajectories.trajectory import FloatArray, Trajectory
+
+
+class GoalConfig(StrictModel):
+    """Config of a goal.
+
+    Attributes:
+        kind: Its name in the registry.
+        start: Tip position at t = 0, in m; None is the tip at home.
+        goal: Goal position of the tip, in m.
+    """
+
+    kind: Literal["goal"]
+    start: list[float] | None = Field(min_length=3, max_length=3)
+    goal: list[float] = Field(min_length=3, max_length=3)
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A goal (thesis section 3.3.1); see Trajectory for the attributes."""
+
+    start: FloatArray
+    goal: FloatArray
+    duration: float = 0.0
+    run_duration: float = 4.0
+    tracked: bool = False
+
+    def sample(self, times: FloatArray) -> FloatArray:
+        """Return the goal at rest, for every time."""
+        motion = np.zeros((len(times), 3, 3))
+        motion[:, 0] = self.goal
+        return motion
+
+    def distance_to_path(self, points: FloatArray) -> FloatArray:
+        """Return the distance to the straight segment from start to goal."""
+        return distance_to_segment(points, self.start, self.goal)
+
+
+CONFIG = GoalConfig
+
+
+def build(config: GoalConfig, start: FloatArray) -> Trajectory:
+    """Make the goal that a config describes; `start` is the tip at t = 0."""
+    return Goal(start, np.array(config.goal))

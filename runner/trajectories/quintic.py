@@ -1,0 +1,72 @@
+"""Rest to rest along a straight line, by a polynomial of fifth order in time."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from pydantic import Field, PositiveFloat
+
+from runner.registry import StrictModel
+from runner.trajectories.line import distance_to_segment
+from runner.trajectories.trajectory import FloatArray, Trajectory
+
+
+class QuinticConfig(StrictModel):
+    """Config of a quintic.
+
+    Attributes:
+        kind: Its name in the registry.
+        start: Tip position at t = 0, in m; None is the tip at home.
+        goal: Tip position at t_f, in m.
+        duration: t_f, in s.
+    """
+
+    kind: Literal["quintic"]
+    start: list[float] | None = Field(min_length=3, max_length=3)
+    goal: list[float] = Field(min_length=3, max_length=3)
+    duration: PositiveFloat
+
+
+@dataclass(frozen=True)
+class Quintic:
+    r"""The rest-to-rest quintic (thesis eq. 3.39 with its six end conditions); see Trajectory for the attributes.
+
+    The conditions leave one solution, with D = goal - start and u = t / t_f:
+
+    .. math:: x(t) = x_0 + D (10 u^3 - 15 u^4 + 6 u^5)
+
+    Peak speed is 1.875 |D| / t_f at half time.
+    """
+
+    start: FloatArray
+    goal: FloatArray
+    duration: float
+    tracked: bool = True
+
+    @property
+    def run_duration(self) -> float:
+        """One second more than the motion, so that the arm's rest is seen."""
+        return self.duration + 1.0
+
+    def sample(self, times: FloatArray) -> FloatArray:
+        """Return the motion, at rest at the goal after t_f."""
+        u = np.clip(times / self.duration, 0.0, 1.0)
+        D = self.goal - self.start
+        rate = 1.0 / self.duration
+        motion = np.empty((len(times), 3, 3))
+        motion[:, 0] = self.start + np.outer(u**3 * (10.0 + u * (-15.0 + 6.0 * u)), D)
+        motion[:, 1] = np.outer(30.0 * u**2 * (1.0 - u) ** 2 * rate, D)
+        motion[:, 2] = np.outer(60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) * rate**2, D)
+        return motion
+
+    def distance_to_path(self, points: FloatArray) -> FloatArray:
+        """Return the distance to the straight segment from start to goal."""
+        return distance_to_segment(points, self.start, self.goal)
+
+
+CONFIG = QuinticConfig
+
+
+def build(config: QuinticConfig, start: FloatArray) -> Trajectory:
+    """Make the quintic that a config describes; `start` is the tip at t = 0."""
+    return Quintic(start, np.array(config.goal), config.duration)

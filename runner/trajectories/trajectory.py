@@ -1,0 +1,45 @@
+"""What every trajectory offers."""
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+class Trajectory(Protocol):
+    """A desired motion of the tip in the base frame."""
+
+    @property
+    def start(self) -> FloatArray:
+        """Tip position where the arm stands at t = 0, shape (3,), in m."""
+        ...
+
+    @property
+    def goal(self) -> FloatArray | None:
+        """Tip position where the motion comes to rest, shape (3,), in m; None for a periodic one."""
+        ...
+
+    @property
+    def duration(self) -> float:
+        """Time t_f after which the desired tip rests, in s: zero for a goal; one period if periodic."""
+        ...
+
+    @property
+    def run_duration(self) -> float:
+        """How long a run lasts that is not told otherwise, in s."""
+        ...
+
+    @property
+    def tracked(self) -> bool:
+        """Whether there is a motion to track: False for a bare goal."""
+        ...
+
+    def sample(self, times: FloatArray) -> FloatArray:
+        """Return desired position, velocity and acceleration, shape (T, 3, 3): rows in m, m/s, m/s^2."""
+        ...
+
+    def distance_to_path(self, points: FloatArray) -> FloatArray:
+        """Return each point's distance to the path taken as a curve, shapes (T, 3) to (T,), in m."""
+        ...
