@@ -80,7 +80,7 @@ def _simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
 def _provenance(config: RunConfig, composed: Composed) -> dict[str, object]:
     return {
         "date": time.strftime("%Y-%m-%d", time.gmtime()),
-        "command": shlex.join(["runner", *composed.overrides]),
+        "command": shlex.join(["runner", *(o for o in composed.overrides if not o.startswith("outputs="))]),
         "choices": dict(composed.choices),
         "plant_step": config.step,
         "steps_per_tick": config.steps_per_tick,

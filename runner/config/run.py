@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
+from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveFloat, PositiveInt
 
 from runner.config.noise import NoiseConfig
 from runner.config.robot import RobotConfig
@@ -20,12 +20,14 @@ class RunSettings(StrictModel):
         seed: Seed from which, with the repetition, every random number follows.
         repetitions: Number of closed-loop runs in the job.
         duration: Length of a run, in s; None leaves it to the trajectory.
+        gravity: Magnitude of gravity along -z of the base, in m/s^2, for the plant and the controllers' model.
         outputs: Folder in which runs are stored.
     """
 
     seed: NonNegativeInt
     repetitions: PositiveInt
     duration: PositiveFloat | None
+    gravity: NonNegativeFloat
     outputs: Annotated[str, Field(min_length=1)]
 
 

@@ -56,8 +56,8 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
     parts = {group: collect(partial(_parse_group, group, resolved)) for group in (*_KINDS, *_PLAIN)}
     robot, plant, controller, trajectory = (parts[g] for g in ("robot", "plant", "controller", "trajectory"))
     built, timing = None, None
-    if robot is not None:
-        built = collect(lambda: _build_model(robot, config_dirs))
+    if robot is not None and settings is not None:
+        built = collect(lambda: _build_model(robot, settings.gravity, config_dirs))
     if built is not None:
         model, urdf = built
         collect(lambda: _check_joint_values(model, robot, parts["torque_limits"]))
@@ -110,9 +110,9 @@ def _parse(group: str, model: type[StrictModel], value: Mapping[str, Any]) -> St
         raise ConfigError(describe(group, model, error)) from None
 
 
-def _build_model(robot: RobotConfig, config_dirs: Sequence[Path]) -> tuple[RobotModel, str]:
+def _build_model(robot: RobotConfig, gravity: float, config_dirs: Sequence[Path]) -> tuple[RobotModel, str]:
     urdf = read_urdf(find_urdf(robot.urdf, config_dirs), robot.masses)
-    return RobotModel(urdf, robot.tip), urdf
+    return RobotModel(urdf, robot.tip, gravity), urdf
 
 
 def _check_joint_values(model: RobotModel, robot: RobotConfig, torque_limits: TorqueLimitsConfig | None) -> None:

@@ -71,7 +71,7 @@ class Run:
         Raises:
             StoreError: if the file is missing or damaged.
         """
-        frame: "pd.DataFrame" = self._table.to_pandas()
+        frame: pd.DataFrame = self._table.to_pandas()
         return frame
 
     @property

@@ -1,0 +1,36 @@
+"""`runner report DIR... [--html] [--pdf]`: a report from stored runs or sweeps."""
+
+import argparse
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+
+from runner.config.compose import quiet_environment
+from runner.errors import RunnerError
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> None:  # type: ignore[override]
+        raise RunnerError(f"{message}; usage: {self.format_usage().removeprefix('usage: ').strip()}")
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Write the report; print its folder as the last line."""
+    parser = _Parser(prog="runner report", description=__doc__)
+    parser.add_argument("folders", nargs="+", type=Path, metavar="DIR", help="run or sweep folders")
+    parser.add_argument("--html", action="store_true", help="only HTML (with --pdf: both)")
+    parser.add_argument("--pdf", action="store_true", help="only PDF (with --html: both)")
+    options = parser.parse_args(arguments)
+    quiet_environment()
+    from runner import store
+    from runner.reporting.render import write_report
+    from runner.reporting.run_report import run_document
+
+    runs = [run for folder in options.folders for run in store.open_runs(folder)]
+    formats = [name for name in ("html", "pdf") if getattr(options, name)] or ["html", "pdf"]
+    name = hashlib.sha256("".join(run.hash for run in runs).encode()).hexdigest()[:24]
+    outputs = runs[0].folder.parent.parent
+    folder = outputs / "reports" / name
+    write_report(run_document(runs), folder, formats)
+    print(folder)
+    return 0

@@ -1,0 +1,79 @@
+"""`runner reproduce [NAME]`: run what is missing for a published work, and write its report."""
+
+import argparse
+import multiprocessing
+import sys
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from runner.config.compose import quiet_environment
+from runner.errors import RunnerError, nearest
+
+if TYPE_CHECKING:
+    from runner.store import Run
+
+WORKS = ("thesis",)
+_PROCESSES = 2
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        raise RunnerError(f"{message}; usage: {self.format_usage().removeprefix('usage: ').strip()}")
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Reproduce one work or all; print the report's folder as the last line."""
+    parser = _Parser(prog="runner reproduce", description=__doc__)
+    parser.add_argument("work", nargs="?", default="all", metavar="NAME", help=f"{', '.join(WORKS)} or all")
+    parser.add_argument("--outputs", type=Path, default=Path("outputs"), help="folder of runs and reports")
+    options = parser.parse_args(arguments)
+    if options.work not in (*WORKS, "all"):
+        raise RunnerError(
+            f"no work '{options.work}'{nearest(options.work, (*WORKS, 'all'))}; works: {', '.join(WORKS)}, all"
+        )
+    quiet_environment()
+    return max(_reproduce(work, options.outputs) for work in (WORKS if options.work == "all" else (options.work,)))
+
+
+def _reproduce(work: str, outputs: Path) -> int:
+    from runner import store
+    from runner.reporting.render import write_report
+    from runner.reporting.thesis.plan import plan
+    from runner.reporting.thesis.report import thesis_document
+
+    store.prepare(outputs)
+    runs = run_all(plan(), outputs)
+    folder = outputs / "reports" / work
+    print("writing the report ...", file=sys.stderr)
+    write_report(thesis_document(runs), folder)
+    print(folder)
+    return 0
+
+
+def run_all(jobs: Mapping[str, tuple[str, ...]], outputs: Path) -> dict[str, "Run"]:
+    """Run what is not stored yet on two processes, with progress on standard error; return all runs by name."""
+    from tqdm import tqdm
+
+    from runner import store
+
+    context = multiprocessing.get_context("spawn")  # a forked PyBullet or thread pool is not safe
+    folders: dict[str, Path] = {}
+    with ProcessPoolExecutor(_PROCESSES, mp_context=context) as pool:
+        futures = {pool.submit(_run_job, overrides, str(outputs)): name for name, overrides in jobs.items()}
+        try:
+            for future in tqdm(as_completed(futures), total=len(futures), unit="run", desc="running", smoothing=0.1):
+                folders[futures[future]] = Path(future.result())
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return {name: store.open_run(folders[name]) for name in jobs}
+
+
+def _run_job(overrides: tuple[str, ...], outputs: str) -> str:
+    """Run one job in a worker process."""
+    quiet_environment()
+    from runner.execution import run
+
+    return str(run(*overrides, f"outputs={outputs}").folder)

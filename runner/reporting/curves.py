@@ -1,0 +1,118 @@
+"""A figure of curves as data for Plotly: one plot per panel, arrays as base64, texts without markup."""
+
+import base64
+import html
+import math
+import textwrap
+from typing import Any
+
+import numpy as np
+
+from runner.reporting import palette
+from runner.reporting.document import Curves, FloatArray, Panel, Series
+from runner.reporting.markup import plain
+from runner.reporting.thinning import band, thin, usable
+
+Json = dict[str, Any]
+
+_MODES = {"line": "lines", "dashed": "lines", "dotted": "lines", "points": "markers", "points_line": "lines+markers"}
+_DASHES = {"dashed": "dash", "dotted": "dot"}
+_LEGEND_WIDTH, _TITLE_WIDTH = 40, 45
+
+
+def plotly_spec(curves: Curves) -> list[Json]:
+    """Return what the page's script hands to Plotly: for each panel traces, palette indices and layout."""
+    return [_panel(panel) for panel in curves.panels]
+
+
+def neutral(text: str) -> str:
+    """Return a text that Plotly shows literally: it reads tags, entities and formulas in all its texts."""
+    return html.escape(plain(text), quote=False).replace("$", "&#36;")
+
+
+def _panel(panel: Panel) -> Json:
+    chosen = palette.indices([series.color for series in panel.series])
+    traces: list[Json] = []
+    colors: list[int] = []
+    for number, (series, color) in enumerate(zip(panel.series, chosen, strict=True)):
+        drawn = [*_band(series, number), _trace(series, number)]
+        traces += drawn
+        colors += [color] * len(drawn)
+    layout = {
+        "xaxis": _axis(panel.x_label, panel.x_log, panel.x_range, [series.x for series in panel.series]),
+        "yaxis": _axis(panel.y_label, panel.y_log, panel.y_range, [series.y for series in panel.series]),
+        "showlegend": any(plain(series.name).strip() for series in panel.series),
+        "hovermode": "x unified" if all(map(_forward, panel.series)) else "closest",
+    }
+    return {"traces": traces, "colors": colors, "layout": layout}
+
+
+def _trace(series: Series, number: int) -> Json:
+    thinned = thin(series)
+    name = plain(series.name).strip()
+    return {
+        "type": "scatter",
+        "mode": _MODES[series.style],
+        "name": _lines(name, _LEGEND_WIDTH),
+        "showlegend": bool(name),
+        "legendgroup": str(number),
+        "line": {"dash": _DASHES.get(series.style, "solid"), "width": 1.7},
+        "marker": {"size": 6},
+        "x": _typed(thinned.x),
+        "y": _typed(thinned.y),
+    }
+
+
+def _band(series: Series, number: int) -> list[Json]:
+    outline = band(thin(series))
+    if outline is None:
+        return []
+    return [
+        {
+            "type": "scatter",
+            "mode": "lines",
+            "fill": "toself",
+            "hoverinfo": "skip",
+            "showlegend": False,
+            "legendgroup": str(number),
+            "line": {"width": 0},
+            "x": _typed(outline[0]),
+            "y": _typed(outline[1]),
+        }
+    ]
+
+
+def _axis(label: str, log: bool, limits: tuple[float, float] | None, values: list[FloatArray]) -> Json:
+    title = {"text": _lines(label, _TITLE_WIDTH)}
+    axis: Json = {"title": title, "type": "log" if log else "linear", "hoverformat": ".5~g"}
+    shown = limits if limits is not None and usable(limits, log) else None
+    if shown is not None:
+        axis["range"] = [math.log10(limit) if log else float(limit) for limit in shown]
+    if log and _decades(shown, values) > 1:
+        axis["dtick"] = 1
+    return axis
+
+
+def _decades(shown: tuple[float, float] | None, values: list[FloatArray]) -> float:
+    """Return how many powers of ten an axis spans; beyond one, Plotly's labels between them are noise."""
+    everything = np.concatenate(
+        [np.ravel(given) for given in (values if shown is None else [np.array(shown)])] or [np.zeros(0)]
+    )
+    positive = everything[np.isfinite(everything) & (everything > 0)]
+    return float(np.log10(positive.max() / positive.min())) if positive.size else 0.0
+
+
+def _lines(text: str, characters: int) -> str:
+    """Return a text broken into lines, which Plotly does not do by itself."""
+    return "<br>".join(neutral(line) for line in textwrap.wrap(plain(text), characters))
+
+
+def _forward(series: Series) -> bool:
+    """Return whether the abscissae never go back, so that one x has one y."""
+    return not np.any(np.diff(series.x[np.isfinite(series.x)]) < 0)
+
+
+def _typed(values: FloatArray) -> Json:
+    # Infinities overflow the autorange; NaN is a gap.
+    finite = np.where(np.isfinite(values), values, np.nan).astype("<f4")
+    return {"dtype": "f4", "bdata": base64.b64encode(finite.tobytes()).decode("ascii")}

@@ -1,0 +1,277 @@
+"""A report as plain data: sections of typed blocks, made once and rendered by two templates (HTML and Typst).
+
+Blocks hold values, never markup. Text may carry inline mathematics between dollar signs, written as Typst
+mathematics (`"the sag is $g / omega_n^2$"`); everything else is shown literally, so that a name from a config
+or a file can never become markup. A dollar sign is written as two.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+Verdict = Literal["holds", "better", "worse", "cannot", "not run"]
+
+
+@dataclass(frozen=True)
+class Text:
+    """A paragraph; inline mathematics stands between dollar signs."""
+
+    block: ClassVar[str] = "text"
+    text: str
+
+
+@dataclass(frozen=True)
+class Notice:
+    """A paragraph set apart: a failed run, a limit of the comparison, a finding that contradicts the source."""
+
+    block: ClassVar[str] = "notice"
+    kind: Literal["finding", "warning", "failure"]
+    title: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A displayed equation.
+
+    Attributes:
+        typst: The equation in Typst mathematics; written by us, never taken from a config or a file.
+        spoken: The equation in words, for screen readers.
+        number: Its number in the source, such as "3.33", or "" where it is ours.
+    """
+
+    block: ClassVar[str] = "formula"
+    typst: str
+    spoken: str
+    number: str = ""
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a figure or table comes from: its number in the source, the command that makes it, the commit."""
+
+    number: str = ""
+    command: str = ""
+    commit: str = ""
+
+
+@dataclass(frozen=True)
+class Series:
+    """One curve.
+
+    Attributes:
+        name: Its legend entry; with an empty name it stands in no legend.
+        x: Abscissae, shape (T,).
+        y: Ordinates, shape (T,); NaN breaks the line.
+        style: Line, dashed line, dotted line, single points, or points joined by a line.
+        low: Lower edge of a shaded band around the curve, shape (T,), or None.
+        high: Upper edge of the band, shape (T,), or None.
+        color: Index into the palette; None takes the next one. Curves that belong together share it.
+    """
+
+    name: str
+    x: FloatArray
+    y: FloatArray
+    style: Literal["line", "dashed", "dotted", "points", "points_line"] = "line"
+    low: FloatArray | None = None
+    high: FloatArray | None = None
+    color: int | None = None
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes with its curves; labels carry the unit, as in "tip error (m)"."""
+
+    title: str
+    x_label: str
+    y_label: str
+    series: Sequence[Series]
+    x_log: bool = False
+    y_log: bool = False
+    x_range: tuple[float, float] | None = None
+    y_range: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Curves:
+    """A figure of curves: interactive in HTML (zoom, hover, legend toggles), a still in the PDF.
+
+    Attributes:
+        caption: What is seen, in a sentence; inline mathematics as in Text.
+        panels: The axes, in reading order.
+        columns: How many panels stand beside each other.
+        origin: Its number in the source, command and commit.
+    """
+
+    block: ClassVar[str] = "curves"
+    caption: str
+    panels: Sequence[Panel]
+    columns: int = 2
+    origin: Origin = field(default_factory=Origin)
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A still image, drawn from the model or from a stored run.
+
+    Attributes:
+        caption: What is seen; inline mathematics as in Text.
+        svg: The image as SVG text.
+        alt: The image in words, for screen readers.
+        width: Share of the text width, 0 to 1.
+        origin: Its number in the source, command and commit.
+    """
+
+    block: ClassVar[str] = "picture"
+    caption: str
+    svg: str
+    alt: str
+    width: float = 0.7
+    origin: Origin = field(default_factory=Origin)
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of texts; inline mathematics as in Text, in header and cells.
+
+    Attributes:
+        caption: What it lists.
+        header: Column titles, with units.
+        rows: Cells, one sequence per row, each as long as the header.
+        numeric: Indices of the columns that hold numbers, set flush right.
+        origin: Its number in the source, command and commit.
+    """
+
+    block: ClassVar[str] = "table"
+    caption: str
+    header: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    numeric: Sequence[int] = ()
+    origin: Origin = field(default_factory=Origin)
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What our runs give for one claim under one preset.
+
+    Attributes:
+        preset: Name of the preset.
+        measured: Median and spread over the seeds, formatted with unit, such as "1.41 s (1.12 to 1.77)".
+        verdict: Whether the printed value holds.
+    """
+
+    preset: str
+    measured: str
+    verdict: Verdict
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A published number beside ours, with a verdict for each preset.
+
+    Attributes:
+        number: Its number in our list of claims.
+        statement: What the source says.
+        place: Where it says so, such as "section 3.3.1, page 38".
+        printed: The printed value, formatted with unit.
+        findings: One for each preset.
+        reason: Why the verdict is what it is; inline mathematics as in Text.
+        command: The command that makes the runs behind it.
+    """
+
+    block: ClassVar[str] = "claim"
+    number: str
+    statement: str
+    place: str
+    printed: str
+    findings: Sequence[Finding]
+    reason: str
+    command: str = ""
+
+
+@dataclass(frozen=True)
+class Body:
+    """One rigid body of a playback: a polyline of the arm, drawn as cylinders and balls in its own frame.
+
+    Attributes:
+        name: Name of the link.
+        segments: Cylinders as (start, end, radius) in the body frame, in m.
+        balls: Spheres as (centre, radius) in the body frame, in m.
+        positions: Position of the body frame at each instant, shape (T, 3), in m.
+        rotations: Rotation of the body frame as quaternion w, x, y, z at each instant, shape (T, 4).
+        color: Index into the palette.
+    """
+
+    name: str
+    segments: Sequence[tuple[tuple[float, float, float], tuple[float, float, float], float]]
+    balls: Sequence[tuple[tuple[float, float, float], float]]
+    positions: FloatArray
+    rotations: FloatArray
+    color: int = 0
+
+
+@dataclass(frozen=True)
+class Playback:
+    """The motion in three dimensions: played, paused and scrubbed in HTML, a still picture in the PDF.
+
+    Attributes:
+        caption: What moves.
+        times: Instants of the frames, shape (T,), in s.
+        bodies: The moving bodies.
+        path: Path of the tip, shape (N, 3), in m.
+        desired: Desired path, shape (M, 3), or None.
+        still: The motion as a still SVG picture (several instants in one), for the PDF.
+        origin: Its number in the source, command and commit.
+    """
+
+    block: ClassVar[str] = "playback"
+    caption: str
+    times: FloatArray
+    bodies: Sequence[Body]
+    path: FloatArray
+    desired: FloatArray | None
+    still: str
+    origin: Origin = field(default_factory=Origin)
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """What made the results: names and values, such as plant, step, versions, machine, commit."""
+
+    block: ClassVar[str] = "provenance"
+    rows: Sequence[tuple[str, str]]
+
+
+Block = Text | Notice | Formula | Curves | Picture | Table | Claim | Playback | Provenance
+
+
+@dataclass(frozen=True)
+class Section:
+    """A titled sequence of blocks, with sections below it."""
+
+    title: str
+    blocks: Sequence[Block] = ()
+    sections: Sequence["Section"] = ()
+
+
+@dataclass(frozen=True)
+class Document:
+    """A whole report.
+
+    Attributes:
+        title: Title.
+        subtitle: One line below it.
+        abstract: The report in a few sentences; inline mathematics as in Text.
+        sections: The chapters.
+        date: Date of the newest run behind it, ISO format, so that a report remade is the same.
+    """
+
+    title: str
+    subtitle: str
+    abstract: str
+    sections: Sequence[Section]
+    date: str

@@ -1,0 +1,74 @@
+"""A report as one HTML file that needs no other file and no network."""
+
+import base64
+import gzip
+from functools import cache
+from importlib import resources
+from urllib.parse import quote
+
+from runner.paths import templates_dir
+from runner.reporting import formulas, outline, palette, playback
+from runner.reporting.curves import plotly_spec
+from runner.reporting.document import Curves, Document, Playback
+from runner.reporting.templating import Code, html_environment
+
+
+def render(document: Document) -> str:
+    """Return a document as an HTML page."""
+    displayed, inline = outline.formulas(document)
+    images = {True: formulas.draw(displayed, displayed=True), False: formulas.draw(inline, displayed=False)}
+    stage = _Stage()
+    has_curves = any(isinstance(block, Curves) for block in outline.blocks(document))
+    return (
+        html_environment()
+        .get_template("report.html.j2")
+        .render(
+            document=document,
+            chapters=outline.chapters(document),
+            formula_image=lambda text, is_displayed: images[is_displayed].get(text.strip()),
+            data_uri=data_uri,
+            plotly_spec=plotly_spec,
+            scene=stage.scene,
+            player=stage.player,
+            plotly=_plotly() if has_curves else "",
+            palette={"light": palette.LIGHT, "dark": palette.DARK},
+            style=_asset("style.css"),
+            script=_asset("report.js"),
+        )
+    )
+
+
+def data_uri(svg: str) -> str:
+    """Return an SVG as the address of an image; images share no ids and run no scripts."""
+    return "data:image/svg+xml," + quote(svg, safe=" /:=;,()+*!@?", encoding="utf-8", errors="replace")
+
+
+class _Stage:
+    """The recordings of one page, and the player they share."""
+
+    def __init__(self) -> None:
+        self._player = ""
+
+    def scene(self, block: Playback) -> str:
+        recording = playback.record(block)
+        self._player = recording.player
+        return recording.scene
+
+    def player(self) -> str:
+        return packed(self._player) if self._player else ""
+
+
+@cache
+def packed(text: str) -> str:
+    """Return a text as base64 of its gzip, the same each time; `inflate` in report.js undoes it."""
+    return base64.b64encode(gzip.compress(text.encode("utf-8"), compresslevel=9, mtime=0)).decode("ascii")
+
+
+@cache
+def _plotly() -> str:
+    source = resources.files("plotly").joinpath("package_data", "plotly.min.js").read_text(encoding="utf-8")
+    return packed(source)
+
+
+def _asset(name: str) -> Code:
+    return Code((templates_dir() / name).read_text(encoding="utf-8"))

@@ -1,0 +1,91 @@
+"""The order of a report: numbered sections, and every block and text in reading order."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from runner.reporting.document import (
+    Block,
+    Claim,
+    Curves,
+    Document,
+    Formula,
+    Notice,
+    Picture,
+    Playback,
+    Section,
+    Table,
+    Text,
+)
+from runner.reporting.markup import Math, spans
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """A section with its place in the report.
+
+    Attributes:
+        number: Its number, such as "2.1".
+        level: 1 for a chapter, 2 for a section of it.
+        section: Title and blocks.
+    """
+
+    number: str
+    level: int
+    section: Section
+
+    @property
+    def anchor(self) -> str:
+        """Name of the place in the page that the table of contents leads to."""
+        return "s" + self.number.replace(".", "-")
+
+
+def chapters(document: Document) -> list[Chapter]:
+    """Return all sections of a document in reading order, numbered."""
+    return list(_number(document.sections, ""))
+
+
+def blocks(document: Document) -> Iterator[Block]:
+    """Yield all blocks of a document in reading order."""
+    for chapter in chapters(document):
+        yield from chapter.section.blocks
+
+
+def formulas(document: Document) -> tuple[list[str], list[str]]:
+    """Return the mathematics of a document: displayed equations and inline spans, each once, in reading order."""
+    displayed: dict[str, None] = {}
+    inline: dict[str, None] = dict.fromkeys(_math(document.abstract))
+    for block in blocks(document):
+        if isinstance(block, Formula):
+            displayed[block.typst] = None
+        for text in _texts(block):
+            inline.update(dict.fromkeys(_math(text)))
+    return list(displayed), list(inline)
+
+
+def _number(sections: Sequence[Section], prefix: str) -> Iterator[Chapter]:
+    for index, section in enumerate(sections, start=1):
+        number = f"{prefix}{index}"
+        yield Chapter(number, number.count(".") + 1, section)
+        yield from _number(section.sections, number + ".")
+
+
+def _math(text: str) -> list[str]:
+    return [span.text for span in spans(text) if isinstance(span, Math)]
+
+
+def _texts(block: Block) -> Iterator[str]:
+    """Yield the texts of a block that may carry inline mathematics."""
+    match block:
+        case Text() | Notice():
+            yield block.text
+        case Curves() | Picture() | Playback():
+            yield block.caption
+        case Table():
+            yield block.caption
+            yield from block.header
+            for row in block.rows:
+                yield from row
+        case Claim():
+            yield block.reason
+        case _:
+            pass

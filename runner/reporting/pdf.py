@@ -1,0 +1,61 @@
+"""A report as PDF, set by Typst from a folder that holds the report's own files and nothing else."""
+
+import tempfile
+from datetime import UTC, datetime
+from pathlib import Path
+
+import typst
+
+from runner.reporting import formulas, outline, stills
+from runner.reporting.document import Curves, Document
+from runner.reporting.templating import typst_environment
+
+
+def render(document: Document) -> bytes:
+    """Return a document as PDF; the same document gives the same bytes."""
+    displayed, inline = outline.formulas(document)
+    images = {True: formulas.draw(displayed, displayed=True), False: formulas.draw(inline, displayed=False)}
+    with tempfile.TemporaryDirectory() as name:
+        folder = _Folder(Path(name))
+        source = (
+            typst_environment()
+            .get_template("report.typ.j2")
+            .render(
+                document=document,
+                chapters=outline.chapters(document),
+                formula_valid=lambda text, is_displayed: images[is_displayed].get(text) is not None,
+                curves_file=folder.curves,
+                image_file=folder.image,
+            )
+        )
+        path = folder.root / "report.typ"
+        path.write_text(source, encoding="utf-8")
+        return typst.compile(
+            path, root=folder.root, format="pdf", ignore_system_fonts=True, timestamp=_timestamp(document.date)
+        )
+
+
+class _Folder:
+    """The images of one report, as files beside it."""
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        self._count = 0
+
+    def curves(self, block: Curves) -> str:
+        return self.image(stills.draw(block))
+
+    def image(self, svg: str) -> str:
+        self._count += 1
+        name = f"image-{self._count}.svg"
+        (self.root / name).write_text(svg, encoding="utf-8", errors="replace")
+        return name
+
+
+def _timestamp(date: str) -> int:
+    """Return a date in seconds since 1970; the epoch itself where it is none, so that no clock enters the report."""
+    try:
+        moment = datetime.fromisoformat(date)
+    except ValueError:
+        return 0
+    return int((moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp())

@@ -1,0 +1,186 @@
+"""A figure of curves as a still SVG for the PDF, drawn by matplotlib at the size it has on paper."""
+
+import io
+import math
+import textwrap
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
+
+from runner.reporting import palette
+from runner.reporting.document import Curves, Panel, Series
+from runner.reporting.markup import plain
+from runner.reporting.thinning import thin, usable
+
+WIDTH = 6.5
+"""Width of the text on paper [in]."""
+
+# Measures in inches; fixed margins, because a layout engine costs more time than all the curves.
+_LEFT, _RIGHT, _BOTTOM = 0.58, 0.12, 0.42
+_LINE, _CHARACTER, _HANDLE, _GAP = 0.135, 0.054, 0.42, 0.12
+_POINTS_PER_INCH = 300
+_LINES = {"line": "-", "dashed": "--", "dotted": ":", "points": "none", "points_line": "-"}
+_STYLE: Any = {
+    "font.size": 7,
+    "axes.titlesize": 7.5,
+    # Above the power of ten that stands on top of an axis.
+    "axes.titlepad": 11,
+    "axes.linewidth": 0.5,
+    "axes.edgecolor": "#555b66",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.formatter.limits": (-3, 4),
+    "grid.color": "#e3e6ea",
+    "grid.linewidth": 0.5,
+    "xtick.major.width": 0.5,
+    "ytick.major.width": 0.5,
+    "lines.linewidth": 1.0,
+    "lines.markersize": 3.0,
+    "path.simplify_threshold": 0.2,
+    "svg.fonttype": "path",
+    "svg.hashsalt": "runner",
+}
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """The texts around one panel, broken to its width, and the space they take [in]."""
+
+    panel: Panel
+    width: float
+    height: float
+    title: str
+    names: list[str]
+    columns: int
+
+    @property
+    def top(self) -> float:
+        return 0.2 + _LINE * (self.title.count("\n") + 1 if self.title else 0)
+
+    @property
+    def legend(self) -> float:
+        named = [name for name in self.names if name]
+        if not named:
+            return 0.0
+        lines = max(name.count("\n") + 1 for name in named)
+        return math.ceil(len(named) / self.columns) * lines * _LINE + 0.05
+
+
+def draw(curves: Curves) -> str:
+    """Return the figure as SVG; the same figure gives the same text."""
+    with mpl.rc_context(_STYLE), warnings.catch_warnings():
+        # Characters that the font lacks become a box, and values without a logarithm leave their axes empty.
+        warnings.filterwarnings("ignore", message="Glyph .* missing from")
+        warnings.filterwarnings("ignore", message="Data has no positive values")
+        figure = _figure(curves)
+        stream = io.StringIO()
+        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+    return stream.getvalue()
+
+
+def _figure(curves: Curves) -> Figure:
+    columns = max(1, min(curves.columns, len(curves.panels)))
+    width = WIDTH / columns
+    frames = [_frame(panel, width - _LEFT - _RIGHT, {1: 2.3, 2: 1.75}.get(columns, 1.35)) for panel in curves.panels]
+    rows = [frames[start : start + columns] for start in range(0, len(frames), columns)]
+    heights = [_row_height(row) for row in rows]
+    total = sum(heights) or _BOTTOM
+    figure = Figure(figsize=(WIDTH, total))
+    for number, row in enumerate(rows):
+        head = sum(heights[:number]) + max(frame.top for frame in row)
+        for column, frame in enumerate(row):
+            bottom = total - head - frame.height
+            place = (column * width + _LEFT, bottom, frame.width, frame.height)
+            axes = figure.add_axes((place[0] / WIDTH, place[1] / total, place[2] / WIDTH, place[3] / total))
+            _draw_panel(axes, frame)
+    return figure
+
+
+def _frame(panel: Panel, width: float, height: float) -> _Frame:
+    title = _wrapped(panel.title, width / _CHARACTER)
+    names = [_wrapped(series.name, (width - _HANDLE) / _CHARACTER) for series in panel.series]
+    longest = max((len(line) for name in names for line in name.splitlines()), default=0)
+    named = sum(map(bool, names))
+    fitting = max(1, min(named, int((width + _GAP) / (longest * _CHARACTER + _HANDLE))))
+    columns = math.ceil(named / math.ceil(named / fitting)) if named else 1
+    return _Frame(panel, width, height, title, names, columns)
+
+
+def _row_height(row: Sequence[_Frame]) -> float:
+    return max(frame.top for frame in row) + row[0].height + _BOTTOM + max(frame.legend for frame in row)
+
+
+def _draw_panel(axes: Axes, frame: _Frame) -> None:
+    panel = frame.panel
+    _literal(axes.set_title("", loc="left", y=1.0), frame.title)
+    _literal(axes.xaxis.label, _cut(panel.x_label, frame.width / _CHARACTER))
+    _literal(axes.yaxis.label, _cut(panel.y_label, frame.height / _CHARACTER))
+    if panel.x_log:
+        axes.set_xscale("log", nonpositive="mask")
+    if panel.y_log:
+        axes.set_yscale("log", nonpositive="mask")
+    axes.margins(x=0.02)
+    chosen = palette.indices([series.color for series in panel.series])
+    handles = [
+        _draw_series(axes, thin(series, int(_POINTS_PER_INCH * frame.width)), palette.color(color))
+        for series, color in zip(panel.series, chosen, strict=True)
+    ]
+    if usable(panel.x_range, panel.x_log):
+        axes.set_xlim(panel.x_range)
+    if usable(panel.y_range, panel.y_log):
+        axes.set_ylim(panel.y_range)
+    _draw_legend(axes, frame, handles)
+
+
+def _draw_series(axes: Axes, series: Series, color: str) -> Line2D:
+    if series.low is not None and series.high is not None:
+        axes.fill_between(series.x, series.low, series.high, color=color, alpha=0.18, linewidth=0)
+    marker = "o" if series.style in ("points", "points_line") else ""
+    (line,) = axes.plot(series.x, series.y, linestyle=_LINES[series.style], marker=marker, color=color)
+    return line
+
+
+def _draw_legend(axes: Axes, frame: _Frame, handles: Sequence[Line2D]) -> None:
+    named = [(handle, name) for handle, name in zip(handles, frame.names, strict=True) if name]
+    if not named:
+        return
+    # matplotlib fills columns first; a reader goes along the rows.
+    named = [entry for column in range(frame.columns) for entry in named[column :: frame.columns]]
+    legend = axes.legend(
+        [handle for handle, _ in named],
+        ["name"] * len(named),
+        loc="upper left",
+        bbox_to_anchor=(0, -(_BOTTOM - 0.02) / frame.height),
+        ncols=frame.columns,
+        frameon=False,
+        borderaxespad=0,
+        borderpad=0,
+        handlelength=2.2,
+        columnspacing=1.2,
+        labelspacing=0.3,
+    )
+    # Names are set afterwards, because matplotlib gives a meaning to a leading underscore.
+    for text, (_, name) in zip(legend.get_texts(), named, strict=True):
+        _literal(text, name)
+
+
+def _literal(label: Text, text: str) -> None:
+    label.set_parse_math(False)
+    label.set_text(text)
+
+
+def _wrapped(text: str, characters: float) -> str:
+    return "\n".join(textwrap.wrap(plain(text).strip(), max(10, int(characters))))
+
+
+def _cut(text: str, characters: float) -> str:
+    text, limit = plain(text).strip(), max(10, int(characters))
+    return text if len(text) <= limit else text[: limit - 1] + "…"

@@ -1,0 +1,108 @@
+"""The two Jinja2 environments: HTML with autoescape, and Typst where every text becomes a quoted string by itself."""
+
+import re
+from functools import cache
+
+import jinja2
+
+from runner.paths import templates_dir
+from runner.reporting.document import Origin
+from runner.reporting.markup import plain, spans
+
+VERDICT_SIGNS = {"holds": "✓", "better": "▲", "worse": "▼", "cannot": "✕", "not run": "–"}
+"""A sign beside each verdict, for readers who see no colours."""
+
+
+_HASH = re.compile(r"[0-9a-f]{40,64}")
+
+
+class Code(str):
+    """Text that is code of the target language already, and is inserted as it is."""
+
+    __slots__ = ()
+
+    def __html__(self) -> str:
+        return self
+
+
+@cache
+def html_environment() -> jinja2.Environment:
+    """Return the environment of the HTML templates: autoescape on, an unknown name is an error."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(templates_dir(), encoding="utf-8"),
+        autoescape=jinja2.select_autoescape(enabled_extensions=("html", "html.j2")),
+        undefined=jinja2.StrictUndefined,
+        finalize=html_value,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return _equip(environment)
+
+
+@cache
+def typst_environment() -> jinja2.Environment:
+    """Return the environment of the Typst templates.
+
+    Its delimiters are `<% %>`, `<< >>` and `<# #>`. Whatever a template inserts becomes a Typst string or number, so
+    that no text can become markup or code, not even where a template forgets a filter.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(templates_dir(), encoding="utf-8"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        finalize=typst_value,
+        block_start_string="<%",
+        block_end_string="%>",
+        variable_start_string="<<",
+        variable_end_string=">>",
+        comment_start_string="<#",
+        comment_end_string="#>",
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return _equip(environment)
+
+
+def html_value(value: object) -> object:
+    """Return a text without the characters that no page can hold; autoescape does the rest."""
+    return plain(value) if isinstance(value, str) and not hasattr(value, "__html__") else value
+
+
+def typst_value(value: object) -> str:
+    """Return a value as Typst code: a number, true or false, or a quoted string; the output of a macro stays as it is.
+
+    Raises:
+        TypeError: If the value is anything else.
+    """
+    if isinstance(value, str):
+        return value if hasattr(value, "__html__") else Code(quoted(value))
+    if isinstance(value, bool):
+        return Code(str(value).lower())
+    if isinstance(value, int | float):
+        return Code(repr(value))
+    raise TypeError(f"a Typst template can insert texts and numbers, not {type(value).__name__}")
+
+
+def quoted(text: str) -> str:
+    """Return a text as a Typst string in quotes."""
+    escaped = plain(text).replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'
+
+
+def origin_label(origin: Origin, kind: str) -> str:
+    """Return a figure's or table's number in the source with the word before it, or an empty text."""
+    number = plain(origin.number).strip()
+    if not number:
+        return ""
+    return f"{kind} {number}" if number[0].isdigit() else number[0].upper() + number[1:]
+
+
+def short_commit(commit: str) -> str:
+    """Return a commit as readers write it: a full hash by its first twelve digits, anything else as it is."""
+    return commit[:12] if _HASH.fullmatch(commit) else commit
+
+
+def _equip(environment: jinja2.Environment) -> jinja2.Environment:
+    environment.filters |= {"spans": spans, "origin_label": origin_label, "short_commit": short_commit}
+    environment.globals |= {"verdict_signs": VERDICT_SIGNS}
+    return environment

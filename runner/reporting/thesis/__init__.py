@@ -1,0 +1,1 @@
+"""The report that reproduces the Macro-Mini thesis, chapter by chapter."""

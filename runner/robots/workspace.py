@@ -1,0 +1,88 @@
+"""The workspace of an arm: where its tip can be, and how freely it moves there (thesis section 2.3)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize
+
+from runner.robots.model import FloatArray, RobotModel
+
+_REFINED = 5  # samples that are followed to the nearest extremum
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """What a workspace analysis found.
+
+    Attributes:
+        tips: Sampled tip positions in the base frame, shape (N, 3), in m.
+        manipulability: Manipulability at each sample, shape (N,), in m^3.
+        shoulder: Origin of joint 1 in the base frame, from which distances count, shape (3,), in m.
+        outer: Largest distance of the tip from the shoulder, in m.
+        inner: Smallest distance of the tip from the shoulder, in m.
+        reach: Sum of the link lengths, the analytic outer radius of an arm that can be stretched out, in m.
+    """
+
+    tips: FloatArray
+    manipulability: FloatArray
+    shoulder: FloatArray
+    outer: float
+    inner: float
+    reach: float
+
+
+def manipulability(jacobians: FloatArray) -> FloatArray:
+    """Return the product of the singular values of linear Jacobians, shape (N, 3, nq) to (N,).
+
+    It is |det J_v| for three joints and sqrt(det J_v J_v^T) in general: the volume, in m^3, that the tip's velocity
+    spans per unit of joint velocity, and zero at a singular posture.
+    """
+    product: FloatArray = np.prod(np.linalg.svd(jacobians, compute_uv=False), axis=-1)
+    return product
+
+
+def analyse(model: RobotModel, samples: int, generator: np.random.Generator) -> Workspace:
+    """Sample the workspace of an arm and find its largest and smallest radius.
+
+    The thesis gives a sphere of radius 2 m (Macro, figure 2.3) and 0.2 m (Mini, figure 2.4), which is the outer
+    radius. It leaves out where the tip cannot move in every direction. For both of its arms
+
+        det J_v = -L^3 c3 (c2 - s23),
+
+    which vanishes on the sphere's surface (arm stretched, q3 = -90 deg), at the shoulder (folded, q3 = 90 deg) and,
+    throughout the sphere, on the whole axis of joint 1 (c2 = s23). Its magnitude depends on the tip position alone,
+    L r rho sqrt(1 - (rho / 2L)^2) with r the distance from the axis and rho that from the shoulder, so that both
+    elbow branches share one picture.
+
+    Args:
+        model: The robot.
+        samples: Number of random joint positions, uniform within the joint limits and one turn.
+        generator: Source of the samples.
+    """
+    low = np.maximum(model.pin_model.lowerPositionLimit, -np.pi)
+    high = np.minimum(model.pin_model.upperPositionLimit, np.pi)
+    q = generator.uniform(low, high, (samples, model.nq))
+    tips = model.tip_positions(q)
+    jacobians = np.array([model.tip_jacobian(configuration)[:3] for configuration in q])
+    order = np.argsort(np.linalg.norm(tips - model.shoulder, axis=1))
+    return Workspace(
+        tips=tips,
+        manipulability=manipulability(jacobians),
+        shoulder=model.shoulder,
+        outer=max(_extreme_distance(model, start, -1.0) for start in q[order[-_REFINED:]]),
+        inner=min(_extreme_distance(model, start, 1.0) for start in q[order[:_REFINED]]),
+        reach=model.reach,
+    )
+
+
+def _extreme_distance(model: RobotModel, start: FloatArray, sign: float) -> float:
+    """Return the distance of the tip from the shoulder at the nearest minimum (sign 1) or maximum (sign -1)."""
+
+    def cost(q: FloatArray) -> tuple[float, FloatArray]:
+        arm = model.tip_position(q) - model.shoulder
+        return sign * float(arm @ arm) / 2.0, sign * model.tip_jacobian(q)[:3].T @ arm
+
+    limits = list(zip(model.pin_model.lowerPositionLimit, model.pin_model.upperPositionLimit, strict=True))
+    options = {"ftol": 1e-16, "gtol": 1e-12, "maxiter": 500}
+    found = minimize(cost, start, jac=True, method="L-BFGS-B", bounds=limits, options=options)
+    return float(np.linalg.norm(model.tip_position(found.x) - model.shoulder))
