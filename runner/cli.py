@@ -5,6 +5,7 @@ so that help and completion answer at once.
 """
 
 import importlib
+import os
 import sys
 from collections.abc import Sequence
 
@@ -36,38 +37,52 @@ COMMANDS = ("reproduce", "report", "check", "diff", "list")
 
 def main() -> None:
     """Run the command line and leave the process with its exit code."""
-    sys.exit(dispatch(sys.argv[1:]))
+    try:
+        code = dispatch(sys.argv[1:])
+        sys.stdout.flush()
+    except OSError as error:
+        # What is still buffered must not complain again when the interpreter flushes it at the very end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = 0  # nobody reads on, as in `runner list | head -1`
+        if not isinstance(error, BrokenPipeError):
+            print(f"runner: {error}", file=sys.stderr)
+            code = 2
+    sys.exit(code)
 
 
 def dispatch(arguments: Sequence[str]) -> int:
     """Run one command line and return its exit code."""
-    first = arguments[0] if arguments else ""
     try:
-        if first in ("-h", "--help", "help"):
-            print(HELP, end="")
-            return 0
-        if first == "--version":
-            from importlib.metadata import version
-
-            print(version("arm-control-runner"))
-            return 0
-        if first in COMMANDS:
-            return _command(first, arguments[1:])
-        if first and first[0].isalpha() and "=" not in first:
-            raise RunnerError(
-                f"no command '{first}'{nearest(first, COMMANDS)}; commands: {', '.join(COMMANDS)}; a "
-                "run is started by overrides such as robot=macro"
-            )
-        return _command("run", arguments)
+        return _choose(arguments)
     except RunnerError as error:
         print(f"runner: {error}", file=sys.stderr)
+        return 2
+    except MemoryError as error:
+        print(f"runner: not enough memory: {error}; shorten the run or ask for fewer repetitions", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("runner: interrupted; finished runs are stored, the same command goes on from there", file=sys.stderr)
         return 130
-    except BrokenPipeError:
-        sys.stderr.close()  # nobody reads on, as in `runner list | head -1`
+
+
+def _choose(arguments: Sequence[str]) -> int:
+    first = arguments[0] if arguments else ""
+    if first in ("-h", "--help", "help"):
+        print(HELP, end="")
         return 0
+    if first == "--version":
+        from importlib.metadata import version
+
+        print(version("arm-control-runner"))
+        return 0
+    if first in COMMANDS:
+        return _command(first, arguments[1:])
+    if first and first[0].isalpha() and "=" not in first:
+        raise RunnerError(
+            f"no command '{first}'{nearest(first, COMMANDS)}; commands: {', '.join(COMMANDS)}; a "
+            "run is started by overrides such as robot=macro"
+        )
+    return _command("run", arguments)
 
 
 def _command(name: str, arguments: Sequence[str]) -> int:

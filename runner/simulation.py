@@ -59,7 +59,7 @@ def simulate(loop: ClosedLoop, encoders: JointEncoders) -> Trace:
     times: FloatArray = np.arange(n + 1, dtype=np.float64) * loop.period
     desired = loop.trajectory.sample(times)
     q_rows, dq_rows, tau_rows = (np.zeros((n + 1, nq)) for _ in range(3))
-    clock = np.zeros(n + 2, dtype=np.int64)
+    clock = np.zeros(n + 1, dtype=np.int64)
     plant, measure, torque = loop.plant, encoders.measure, loop.controller.torque
     lower, upper = -loop.limits, loop.limits
     limited = bool(np.isfinite(upper).any())
@@ -89,7 +89,6 @@ def simulate(loop: ClosedLoop, encoders: JointEncoders) -> Trace:
                 plant.advance(tau)
         else:
             diverged = _find_divergence(q_rows, dq_rows, n)
-    clock[k + 1] = now()
     if failure is None and diverged is not None:
         rows, joint = diverged[0] + 1, loop.model.joint_names[diverged[1]]
         failure = Failure(f"diverged: not finite or above {DIVERGED_SPEED:g} rad/s", float(times[diverged[0]]), joint)
@@ -103,7 +102,7 @@ def simulate(loop: ClosedLoop, encoders: JointEncoders) -> Trace:
         desired=desired[kept],
         limits=loop.limits,
         joint_names=loop.model.joint_names,
-        tick_seconds=np.diff(clock[: k + 1]) * 1e-9,
+        tick_seconds=np.diff(clock[kept]) * 1e-9,
         failure=failure,
     )
 

@@ -12,6 +12,7 @@ from runner.config.compose import quiet_environment
 from runner.errors import RunnerError, nearest
 
 if TYPE_CHECKING:
+    from runner.reporting.thesis.plan import Job
     from runner.store import Run
 
 WORKS = ("thesis",)
@@ -52,7 +53,7 @@ def _reproduce(work: str, outputs: Path) -> int:
     return 0
 
 
-def run_all(jobs: Mapping[str, tuple[str, ...]], outputs: Path) -> dict[str, "Run"]:
+def run_all(jobs: Mapping[str, "Job"], outputs: Path) -> dict[str, "Run"]:
     """Run what is not stored yet on two processes, with progress on standard error; return all runs by name."""
     from tqdm import tqdm
 
@@ -61,10 +62,14 @@ def run_all(jobs: Mapping[str, tuple[str, ...]], outputs: Path) -> dict[str, "Ru
     context = multiprocessing.get_context("spawn")  # a forked PyBullet or thread pool is not safe
     folders: dict[str, Path] = {}
     with ProcessPoolExecutor(_PROCESSES, mp_context=context) as pool:
-        futures = {pool.submit(_run_job, overrides, str(outputs)): name for name, overrides in jobs.items()}
+        futures = {pool.submit(_run_job, job.overrides, str(outputs)): name for name, job in jobs.items()}
+        progress = tqdm(total=sum(job.ticks for job in jobs.values()), unit="tick", unit_scale=True, desc="running")
         try:
-            for future in tqdm(as_completed(futures), total=len(futures), unit="run", desc="running", smoothing=0.1):
-                folders[futures[future]] = Path(future.result())
+            with progress:
+                for future in as_completed(futures):
+                    name = futures[future]
+                    folders[name] = Path(future.result())
+                    progress.update(jobs[name].ticks)
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise

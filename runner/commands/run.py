@@ -10,7 +10,7 @@ from typing import Any
 import hydra
 from hydra.core.hydra_config import HydraConfig
 from hydra.types import RunMode
-from omegaconf import DictConfig
+from omegaconf import DictConfig, OmegaConf
 
 from runner.config.compose import force, from_hydra, quiet_environment
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
@@ -24,20 +24,29 @@ class _Jobs:
     def __init__(self) -> None:
         self.stored: list[tuple[tuple[str, ...], Any]] = []
         self.problems: list[str] = []
+        self.crash: Exception | None = None
 
     def do(self, config: DictConfig) -> None:
-        """Run one job; what goes wrong is kept, so that the other jobs of a sweep still run."""
+        """Run one job; what goes wrong is kept, as Hydra would print it in its own words.
+
+        The other jobs of a sweep still run after a bad config, but not after a full disk or an error of ours.
+        """
+        if self.crash is not None:
+            return
         from runner.execution import execute  # after the config has composed: bad input is answered at once
 
         hydra_config = HydraConfig.get()
-        overrides = tuple(override.removeprefix("++") for override in hydra_config.overrides.task)
+        # Unresolved, as an override may hold an interpolation of the config's keys.
+        typed: Any = OmegaConf.to_container(hydra_config.overrides.task, resolve=False)
+        overrides = tuple(override.removeprefix("++") for override in typed)
         own = [Path(source.path) for source in hydra_config.runtime.config_sources if source.provider == "command-line"]
-        whole = DictConfig({**config, "hydra": hydra_config})
         try:
-            self.stored.append((overrides, execute(from_hydra(whole, overrides, own))))
+            self.stored.append((overrides, execute(from_hydra(config, hydra_config, overrides, own))))
         except ConfigError as error:
             prefix = f"[{' '.join(overrides)}] " if hydra_config.mode == RunMode.MULTIRUN else ""
             self.problems += [prefix + problem for problem in error.problems]
+        except Exception as error:
+            self.crash = error
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -55,8 +64,11 @@ def main(arguments: Sequence[str]) -> int:
             hydra.main(version_base="1.3", config_path=str(conf_dir()), config_name="config")(jobs.do)()
         except COMPOSITION_ERRORS as error:
             raise explain(error, _config_dirs(arguments)) from None
+    if jobs.crash is not None:
+        raise jobs.crash
     if jobs.problems:
-        raise ConfigError(jobs.problems)
+        stored = len(jobs.stored)
+        raise ConfigError(jobs.problems, f"  {stored} other runs of the sweep are stored already" if stored else "")
     if not jobs.stored:
         return 0  # --cfg, --hydra-help and the like
     return _tell(jobs, multirun)
@@ -69,12 +81,7 @@ def _tell(jobs: _Jobs, multirun: bool) -> int:
     for overrides, run in jobs.stored:
         if run.status == "failed":
             failed += 1
-            where = f" ({run.failure['joint']})" if run.failure["joint"] else ""
-            print(
-                f"runner: [{' '.join(overrides)}] failed in repetition {run.failure['repetition']} at "
-                f"t = {run.failure['time']:.4g} s{where}: {run.failure['reason']}",
-                file=sys.stderr,
-            )
+            print(f"runner: [{' '.join(overrides)}] {run.failure_text}", file=sys.stderr)
     if multirun:
         outputs = jobs.stored[0][1].folder.parent.parent
         print(store.write_sweep(outputs, [(overrides, run.hash) for overrides, run in jobs.stored]))

@@ -49,36 +49,51 @@ def compose(overrides: Sequence[str], config_dirs: Sequence[Path] = ()) -> Compo
             config = hydra_compose(
                 "config", [*force(overrides), *(search if config_dirs else [])], return_hydra_config=True
             )
-            return from_hydra(config, overrides, config_dirs)
+        return from_hydra(config, config.hydra, overrides, config_dirs)
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None
 
 
-def from_hydra(config: DictConfig, overrides: Sequence[str], config_dirs: Sequence[Path]) -> Composed:
-    """Take a config as Hydra made it, its own `hydra` node included."""
-    chosen: Any = OmegaConf.to_container(config.hydra.runtime.choices)
-    resolved: Any = OmegaConf.to_container(config, resolve=False)
-    own = OmegaConf.create({key: value for key, value in resolved.items() if key != "hydra"})
+def from_hydra(
+    config: DictConfig, hydra: DictConfig, overrides: Sequence[str], config_dirs: Sequence[Path]
+) -> Composed:
+    """Take a config as Hydra made it, and resolve it.
+
+    Args:
+        config: The config, with or without Hydra's own node.
+        hydra: Hydra's own node.
+        overrides: The overrides, as typed.
+        config_dirs: Config folders of the user's.
+
+    Raises:
+        ConfigError: for an interpolation of a key that does not exist.
+    """
+    try:
+        raw: Any = OmegaConf.to_container(config, resolve=False)
+        own = OmegaConf.create({key: value for key, value in raw.items() if key != "hydra"})
+        resolved: Any = OmegaConf.to_container(own, resolve=True)
+    except COMPOSITION_ERRORS as error:
+        raise explain(error, config_dirs) from None
+    chosen: Any = OmegaConf.to_container(hydra.runtime.choices)
     choices = {group: name for group, name in chosen.items() if name is not None and not group.startswith("hydra/")}
-    return Composed(_plain(own), tuple(overrides), choices, tuple(config_dirs))
-
-
-def _plain(config: DictConfig) -> dict[str, Any]:
-    resolved: Any = OmegaConf.to_container(config, resolve=True)
-    return dict(resolved)
+    return Composed(resolved, tuple(overrides), choices, tuple(config_dirs))
 
 
 def force(overrides: Sequence[str]) -> list[str]:
     """Let overrides of unknown keys compose, so that validation finds them all at once and names the nearest key.
 
-    Hydra alone stops at the first, and suggests to add the key, which no part of the runner would read.
+    Hydra alone stops at the first, and suggests to add the key, which no part of the runner would read. The option
+    of a group is quoted where Hydra would take it for a number or null and not name the group.
     """
     names = set(groups())
     forced = []
     for override in overrides:
-        match = re.match(r"([A-Za-z_][\w.]*)=", override)
-        own = match is not None and match[1] not in names and not match[1].startswith("hydra")
-        forced.append(f"++{override}" if own else override)
+        match = re.match(r"([A-Za-z_][\w.]*)=(.*)", override)
+        if match is not None and match[1] in names and re.match(r"(?i)(null|true|false|[-+.\d][-+.\de]*)$", match[2]):
+            override = f"{match[1]}='{match[2]}'"  # the name of an option, though it looks like a value
+        elif match is not None and match[1] not in names and not match[1].startswith("hydra"):
+            override = f"++{override}"
+        forced.append(override)
     return forced
 
 

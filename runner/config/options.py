@@ -24,14 +24,18 @@ def group_options(group: str, config_dirs: Sequence[Path] = ()) -> dict[str, str
     """
     found: dict[str, str] = {}
     for folder in (conf_dir(), *config_dirs):
-        root = folder / group
-        for path in sorted(root.rglob("*.yaml")):
-            found[path.relative_to(root).with_suffix("").as_posix()] = _first_comment(path)
+        found |= described_files(folder / group)
     return dict(sorted(found.items()))
 
 
+def described_files(root: Path) -> dict[str, str]:
+    """Return the YAML files below a folder by name without suffix, each with its first comment, sorted by name."""
+    files = sorted(path for path in root.rglob("*.yaml") if path.is_file())
+    return {path.relative_to(root).with_suffix("").as_posix(): _first_comment(path) for path in files}
+
+
 def _first_comment(path: Path) -> str:
-    with path.open() as lines:
+    with path.open(errors="replace") as lines:
         for line in lines:
             text = line.strip()
             if text.startswith("#") and not text.startswith(("# @package", "# runner ")):

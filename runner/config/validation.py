@@ -20,6 +20,7 @@ from runner.errors import ConfigError, nearest
 from runner.plants import PLANTS
 from runner.registry import Registry, StrictModel
 from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.model import STANDARD_GRAVITY
 from runner.trajectories import TRAJECTORIES
 
 _KINDS: dict[str, Registry] = {"plant": PLANTS, "controller": CONTROLLERS, "trajectory": TRAJECTORIES}
@@ -30,6 +31,7 @@ _PLAIN: dict[str, type[StrictModel]] = {
     "preset": PresetConfig,
 }
 _SETTINGS = tuple(RunSettings.model_fields)
+_MAX_TICKS = 10_000_000
 
 
 def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> RunConfig:
@@ -56,8 +58,9 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
     parts = {group: collect(partial(_parse_group, group, resolved)) for group in (*_KINDS, *_PLAIN)}
     robot, plant, controller, trajectory = (parts[g] for g in ("robot", "plant", "controller", "trajectory"))
     built, timing = None, None
-    if robot is not None and settings is not None:
-        built = collect(lambda: _build_model(robot, settings.gravity, config_dirs))
+    if robot is not None:
+        gravity = STANDARD_GRAVITY if settings is None else settings.gravity
+        built = collect(lambda: _build_model(robot, gravity, config_dirs))
     if built is not None:
         model, urdf = built
         collect(lambda: _check_joint_values(model, robot, parts["torque_limits"]))
@@ -67,8 +70,8 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
             collect(lambda: CONTROLLERS.build(controller, model))
     if plant is not None and controller is not None:
         timing = collect(lambda: _count_steps(plant, controller))
-    if settings is not None and controller is not None:
-        collect(lambda: _check_duration(settings, controller))
+    if settings is not None and controller is not None and trajectory is not None:
+        collect(lambda: _check_duration(settings, controller, trajectory))
     if problems or built is None or timing is None:
         raise ConfigError(problems)
     step, steps_per_tick = timing
@@ -150,8 +153,17 @@ def _count_steps(plant: Any, controller: Any) -> tuple[float, int]:  # noqa: ANN
     return step, steps
 
 
-def _check_duration(settings: RunSettings, controller: Any) -> None:  # noqa: ANN401 - any registered kind
-    if settings.duration is not None and settings.duration < controller.period:
+def _check_duration(settings: RunSettings, controller: Any, trajectory: Any) -> None:  # noqa: ANN401 - any kinds
+    key, length = "duration", settings.duration
+    if length is None:
+        key, length = "trajectory.duration", getattr(trajectory, "duration", controller.period)
+    elif length < controller.period:
+        raise ConfigError([f"duration: {length:g} s is shorter than one controller period, {controller.period:g} s"])
+    ticks = length / controller.period
+    if ticks > _MAX_TICKS:
         raise ConfigError(
-            [f"duration: {settings.duration:g} s is shorter than one controller period, {controller.period:g} s"]
+            [
+                f"{key}: {length:g} s are {ticks:.3g} ticks of controller.period, {controller.period:g} s; allowed: "
+                f"up to {_MAX_TICKS:g} ticks, as a run is kept in memory"
+            ]
         )

@@ -127,6 +127,7 @@ def _draw_panel(axes: Axes, frame: _Frame) -> None:
         axes.set_xscale("log", nonpositive="mask")
     if panel.y_log:
         axes.set_yscale("log", nonpositive="mask")
+    axes.yaxis.set_label_coords(-(_LEFT - 0.07) / frame.width, 0.5)  # beside the widest tick labels of a log axis
     axes.margins(x=0.02)
     chosen = palette.indices([series.color for series in panel.series])
     handles = [

@@ -60,12 +60,15 @@ def read_urdf(path: Path, masses: Mapping[str, float]) -> str:
             )
         elif not 0.0 <= _mass(link) < math.inf:
             problems.append(f"robot.urdf: link '{name}' in {path} has mass {_mass(link):g} kg; allowed: 0 or more")
-    for name, mass in masses.items():
+    for name in masses:
         if name not in links:
             problems.append(f"robot.masses.{name}: no such link{nearest(name, links)}; links: {', '.join(links)}")
         elif _mass(links[name]) == 0.0:
             problems.append(f"robot.masses.{name}: link '{name}' is massless in {path.name}; its mass cannot be scaled")
         else:
+            problems.extend(f"robot.urdf: link '{name}' in {path} has {bad}" for bad in _bad_inertia(links[name]))
+    if not problems:
+        for name, mass in masses.items():
             _scale_inertial(links[name], mass)
     if problems:
         raise ConfigError(problems)
@@ -74,7 +77,25 @@ def read_urdf(path: Path, masses: Mapping[str, float]) -> str:
 
 def _mass(link: ET.Element) -> float:
     element = link.find("inertial/mass")
-    return math.nan if element is None else float(element.get("value", "nan"))
+    return math.nan if element is None else _number(element.get("value"))
+
+
+def _number(text: str | None) -> float:
+    """Return what a URDF attribute says, or NaN where it is missing or no number."""
+    try:
+        return math.nan if text is None else float(text)
+    except ValueError:
+        return math.nan
+
+
+def _bad_inertia(link: ET.Element) -> list[str]:
+    inertia = link.find("inertial/inertia")
+    values = {} if inertia is None else inertia.attrib
+    return [
+        f"inertia {key}='{value}'; allowed: a number"
+        for key, value in values.items()
+        if not math.isfinite(_number(value))
+    ]
 
 
 def _scale_inertial(link: ET.Element, mass: float) -> None:

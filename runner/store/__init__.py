@@ -1,6 +1,6 @@
 """Stored runs: content-addressed folders, written atomically, readable without the simulator."""
 
-from runner.store.identity import run_hash
+from runner.store.identity import run_hash, simulated_part
 from runner.store.run import Run, is_run, open_run
 from runner.store.sweep import Sweep, is_sweep, open_runs, open_sweep, write_sweep
 from runner.store.writing import RunResult, find_run, prepare, write_run
@@ -17,6 +17,7 @@ __all__ = [
     "open_sweep",
     "prepare",
     "run_hash",
+    "simulated_part",
     "write_run",
     "write_sweep",
 ]

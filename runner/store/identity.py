@@ -22,12 +22,17 @@ def run_hash(resolved: Mapping[str, Any], urdf: str) -> str:
     the source of the rooms below the store, and the versions of PyBullet and Pinocchio.
     """
     content = {
-        "config": {key: value for key, value in resolved.items() if key not in _LEFT_OUT},
+        "config": simulated_part(resolved),
         "urdf": urdf,
         "source": source_digest(),
         "engines": {name: version(name) for name in ("pybullet", "pin")},
     }
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:24]
+
+
+def simulated_part(resolved: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keys of a config that decide about the result."""
+    return {key: value for key, value in resolved.items() if key not in _LEFT_OUT}
 
 
 @cache

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 SCHEMA = 1
+_NEEDED = {"schema": int, "status": str, "metrics": dict, "provenance": dict, "repetitions": int}
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,15 @@ class Run:
         return failure
 
     @property
+    def failure_text(self) -> str:
+        """When, where and why a failed run failed, in words; empty for a good one."""
+        if self.failure is None:
+            return ""
+        repetition, time, joint, reason = (self.failure[key] for key in ("repetition", "time", "joint", "reason"))
+        where = f" ({joint})" if joint else ""
+        return f"failed in repetition {repetition} at t = {time:.4g} s{where}: {reason}"
+
+    @property
     def metrics(self) -> Mapping[str, Mapping[str, Any]]:
         """Metrics by name: unit, median, min, max and values of each repetition."""
         metrics: Mapping[str, Mapping[str, Any]] = self.record["metrics"]
@@ -61,8 +71,16 @@ class Run:
 
     @cached_property
     def urdf(self) -> str:
-        """The URDF's text that was simulated."""
-        return (self.folder / "robot.urdf").read_text()
+        """The URDF's text that was simulated.
+
+        Raises:
+            StoreError: if the file is missing or damaged.
+        """
+        path = self.folder / "robot.urdf"
+        try:
+            return path.read_text()
+        except (OSError, UnicodeDecodeError) as error:
+            raise StoreError(f"cannot read {path}: {error}; run it again to mend it") from error
 
     @cached_property
     def trace(self) -> "pd.DataFrame":
@@ -107,6 +125,7 @@ def open_run(folder: Path) -> Run:
     record_path = folder / "metrics.json"
     if not record_path.exists():
         what = "a run that did not finish" if is_run(folder) else "no stored run"
+        what = "a sweep, not a single run" if (folder / "sweep.json").exists() else what
         raise StoreError(
             f"{folder} is {what}: it has no metrics.json; `runner OVERRIDES` makes a run and prints its folder"
         )
@@ -115,9 +134,21 @@ def open_run(folder: Path) -> Run:
         config = yaml.safe_load((folder / "config.yaml").read_text())
     except (OSError, UnicodeDecodeError, json.JSONDecodeError, yaml.YAMLError) as error:
         raise StoreError(f"cannot read the run in {folder}: {' '.join(str(error).split())}") from error
-    needed = {"status", "metrics", "provenance", "repetitions"}
-    if not isinstance(record, dict) or not isinstance(config, dict) or not needed <= set(record):
-        raise StoreError(f"{record_path} is no metrics file: it needs {', '.join(sorted(needed))}")
-    if record.get("schema") != SCHEMA:
-        raise StoreError(f"{record_path} has schema {record.get('schema')!r}; this version reads {SCHEMA}")
+    if not isinstance(config, dict):
+        raise StoreError(f"{folder / 'config.yaml'} holds no config")
+    if isinstance(record, dict) and record.get("schema", SCHEMA) != SCHEMA:
+        raise StoreError(f"{record_path} has schema {record['schema']!r}; this version reads {SCHEMA}")
+    if not _is_record(record):
+        raise StoreError(
+            f"{record_path} is no metrics file: it needs {', '.join(sorted(_NEEDED))}, as a run writes them"
+        )
     return Run(folder, config, record)
+
+
+def _is_record(record: Any) -> bool:  # noqa: ANN401 - whatever JSON may hold
+    return (
+        isinstance(record, dict)
+        and all(isinstance(record.get(key), kind) for key, kind in _NEEDED.items())
+        and all(isinstance(metric, dict) and {"unit", "median"} <= set(metric) for metric in record["metrics"].values())
+        and (record["status"] == "ok" or isinstance(record.get("failure"), dict))
+    )

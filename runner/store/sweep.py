@@ -57,8 +57,10 @@ def open_sweep(folder: Path) -> Sweep:
     path = folder / "sweep.json"
     try:
         jobs = json.loads(path.read_text())["jobs"]
-        return Sweep(folder, [tuple(job["overrides"]) for job in jobs], [job["run"] for job in jobs])
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError, KeyError, TypeError) as error:
+        return Sweep(folder, [tuple(job["overrides"]) for job in jobs], [str(job["run"]) for job in jobs])
+    except (KeyError, TypeError) as error:
+        raise StoreError(f"{path} is no sweep file: it needs jobs with overrides and run each") from error
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
         raise StoreError(f"cannot read the sweep in {folder}: {error}") from error
 
 

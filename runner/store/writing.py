@@ -50,7 +50,10 @@ def prepare(outputs: Path) -> None:
         StoreError: if it cannot be made or written to.
     """
     probe = outputs / "runs" / ".writable"
-    write_atomically(probe, b"")
+    try:
+        write_atomically(probe, b"")
+    except StoreError as error:
+        raise StoreError(f"{error}; choose a folder that can be written to, as in outputs=FOLDER") from error
     probe.unlink(missing_ok=True)
 
 

@@ -40,7 +40,7 @@ def gravity_section(runs: Mapping[str, Run]) -> Section:
             "finding",
             "The thesis' steady-state errors are gravity, not noise",
             f"The goal run of figure 3.5 without gravity term rests at {quantity(goal['median'], 'm')} "
-            f"({number(goal['min'])} to {number(goal['max'])} over the seeds), the thesis prints 0 to 9e-3 m. By "
+            f"({number(goal['min'])} to {number(goal['max'])} over the seeds), the thesis prints 0 to 9·10⁻³ m. By "
             "similarity the "
             "ratio of Macro to Mini is 1000 for encoder noise and 100 for gravity; the thesis reports 150. So its "
             "controller "
@@ -106,7 +106,7 @@ def lag_section(runs: Mapping[str, Run]) -> Section:
             origin(run),
         ),
         Text(
-            "The Mini's error of 4e-4 to 8e-4 m in the thesis is this lag at $t_f = 3$ s, 7.3e-4 m on its worst "
+            "The Mini's error of 4·10⁻⁴ to 8·10⁻⁴ m in the thesis is this lag at $t_f = 3$ s, 7.3·10⁻⁴ m on its worst "
             "axis. So its tracking "
             "law, too, was the goal law with a moving goal, not (3.40) with its feedforward."
         ),

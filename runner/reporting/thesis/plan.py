@@ -1,6 +1,6 @@
 """Which runs the thesis report needs: a name for each, and the overrides that make it."""
 
-from collections.abc import Mapping
+from dataclasses import dataclass
 
 PRESETS = ("as_reported", "sound")
 FIGURES = (
@@ -23,40 +23,48 @@ SAMPLING = (0.5, 0.8, 0.95, 1.05)  # omega_n h on the Runge-Kutta plant
 ARMS = ("macro", "mini")
 
 
-def plan() -> dict[str, tuple[str, ...]]:
-    """Return the overrides of every run by name, the longest runs first."""
-    jobs: dict[str, tuple[str, ...]] = {}
-    for figure in sorted(FIGURES, reverse=True):  # chapter 4 runs at 1 ms and takes longest
+@dataclass(frozen=True)
+class Job:
+    """A run that the report needs.
+
+    Attributes:
+        overrides: The overrides that make it.
+        ticks: Control ticks that it takes, roughly, for the estimate of what is left.
+    """
+
+    overrides: tuple[str, ...]
+    ticks: int
+
+
+def plan() -> dict[str, Job]:
+    """Return every run by name, the longest first."""
+    jobs: dict[str, Job] = {}
+
+    def add(name: str, *overrides: str, ticks: int = 400) -> None:
+        jobs[name] = Job(overrides, ticks)
+
+    for figure in FIGURES:
+        ticks = 4000 if figure.startswith("figure_4") else 400
         for preset in PRESETS:
-            jobs[f"{figure}/{preset}"] = (f"experiment=thesis/{figure}", f"preset={preset}")
-    for figure in COMPARED:
-        for preset in PRESETS:
-            jobs[f"{figure}/{preset}/rk4"] = (*jobs[f"{figure}/{preset}"], "plant=rk4", "repetitions=1")
-    for figure in TRACKED:
-        for preset in PRESETS:
-            for t_f in DURATIONS:
-                jobs[f"{figure}/{preset}/{t_f}"] = (
-                    *jobs[f"{figure}/{preset}"],
-                    f"trajectory.duration={t_f}",
-                    "repetitions=5",
-                )
+            base = (f"experiment=thesis/{figure}", f"preset={preset}")
+            add(f"{figure}/{preset}", *base, ticks=40 * ticks if figure in COMPARED else ticks)
+            if figure in COMPARED:
+                add(f"{figure}/{preset}/rk4", *base, "plant=rk4", "repetitions=1", ticks=ticks)
+            for t_f in DURATIONS if figure in TRACKED else ():
+                add(f"{figure}/{preset}/{t_f}", *base, f"trajectory.duration={t_f}", "repetitions=5", ticks=2500)
     for arm in ARMS:
-        jobs[f"gravity_term/{arm}"] = ("experiment=thesis/gravity_term", f"robot={arm}")
-        jobs[f"similarity/{arm}"] = ("experiment=thesis/similarity", f"robot={arm}")
+        ticks = 4000 if arm == "mini" else 400
+        add(f"gravity_term/{arm}", "experiment=thesis/gravity_term", f"robot={arm}", ticks=ticks)
+        add(f"similarity/{arm}", "experiment=thesis/similarity", f"robot={arm}", ticks=ticks)
         for t_f in LAG_DURATIONS:
-            jobs[f"lag/{arm}/{t_f}"] = ("experiment=thesis/lag", f"robot={arm}", f"trajectory.duration={t_f}")
-    jobs["base_axis"] = ("experiment=thesis/base_axis",)
+            add(f"lag/{arm}/{t_f}", "experiment=thesis/lag", f"robot={arm}", f"trajectory.duration={t_f}", ticks=ticks)
+    add("base_axis", "experiment=thesis/base_axis")
     for t_f in TORQUE_DURATIONS:
-        jobs[f"base_axis/{t_f}"] = (*jobs["base_axis"], "torque_limits=none", f"trajectory.duration={t_f}")
-    jobs["plants/rk4"] = ("experiment=thesis/plants", "plant=rk4")
+        add(f"base_axis/{t_f}", "experiment=thesis/base_axis", "torque_limits=none", f"trajectory.duration={t_f}")
+    add("plants/rk4", "experiment=thesis/plants", "plant=rk4")
     for step in STEPS:
-        jobs[f"plants/{step}"] = ("experiment=thesis/plants", f"plant.step={step}")
+        add(f"plants/{step}", "experiment=thesis/plants", f"plant.step={step}")
     for w in SAMPLING:
-        jobs[f"sampling/{w}"] = ("experiment=thesis/sampling", f"controller.period={w / 30.0!r}")
-    jobs["singular"] = ("experiment=thesis/singular",)
-    return jobs
-
-
-def command(overrides: Mapping[str, tuple[str, ...]], name: str) -> str:
-    """Return the command that makes a run of the plan."""
-    return " ".join(("runner", *overrides[name]))
+        add(f"sampling/{w}", "experiment=thesis/sampling", f"controller.period={w / 30.0:.6g}")
+    add("singular", "experiment=thesis/singular")
+    return dict(sorted(jobs.items(), key=lambda item: -item[1].ticks))

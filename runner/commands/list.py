@@ -1,0 +1,106 @@
+"""`runner list [TOPIC]`: what there is to choose from, and what it is judged by."""
+
+import re
+import shutil
+import textwrap
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from runner.commands.arguments import Parser
+from runner.config.options import described_files, group_options
+from runner.errors import RunnerError, nearest
+from runner.paths import package_dir
+
+_GROUPS = {
+    "robots": "robot",
+    "controllers": "controller",
+    "trajectories": "trajectory",
+    "experiments": "experiment",
+    "plants": "plant",
+    "noise": "noise",
+    "presets": "preset",
+    "torque_limits": "torque_limits",
+}
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Print one topic with descriptions, or an overview of all."""
+    parser = Parser("list", __doc__)
+    parser.add_argument("topic", nargs="?", metavar="TOPIC", help=", ".join(TOPICS))
+    parser.add_argument("--config-dir", type=Path, metavar="DIR", help="a config folder of yours, listed too")
+    options = parser.parse_args(arguments)
+    own = [] if options.config_dir is None else [options.config_dir]
+    for folder in own:
+        if not folder.is_dir():
+            raise RunnerError(f"--config-dir: no folder {folder}")
+    if options.topic is None:
+        _print_overview(own)
+    elif options.topic in TOPICS:
+        _print_table(TOPICS[options.topic](own))
+    else:
+        raise RunnerError(
+            f"list: no topic '{options.topic}'{nearest(options.topic, TOPICS)}; topics: {', '.join(TOPICS)}"
+        )
+    return 0
+
+
+def _list_group(group: str) -> Callable[[Sequence[Path]], dict[str, str]]:
+    return lambda config_dirs: group_options(group, config_dirs)
+
+
+def _list_metrics(_: Sequence[Path]) -> dict[str, str]:
+    from runner.metrics.summary import families  # numpy, which the other topics answer without
+
+    found: dict[str, str] = {}
+    for family in families():
+        meanings = _read_bullets(family.evaluate.__doc__ or "")
+        found |= {name: f"[{unit}] {meanings.get(name, '')}".rstrip() for name, unit in family.UNITS.items()}
+    return found
+
+
+def _read_bullets(docstring: str) -> dict[str, str]:
+    """Return what a docstring's bullets `- name, name: meaning; more` say of each name, up to the semicolon."""
+    meanings = {}
+    for names, meaning in re.findall(r"^\s*- ([\w, ]+): (.+?)(?:;|\.?\s*(?=^\s*- |\Z))", docstring, re.M | re.S):
+        for name in names.split(","):
+            meanings[name.strip()] = " ".join(meaning.split())
+    return meanings
+
+
+def _list_claims(_: Sequence[Path]) -> dict[str, str]:
+    from runner.claims import load_claims
+
+    return {
+        f"{source} {claim.number}": f"{claim.statement}: {' to '.join(f'{value:g}' for value in claim.printed)} "
+        f"{claim.unit} ({claim.place})"
+        for source in described_files(package_dir() / "claims")
+        for claim in load_claims(source)
+    }
+
+
+def _list_references(_: Sequence[Path]) -> dict[str, str]:
+    return described_files(package_dir() / "references")
+
+
+TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {
+    **{topic: _list_group(group) for topic, group in _GROUPS.items()},
+    "metrics": _list_metrics,
+    "claims": _list_claims,
+    "references": _list_references,
+}
+"""What can be listed: each gives names and one-line descriptions."""
+
+
+def _print_overview(own: Sequence[Path]) -> None:
+    width = shutil.get_terminal_size().columns
+    for topic, entries in TOPICS.items():
+        names = ", ".join(entries(own)) or "none"
+        indent = " " * 15
+        print(textwrap.fill(f"{topic:<13}  {names}", width, subsequent_indent=indent, break_on_hyphens=False))
+    print("\n`runner list TOPIC` tells more; an option is chosen by its group, as in robot=macro")
+
+
+def _print_table(entries: Mapping[str, str]) -> None:
+    width = max(map(len, entries), default=0)
+    for name, description in entries.items():
+        print(f"{name:<{width}}  {description}".rstrip())

@@ -1,0 +1,141 @@
+"""A reference: a band for each metric, with the reason for its width."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Self
+
+import yaml
+from omegaconf import OmegaConf
+from omegaconf.errors import OmegaConfBaseException
+from pydantic import Field, ValidationError, model_validator
+
+from runner.config.messages import describe
+from runner.errors import StoreError, nearest
+from runner.metrics import units
+from runner.registry import StrictModel
+
+if TYPE_CHECKING:
+    from runner.store import Run
+
+SCHEMA = 1
+
+
+class Band(StrictModel):
+    """Where a metric's median has to lie, ends included.
+
+    Attributes:
+        min: Lower end, in the metric's unit; left out or null, the band is open below.
+        max: Upper end, likewise.
+        reason: Why the band is where it is and as wide as it is.
+    """
+
+    min: float | None = None
+    max: float | None = None
+    reason: Annotated[str, Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _check_ends(self) -> Self:
+        if self.min is None and self.max is None:
+            raise ValueError("needs min, max or both")
+        if self.min is not None and self.max is not None and self.min > self.max:
+            raise ValueError(f"min {self.min:g} is above max {self.max:g}")
+        return self
+
+    def holds(self, value: float) -> bool:
+        """Tell whether a value lies in the band."""
+        low = -math.inf if self.min is None else self.min
+        high = math.inf if self.max is None else self.max
+        return low <= value <= high
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A checked reference file.
+
+    Attributes:
+        name: Its name or path, for messages.
+        bands: Band of each metric by name.
+    """
+
+    name: str
+    bands: Mapping[str, Band]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """How one metric of a run compares with its band.
+
+    Attributes:
+        metric: Name of the metric.
+        value: Its median over the repetitions; None where the run has none.
+        band: Its band.
+        good: Whether the run is a good one and the value lies in the band.
+    """
+
+    metric: str
+    value: float | None
+    band: Band
+    good: bool
+
+
+def load_reference(path: Path, name: str | None = None) -> Reference:
+    """Read a reference file, `{schema: 1, metrics: {NAME: {min:, max:, reason:}}}`.
+
+    Args:
+        path: The file.
+        name: What messages call it; None is its path.
+
+    Raises:
+        StoreError: if it cannot be read or is no reference; lists all its problems.
+    """
+    # Read as the configs are: 1e-3 is a number, a key given twice an error.
+    from runner.config.composition_errors import explain_yaml
+
+    try:
+        content = OmegaConf.to_container(OmegaConf.load(path), resolve=True)
+    except yaml.YAMLError as error:
+        raise StoreError(f"reference file {explain_yaml(error, path)}") from error
+    except (OSError, UnicodeDecodeError, OmegaConfBaseException) as error:
+        raise StoreError(f"cannot read the reference file {path}: {error}") from error
+    bands: dict[str, Band] = {}
+    problems = list(_check_content(content, bands))
+    if problems:
+        raise StoreError("\n".join([f"{path} is no valid reference:", *(f"  - {problem}" for problem in problems)]))
+    return Reference(name or str(path), bands)
+
+
+def check_run(run: "Run", reference: Reference) -> list[Finding]:
+    """Compare the medians of a run with a reference; every metric of a failed run falls short."""
+    findings = []
+    for metric, band in reference.bands.items():
+        value = run.metrics.get(metric, {}).get("median")
+        good = run.status == "ok" and value is not None and band.holds(value)
+        findings.append(Finding(metric, value, band, good))
+    return findings
+
+
+def _check_content(content: Any, bands: dict[str, Band]) -> Iterator[str]:  # noqa: ANN401 - whatever YAML may hold
+    """Yield the problems of a reference file's content; put its bands into `bands`."""
+    if not isinstance(content, dict):
+        yield "must hold schema and metrics"
+        return
+    keys = ("schema", "metrics")
+    for key in content:
+        if key not in keys:
+            yield f"{key}: unknown key{nearest(str(key), keys)}; keys: {', '.join(keys)}"
+    if content.get("schema") != SCHEMA:
+        yield f"schema: must be {SCHEMA}; found {content.get('schema')!r}"
+    metrics = content.get("metrics")
+    if not isinstance(metrics, dict) or not metrics:
+        yield f"metrics: must name a band for at least one metric; found {metrics!r}"
+        return
+    known = units()
+    for name, band in metrics.items():
+        if not any(name == base or str(name).startswith(f"{base}_") for base in known):
+            yield f"metrics.{name}: unknown metric{nearest(str(name), known)}; metrics: {', '.join(known)}"
+        try:
+            bands[name] = Band.model_validate(band)
+        except ValidationError as error:
+            yield from describe(f"metrics.{name}", Band, error)
