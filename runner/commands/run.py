@@ -41,7 +41,7 @@ class _Jobs:
         overrides = tuple(override.removeprefix("++") for override in typed)
         own = [Path(source.path) for source in hydra_config.runtime.config_sources if source.provider == "command-line"]
         try:
-            self.stored.append((overrides, execute(from_hydra(config, hydra_config, overrides, own))))
+            self.stored.append((overrides, execute(from_hydra(config, hydra_config.runtime.choices, overrides, own))))
         except ConfigError as error:
             prefix = f"[{' '.join(overrides)}] " if hydra_config.mode == RunMode.MULTIRUN else ""
             self.problems += [prefix + problem for problem in error.problems]

@@ -49,19 +49,19 @@ def compose(overrides: Sequence[str], config_dirs: Sequence[Path] = ()) -> Compo
             config = hydra_compose(
                 "config", [*force(overrides), *(search if config_dirs else [])], return_hydra_config=True
             )
-        return from_hydra(config, config.hydra, overrides, config_dirs)
+        return from_hydra(config, config.hydra.runtime.choices, overrides, config_dirs)
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None
 
 
 def from_hydra(
-    config: DictConfig, hydra: DictConfig, overrides: Sequence[str], config_dirs: Sequence[Path]
+    config: DictConfig, chosen: Mapping[str, Any], overrides: Sequence[str], config_dirs: Sequence[Path]
 ) -> Composed:
     """Take a config as Hydra made it, and resolve it.
 
     Args:
         config: The config, with or without Hydra's own node.
-        hydra: Hydra's own node.
+        chosen: What Hydra took in each group, its own groups included.
         overrides: The overrides, as typed.
         config_dirs: Config folders of the user's.
 
@@ -74,7 +74,6 @@ def from_hydra(
         resolved: Any = OmegaConf.to_container(own, resolve=True)
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None
-    chosen: Any = OmegaConf.to_container(hydra.runtime.choices)
     choices = {group: name for group, name in chosen.items() if name is not None and not group.startswith("hydra/")}
     return Composed(resolved, tuple(overrides), choices, tuple(config_dirs))
 

@@ -96,9 +96,9 @@ class OperationalSpace:
         # A view into Pinocchio's data: each update of the frame refreshes it, without a new object per tick.
         self._x = self._data.oMf[self._tip].translation
         self._zero = np.zeros(model.nq)
-        self._k_p = natural_frequency**2
-        self._k_v = 2.0 * damping_ratio * natural_frequency
-        self._weights = np.array([self._k_p, self._k_v, 1.0]) if feedforward else np.array([self._k_p, 0.0, 0.0])
+        k_p, k_v = natural_frequency**2, 2.0 * damping_ratio * natural_frequency
+        self._weights = np.array([k_p, k_v, 1.0]) if feedforward else np.array([k_p, 0.0, 0.0])
+        self._k_p, self._k_v = np.full(3, k_p), np.full(3, k_v)  # NumPy multiplies arrays quicker than a float
         self._damping = singularity_damping
         self._singular_below = 0.1 * model.reach
 

@@ -82,16 +82,11 @@ class Bullet:
         return [index[name] for name in names]
 
     def _remove_damping_and_motors(self) -> None:
+        # Two calls: PyBullet 3.2.7 ignores jointDamping in a call that holds maxJointVelocity.
+        undamped = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0}
         for link in range(-1, pybullet.getNumJoints(self._body, physicsClientId=self._client)):
-            pybullet.changeDynamics(
-                self._body,
-                link,
-                linearDamping=0.0,
-                angularDamping=0.0,
-                jointDamping=0.0,
-                maxJointVelocity=_NO_SPEED_LIMIT,
-                physicsClientId=self._client,
-            )
+            for settings in (undamped, {"maxJointVelocity": _NO_SPEED_LIMIT}):
+                pybullet.changeDynamics(self._body, link, **settings, physicsClientId=self._client)
         pybullet.setJointMotorControlArray(
             self._body,
             self._joints,
@@ -114,8 +109,7 @@ class Bullet:
         )
         pybullet.stepSimulation(client)
         states = pybullet.getJointStates(body, joints, client)
-        self.q[:] = [state[0] for state in states]
-        self.dq[:] = [state[1] for state in states]
+        self.q[:], self.dq[:], _, _ = zip(*states, strict=True)
 
     def close(self) -> None:
         """Disconnect from the physics server."""

@@ -35,7 +35,8 @@ class Rk4:
 
     def __init__(self, arm: Arm, step: float, steps_per_tick: int) -> None:
         self._model = arm.model.pin_model
-        self._data = self._model.createData()
+        # Each stage has its own, as aba returns a view of its result in there.
+        self._data = [self._model.createData() for _ in range(4)]
         self._step = step
         self._steps_per_tick = steps_per_tick
         self.q = np.zeros(arm.model.nq)
@@ -47,22 +48,26 @@ class Rk4:
 
     def advance(self, tau: FloatArray) -> None:
         """Hold the torques for one tick; see Plant."""
-        model, data, h = self._model, self._data, self._step
+        model, h = self._model, self._step
+        data1, data2, data3, data4 = self._data
         half = 0.5 * h
         q, v = self.q, self.dq
         for _ in range(self._steps_per_tick):
             # With dq = v the positions' slopes are the intermediate velocities, so four forward dynamics suffice:
             # q+ = q + h v + h^2/6 (a1 + a2 + a3), v+ = v + h/6 (a1 + 2 a2 + 2 a3 + a4).
-            a1 = pin.aba(model, data, q, v, tau).copy()
-            q_half = q + half * v
+            a1 = pin.aba(model, data1, q, v, tau)
             v2 = v + half * a1
-            a2 = pin.aba(model, data, q_half, v2, tau).copy()
+            a2 = pin.aba(model, data2, q + half * v, v2, tau)
             v3 = v + half * a2
-            a3 = pin.aba(model, data, q + half * v2, v3, tau).copy()
-            a4 = pin.aba(model, data, q + h * v3, v + h * a3, tau)
-            sum_123 = a1 + a2 + a3
-            q += h * v + (h * h / 6.0) * sum_123
-            v += (h / 6.0) * (sum_123 + a2 + a3 + a4)
+            a3 = pin.aba(model, data3, q + half * v2, v3, tau)
+            a4 = pin.aba(model, data4, q + h * v3, v + h * a3, tau)
+            total = a1 + a2
+            total += a3
+            q += h * v + (h * h / 6.0) * total
+            total += a2
+            total += a3
+            total += a4
+            v += (h / 6.0) * total
 
     def close(self) -> None:
         """Hold nothing, release nothing."""

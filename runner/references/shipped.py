@@ -30,6 +30,7 @@ def find_shipped(run: "Run") -> Reference:
     if name not in known:
         what = f"'{name}'{nearest(name, known)}" if choices.get("experiment") else "a run without an experiment"
         raise RunnerError(
-            f"no reference comes with the runner for {what}; give one by --reference FILE; there are: {', '.join(known)}"
+            f"{run.folder}: no reference comes with the runner for {what}; give one by --reference FILE; there are: "
+            f"{', '.join(known) or 'none'}"
         )
     return load_reference(_FOLDER / f"{name}.yaml", name)

@@ -2,7 +2,6 @@
 
 import io
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -39,7 +38,7 @@ class RunResult:
     metrics: Mapping[str, Summary]
     repetitions: int
     failure: tuple[int, Failure] | None
-    timing: Mapping[str, float]
+    timing: Mapping[str, float | None]
     provenance: Mapping[str, Any]
 
 
@@ -126,9 +125,7 @@ def _parquet(trace: Trace) -> bytes:
     return buffer.getvalue()
 
 
-def timing(traces_seconds: np.ndarray, wall_s: float, cpu_s: float) -> dict[str, float]:
-    """Return the timing record from the seconds of every tick, shape (N,)."""
-    if len(traces_seconds) == 0:
-        return {"tick_time_median": math.nan, "tick_time_p99": math.nan, "wall_s": wall_s, "cpu_s": cpu_s}
-    median, p99 = np.percentile(traces_seconds, [50, 99])
-    return {"tick_time_median": float(median), "tick_time_p99": float(p99), "wall_s": wall_s, "cpu_s": cpu_s}
+def timing(tick_seconds: np.ndarray, wall_s: float, cpu_s: float) -> dict[str, float | None]:
+    """Return the timing record from the seconds of every tick, shape (N,); a run that failed at once has no tick."""
+    median, p99 = np.percentile(tick_seconds, [50, 99]).tolist() if len(tick_seconds) else (None, None)
+    return {"tick_time_median": median, "tick_time_p99": p99, "wall_s": wall_s, "cpu_s": cpu_s}
