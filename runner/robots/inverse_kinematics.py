@@ -37,7 +37,7 @@ def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) 
     if not reached:
         raise ConfigError(
             [
-                f"trajectory.start: no posture on the home branch brings the tip to {np.round(target, 6).tolist()} m; "
+                f"trajectory.start: no posture brings the tip to {np.round(target, 6).tolist()} m; "
                 f"{min(missing):.3g} m are left (reach {model.reach:.4g} m). Choose a start away from a singular posture"
             ]
         )
