@@ -1,22 +1,16 @@
 """`runner report DIR... [--html] [--pdf]`: a report from stored runs or sweeps."""
 
-import argparse
 import hashlib
 from collections.abc import Sequence
 from pathlib import Path
 
+from runner.commands.arguments import Parser
 from runner.config.compose import quiet_environment
-from runner.errors import RunnerError
-
-
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> None:  # type: ignore[override]
-        raise RunnerError(f"{message}; usage: {self.format_usage().removeprefix('usage: ').strip()}")
 
 
 def main(arguments: Sequence[str]) -> int:
     """Write the report; print its folder as the last line."""
-    parser = _Parser(prog="runner report", description=__doc__)
+    parser = Parser("report", __doc__)
     parser.add_argument("folders", nargs="+", type=Path, metavar="DIR", help="run or sweep folders")
     parser.add_argument("--html", action="store_true", help="only HTML (with --pdf: both)")
     parser.add_argument("--pdf", action="store_true", help="only PDF (with --html: both)")

@@ -1,13 +1,13 @@
 """`runner reproduce [NAME]`: run what is missing for a published work, and write its report."""
 
-import argparse
 import multiprocessing
 import sys
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
+from runner.commands.arguments import Parser
 from runner.config.compose import quiet_environment
 from runner.errors import RunnerError, nearest
 
@@ -19,14 +19,9 @@ WORKS = ("thesis",)
 _PROCESSES = 2
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        raise RunnerError(f"{message}; usage: {self.format_usage().removeprefix('usage: ').strip()}")
-
-
 def main(arguments: Sequence[str]) -> int:
     """Reproduce one work or all; print the report's folder as the last line."""
-    parser = _Parser(prog="runner reproduce", description=__doc__)
+    parser = Parser("reproduce", __doc__)
     parser.add_argument("work", nargs="?", default="all", metavar="NAME", help=f"{', '.join(WORKS)} or all")
     parser.add_argument("--outputs", type=Path, default=Path("outputs"), help="folder of runs and reports")
     options = parser.parse_args(arguments)

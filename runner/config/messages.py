@@ -23,6 +23,7 @@ _NUMBERS = {
     "string_too_short": "must not be empty",
     "list_type": "must be a list of numbers",
     "dict_type": "must be a group of keys",
+    "model_type": "must be a group of keys",
 }
 
 

@@ -18,8 +18,10 @@ UNITS = {
 def evaluate(trace: Trace, context: MetricContext) -> dict[str, float | None]:
     """Return torques, speeds, saturation, energy and effort, over the torques that were held (all rows but the last).
 
-    - peak_torque, rms_torque, peak_joint_speed, saturation_fraction: over all joints, and per joint with its name;
-      saturation_fraction is the share of ticks with any joint at its limit.
+    - peak_torque: largest magnitude of a joint's torque; so over all joints, and per joint with its name.
+    - rms_torque: root mean square of the torques, likewise.
+    - peak_joint_speed: largest joint speed, likewise.
+    - saturation_fraction: share of ticks with any joint at its limit; per joint, of those with this one.
     - energy: integral of sum |tau dq|, exact while no joint reverses within a tick, as the torque is held.
     - control_effort: integral of sum tau^2.
     """

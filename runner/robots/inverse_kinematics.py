@@ -38,7 +38,7 @@ def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) 
         raise ConfigError(
             [
                 f"trajectory.start: no posture brings the tip to {np.round(target, 6).tolist()} m; "
-                f"{min(missing):.3g} m are left (reach {model.reach:.4g} m). Choose a start away from a singular posture"
+                f"{min(missing):.3g} m are left (reach {model.reach:.4g} m). Choose another start"
             ]
         )
     return next((q for q in reached if _branch(model, q) == _branch(model, home)), reached[0])

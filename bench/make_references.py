@@ -1,0 +1,139 @@
+"""Makes the reference bands that ship with the package, from many seeds: `python -m bench.make_references`.
+
+Each band holds the smallest and the largest of the medians that SEEDS give, widened on both sides by half the
+interquartile range of single repetitions (some three standard errors of a median of 40) and by MARGIN of the
+value, for other machines' rounding. Read the files before you commit them: a band is a statement.
+"""
+
+import math
+import multiprocessing
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import yaml
+from tqdm import tqdm
+
+from runner import open_run
+from runner.config.compose import quiet_environment
+from runner.config.options import group_options
+from runner.paths import package_dir
+from runner.store import Run
+
+SEEDS = range(5)
+MARGIN = 0.02
+PRESETS = ("sound", "as_reported")
+
+_POSITIONING = ("settling_time", "steady_state_error", "peak_torque", "saturation_fraction")
+_WHOLE_MOVE = ("overshoot", "cross_track_error", "energy", "control_effort")
+_TRACKING = (*_POSITIONING, *_WHOLE_MOVE, "max_tracking_error", "rms_tracking_error")
+METRICS = {
+    # What the Macro's goal move does on the whole depends on the branch that it takes: no band would mean much.
+    "thesis/figure_3_5": _POSITIONING,
+    "thesis/figure_3_9": _TRACKING,
+    "thesis/figure_3_10": _TRACKING,
+    "thesis/figure_4_2": (*_POSITIONING, *_WHOLE_MOVE),
+    "thesis/figure_4_4": _TRACKING,
+}
+# Wider than the seeds tell, in the metric's unit: plant, velocity estimate and rounding change the branch of the
+# saturated transient, and move its median by 0.3 s of the run's 4 s. The Mini is the Macro scaled, times by a tenth.
+EXTRA = {
+    ("thesis/figure_3_5", "settling_time"): 0.3,
+    ("thesis/figure_3_5", "saturation_fraction"): 0.075,
+    ("thesis/figure_4_2", "settling_time"): 0.03,
+    ("thesis/figure_4_2", "saturation_fraction"): 0.0075,
+}
+
+_BASE_AXIS = "joint 1 is at its limit where the path passes the base axis, and lags whatever the controller"
+_NOISE = "what the encoders' noise leaves, with gravity compensated and feedforward"
+_SAG = "the sag without the gravity term, J M^-1 G / omega_n^2, and the encoders' noise"
+_LAG = "the lag without feedforward, up to (2 xi / omega_n) 1.875 D / t_f, with sag and the encoders' noise"
+_SUM = "a sum over the whole move, in which single noise draws hardly show"
+
+
+def explain(experiment: str, preset: str, metric: str, zero: bool) -> str:
+    """Return why a metric is where it is."""
+    sound, limited = preset == "sound", experiment == "thesis/figure_3_9"
+    if zero:
+        return "no error beyond the settling band" if metric == "settling_time" else "no joint at a limit"
+    reasons = {
+        "settling_time": "back in the settling band " + ("after the base axis" if sound else "as the lag fades"),
+        "steady_state_error": _NOISE if sound else _SAG,
+        "peak_torque": "the limit, met beside the base axis" if limited else "joint 1 beside the base axis, and noise",
+        "saturation_fraction": "joint 1 at its limit beside the base axis",
+        "overshoot": "the part of the error at rest that lies along the path",
+        "cross_track_error": _BASE_AXIS if limited else _NOISE if sound else _SAG,
+        "energy": _SUM,
+        "control_effort": _SUM,
+        "max_tracking_error": _BASE_AXIS if limited else _NOISE if sound else _LAG,
+        "rms_tracking_error": _LAG if not sound else _BASE_AXIS if limited else _NOISE,
+    }
+    if experiment == "thesis/figure_4_4":
+        reasons["peak_torque"] = "gravity on joint 2, 0.196 N m at home, and the answer to noise, lag and sag"
+    if (experiment, "settling_time") in EXTRA:
+        width = f"known to {EXTRA[experiment, 'settling_time']:g} s of the run's 4 s, as the branch it takes may change"
+        reasons |= {
+            "settling_time": f"a saturated transient, {width}",
+            "saturation_fraction": f"a saturated transient, {width}",
+            "peak_torque": "the limit, met from the first tick on",
+            "overshoot": "a saturated transient",
+            "cross_track_error": "a saturated transient",
+        }
+    return reasons[metric]
+
+
+def run_seed(experiment: str, preset: str, seed: int) -> Path:
+    """Run one experiment with one seed; in a worker process."""
+    quiet_environment()
+    import runner
+
+    return runner.run(f"experiment={experiment}", f"preset={preset}", f"seed={seed}").folder
+
+
+def make_band(runs: list[Run], experiment: str, preset: str, metric: str) -> dict[str, float | str]:
+    """Return the band of a metric from the runs of all seeds."""
+    medians = [run.metrics[metric]["median"] for run in runs]
+    values = np.array([value for run in runs for value in run.metrics[metric]["values"]], dtype=float)
+    low, high = min(medians), max(medians)
+    quartiles = np.nanpercentile(values, [25, 75])
+    extra = EXTRA.get((experiment, metric), 0.5 * float(np.diff(quartiles)[0]) + MARGIN * high)
+    unit = runs[0].metrics[metric]["unit"]
+    spread = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
+    seeds = f"{len(medians)} seeds gave {spread}" + ("" if unit == "1" else f" {unit}")
+    return {
+        "min": max(0.0, _round(low - extra, math.floor)),
+        "max": _round(high + extra, math.ceil),
+        "reason": f"{explain(experiment, preset, metric, high == 0.0)}; {seeds}",
+    }
+
+
+def _round(value: float, direction: Callable[[float], int]) -> float:
+    if value == 0.0:
+        return 0.0
+    digits = 2 - math.floor(math.log10(abs(value)))
+    return round(direction(value * 10.0**digits) / 10.0**digits, digits)
+
+
+def main() -> None:
+    """Run all seeds of all experiments in both presets on two processes, and write the files."""
+    jobs = [(experiment, preset, seed) for experiment in METRICS for preset in PRESETS for seed in SEEDS]
+    with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
+        folders = list(tqdm(pool.map(run_seed, *zip(*jobs, strict=True)), total=len(jobs), unit="run"))
+    stored = dict(zip(jobs, folders, strict=True))
+    for experiment, metrics in METRICS.items():
+        for preset in PRESETS:
+            runs = [open_run(stored[experiment, preset, seed]) for seed in SEEDS]
+            bands = {metric: make_band(runs, experiment, preset, metric) for metric in metrics}
+            path = package_dir() / "references" / f"{experiment}.{preset}.yaml"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            head = (
+                f"# {group_options('experiment')[experiment]}, preset {preset}\n# Made by bench/make_references.py.\n"
+            )
+            body = yaml.safe_dump({"schema": 1, "metrics": bands}, sort_keys=False, width=116)
+            path.write_text(head + body)
+            print(path)
+
+
+if __name__ == "__main__":
+    main()

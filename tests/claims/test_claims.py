@@ -1,0 +1,81 @@
+import pytest
+from pydantic import ValidationError
+
+from runner.claims import FACTOR, PublishedClaim, judge, load_claims
+from runner.config.options import group_options
+from runner.metrics import units
+
+CLAIMS = load_claims("thesis")
+PAIRS = [(claim, claim) for claim in CLAIMS] + [(claim, claim.bound) for claim in CLAIMS if claim.bound]
+
+
+def test_the_seven_numbers_of_chapters_3_and_4_are_listed_in_order():
+    assert [claim.number for claim in CLAIMS] == [1, 2, 3, 4, 5, 6, 7]
+    assert [claim.printed for claim in CLAIMS] == [
+        [1.4],
+        [0.0, 9e-3],
+        [0.1, 0.15],
+        [0.007, 0.044],
+        [0.3],
+        [4e-4, 8e-4],
+        [6e-5],
+    ]
+
+
+@pytest.mark.parametrize(("claim", "where"), PAIRS, ids=lambda value: getattr(value, "experiment", ""))
+def test_a_claim_is_compared_with_a_metric_of_an_experiment_that_exists(claim, where, checked_config):
+    assert where.experiment in group_options("experiment")
+    assert units()[where.metric] == claim.unit
+    config = checked_config(f"experiment={where.experiment}")
+    assert config.settings.repetitions == 40
+    tracked = config.resolved["trajectory"]["kind"] != "goal"
+    assert tracked or "tracking" not in where.metric  # such a metric is absent for a goal
+
+
+@pytest.mark.parametrize("claim", CLAIMS, ids=lambda claim: str(claim.number))
+def test_a_claim_says_where_it_stands_and_why(claim):
+    assert claim.place.startswith("section ")
+    assert claim.reason or claim.bound.reason
+    assert claim.value == max(claim.printed)
+
+
+def test_only_the_minis_settling_time_is_out_of_reach():
+    assert [claim.number for claim in CLAIMS if claim.bound] == [5]
+
+
+def test_an_unknown_key_of_a_claim_is_refused():
+    entry = CLAIMS[0].model_dump() | {"verdict": "holds"}
+    with pytest.raises(ValidationError, match="verdict"):
+        PublishedClaim.model_validate(entry)
+
+
+@pytest.mark.parametrize(
+    ("measured", "verdict"),
+    [
+        (2.0, "holds"),
+        (2.0 * FACTOR, "holds"),
+        (2.0 * FACTOR * (1 + 1e-12), "worse"),
+        (2.0 / FACTOR, "holds"),
+        (2.0 / FACTOR * (1 - 1e-12), "better"),
+        (0.0, "better"),
+        (None, "worse"),
+    ],
+)
+def test_a_number_holds_within_a_factor(measured, verdict):
+    assert judge(2.0, measured) == verdict
+
+
+@pytest.mark.parametrize(
+    ("measured", "bound", "verdict"),
+    [
+        (0.1, 0.1, "cannot"),
+        (None, 0.1, "cannot"),
+        (2.0, 2.0 / FACTOR * (1 - 1e-12), "cannot"),
+        (2.0, 2.0 / FACTOR, "holds"),
+        (0.1, 10.0, "better"),
+        (None, 10.0, "worse"),
+        (2.0, None, "holds"),
+    ],
+)
+def test_a_number_beyond_its_bound_cannot_be_reached(measured, bound, verdict):
+    assert judge(2.0, measured, bound) == verdict

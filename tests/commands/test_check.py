@@ -1,0 +1,126 @@
+import json
+import shutil
+
+import pytest
+
+from runner.references import shipped_references
+
+SHORT = ("robot=macro", "duration=0.05")
+GOOD = "schema: 1\nmetrics:\n  peak_torque: {min: 0.0, reason: torques have no sign here}\n"
+BAD = """\
+schema: 1
+metrics:
+  peak_joint_speed: {min: 1e3, max: 1e4, reason: as if it flew}
+  settling_time: {max: 1.0, reason: it should settle}
+  max_tracking_error: {max: 1.0, reason: it should follow}
+  saturation_fraction: {max: 0.0, reason: there is no limit}
+"""
+
+
+@pytest.fixture
+def reference(tmp_path):
+    def write(text):
+        path = tmp_path / "reference.yaml"
+        path.write_text(text)
+        return path
+
+    return write
+
+
+def test_a_run_inside_its_bands_says_so_in_one_line(cli, reference):
+    run = cli(*SHORT).folder
+    path = reference(GOOD)
+    ending = cli("check", run, "--reference", path)
+    assert (ending.code, ending.err) == (0, "")
+    assert ending.out == f"good: 1 metrics of 1 run lie in the bands of {path}\n"
+
+
+def test_what_falls_short_is_a_table_with_reasons(cli, reference):
+    run = cli(*SHORT).folder
+    ending = cli("check", run, "--reference", reference(BAD))
+    assert (ending.code, ending.err) == (1, "")
+    head, title, *rows = ending.out.splitlines()
+    assert head.startswith(f"{run}: 3 of 4 metrics fall short of ")
+    assert title.split() == ["metric", "found", "band", "reason"]
+    table = {row.split()[0]: row.split(maxsplit=2)[1:] for row in rows}
+    assert table["peak_joint_speed"][1].split("  ") == ["1000 to 10000", "as if it flew"]
+    assert table["settling_time"] == ["-", f"{'up to 1':<15}it should settle"]
+    assert table["max_tracking_error"][0] == "-"  # a goal has none
+    assert "saturation_fraction" not in table
+
+
+def test_the_median_over_repetitions_is_checked(cli, reference):
+    run = cli(*SHORT, "repetitions=3", "noise=thesis").folder
+    record = json.loads((run / "metrics.json").read_text())
+    metric = record["metrics"]["peak_joint_speed"]
+    bounds = sorted(metric["values"])
+    band = (
+        f"schema: 1\nmetrics:\n  peak_joint_speed: {{min: {bounds[1]}, max: {bounds[1]}, reason: exactly the median}}\n"
+    )
+    assert cli("check", run, "--reference", reference(band)).code == 0
+
+
+def test_a_failed_run_falls_short(cli, reference):
+    overrides = ("plant=rk4", "controller.period=0.06", "controller.singularity_damping=0", "trajectory=quintic")
+    run = cli("robot=macro", *overrides).folder
+    ending = cli("check", run, "--reference", reference(GOOD))
+    assert ending.code == 1
+    assert "1 of 1 metrics fall short" in ending.out
+    assert "  failed in repetition 0 at t = 0.6 s (q1): diverged" in ending.out
+
+
+def test_a_sweep_is_checked_run_by_run(cli, reference):
+    sweep = cli("-m", *SHORT, "robot=macro,mini").folder
+    assert cli("check", sweep, "--reference", reference(GOOD)).out.startswith("good: 2 metrics of 2 runs lie in ")
+    assert cli("check", sweep, "--reference", reference(BAD)).out.count("fall short") == 2
+
+
+def test_the_shipped_reference_follows_from_experiment_and_preset(cli):
+    run = cli("experiment=thesis/figure_3_10", "preset=as_reported", "repetitions=3").folder
+    ending = cli("check", run)
+    assert (ending.code, ending.err) == (0, "")
+    assert ending.out == "good: 10 metrics of 1 run lie in the bands of thesis/figure_3_10.as_reported\n"
+
+
+def test_a_changed_controller_falls_short_of_the_shipped_reference(cli):
+    overrides = ("repetitions=1", "controller.natural_frequency=20")
+    run = cli("experiment=thesis/figure_3_10", "preset=as_reported", *overrides).folder
+    ending = cli("check", run)
+    assert ending.code == 1
+    assert "max_tracking_error" in ending.out
+
+
+def test_without_a_shipped_reference_the_way_out_is_named(cli):
+    run = cli(*SHORT).folder
+    ending = cli("check", run)
+    assert ending.code == 2
+    assert (
+        "no reference comes with the runner for a run without an experiment; give one by --reference FILE" in ending.err
+    )
+    assert ", ".join(shipped_references()) in ending.err
+    run = cli("experiment=thesis/lag", "duration=0.05").folder
+    assert "for 'thesis/lag.sound'" in cli("check", run).err
+
+
+def test_a_copied_run_is_checked_elsewhere(cli, reference, tmp_path):
+    run = cli(*SHORT).folder
+    copy = shutil.copytree(run, tmp_path / "elsewhere" / "copy")
+    shutil.rmtree(tmp_path / "outputs")
+    assert cli("check", copy, "--reference", reference(GOOD)).code == 0
+    assert cli("diff", copy, copy).code == 0
+
+
+def test_folders_and_files_that_cannot_be_read(cli, reference, tmp_path):
+    run = cli(*SHORT).folder
+    cases = [
+        (("check", tmp_path / "gone"), "no folder"),
+        (("check", tmp_path), "is no stored run"),
+        (("check", run, "--reference", "gone.yaml"), "cannot read the reference file gone.yaml"),
+        (("check", run, "--reference", run), "cannot read the reference file"),
+        (("check", run, "--reference", reference("schema: [\n")), "reference.yaml, line 2, column 1"),
+        (("check",), "the following arguments are required: DIR"),
+    ]
+    for arguments, message in cases:
+        ending = cli(*arguments)
+        assert (ending.code, ending.out) == (2, "")
+        assert message in ending.err

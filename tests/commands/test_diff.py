@@ -1,0 +1,92 @@
+import json
+
+import pytest
+
+SHORT = ("robot=macro", "duration=0.05")
+
+
+def change(folder, edit):
+    """Edit a stored run's record."""
+    path = folder / "metrics.json"
+    record = json.loads(path.read_text())
+    edit(record)
+    path.write_text(json.dumps(record))
+
+
+def cells(text, name):
+    """Return the cells of the line that starts with a name."""
+    return next(line.split()[1:] for line in text.splitlines() if line.split()[:1] == [name])
+
+
+def test_a_run_and_itself(cli):
+    run = cli(*SHORT).folder
+    ending = cli("diff", run, run)
+    assert (ending.code, ending.err) == (0, "")
+    assert "same config\nsame provenance\n" in ending.out
+    unit, a, b, difference, ratio = cells(ending.out, "peak_joint_speed")
+    assert (unit, a, difference, ratio) == ("rad/s", b, "0", "1")
+
+
+def test_config_keys_and_metrics_that_differ(cli):
+    a = cli(*SHORT, "trajectory=quintic", "trajectory.duration=0.5").folder
+    changes = ("trajectory.duration=0.4", "torque_limits.max=[50,50,20]", "plant=rk4", "plant.step=0.001")
+    b = cli(*SHORT, "trajectory=quintic", *changes).folder
+    out = cli("diff", a, b).out
+    head, table = out.split("config differs:")[1].split("same provenance")
+    assert cells(head, "trajectory.duration") == ["0.5", "0.4"]
+    assert cells(head, "torque_limits.max") == ["null", "[50,", "50,", "20]"]
+    assert cells(head, "plant.kind") == ["bullet", "rk4"]
+    assert cells(head, "plant.step") == ["null", "0.001"]
+    assert "outputs" not in head
+    assert "controller" not in head
+    _, found_a, found_b, difference, ratio = cells(table, "energy")
+    assert float(difference) == pytest.approx(float(found_b) - float(found_a), rel=1e-3)
+    assert float(ratio) == pytest.approx(float(found_b) / float(found_a), rel=1e-3)
+
+
+def test_keys_and_metrics_of_one_run_only(cli):
+    a = cli(*SHORT).folder
+    b = cli(*SHORT, "trajectory=quintic").folder
+    out = cli("diff", a, b).out
+    assert cells(out, "trajectory.duration") == ["(absent)", "3.0"]
+    assert cells(out, "max_tracking_error")[:2] == ["m", "-"]
+    assert cells(out, "max_tracking_error")[3:] == ["-", "-"]
+
+
+def test_provenance_and_robots_that_differ(cli):
+    a, b = cli(*SHORT).folder, cli(*SHORT, "seed=1").folder
+    change(b, lambda record: record["provenance"].update(commit="abc", plant_step=5e-4))
+    change(b, lambda record: record["provenance"]["versions"].update(pybullet="9.9"))
+    (b / "robot.urdf").write_text("<robot/>")
+    out = cli("diff", a, b).out
+    assert "  the text of robot.urdf differs\nprovenance differs:\n" in out
+    assert cells(out, "commit")[-1] == "abc"
+    assert cells(out, "versions.pybullet")[-1] == "9.9"
+    assert cells(out, "plant_step") == ["0.001", "0.0005"]
+
+
+def test_a_failed_run_says_why(cli):
+    overrides = ("plant=rk4", "controller.period=0.06", "controller.singularity_damping=0", "trajectory=quintic")
+    run = cli("robot=macro", *overrides).folder
+    assert f"B  {run}  failed in repetition 0 at t = 0.6 s (q1): diverged" in cli("diff", run, run).out
+
+
+def test_a_ratio_to_zero_is_left_out(cli):
+    run = cli(*SHORT).folder
+    assert cells(cli("diff", run, run).out, "saturation_fraction") == ["1", "0", "0", "0", "-"]
+
+
+def test_folders_that_are_no_runs(cli, tmp_path):
+    run = cli(*SHORT).folder
+    sweep = cli("-m", *SHORT, "seed=0,1").folder
+    for bad, what in ((tmp_path / "gone", "no folder"), (tmp_path, "is no stored run"), (sweep, "is a sweep")):
+        for pair in ((run, bad), (bad, run)):
+            ending = cli("diff", *pair)
+            assert (ending.code, ending.out) == (2, "")
+            assert what in ending.err
+
+
+def test_two_folders_are_needed(cli):
+    ending = cli("diff", "one")
+    assert ending.code == 2
+    assert ending.err == "runner: the following arguments are required: B; usage: runner diff [-h] A B\n"

@@ -1,0 +1,59 @@
+import pytest
+
+from runner.commands.list import TOPICS
+from runner.metrics import units
+
+
+def test_an_overview_of_all_topics(cli):
+    ending = cli("list")
+    assert ending.code == 0
+    heads = [line.split()[0] for line in ending.out.splitlines() if line and not line.startswith((" ", "`"))]
+    assert heads == list(TOPICS)
+    assert "macro, mini" in ending.out
+
+
+@pytest.mark.parametrize("topic", TOPICS)
+def test_every_topic_has_entries_with_descriptions(cli, tmp_path, topic):
+    ending = cli("list", topic)
+    assert (ending.code, ending.err) == (0, "")
+    lines = ending.out.splitlines()
+    assert lines
+    assert all(len(line.split(maxsplit=1)) == 2 for line in lines)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_metrics_carry_unit_and_meaning(cli):
+    lines = {line.split()[0]: line for line in cli("list", "metrics").out.splitlines()}
+    assert set(lines) == set(units())
+    assert lines["settling_time"].split(maxsplit=1)[1] == (
+        "[s] first tick after the last one with any axis error beyond the band"
+    )
+    assert lines["control_effort"].split(maxsplit=1)[1] == "[N^2 m^2 s] integral of sum tau^2"
+
+
+def test_claims_carry_printed_value_and_place(cli):
+    assert "thesis 1  Macro, goal position, settles: 1.4 s (section 3.3.1, conclusion)\n" in cli("list", "claims").out
+
+
+def test_own_options_are_listed(cli, tmp_path):
+    (tmp_path / "own" / "robot").mkdir(parents=True)
+    (tmp_path / "own" / "robot" / "mine.yaml").write_text("# @package _global_\n# My arm\n")
+    assert "\nmine   My arm\n" in cli("list", "robots", "--config-dir", tmp_path / "own").out
+    assert "macro, mine, mini" in cli("list", f"--config-dir={tmp_path}/own").out
+
+
+def test_an_own_folder_that_does_not_exist_is_named(cli):
+    ending = cli("list", "robots", "--config-dir", "nowhere")
+    assert (ending.code, ending.err) == (2, "runner: --config-dir: no folder nowhere\n")
+
+
+def test_an_unknown_topic_names_the_nearest(cli):
+    ending = cli("list", "robot")
+    assert ending.code == 2
+    assert ending.err == f"runner: list: no topic 'robot' (did you mean robots?); topics: {', '.join(TOPICS)}\n"
+
+
+def test_unknown_arguments_show_the_usage(cli):
+    ending = cli("list", "robots", "--all")
+    assert ending.code == 2
+    assert ending.err.startswith("runner: unrecognized arguments: --all; usage: runner list [-h]")

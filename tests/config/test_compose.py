@@ -1,0 +1,175 @@
+"""Composition: precedence, every option there is, own config folders, and files that are no configs."""
+
+import pytest
+
+from runner.config.compose import compose, force
+from runner.config.options import group_options, groups
+from runner.config.validation import validate
+from runner.errors import ConfigError
+from runner.paths import robots_dir
+
+OPTIONS = [f"{group}={name}" for group in groups() for name in group_options(group)]
+SMALL_ROBOT = """\
+# @package _global_
+# My arm
+defaults:
+  - override /controller: operational_space
+  - override /trajectory: goal
+robot:
+  name: mine
+  urdf: mine.urdf
+  tip: tip
+  home: [0.0, 0.0, 0.0]
+  masses: {link3: 2.0}
+  goal: [0.2, -0.7, 0.4]
+  natural_frequency: 20.0
+  damping_ratio: 1.0
+  period: 0.01
+  joint_error_limit: 1e-3
+  torque_limit: [50.0, 50.0, 20.0]
+  settling_band: 0.02
+"""
+
+
+def resolve(*overrides):
+    return compose(overrides).resolved
+
+
+@pytest.mark.parametrize("option", OPTIONS)
+def test_every_option_composes(option):
+    validate(resolve(option))
+
+
+@pytest.mark.parametrize("option", OPTIONS)
+def test_every_option_runs(cli, option):
+    ending = cli(option, "duration=0.05", "repetitions=1")
+    assert (ending.code, ending.err) == (0, "")
+
+
+def test_precedence_group_preset_robot_experiment_command_line():
+    assert resolve("preset=as_reported")["controller"]["feedforward"] is False
+    assert resolve("robot=mini")["controller"]["natural_frequency"] == 300.0
+    experiment = resolve("experiment=thesis/figure_4_2")
+    assert experiment["robot"]["name"] == "mini"
+    assert experiment["torque_limits"]["max"] == 5.0
+    assert resolve("experiment=thesis/figure_4_2", "robot=macro")["torque_limits"]["max"] == 50.0
+    assert resolve("experiment=thesis/figure_4_2", "torque_limits.max=4")["torque_limits"]["max"] == 4
+    assert resolve("preset=as_reported", "controller.feedforward=true")["controller"]["feedforward"] is True
+
+
+def test_a_preset_leaves_noise_limits_and_times_alone():
+    sound, as_reported = resolve("preset=sound"), resolve("preset=as_reported")
+    assert {key for key in sound if sound[key] != as_reported[key]} == {"preset", "controller"}
+
+
+def test_what_was_chosen_is_kept():
+    composed = compose(["experiment=thesis/figure_3_9", "preset=as_reported"])
+    assert composed.choices["experiment"] == "thesis/figure_3_9"
+    assert composed.choices["preset"] == "as_reported"
+    assert composed.choices["robot"] == "macro"
+    assert composed.overrides == ("experiment=thesis/figure_3_9", "preset=as_reported")
+    assert "experiment" not in compose([]).choices
+    assert "hydra" not in composed.resolved
+
+
+@pytest.mark.parametrize(
+    ("override", "forced"),
+    [
+        ("noise.position=1", "++noise.position=1"),
+        ("seed=3", "++seed=3"),
+        ("robot=macro", "robot=macro"),
+        ("robot=macro,mini", "robot=macro,mini"),
+        ("noise=1", "noise='1'"),
+        ("experiment=null", "experiment='null'"),
+        ("hydra.run.dir=x", "hydra.run.dir=x"),
+        ("+new=1", "+new=1"),
+        ("~noise", "~noise"),
+    ],
+)
+def test_keys_are_forced_and_options_are_not(override, forced):
+    assert force([override]) == [forced]
+
+
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("robot=makro", "robot: no 'makro' (did you mean macro?); known: macro, mini"),
+        ("noise=1", "noise: no '1'; known: none, thesis"),
+        ("experiment=figure_3_5", "experiment: no 'figure_3_5' (did you mean thesis/figure_3_5?); known: thesis/"),
+        ("trajectory.goal=${robot.nope}", "trajectory.goal: Interpolation key 'robot.nope' not found"),
+        ("noise.position=[1,", "'noise.position=[1,' is no override: "),
+        ("foo", "'foo' is no override: Error parsing override 'foo'"),
+    ],
+)
+def test_what_does_not_compose_is_said_in_one_line(cli, tmp_path, override, message):
+    ending = cli("robot=macro", override)
+    assert ending.code == 2
+    assert ending.err.startswith(f"runner: 1 problem in the config:\n  - {message}")
+    assert ending.err.count("\n") == 2
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(ConfigError) as raised:
+        compose([override])
+    assert f"runner: {raised.value}\n" == ending.err
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (
+            b"position: 0.0\n  distribution: [\n",
+            "noise/own.yaml, line 2, column 15: mapping values are not allowed here",
+        ),
+        (b"position: 0.0\nposition: 1.0\n", "noise/own.yaml, line 2, column 1: found duplicate key position"),
+        (b"# \xff\xfe\nposition: 0.0\n", "noise/own.yaml: is no text: 'utf-8' codec can't decode byte 0xff"),
+        (b"3\n", "noise/own.yaml: holds no mapping of keys"),
+        (b"- 3\n", "noise: must be a group of keys; found [3]"),
+        (b"position: ${robot.nope}\n", "noise.position: Interpolation key 'robot.nope' not found"),
+        (b"defaults: [nope]\nposition: 0.0\n", "noise: no 'nope' (did you mean none?); known: none, own, thesis"),
+        (b"", "noise.position: missing"),
+    ],
+    ids=["syntax", "duplicate", "binary", "number", "list", "interpolation", "defaults", "empty"],
+)
+@pytest.mark.parametrize("way", ["command line", "python"])
+def test_an_own_file_that_is_no_config_is_named_with_its_line(cli, tmp_path, content, message, way):
+    own = tmp_path / "own"
+    (own / "noise").mkdir(parents=True)
+    (own / "noise" / "own.yaml").write_bytes(content)
+    if way == "python":
+        with pytest.raises(ConfigError) as raised:
+            validate(compose(["noise=own"], [own]).resolved)
+        text = str(raised.value)
+    else:
+        ending = cli("--config-dir", own, "noise=own")
+        assert ending.code == 2
+        text = ending.err
+    assert message in text
+    assert [entry.name for entry in tmp_path.iterdir()] == ["own"]
+
+
+def test_an_own_config_folder_that_does_not_exist_is_named(cli, tmp_path):
+    ending = cli("--config-dir", tmp_path / "nowhere", "robot=macro")
+    assert ending.code == 2
+    assert f"'{tmp_path}/nowhere' not found" in ending.err
+
+
+@pytest.mark.parametrize("place", [".", "robots"])
+def test_an_own_robot_runs(cli, tmp_path, place):
+    own = tmp_path / "own"
+    (own / "robot").mkdir(parents=True)
+    (own / place).mkdir(exist_ok=True)
+    (own / "robot" / "mine.yaml").write_text(SMALL_ROBOT)
+    (own / place / "mine.urdf").write_text((robots_dir() / "macro.urdf").read_text())
+    ending = cli("--config-dir", own, "robot=mine", "torque_limits=thesis", "duration=0.05")
+    assert (ending.code, ending.err) == (0, "")
+    assert 'mass value="2.0"' in (ending.folder / "robot.urdf").read_text()
+    again = compose(["robot=mine", "torque_limits=thesis"], [own])
+    assert validate(again.resolved, again.config_dirs).torque_limits.max == [50.0, 50.0, 20.0]
+
+
+def test_an_own_robot_without_urdf_names_the_places_searched(cli, tmp_path):
+    own = tmp_path / "own"
+    (own / "robot").mkdir(parents=True)
+    (own / "robot" / "mine.yaml").write_text(SMALL_ROBOT)
+    ending = cli("--config-dir", own, "robot=mine")
+    assert ending.code == 2
+    assert f"robot.urdf: no file 'mine.urdf' (did you mean mini.urdf?); looked in {own}/robots, {own}, " in ending.err

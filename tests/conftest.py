@@ -1,0 +1,144 @@
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import settings
+
+from runner.config.compose import compose, quiet_environment
+from runner.config.run import RunConfig
+from runner.config.validation import validate
+
+quiet_environment()
+
+from runner.assembly import assemble, make_encoders  # noqa: E402 - after the environment
+from runner.cli import dispatch  # noqa: E402
+from runner.robots import RobotModel, find_urdf, read_urdf  # noqa: E402
+from runner.simulation import ClosedLoop, simulate  # noqa: E402
+from runner.trace import Trace  # noqa: E402
+
+settings.register_profile("runner", derandomize=True, deadline=None, max_examples=40)
+settings.load_profile("runner")
+
+
+def read_thesis_urdf(name: str) -> str:
+    return read_urdf(find_urdf(f"{name}.urdf"), {})
+
+
+@pytest.fixture(scope="session")
+def macro_urdf() -> str:
+    return read_thesis_urdf("macro")
+
+
+@pytest.fixture(scope="session")
+def mini_urdf() -> str:
+    return read_thesis_urdf("mini")
+
+
+@pytest.fixture(scope="session")
+def macro(macro_urdf: str) -> RobotModel:
+    return RobotModel(macro_urdf, "tip")
+
+
+@pytest.fixture(scope="session")
+def mini(mini_urdf: str) -> RobotModel:
+    return RobotModel(mini_urdf, "tip")
+
+
+@pytest.fixture(scope="session", params=["macro", "mini"])
+def arm(request: pytest.FixtureRequest) -> RobotModel:
+    """Each thesis arm in turn."""
+    return RobotModel(read_thesis_urdf(request.param), "tip")
+
+
+@pytest.fixture(scope="session")
+def checked_config() -> Callable[..., RunConfig]:
+    """Compose and check a config from overrides; noise-free, without torque limits, unless they ask for it."""
+    return lambda *overrides: validate(compose(overrides).resolved)
+
+
+@pytest.fixture
+def closed_loop(checked_config: Callable[..., RunConfig]) -> Iterator[Callable[..., ClosedLoop]]:
+    """Assemble closed loops from overrides; their plants are released at the end of the test."""
+    loops: list[ClosedLoop] = []
+
+    def make(*overrides: str) -> ClosedLoop:
+        loops.append(assemble(checked_config(*overrides)))
+        return loops[-1]
+
+    yield make
+    for loop in loops:
+        loop.plant.close()
+
+
+@pytest.fixture(scope="session")
+def simulated(checked_config: Callable[..., RunConfig]) -> Callable[..., Trace]:
+    """Simulate one repetition of what overrides describe, past the store."""
+
+    def make(*overrides: str, repetition: int = 0) -> Trace:
+        config = checked_config(*overrides)
+        loop = assemble(config)
+        try:
+            return simulate(loop, make_encoders(config, loop, repetition))
+        finally:
+            loop.plant.close()
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def hand_made_trace() -> Callable[..., Trace]:
+    """Make a trace of a two-joint arm from what a test names; everything else is at rest at zero.
+
+    `tip` and `desired` are positions, one row for each time; `desired` may be a single position.
+    """
+
+    def make(t, tip=0.0, desired=0.0, q=0.0, dq=0.0, tau=0.0, limits=np.inf, failure=None) -> Trace:
+        t = np.asarray(t, dtype=float)
+        rows = len(t)
+        motion = np.zeros((rows, 3, 3))
+        motion[:, 0] = desired
+        return Trace(
+            t=t,
+            q=np.zeros((rows, 2)) + q,
+            dq=np.zeros((rows, 2)) + dq,
+            tau=np.zeros((rows, 2)) + tau,
+            tip=np.zeros((rows, 3)) + tip,
+            desired=motion,
+            limits=np.zeros(2) + limits,
+            joint_names=("q1", "q2"),
+            tick_seconds=np.zeros(rows - 1),
+            failure=failure,
+        )
+
+    return make
+
+
+@dataclass(frozen=True)
+class Ending:
+    """How a command line ended: exit code, and what it printed."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def folder(self) -> Path:
+        """The folder made: the last line on standard output."""
+        return Path(self.out.splitlines()[-1]).resolve()
+
+
+@pytest.fixture
+def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> Callable[..., Ending]:
+    """Run command lines within this process, in a working directory of their own."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", ["runner"])  # Hydra reads it
+
+    def call(*arguments: object) -> Ending:
+        code = dispatch([str(argument) for argument in arguments])
+        printed = capsys.readouterr()
+        return Ending(code, printed.out, printed.err)
+
+    return call

@@ -1,0 +1,240 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.optimize import brentq
+
+from runner.controllers.operational_space import OperationalSpace, OperationalSpaceConfig, build
+from runner.errors import ConfigError
+from runner.robots import RobotModel, find_urdf, read_urdf
+
+REST = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+MODELS = {name: RobotModel(read_urdf(find_urdf(f"{name}.urdf"), {}), "tip") for name in ("macro", "mini")}
+SCALE = {"macro": 1.0, "mini": 0.1}
+STRETCHED, FOLDED, ON_AXIS = [0.3, 0.4, -np.pi / 2], [0.3, 0.4, np.pi / 2], [0.3, 0.4, np.pi / 2 - 0.8]
+
+
+def law(name="macro", natural_frequency=None, damping_ratio=1.0, gravity=True, feedforward=True, damping=0.0):
+    frequency = 30.0 / SCALE[name] if natural_frequency is None else natural_frequency
+    return OperationalSpace(MODELS[name], frequency, damping_ratio, gravity, feedforward, damping)
+
+
+def ask(controller, q, dq, reference, time=0.0):
+    return controller.torque(time, np.array(q), np.array(dq), np.array(reference)).copy()
+
+
+def tip_reference(model, q, error):
+    """A desired tip at rest, off the present one by an error."""
+    return np.array([model.tip_position(np.array(q)) + error, np.zeros(3), np.zeros(3)])
+
+
+@st.composite
+def states(draw, name=None):
+    """A state away from the singular postures, and a reference, in units of the arm's own scale."""
+    name = draw(st.sampled_from(sorted(MODELS))) if name is None else name
+    number, s = st.floats(-1.0, 1.0), SCALE[name]
+    q = np.array([3.0 * draw(number), 3.0 * draw(number), draw(number)])
+    if abs(np.cos(q[1]) - np.sin(q[1] + q[2])) < 0.2:  # distance to the base axis, in links
+        q[1] += 0.8
+    if abs(np.cos(q[1]) - np.sin(q[1] + q[2])) < 0.2:
+        q[1] += 0.8
+    dq = np.array([draw(number) for _ in range(3)]) * 3.0 / s
+    reference = np.array([[draw(number) for _ in range(3)] for _ in range(3)])
+    return name, q, dq, reference * np.array([[2.0 * s], [2.0], [10.0 / s]])
+
+
+def agree(actual, expected, tolerance=1e-9):
+    np.testing.assert_allclose(actual, expected, atol=tolerance * max(np.abs(expected).max(), 1e-12), rtol=0.0)
+
+
+@given(states(), st.floats(0.2, 2.0))
+def test_the_law_in_operational_space(state, damping_ratio):
+    name, q, dq, (x_d, xd_d, xdd_d) = state
+    model, wn = MODELS[name], 25.0 / SCALE[name]
+    M, V, G, J = (
+        model.mass_matrix(q),
+        model.coriolis_torque(q, dq),
+        model.gravity_torque(q),
+        model.tip_jacobian(q)[:3],
+    )
+    J_inverse = np.linalg.inv(J)
+    Lambda = J_inverse.T @ M @ J_inverse
+    mu = J_inverse.T @ V - Lambda @ model.tip_bias_acceleration(q, dq)
+    p = J_inverse.T @ G
+    F = xdd_d - 2.0 * damping_ratio * wn * (J @ dq - xd_d) - wn**2 * (model.tip_position(q) - x_d)
+    controller = law(name, wn, damping_ratio)
+    agree(ask(controller, q, dq, [x_d, xd_d, xdd_d]), J.T @ (Lambda @ F + mu + p))
+
+
+@given(states())
+def test_without_gravity_compensation_exactly_the_gravity_term_is_missing(state):
+    name, q, dq, reference = state
+    full, bare = ask(law(name), q, dq, reference), ask(law(name, gravity=False), q, dq, reference)
+    difference = MODELS[name].gravity_torque(q)  # J^T p = J^T J^-T G
+    np.testing.assert_allclose(full - bare, difference, atol=1e-12 * max(1.0, np.abs(full).max()))
+
+
+def test_leaving_out_gravity_leaves_the_model_of_others_alone(macro):
+    before = macro.gravity_torque(np.zeros(3))
+    OperationalSpace(macro, 30.0, 1.0, False, True, 0.0)
+    np.testing.assert_array_equal(macro.gravity_torque(np.zeros(3)), before)
+    assert before[1] == pytest.approx(19.62)
+
+
+@given(states())
+def test_without_feedforward_the_desired_derivatives_are_zero(state):
+    name, q, dq, reference = state
+    goal = reference.copy()
+    goal[1:] = 0.0
+    np.testing.assert_array_equal(ask(law(name, feedforward=False), q, dq, reference), ask(law(name), q, dq, goal))
+
+
+@given(states(), st.floats(0.0, 10.0))
+def test_the_same_call_gives_the_same_torques(state, time):
+    name, q, dq, reference = state
+    controller = law(name, damping=0.3)
+    first = ask(controller, q, dq, reference)
+    ask(controller, q + 0.1, dq - 0.2, reference + 0.3)
+    np.testing.assert_array_equal(ask(controller, q, dq, reference, time), first)
+    controller.reset()
+    np.testing.assert_array_equal(ask(controller, q, dq, reference), first)
+
+
+def test_inputs_are_only_read():
+    arrays = np.array([0.1, 0.2, 0.3]), np.array([0.4, 0.5, 0.6]), np.ones((3, 3))
+    for array in arrays:
+        array.setflags(write=False)
+    law(damping=0.3).torque(0.0, *arrays)
+
+
+@given(states())
+def test_the_closed_loop_is_linear_and_decoupled(state):
+    # Eq. (3.34): the tip's acceleration under the law's torques is F* itself, whatever the posture and speed.
+    name, q, dq, (x_d, xd_d, xdd_d) = state
+    model, wn = MODELS[name], 30.0 / SCALE[name]
+    acceleration = model.forward_dynamics(q, dq, ask(law(name), q, dq, [x_d, xd_d, xdd_d]))
+    J = model.tip_jacobian(q)[:3]
+    F = xdd_d - 2.0 * wn * (J @ dq - xd_d) - wn**2 * (model.tip_position(q) - x_d)
+    agree(J @ acceleration + model.tip_bias_acceleration(q, dq), F)
+
+
+@pytest.mark.parametrize(("robot", "scale"), [("macro", 1.0), ("mini", 0.1)])
+def test_a_goal_step_follows_the_critically_damped_closed_form(simulated, robot, scale):
+    # 0.17 of the arm's link away: only at a tiny period is the sampled loop the continuous one, to first order.
+    step, wn = np.array([0.1, -0.1, -0.1]) * scale, 30.0 / scale
+    goal = (np.array([0.0, 1.0, 1.0]) * scale + step).tolist()
+
+    def deviation(period):
+        trace = simulated(
+            f"robot={robot}",
+            "plant=rk4",
+            f"controller.period={period!r}",
+            f"duration={0.3 * scale!r}",
+            f"trajectory.goal={goal}".replace(" ", ""),
+        )
+        closed_form = np.outer((1.0 + wn * trace.t) * np.exp(-wn * trace.t), step)
+        return np.abs(trace.error - closed_form).max() / scale
+
+    deviations = [deviation(scale * period) for period in (4e-4, 2e-4, 1e-4)]
+    assert deviations[2] < 1e-4  # of 0.1
+    assert np.divide(deviations[1:], deviations[:-1]) == pytest.approx([0.5, 0.5], abs=0.02)
+
+
+def test_a_singular_posture_has_no_answer_without_damping():
+    q = [0.0, 0.0, np.pi / 2]  # folded, the tip on the base axis, exactly so in floating point
+    reference = tip_reference(MODELS["macro"], q, np.array([0.1, 0.2, 0.1]))
+    with pytest.raises(np.linalg.LinAlgError, match="singular"):
+        ask(law(), q, np.zeros(3), reference)
+    assert np.isfinite(ask(law(damping=0.3), q, np.zeros(3), reference)).all()
+
+
+@pytest.mark.parametrize("name", ["macro", "mini"])
+@pytest.mark.parametrize("q", [STRETCHED, FOLDED, ON_AXIS])
+def test_torques_beside_a_singular_posture_are_bounded_by_the_damping(name, q):
+    s = SCALE[name]
+    error = 0.1 * s * np.array([1.0, -1.0, 1.0])
+    reference = tip_reference(MODELS[name], q, error)
+    for offset in (0.0, 1e-12, 1e-6, 1e-3):
+        posture = np.add(q, [0.0, 0.0, offset])
+        torque = ask(law(name, damping=0.3), posture, np.zeros(3), reference)
+        # |ddq| is at most |F*| / (2 lambda), lambda = 0.3 |e| but for the fading; |F*| = wn^2 |e|.
+        inertia = np.linalg.norm(MODELS[name].mass_matrix(posture), 2)
+        bound = inertia * 900.0 / s**2 / (2.0 * 0.3) * 1.1
+        assert np.linalg.norm(torque - MODELS[name].gravity_torque(posture)) < bound
+
+
+def test_without_damping_torques_beside_a_singular_posture_are_not_bounded():
+    reference = tip_reference(MODELS["macro"], STRETCHED, np.array([0.1, -0.1, 0.1]))
+    beside = np.add(STRETCHED, [0.0, 0.0, 1e-9])
+    assert np.linalg.norm(ask(law(), beside, np.zeros(3), reference)) > 1e9
+
+
+@given(states())
+def test_damping_has_no_influence_on_a_regular_posture(state):
+    name, q, dq, reference = state
+    model = MODELS[name]
+    smallest = np.linalg.svd(model.tip_jacobian(q)[:3], compute_uv=False)[-1]
+    # The law fades damping in by a lower bound of the smallest singular value, at a tenth of the reach.
+    q = q if smallest > 0.3 * model.reach else np.zeros(3)
+    np.testing.assert_array_equal(ask(law(name, damping=0.3), q, dq, reference), ask(law(name), q, dq, reference))
+
+
+@pytest.mark.parametrize("name", ["macro", "mini"])
+@pytest.mark.parametrize("q", [STRETCHED, ON_AXIS])
+def test_damping_has_no_influence_where_the_error_is_zero(name, q):
+    s, posture = SCALE[name], np.add(q, [0.0, 0.0, 0.02])  # well inside the zone where damping is faded in
+    dq = np.array([0.4, -0.3, 0.2]) / s
+    reference = tip_reference(MODELS[name], posture, np.zeros(3))
+    reference[1:] = [[0.1, 0.2, 0.3], np.array([1.0, 2.0, 3.0]) / s]
+    damped, printed = (ask(law(name, damping=damping), posture, dq, reference) for damping in (0.3, 0.0))
+    agree(damped, printed, 1e-8)
+    moved = reference.copy()
+    moved[0] += 0.05 * s
+    damped, printed = (ask(law(name, damping=damping), posture, dq, moved) for damping in (0.3, 0.0))
+    assert np.linalg.norm(damped - printed) > 0.5 * np.linalg.norm(printed)
+
+
+@given(states())
+def test_damping_fades_in_without_a_jump(state):
+    name, q, dq, reference = state
+    model = MODELS[name]
+
+    def margin(q3):
+        J = model.tip_jacobian(np.array([q[0], 0.2, q3]))[:3]
+        return 2.0 * abs(np.linalg.det(J)) / np.vdot(J, J) - 0.1 * model.reach
+
+    border = brentq(margin, -np.pi / 2, -1.0, xtol=1e-13)
+    outside, inside, deep = (
+        ask(law(name, damping=0.3), [q[0], 0.2, border + d], dq, reference) for d in (1e-9, -1e-9, -0.1)
+    )
+    agree(inside, outside, 1e-6)
+    assert np.abs(deep - ask(law(name), [q[0], 0.2, border - 0.1], dq, reference)).max() > 0.0  # it is inside
+
+
+def test_another_number_of_joints_is_refused():
+    links = "".join(f'<link name="l{i}">{REST}</link>' for i in range(5))
+    joints = "".join(
+        f'<joint name="j{i}" type="revolute"><parent link="l{i}"/><child link="l{i + 1}"/><origin xyz="0 0 1"/>'
+        '<axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="9" velocity="9"/></joint>'
+        for i in range(4)
+    )
+    model = RobotModel(f'<robot name="four">{links}{joints}</robot>', "l4")
+    with pytest.raises(ConfigError, match=r"3 joints; the arm has 4 \(j0, j1, j2, j3\)"):
+        OperationalSpace(model, 30.0, 1.0, True, True, 0.0)
+
+
+def test_build_passes_every_value_on():
+    config = OperationalSpaceConfig(
+        kind="operational_space",
+        natural_frequency=20.0,
+        damping_ratio=0.7,
+        period=0.01,
+        gravity_compensation=False,
+        feedforward=False,
+        singularity_damping=0.2,
+    )
+    q, dq, reference = np.array([0.1, 0.2, -1.5]), np.array([0.3, 0.2, 0.1]), np.ones((3, 3))
+    expected = law("macro", 20.0, 0.7, gravity=False, feedforward=False, damping=0.2)
+    np.testing.assert_array_equal(
+        ask(build(config, MODELS["macro"]), q, dq, reference), ask(expected, q, dq, reference)
+    )

@@ -1,0 +1,63 @@
+import numpy as np
+import pytest
+
+from runner.metrics import MetricContext
+from runner.metrics.effort import evaluate
+from runner.trajectories.goal import Goal
+
+T = np.arange(401) * 0.01
+CONTEXT = MetricContext(Goal(np.zeros(3), np.ones(3)), 0.02, 0.01)
+
+
+def rows(**cells):
+    """Rows for two joints, zero but for the cells given as t{tick}_q{joint}=value."""
+    values = np.zeros((len(T), 2))
+    for name, value in cells.items():
+        tick, joint = name.split("_")
+        values[int(tick[1:]), int(joint[1:]) - 1] = value
+    return values
+
+
+def test_constant_torque_at_constant_speed(hand_made_trace):
+    torque, speed = np.array([3.0, -2.0]), np.array([0.5, 0.25])
+    found = evaluate(hand_made_trace(T, q=np.outer(T, speed), dq=speed, tau=torque), CONTEXT)
+    assert found["energy"] == pytest.approx((3.0 * 0.5 + 2.0 * 0.25) * 4.0)  # the brake's work counts as work
+    assert found["control_effort"] == pytest.approx((9.0 + 4.0) * 4.0)
+    assert found["rms_torque"] == pytest.approx(np.sqrt(6.5))
+    assert found["rms_torque_q1"] == pytest.approx(3.0)
+    assert found["rms_torque_q2"] == pytest.approx(2.0)
+    assert (found["peak_torque"], found["peak_torque_q1"], found["peak_torque_q2"]) == (3.0, 3.0, 2.0)
+    assert (found["peak_joint_speed"], found["peak_joint_speed_q1"], found["peak_joint_speed_q2"]) == (0.5, 0.5, 0.25)
+
+
+def test_energy_does_not_cancel(hand_made_trace):
+    swing = np.column_stack([np.abs(T - 2.0), np.zeros(len(T))])  # there and back, 2 rad each way
+    assert evaluate(hand_made_trace(T, q=swing, tau=[3.0, 0.0]), CONTEXT)["energy"] == pytest.approx(12.0)
+
+
+def test_a_torque_acts_on_the_motion_that_follows_it(hand_made_trace):
+    step = np.zeros((len(T), 2))
+    step[101:, 0] = 2.0  # moved between ticks 100 and 101
+    assert evaluate(hand_made_trace(T, q=step, tau=rows(t100_q1=5.0)), CONTEXT)["energy"] == pytest.approx(10.0)
+    assert evaluate(hand_made_trace(T, q=step, tau=rows(t101_q1=5.0)), CONTEXT)["energy"] == 0.0
+
+
+def test_the_last_row_s_torque_was_never_held(hand_made_trace):
+    found = evaluate(hand_made_trace(T, tau=rows(t400_q1=99.0), limits=50.0), CONTEXT)
+    assert all(found[name] == 0.0 for name in found)
+
+
+def test_the_last_row_s_speed_was_reached(hand_made_trace):
+    assert evaluate(hand_made_trace(T, dq=rows(t400_q2=-9.0)), CONTEXT)["peak_joint_speed"] == 9.0
+
+
+def test_saturation_is_the_share_of_ticks_with_any_joint_at_its_limit(hand_made_trace):
+    tau = rows(t0_q1=50.0, t1_q1=-50.0, t1_q2=5.0, t2_q2=-5.0, t3_q1=49.9, t4_q2=4.9)
+    found = evaluate(hand_made_trace(T, tau=tau, limits=[50.0, 5.0]), CONTEXT)
+    assert found["saturation_fraction"] == pytest.approx(3 / 400)
+    assert found["saturation_fraction_q1"] == pytest.approx(2 / 400)
+    assert found["saturation_fraction_q2"] == pytest.approx(2 / 400)
+
+
+def test_no_limit_is_never_reached(hand_made_trace):
+    assert evaluate(hand_made_trace(T, tau=1e30), CONTEXT)["saturation_fraction"] == 0.0

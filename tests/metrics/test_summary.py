@@ -1,0 +1,97 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from runner.metrics import MetricContext, evaluate, summarize, units
+from runner.trace import Failure
+from runner.trajectories.goal import Goal
+from runner.trajectories.quintic import Quintic
+
+T = np.arange(401) * 0.01
+TRACKED = MetricContext(Quintic(np.zeros(3), np.ones(3), 3.0), 0.02, 0.01)
+
+
+def summary(*values, name="settling_time"):
+    return summarize([{name: value} for value in values])[name]
+
+
+@pytest.mark.parametrize(
+    ("values", "median", "least", "largest"),
+    [
+        ((1.0,), 1.0, 1.0, 1.0),
+        ((3.0, 1.0, 2.0), 2.0, 1.0, 3.0),
+        ((1.0, 2.0, 3.0, 4.0), 2.5, 1.0, 4.0),
+        ((3.0, None, 1.0), 3.0, 1.0, None),  # the missing one counts as beyond every number
+        ((1.0, 2.0, 4.0, None), 3.0, 1.0, None),
+        ((1.0, 2.0, None, None), None, 1.0, None),  # half-way between a number and a missing one
+        ((1.0, None), None, 1.0, None),
+        ((None, None, 5.0), None, 5.0, None),
+        ((None, None), None, None, None),
+    ],
+)
+def test_missing_values_count_as_beyond_every_number(values, median, least, largest):
+    found = summary(*values)
+    assert (found.median, found.min, found.max) == (median, least, largest)
+    assert tuple(found.values) == values
+
+
+@given(st.lists(st.one_of(st.none(), st.floats(0.0, 1e6)), min_size=1, max_size=12), st.randoms())
+def test_the_order_of_repetitions_does_not_matter(values, random):
+    shuffled = values.copy()
+    random.shuffle(shuffled)
+    first, second = summary(*values), summary(*shuffled)
+    assert (first.median, first.min, first.max) == (second.median, second.min, second.max)
+    if first.median is not None:
+        assert first.min <= first.median
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [
+        ("settling_time", "s"),
+        ("peak_torque", "N m"),
+        ("peak_torque_q1", "N m"),
+        ("rms_torque_shoulder_pan", "N m"),
+        ("peak_joint_speed_q3", "rad/s"),
+        ("max_tracking_error_x", "m"),
+        ("saturation_fraction_q2", "1"),
+        ("control_effort", "N^2 m^2 s"),
+    ],
+)
+def test_names_with_a_suffix_share_the_unit(name, unit):
+    assert summary(1.0, name=name).unit == unit
+
+
+def test_no_metric_is_taken_for_another_s_suffix():
+    for name, unit in units().items():
+        assert summary(1.0, name=name).unit == unit
+
+
+@pytest.mark.parametrize("context", [TRACKED, MetricContext(Goal(np.zeros(3), np.ones(3)), 0.02, 0.01)])
+def test_every_metric_of_a_run_has_a_unit(hand_made_trace, context):
+    found = summarize([evaluate(hand_made_trace(T, desired=1.0), context)])
+    assert {name.removesuffix("_q1").removesuffix("_x") for name in found} <= set(found)
+    assert all(value.unit for value in found.values())
+    assert all(type(value.values[0]) in (float, type(None)) for value in found.values())
+    assert ("max_tracking_error" in found) == (context is TRACKED)
+
+
+def test_a_failed_run_has_no_metrics(hand_made_trace):
+    failed = hand_made_trace(T, failure=Failure("diverged", 1.0, "q1"))
+    assert evaluate(failed, TRACKED) == {}
+
+
+@pytest.mark.parametrize("failed", [0, 1, 2])
+def test_a_failed_repetition_gives_nulls(hand_made_trace, failed):
+    good = evaluate(hand_made_trace(T, tip=1.0, desired=1.0), TRACKED)
+    found = summarize([{} if repetition == failed else good for repetition in range(3)])
+    assert list(found) == list(good)
+    for name, value in found.items():
+        assert [x is None for x in value.values] == [good[name] is None or r == failed for r in range(3)]
+        assert value.max is None
+    assert found["settling_time"].median == 0.0
+
+
+def test_all_repetitions_failed():
+    assert summarize([{}, {}]) == {}

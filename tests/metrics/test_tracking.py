@@ -1,0 +1,48 @@
+import numpy as np
+import pytest
+
+from runner.metrics import MetricContext
+from runner.metrics.tracking import evaluate
+from runner.trajectories.goal import Goal
+from runner.trajectories.quintic import Quintic
+
+START, END = np.zeros(3), np.array([1.0, 0.0, 0.0])
+T = np.arange(401) * 0.01
+TRACKED = MetricContext(Quintic(START, END, 3.0), 0.02, 0.01)
+
+
+def test_largest_error_over_the_motion_by_axis(hand_made_trace):
+    error = np.zeros((len(T), 3))
+    error[10] = [0.1, 0.0, -0.2]
+    error[20] = [-0.3, 0.05, 0.0]
+    found = evaluate(hand_made_trace(T, tip=-error), TRACKED)
+    expected = {"": 0.3, "_x": 0.3, "_y": 0.05, "_z": 0.2}
+    assert {key: found[f"max_tracking_error{key}"] for key in expected} == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(("tick", "counts"), [(0, True), (300, True), (301, False)])
+def test_only_the_ticks_of_0_to_t_f_count(hand_made_trace, tick, counts):
+    tip = np.zeros((len(T), 3))
+    tip[tick, 1] = 0.5
+    found = evaluate(hand_made_trace(T, tip=tip), TRACKED)
+    assert found["max_tracking_error"] == (0.5 if counts else 0.0)
+    assert found["rms_tracking_error"] == pytest.approx(0.5 / np.sqrt(301) if counts else 0.0)
+
+
+def test_root_mean_square_of_the_norm(hand_made_trace):
+    error = np.tile([0.0, 0.3, 0.4], (len(T), 1))
+    error[::2] *= -1.0
+    assert evaluate(hand_made_trace(T, tip=-error), TRACKED)["rms_tracking_error"] == pytest.approx(0.5)
+
+
+def test_cross_track_is_the_distance_to_the_path_whatever_the_time(hand_made_trace):
+    tip = np.zeros((len(T), 3))
+    tip[:, 0] = 0.5  # half-way all the time: a large error, on the path
+    tip[390] = [0.5, 0.03, 0.04]  # after t_f
+    for context in (TRACKED, MetricContext(Goal(START, END), 0.02, 0.01)):
+        assert evaluate(hand_made_trace(T, tip=tip, desired=END), context)["cross_track_error"] == pytest.approx(0.05)
+
+
+def test_a_goal_has_no_tracking_errors(hand_made_trace):
+    found = evaluate(hand_made_trace(T, desired=END), MetricContext(Goal(START, END), 0.02, 0.01))
+    assert found == {"cross_track_error": 0.0}

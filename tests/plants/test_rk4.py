@@ -1,0 +1,100 @@
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from runner.plants.plant import Arm
+from runner.plants.rk4 import Rk4, Rk4Config, build, default_step
+from runner.robots import RobotModel, find_urdf, read_urdf
+
+ARMS = [("macro", 1.0), ("mini", 0.1)]  # name, and by what all lengths, masses and times are scaled
+START = np.array([0.3, 0.5, -0.4]), np.array([1.0, 0.5, -0.5])
+TORQUES = np.array([[5.0, -3.0, 2.0], [-8.0, 10.0, -4.0], [2.0, 15.0, -9.0], [0.0, 4.0, 1.0]])
+TICK = 0.1
+
+
+def make(name, step, steps_per_tick):
+    urdf = read_urdf(find_urdf(f"{name}.urdf"), {})
+    return Rk4(Arm(urdf, RobotModel(urdf, "tip")), step, steps_per_tick)
+
+
+def final_state(name, scale, steps):
+    """State after four ticks of held torques, velocities in units of the macro's."""
+    plant = make(name, TICK * scale / steps, steps)
+    plant.reset(START[0], START[1] / scale)
+    for tau in TORQUES * scale:
+        plant.advance(tau)
+    return np.concatenate([plant.q, plant.dq * scale])
+
+
+def reference_state(name, scale):
+    model = RobotModel(read_urdf(find_urdf(f"{name}.urdf"), {}), "tip")
+    state = np.concatenate([START[0], START[1] / scale])
+    for tau in TORQUES * scale:
+
+        def slope(t, y, tau=tau):
+            return np.concatenate([y[3:], model.forward_dynamics(y[:3], y[3:], tau)])
+
+        state = solve_ivp(slope, (0.0, TICK * scale), state, "DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+    return np.concatenate([state[:3], state[3:] * scale])
+
+
+@pytest.mark.parametrize(("name", "scale"), ARMS)
+def test_fourth_order_convergence_under_held_torques(name, scale):
+    reference = reference_state(name, scale)
+    errors = [np.linalg.norm(final_state(name, scale, steps) - reference) for steps in (10, 20, 40, 80)]
+    orders = np.log2(np.divide(errors[:-1], errors[1:]))
+    assert orders == pytest.approx([4.0] * 3, abs=0.25)
+
+
+@pytest.mark.parametrize(("name", "scale"), ARMS)
+def test_agrees_with_an_adaptive_integrator(name, scale):
+    np.testing.assert_allclose(final_state(name, scale, 400), reference_state(name, scale), atol=2e-10)
+
+
+@pytest.mark.parametrize(("name", "scale"), ARMS)
+def test_a_free_swing_keeps_its_energy(name, scale):
+    plant = make(name, 1e-3 * scale, 10)
+    model = RobotModel(read_urdf(find_urdf(f"{name}.urdf"), {}), "tip")
+    plant.reset(START[0], START[1] / scale)
+    start = model.energy(plant.q, plant.dq)
+    for _ in range(200):
+        plant.advance(np.zeros(3))
+    assert model.energy(plant.q, plant.dq) == pytest.approx(start, abs=1e-8 * model.energy(np.zeros(3), np.zeros(3)))
+    assert np.abs(plant.q - START[0]).max() > 0.5
+
+
+def test_the_step_and_the_ticks_split_alike():
+    whole, single = make("macro", 1e-3, 5), make("macro", 1e-3, 1)
+    for tau in TORQUES:
+        whole.advance(tau)
+        for _ in range(5):
+            single.advance(tau)
+    np.testing.assert_array_equal(whole.q, single.q)
+    np.testing.assert_array_equal(whole.dq, single.dq)
+
+
+def test_reset_makes_a_second_run_bit_identical():
+    plant = make("macro", 1e-2, 1)
+    runs = []
+    for _ in range(2):
+        plant.reset(*START)
+        for tau in TORQUES:
+            plant.advance(tau)
+        runs.append(np.concatenate([plant.q, plant.dq]))
+    np.testing.assert_array_equal(*runs)
+
+
+def test_reset_copies_its_arguments():
+    plant = make("macro", 1e-2, 1)
+    q, dq = START[0].copy(), START[1].copy()
+    plant.reset(q, dq)
+    plant.advance(TORQUES[0])
+    np.testing.assert_array_equal(q, START[0])
+    np.testing.assert_array_equal(dq, START[1])
+
+
+def test_build_and_default_step(macro_urdf):
+    plant = build(Rk4Config(kind="rk4", step=None), Arm(macro_urdf, RobotModel(macro_urdf, "tip")), 0.01, 1)
+    assert isinstance(plant, Rk4)
+    plant.close()
+    assert default_step(0.01) == 0.01

@@ -1,0 +1,166 @@
+import math
+
+import pytest
+from pydantic import ValidationError
+
+from runner.config.options import group_options
+from runner.errors import StoreError
+from runner.metrics import units
+from runner.paths import package_dir
+from runner.references import Band, Reference, check_run, load_reference, shipped_references
+from runner.store import Run
+
+
+@pytest.fixture
+def load(tmp_path):
+    def write_and_load(text):
+        path = tmp_path / "reference.yaml"
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return load_reference(path)
+
+    return write_and_load
+
+
+def stored(tmp_path, status="ok", **medians):
+    metrics = {name: {"unit": "1", "median": median} for name, median in medians.items()}
+    return Run(tmp_path, {}, {"status": status, "metrics": metrics, "failure": None, "provenance": {}})
+
+
+def problems(load, text):
+    with pytest.raises(StoreError) as raised:
+        load(text)
+    return [line.removeprefix("  - ") for line in str(raised.value).splitlines()[1:]]
+
+
+def test_a_valid_reference_is_read(load):
+    reference = load(
+        "schema: 1\nmetrics:\n  energy: {min: 1e-3, max: 2, reason: r}\n  peak_torque_q1: {max: 5, reason: r}"
+    )
+    assert reference.bands["energy"] == Band(min=1e-3, max=2.0, reason="r")
+    assert reference.bands["peak_torque_q1"].min is None
+    assert reference.name.endswith("reference.yaml")
+
+
+@pytest.mark.parametrize(
+    ("ends", "inside", "outside"),
+    [
+        ({"min": 1.0, "max": 2.0}, [1.0, 1.5, 2.0], [math.nextafter(1.0, 0.0), math.nextafter(2.0, 3.0)]),
+        ({"min": 1.0}, [1.0, 1e300], [0.0]),
+        ({"max": 1.0}, [-1e300, 1.0], [1.1]),
+        ({"min": 0.0, "max": 0.0}, [0.0, -0.0], [1e-300]),
+    ],
+)
+def test_both_ends_belong_to_a_band(ends, inside, outside):
+    band = Band(**ends, reason="r")
+    assert all(band.holds(value) for value in inside)
+    assert not any(band.holds(value) for value in outside)
+
+
+def test_nan_lies_in_no_band():
+    assert not Band(min=0.0, reason="r").holds(math.nan)
+
+
+def test_a_band_cannot_be_changed():
+    with pytest.raises(ValidationError):
+        Band(max=1.0, reason="r").max = 2.0
+
+
+def test_all_problems_are_said_at_once(load):
+    found = problems(
+        load,
+        """\
+schema: 2
+metric: {}
+metrics:
+  setling_time: {max: 1.0, reason: r}
+  energy: {min: 2.0, max: 1.0, reason: r}
+  overshoot: {reason: r}
+  peak_torque: {max: 1.0}
+  rms_torque: {mx: 1.0, reason: ""}
+  control_effort: {max: .inf, min: much, reason: r}
+  saturation_fraction: 3
+""",
+    )
+    starts = [
+        "metric: unknown key (did you mean metrics?); keys: schema, metrics",
+        "schema: must be 1; found 2",
+        "metrics.setling_time: unknown metric (did you mean settling_time?); metrics: settling_time, ",
+        "metrics.energy: min 2 is above max 1; found ",
+        "metrics.overshoot: needs min, max or both; found ",
+        "metrics.peak_torque.reason: missing",
+        "metrics.rms_torque.reason: must not be empty; found ''",
+        "metrics.rms_torque.mx: unknown key (did you mean max?); keys: min, max, reason",
+        "metrics.control_effort.min: must be a number; found 'much'",
+        "metrics.control_effort.max: must be a finite number; found inf",
+        "metrics.saturation_fraction: must be a group of keys; found 3",
+    ]
+    assert [text[: len(start)] for text, start in zip(found, starts, strict=True)] == starts
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("schema: 1\n", "metrics: must name a band for at least one metric; found None"),
+        ("schema: 1\nmetrics: {}\n", "metrics: must name a band for at least one metric; found {}"),
+        ("- 1\n", "must hold schema and metrics"),
+    ],
+)
+def test_a_reference_needs_bands(load, text, message):
+    assert problems(load, text) == [message]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("schema: 1\nschema: 1\n", "line 2, column 1: found duplicate key schema"),
+        ("schema: [\n", "line 2, column 1: "),
+        (b"\xff\xfe\x00", "cannot read the reference file "),
+        ("3", "cannot read the reference file "),
+        ("schema: ${nope}\n", "cannot read the reference file "),
+    ],
+)
+def test_what_is_no_yaml_is_said_with_its_line(load, text, message):
+    with pytest.raises(StoreError, match=r"reference\.yaml") as raised:
+        load(text)
+    assert message in str(raised.value)
+
+
+def test_a_missing_file_is_named(tmp_path):
+    with pytest.raises(StoreError, match=r"cannot read the reference file .*gone\.yaml: .*No such file"):
+        load_reference(tmp_path / "gone.yaml")
+
+
+def test_inside_outside_null_and_absent(tmp_path):
+    band = Band(min=1.0, max=2.0, reason="r")
+    reference = Reference("mine", dict.fromkeys(("inside", "outside", "null", "absent"), band))
+    findings = check_run(stored(tmp_path, inside=1.5, outside=2.5, null=None), reference)
+    assert [(finding.value, finding.good) for finding in findings] == [
+        (1.5, True),
+        (2.5, False),
+        (None, False),
+        (None, False),
+    ]
+
+
+def test_a_failed_run_has_no_good_metric(tmp_path):
+    reference = Reference("mine", {"energy": Band(max=2.0, reason="r")})
+    assert not check_run(stored(tmp_path, status="failed", energy=1.0), reference)[0].good
+
+
+@pytest.mark.parametrize("name", shipped_references())
+def test_the_shipped_references_are_valid(name):
+    reference = load_reference(package_dir() / "references" / f"{name}.yaml", name)
+    experiment, _, preset = name.rpartition(".")
+    assert experiment in group_options("experiment")
+    assert preset in group_options("preset")
+    assert set(reference.bands) <= set(units())
+    assert all(band.min is not None and band.max is not None for band in reference.bands.values())
+
+
+def test_every_figure_that_carries_a_claim_has_a_reference():
+    from runner.claims import load_claims
+
+    experiments = {claim.experiment for claim in load_claims("thesis")}
+    assert {f"{name}.{preset}" for name in experiments for preset in ("sound", "as_reported")} <= set(
+        shipped_references()
+    )

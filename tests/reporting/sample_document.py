@@ -1,0 +1,73 @@
+"""Documents for the tests of the renderers: every block type, with one text in every field."""
+
+import numpy as np
+
+from runner.reporting.document import (
+    Body,
+    Claim,
+    Curves,
+    Document,
+    Finding,
+    Formula,
+    Notice,
+    Origin,
+    Panel,
+    Picture,
+    Playback,
+    Provenance,
+    Section,
+    Series,
+    Table,
+    Text,
+)
+
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 20" width="40" height="20"><path d="M0 0h40v20z"/></svg>'
+
+HOSTILE = (
+    "<script>alert(1)</script>",
+    '#read("/etc/passwd")',
+    '"]#',
+    "back\\slash \\\\ \\n \\u{41}",
+    "{{ 7*7 }} {% x %} << 7*7 >> <% x %>",
+    "two\nlines\r\n\tand a tab",
+    "Größe αβγ → 日本",
+    'a <b>bold</b> <a href="https://evil.example/">link</a><br>&lt;',
+    "$ lone dollar",
+    "</script><!-- --> \u2028",
+    '$#read("/etc/passwd")$ and $unknown_name$',
+    "_underscore %{x} *star* @ref <label> = head `raw`",
+    "\x00\x07\ud800",
+)
+
+
+def playback(count: int = 60, **changes: object) -> Playback:
+    times = np.linspace(0.0, 2.0, count)
+    angle = np.sin(times)
+    zero = np.zeros(count)
+    turned = np.stack([np.cos(angle / 2), zero, -np.sin(angle / 2), zero], axis=1)
+    tip = np.stack([np.cos(angle), zero, np.sin(angle)], axis=1)
+    body = Body("link", [((0, 0, 0), (1, 0, 0), 0.05)], [((1, 0, 0), 0.07)], np.zeros((count, 3)), turned)
+    return Playback(**({"caption": "It moves.", "times": times, "bodies": [body], "path": tip, "desired": tip + 0.01,
+                        "still": SVG} | changes))  # fmt: skip
+
+
+def curves(text: str = "error", **changes: object) -> Curves:
+    x = np.linspace(0.0, 1.0, 50)
+    series = [Series(text, x, x**2, low=x**2 - 0.1, high=x**2 + 0.1), Series("", x, x, "dashed"), Series(text, x, -x)]
+    return Curves(**({"caption": text, "panels": [Panel(text, text, text, series)]} | changes))
+
+
+def document(text: str = "words") -> Document:
+    origin = Origin(text, text, text)
+    blocks = [
+        Text(text),
+        Notice("warning", text, text),
+        Formula(text, text, text),
+        curves(text, origin=origin),
+        Picture(text, SVG, text, origin=origin),
+        Table(text, [text, text], [[text, text]] * 2, [1], origin),
+        Claim(text, text, text, text, [Finding(text, text, "holds"), Finding(text, text, "cannot")], text, text),
+        playback(caption=text, origin=origin),
+        Provenance([(text, text)]),
+    ]
+    return Document(text, text, text, [Section(text, blocks, [Section(text, [Text(text)])])], "2026-11-21")

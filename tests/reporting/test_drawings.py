@@ -1,0 +1,172 @@
+import itertools
+import re
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+
+from runner.controllers.graph import ControlGraph, Edge, Node
+from runner.controllers.operational_space_graph import operational_space_graph
+from runner.reporting.drawings import arm_motion, block_diagram, frame_assignment, top_view, workspace_sphere
+from runner.reporting.drawings.arm import _nearest
+from runner.reporting.drawings.block_diagram import _box, _route
+from runner.reporting.drawings.canvas import Camera, circle
+from runner.reporting.drawings.workspace import _best_samples
+from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.workspace import analyse
+
+START, GOAL = np.array([0.0, 1.0, 1.0]), np.array([0.1679, -0.7571, 0.4255])
+
+
+@pytest.fixture(scope="module")
+def macro():
+    return RobotModel(read_urdf(find_urdf("macro.urdf"), {}), "tip")
+
+
+@pytest.fixture(scope="module")
+def line():
+    return START + np.linspace(0.0, 1.0, 50)[:, None] * (GOAL - START)
+
+
+@pytest.fixture(scope="module")
+def makers(macro, line):
+    workspace = analyse(macro, 3000, np.random.default_rng(0))
+    q = np.random.default_rng(1).uniform(-1.0, 1.0, (4, 3))
+    return {
+        "frames": lambda: frame_assignment(macro),
+        "workspace": lambda: workspace_sphere(workspace),
+        "diagram": lambda: block_diagram(operational_space_graph(True, True, True, False)),
+        "arm": lambda: arm_motion(macro, q, [0, 1, 2, 3], line, line, GOAL),
+        "top": lambda: top_view(macro, line, line),
+    }
+
+
+@pytest.mark.parametrize("name", ["frames", "workspace", "diagram", "arm", "top"])
+def test_a_drawing_is_one_reproducible_svg_without_text_or_links(makers, name):
+    svg = makers[name]()
+    assert svg == makers[name]()
+    root = ET.fromstring(svg)
+    assert root.tag == "{http://www.w3.org/2000/svg}svg"
+    assert not root.findall(".//{http://www.w3.org/2000/svg}text")  # letters are paths, no font is needed
+    links = re.findall(r'href="([^"]{1,30})', svg)
+    assert all(link.startswith(("#", "data:image/png;base64")) for link in links)
+    assert "<dc:date>" not in svg
+    assert len(svg) < 500_000
+
+
+@pytest.mark.parametrize("name", ["frames", "workspace", "diagram", "arm", "top"])
+def test_a_drawing_fits_on_the_paper(makers, name):
+    width, height = (
+        float(ET.fromstring(makers[name]()).get(key).removesuffix("pt")) / 72 for key in ("width", "height")
+    )
+    assert 3.0 < width < 8.0
+    assert 1.5 < height < 6.0
+
+
+def test_a_drawing_leaves_the_style_of_others_alone(makers):
+    import matplotlib as mpl
+
+    before = dict(mpl.rcParams)
+    makers["diagram"]()
+    assert dict(mpl.rcParams) == before
+
+
+def test_camera_is_a_rotation_seen_along_its_third_axis():
+    camera = Camera(40.0, 25.0)
+    R = np.column_stack([camera.project(np.eye(3)), camera.nearness(np.eye(3))])
+    np.testing.assert_allclose(R.T @ R, np.eye(3), atol=1e-15)
+    assert np.linalg.det(R) == pytest.approx(1.0)
+    assert camera.project(np.array([0.0, 0.0, 1.0]))[0] == pytest.approx(0.0)
+
+
+def test_circle_turns_in_the_positive_sense():
+    normal = np.array([1.0, 2.0, -0.5]) / np.linalg.norm([1.0, 2.0, -0.5])
+    points = circle(np.array([1.0, 0.0, 0.0]), normal, 0.3) - [1.0, 0.0, 0.0]
+    np.testing.assert_allclose(np.linalg.norm(points, axis=1), 0.3)
+    np.testing.assert_allclose(points @ normal, 0.0, atol=1e-15)
+    assert np.all(np.cross(points[:-1], points[1:]) @ normal > 0.0)
+
+
+def test_the_thesis_path_passes_the_base_axis_at_0_0951_m(line):
+    foot, distance = _nearest(line[:, :2], np.zeros(2))
+    assert distance == pytest.approx(0.0951, abs=5e-5)
+    assert foot @ (GOAL - START)[:2] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_path_that_rests_has_a_nearest_point():
+    foot, distance = _nearest(np.ones((3, 2)), np.zeros(2))
+    np.testing.assert_array_equal(foot, [1.0, 1.0])
+    assert distance == pytest.approx(np.sqrt(2.0))
+
+
+def test_best_samples_are_the_best_of_their_cells(macro):
+    workspace = analyse(macro, 2000, np.random.default_rng(2))
+    r, z, w = _best_samples(workspace)
+    assert w.max() == workspace.manipulability.max()
+    assert len(np.unique(np.column_stack([r, z]), axis=0)) == len(r) < 2000
+
+
+@pytest.mark.parametrize("flags", list(itertools.product([False, True], repeat=4)))
+def test_signals_run_along_rows_and_columns_and_pass_no_foreign_block(flags):
+    graph = operational_space_graph(*flags)
+    boxes = {node.name: _box(node) for node in graph.nodes}
+    for edge in graph.edges:
+        route = _route(edge, boxes)
+        steps = np.diff(route, axis=0)
+        assert np.all(np.abs(steps).min(axis=1) < 1e-9)
+        assert np.all(np.abs(steps).max(axis=1) > 0.05)
+        dense = np.concatenate([np.linspace(a, b, 50) for a, b in itertools.pairwise(route)])
+        for name, box in boxes.items():
+            inside = np.all(np.abs(dense - box.centre) < box.half - 1e-9, axis=1)
+            assert not inside.any(), f"{edge.source} to {edge.target} runs through {name}"
+
+
+@pytest.mark.parametrize("flags", list(itertools.product([False, True], repeat=4)))
+def test_signals_of_different_sources_never_cross(flags):
+    graph = operational_space_graph(*flags)
+    boxes = {node.name: _box(node) for node in graph.nodes}
+    for one, other in itertools.combinations(graph.edges, 2):
+        if one.source != other.source and one.target != other.target:
+            assert not _meet(_route(one, boxes), _route(other, boxes)), f"{one} meets {other}"
+
+
+def _meet(one, other):
+    def boxes(route):
+        return [(np.minimum(a, b), np.maximum(a, b)) for a, b in itertools.pairwise(route)]
+
+    return any(
+        np.all(low <= other_high + 1e-9) and np.all(other_low <= high + 1e-9)
+        for (low, high), (other_low, other_high) in itertools.product(boxes(one), boxes(other))
+    )
+
+
+def test_blocks_never_overlap():
+    for flags in itertools.product([False, True], repeat=4):
+        boxes = [_box(node) for node in operational_space_graph(*flags).nodes]
+        for one, other in itertools.combinations(boxes, 2):
+            assert np.any(np.abs(one.centre - other.centre) > one.half + other.half + 0.02)
+
+
+def test_any_graph_can_be_drawn():
+    nodes = (Node("a", "source", "$r$", 0, 0), Node("s", "sum", "", 1, 0), Node("b", "block", "Plant\nwith name", 3, 1))
+    edges = (
+        Edge("a", "s", "$r$", "+"),
+        Edge("s", "b", "$e$"),
+        Edge("b", "s", "$y$", "-", leave="bottom", enter="bottom", lane=2.5),
+    )
+    assert "<svg" in block_diagram(ControlGraph(nodes, edges))
+
+
+def test_an_arm_can_be_drawn_without_paths(macro):
+    assert "<svg" in arm_motion(macro, np.zeros((1, 3)), [0.0])
+
+
+def test_frames_of_the_mini_count_from_three():
+    mini = RobotModel(read_urdf(find_urdf("mini.urdf"), {}), "tip")
+    assert frame_assignment(mini, first=3, last="6") != frame_assignment(mini)
+
+
+def test_a_limited_workspace_shows_its_inner_radius(macro):
+    text = read_urdf(find_urdf("macro.urdf"), {}).replace('lower="-1000" upper="1000"', 'lower="-1" upper="1"')
+    workspace = analyse(RobotModel(text, "tip"), 2000, np.random.default_rng(3))
+    assert "<svg" in workspace_sphere(workspace)

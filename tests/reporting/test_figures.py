@@ -1,0 +1,82 @@
+import numpy as np
+import pytest
+
+from runner import run
+from runner.reporting.figures import (
+    columns,
+    desired_motion,
+    joint_columns,
+    model_of,
+    origin,
+    playback,
+    torque_and_error,
+)
+
+OVERRIDES = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "noise=thesis")
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory):
+    return run(*OVERRIDES, f"outputs={tmp_path_factory.mktemp('outputs')}")
+
+
+def test_an_origin_names_the_command_that_makes_the_run(stored):
+    source = origin(stored, "figure 3.5")
+    assert source.number == "figure 3.5"
+    assert source.command == "runner robot=macro trajectory=quintic trajectory.duration=1 noise=thesis"
+    assert source.commit == "" or len(source.commit.removesuffix("+changes")) == 12
+
+
+def test_the_model_is_that_of_the_stored_urdf(stored):
+    q = joint_columns(stored.trace, "q")
+    assert np.allclose(model_of(stored).tip_positions(q), columns(stored.trace, "tip"), atol=1e-12)
+
+
+def test_joint_columns_leave_out_signals_with_the_same_beginning(stored):
+    assert joint_columns(stored.trace, "q").shape == (201, 3)
+    assert np.array_equal(joint_columns(stored.trace, "dq")[:, 2], stored.trace["dq3"])
+
+
+def test_torque_and_error_are_the_trace(stored):
+    figure = torque_and_error(stored, "caption", "figure 3.9")
+    torque, error = figure.panels
+    assert [series.name for series in torque.series] == ["1", "2", "3"]
+    assert [series.name for series in error.series] == ["x", "y", "z"]
+    assert (torque.y_label, error.y_label) == ("torque (N m)", "error (m)")
+    assert np.array_equal(torque.series[1].y, stored.trace["tau2"])
+    assert np.array_equal(error.series[2].y, stored.trace["desired_z"] - stored.trace["tip_z"])
+
+
+def test_a_figure_ends_where_it_is_told_to(stored):
+    figure = torque_and_error(stored, "caption", until=0.5)
+    assert figure.panels[0].series[0].x[-1] == pytest.approx(0.5)
+
+
+def test_desired_motion_ends_with_the_motion_and_keeps_the_colour_of_its_axis(stored):
+    figure = desired_motion(stored, "caption", "figure 3.6", ("y",))
+    assert [panel.y_label for panel in figure.panels] == ["position (m)", "velocity (m/s)", "acceleration (m/s²)"]
+    for panel in figure.panels:
+        (series,) = panel.series
+        assert series.x[-1] == pytest.approx(1.0)
+        assert (series.name, series.color) == ("y", 1)
+    speed = np.abs(figure.panels[1].series[0].y).max()
+    assert speed == pytest.approx(1.875 * 1.7571, rel=1e-4)
+
+
+def test_a_playback_thins_the_frames_but_not_the_path(stored):
+    shown = playback(stored, "caption", frames=30)
+    assert len(shown.times) == 30
+    assert shown.times[[0, -1]].tolist() == [0.0, 2.0]
+    assert len(shown.path) == 201
+    assert [body.positions.shape for body in shown.bodies] == [(30, 3)] * len(shown.bodies)
+    tip = next(body for body in shown.bodies if body.name == "tip")
+    assert np.allclose(tip.positions[-1], shown.path[-1], atol=1e-9)
+
+
+def test_a_playback_of_a_diverged_run_leaves_out_what_is_no_number(tmp_path):
+    failed = run("robot=macro", "controller.period=0.1", "trajectory.goal=[0,0.9,1]", f"outputs={tmp_path}")
+    assert failed.status == "failed"
+    failed.trace.loc[len(failed.trace) - 1, "q1"] = np.nan
+    shown = playback(failed, "caption")
+    assert np.isfinite(shown.path).all()
+    assert np.isfinite([body.positions for body in shown.bodies]).all()

@@ -1,0 +1,25 @@
+import pytest
+
+from runner.reporting.markup import Literal, Math, plain, spans
+
+
+def test_dollars_enclose_mathematics():
+    assert spans("sag $g / omega_n^2$ here") == [Literal("sag "), Math("g / omega_n^2"), Literal(" here")]
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [("$$5 and $$6", "$5 and $6"), ("lone $ sign", "lone $ sign"), ("", "")],
+)
+def test_other_dollars_are_literal(text, shown):
+    assert "".join(span.text for span in spans(text)) == shown
+    assert not any(isinstance(span, Math) for span in spans(text))
+
+
+def test_plain_is_one_line():
+    assert plain("a\r\n\tb   c\u2028d") == "a b c d"
+
+
+@pytest.mark.parametrize("character", ["\x00", "\x1b", "\ud800", "\u202e", "\ufffe"])
+def test_plain_replaces_what_no_file_can_hold(character):
+    assert plain(f"a{character}b") == "a\ufffdb"

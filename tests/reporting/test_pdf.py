@@ -1,0 +1,53 @@
+from dataclasses import replace
+from typing import get_args
+
+import pytest
+from sample_document import HOSTILE, document
+
+from runner.reporting import pdf
+from runner.reporting.document import Block, Document, Section, Table
+from runner.reporting.templating import quoted, typst_environment, typst_value
+
+
+@pytest.mark.parametrize("kind", get_args(Block), ids=lambda kind: kind.block)
+def test_every_block_type_has_a_macro(kind):
+    blocks = typst_environment().get_template("blocks.typ.j2").make_module({})
+    assert callable(getattr(blocks, kind.block))
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_any_text_in_any_field_gives_a_document(text):
+    assert pdf.render(document(text)).startswith(b"%PDF")
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_a_template_inserts_texts_as_strings_only(text):
+    inserted = typst_environment().from_string("#f(<< text >>)").render(text=text)
+    assert inserted == f"#f({quoted(text)})"
+    body = inserted[len('#f("') : -len('")')]
+    assert '"' not in body.replace("\\\\", "").replace('\\"', "")
+    assert "\n" not in body
+
+
+def test_a_template_refuses_what_is_neither_text_nor_number():
+    with pytest.raises(TypeError, match="not list"):
+        typst_value([1])
+
+
+def test_the_same_document_gives_the_same_bytes():
+    assert pdf.render(document()) == pdf.render(document())
+
+
+def test_the_date_is_that_of_the_document():
+    assert b"20261121" in pdf.render(document())
+    assert pdf.render(replace(document(), date="no date")).startswith(b"%PDF")
+
+
+def test_long_tables_break_over_pages(monkeypatch):
+    rows = [[f"{number}", "x" * 300] for number in range(120)]
+    made = Document("T", "", "", [Section("S", [Table("Long.", ["n", "word"], rows, [0])])], "2026-11-21")
+    compile_typst = pdf.typst.compile
+    monkeypatch.setattr(
+        pdf.typst, "compile", lambda *given, **named: compile_typst(*given, **named | {"format": "svg"})
+    )
+    assert len(pdf.render(made)) > 4

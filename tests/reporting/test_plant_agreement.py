@@ -1,0 +1,56 @@
+import numpy as np
+import pytest
+
+from runner import run
+from runner.reporting.figures import columns
+from runner.reporting.plant_agreement import describe_agreement, disagreement, find_twin
+
+CASE = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "duration=0.5", "noise=thesis")
+
+
+@pytest.fixture(scope="module")
+def outputs(tmp_path_factory):
+    return f"outputs={tmp_path_factory.mktemp('outputs')}"
+
+
+@pytest.fixture(scope="module")
+def pair(outputs):
+    return run(*CASE, "repetitions=3", outputs), run(*CASE, "plant=rk4", outputs)
+
+
+def test_disagreement_is_the_distance_of_the_tips(pair):
+    distance = np.linalg.norm(columns(pair[0].trace, "tip") - columns(pair[1].trace, "tip"), axis=1)
+    apart = disagreement(*pair)
+    assert apart.tip == distance.max()
+    assert apart.final == distance[-1]
+    assert 0.0 < apart.tip < 0.01
+
+
+def test_disagreement_is_symmetric_and_zero_with_itself(pair):
+    assert disagreement(*pair) == disagreement(*reversed(pair))
+    assert disagreement(pair[0], pair[0]).tip == 0.0
+
+
+def test_disagreement_ends_with_the_shorter_run(pair, outputs):
+    short = run(*CASE[:3], "duration=0.2", "noise=thesis", "plant=rk4", outputs)
+    assert len(short.trace) < len(pair[0].trace)
+    assert disagreement(pair[0], short).tip <= disagreement(*pair).tip
+
+
+def test_the_twin_is_found_by_its_content_with_one_repetition(pair):
+    bullet, rk4 = pair
+    assert find_twin(bullet).hash == rk4.hash
+    assert find_twin(rk4) is None  # its bullet twin has three repetitions, not one
+
+
+def test_the_agreement_is_told_with_plant_and_step(pair):
+    text = describe_agreement(pair[0])
+    assert text.startswith("Plant bullet, step 0.001 s. On this case, with the same noise")
+    assert f"{disagreement(*pair).tip:.2g} m" in text
+
+
+def test_a_missing_twin_is_told_with_the_way_to_it(outputs):
+    alone = run("robot=mini", "duration=0.01", "plant=rk4", outputs)
+    text = describe_agreement(alone)
+    assert text.startswith("Plant rk4, step 0.001 s. The disagreement between the plants has not been measured")
+    assert "plant=bullet and repetitions=1" in text

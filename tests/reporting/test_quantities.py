@@ -1,0 +1,59 @@
+import pytest
+
+from runner.reporting.quantities import number, quantity, spread
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (None, "–"),
+        (0.0, "0"),
+        (1.0, "1"),
+        (1.234567, "1.23"),
+        (-0.0734567, "-0.0735"),
+        (0.01, "0.01"),
+        (0.00999, "9.99·10⁻³"),
+        (9e-3, "9·10⁻³"),
+        (6e-5, "6·10⁻⁵"),
+        (8.734e-3, "8.73·10⁻³"),
+        (-8.734e-3, "-8.73·10⁻³"),
+        (999.6, "1000"),
+        (3875.47, "3875"),
+        (9999.0, "9999"),
+        (1e4, "1·10⁴"),
+        (417703.3, "4.18·10⁵"),
+        (2.66e-15, "2.66·10⁻¹⁵"),
+    ],
+)
+def test_numbers_have_three_digits_and_a_power_of_ten_where_it_helps(value, text):
+    assert number(value) == text
+
+
+def test_digits_can_be_asked_for():
+    assert number(1.99999, 4) == "2"
+    assert number(0.095123, 4) == "0.09512"
+
+
+@pytest.mark.parametrize(
+    ("unit", "text"), [("m", "2 m"), ("1", "2"), ("N^2 m^2 s", "2 N² m² s"), ("m/s^2", "2 m/s²"), ("N m", "2 N m")]
+)
+def test_units_are_set_with_their_powers(unit, text):
+    assert quantity(2.0, unit) == text
+
+
+def test_a_missing_value_keeps_its_unit():
+    assert quantity(None, "s") == "– s"
+
+
+@pytest.mark.parametrize(
+    ("values", "median", "low", "high", "text"),
+    [
+        ([1.5], 1.5, 1.5, 1.5, "1.5 s"),
+        ([1.5, 1.5], 1.5, 1.5, 1.5, "1.5 s"),
+        ([1.5, 1.6, 2.8], 1.6, 1.5, 2.8, "1.6 s (1.5 to 2.8)"),
+        ([1.5, 1.6, None], 1.6, 1.5, None, "1.6 s (1.5 to never)"),
+        ([1.5, None, None], None, 1.5, None, "– s (1.5 to never)"),
+    ],
+)
+def test_spread_tells_the_range_over_the_repetitions(values, median, low, high, text):
+    assert spread({"unit": "s", "values": values, "median": median, "min": low, "max": high}) == text

@@ -1,0 +1,35 @@
+import pytest
+from sample_document import document
+
+from runner.errors import RunnerError
+from runner.reporting import render
+from runner.reporting.render import write_report
+
+
+def test_both_files_are_written_into_a_new_folder(tmp_path):
+    written = write_report(document(), tmp_path / "a" / "b")
+    assert [path.name for path in written] == ["report.html", "report.pdf"]
+    assert sorted(path.name for path in (tmp_path / "a" / "b").iterdir()) == ["report.html", "report.pdf"]
+
+
+def test_only_what_is_asked_for_is_written(tmp_path):
+    assert write_report(document(), tmp_path, ["pdf"]) == [tmp_path / "report.pdf"]
+    assert [path.name for path in tmp_path.iterdir()] == ["report.pdf"]
+
+
+def test_an_unknown_format_is_named(tmp_path):
+    with pytest.raises(RunnerError, match="docx; allowed: html, pdf"):
+        write_report(document(), tmp_path / "new", ["docx"])
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_failed_write_leaves_the_old_report(tmp_path, monkeypatch):
+    (tmp_path / "report.pdf").write_bytes(b"old")
+
+    def fail(_):
+        raise OSError("disk full")
+
+    monkeypatch.setattr(render.os, "fsync", fail)
+    with pytest.raises(OSError, match="disk full"):
+        write_report(document(), tmp_path, ["pdf"])
+    assert [(path.name, path.read_bytes()) for path in tmp_path.iterdir()] == [("report.pdf", b"old")]

@@ -1,0 +1,84 @@
+import pytest
+
+from runner import run
+from runner.reporting import outline
+from runner.reporting.document import Curves, Notice, Playback, Provenance, Table, Text
+from runner.reporting.formulas import faulty
+from runner.reporting.render import write_report
+from runner.reporting.run_report import run_document
+
+
+@pytest.fixture(scope="module")
+def outputs(tmp_path_factory):
+    return f"outputs={tmp_path_factory.mktemp('outputs')}"
+
+
+@pytest.fixture(scope="module")
+def finished(outputs):
+    return run("robot=macro", "trajectory=quintic", "duration=0.5", "repetitions=2", "noise=thesis", outputs)
+
+
+@pytest.fixture(scope="module")
+def diverged(outputs):
+    return run("experiment=thesis/singular", outputs)
+
+
+def blocks_of(document, kind):
+    return [block for block in outline.blocks(document) if isinstance(block, kind)]
+
+
+def test_a_finished_run_is_told_whole(finished):
+    document = run_document([finished])
+    assert document.abstract == "1 run, all of them finished."
+    assert [type(block) for block in outline.blocks(document)] == [
+        Curves,
+        Curves,
+        Playback,
+        Table,
+        Text,
+        Table,
+        Provenance,
+    ]
+    metrics, config = blocks_of(document, Table)
+    assert [row[0] for row in metrics.rows] == list(finished.metrics)
+    assert metrics.caption == "Metrics over 2 repetitions."
+    assert ["controller.natural_frequency", "30.0"] in [list(row) for row in config.rows]
+    assert "outputs" not in [row[0] for row in config.rows]
+    (provenance,) = blocks_of(document, Provenance)
+    rows = dict(provenance.rows)
+    assert rows["plant"] == "bullet, step 0.001 s"
+    assert rows["command"].startswith("runner robot=macro trajectory=quintic")
+    assert rows["run"] == finished.hash
+
+
+def test_a_failed_run_says_when_and_where(diverged):
+    document = run_document([diverged])
+    assert document.abstract == "1 run, 1 of them failed."
+    (notice,) = blocks_of(document, Notice)
+    assert notice.kind == "failure"
+    time, joint = diverged.failure["time"], diverged.failure["joint"]
+    assert 0.0 < time < 4.0
+    assert joint in ("q1", "q2", "q3")
+    assert f"In repetition 0 at t = {time:.3g} s, joint {joint}: diverged" in notice.text
+
+
+def test_a_sweep_is_led_by_what_distinguishes_its_runs(finished, diverged, outputs):
+    other = run("robot=macro", "trajectory=quintic", "duration=0.5", "repetitions=2", "noise=thesis", "seed=1", outputs)
+    document = run_document([finished, other, diverged])
+    assert document.abstract == "3 runs, 1 of them failed."
+    overview = blocks_of(document, Table)[0]
+    assert [row[0] for row in overview.rows] == ["1", "2", "3"]
+    column = {name: index for index, name in enumerate(overview.header)}
+    assert [row[column["seed"]] for row in overview.rows] == ["0", "1", "0"]
+    assert [row[column["status"]] for row in overview.rows] == ["ok", "ok", "failed"]
+    assert overview.rows[2][column["peak_torque"]] == "–"
+    assert "gravity" not in column  # the same in all of them
+    assert all(len(row) == len(overview.header) for row in overview.rows)
+
+
+def test_every_kind_of_report_is_written_as_html_and_pdf(finished, diverged, tmp_path):
+    document = run_document([finished, diverged])
+    assert faulty(document) == []
+    html, pdf = write_report(document, tmp_path)
+    assert "This run failed" in html.read_text()
+    assert pdf.read_bytes().startswith(b"%PDF")

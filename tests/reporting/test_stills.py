@@ -1,0 +1,55 @@
+import json
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from sample_document import HOSTILE, curves
+
+from runner.reporting import stills
+from runner.reporting.curves import plotly_spec
+from runner.reporting.document import Curves, Panel, Series
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_any_text_gives_a_valid_drawing(text):
+    ElementTree.fromstring(stills.draw(curves(text)))
+
+
+def test_the_same_figure_gives_the_same_text():
+    assert stills.draw(curves()) == stills.draw(curves())
+
+
+def test_text_is_drawn_and_no_date_is_written():
+    drawing = stills.draw(curves())
+    assert "<text" not in drawing
+    assert "dc:date" not in drawing
+
+
+def test_logarithmic_axes_take_values_that_have_no_logarithm():
+    x = np.array([0.0, 1.0, 10.0])
+    panel = Panel("", "x", "y", [Series("a", x, -x)], x_log=True, y_log=True, y_range=(-1.0, 1.0))
+    ElementTree.fromstring(stills.draw(Curves("", [panel])))
+
+
+def test_legend_entries_read_along_the_rows():
+    x = np.arange(3.0)
+    names = ["one", "two", "three", "four", "five"]
+    drawing = stills.draw(Curves("", [Panel("", "", "", [Series(name, x, x) for name in names])] * 3, columns=3))
+    # matplotlib fills columns, and names every drawn text in a comment.
+    assert drawing.index("<!-- one -->") < drawing.index("<!-- three -->") < drawing.index("<!-- two -->")
+
+
+@pytest.mark.parametrize("values", [np.zeros(0), np.full(3, np.nan), np.array([np.inf, 1.0, -np.inf]), np.ones(1)])
+@pytest.mark.parametrize("log", [False, True])
+def test_odd_values_are_no_error(values, log):
+    x = np.arange(float(values.size))
+    series = Series("a", x, values, low=values - 1, high=values + 1)
+    odd = Curves("", [Panel("", "", "", [series], x_log=log, y_log=log, x_range=(1.0, 1.0))])
+    ElementTree.fromstring(stills.draw(odd))
+    json.dumps(plotly_spec(odd), allow_nan=False)
+
+
+def test_figures_without_panels_or_curves_are_no_error():
+    for empty in (Curves("", []), Curves("", [Panel("t", "x", "y", [])])):
+        ElementTree.fromstring(stills.draw(empty))
+        plotly_spec(empty)

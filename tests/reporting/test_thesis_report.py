@@ -1,0 +1,94 @@
+"""The whole thesis report, from its real plan with two repetitions in place of forty."""
+
+import re
+from collections import Counter
+
+import pytest
+
+from runner import run
+from runner.reporting import outline
+from runner.reporting.document import Claim, Curves, Picture, Table, Text
+from runner.reporting.formulas import faulty
+from runner.reporting.render import write_report
+from runner.reporting.thesis.plan import PRESETS, plan
+from runner.reporting.thesis.report import thesis_document
+
+ONCE = ("2.3", "2.4", "3.1", "3.4", "3.6", "3.7", "3.8", "4.1", "4.3")
+FOR_EACH_PRESET = ("3.5", "3.9", "3.10", "4.2", "4.4")
+TABLES = ("2.1", "3.1", "4.1")
+
+
+def reduced(overrides):
+    kept = [override for override in overrides if not override.startswith("repetitions=")]
+    return (*kept, f"repetitions={1 if 'plant=rk4' in overrides else 2}")
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    outputs = tmp_path_factory.mktemp("outputs")
+    return {name: run(*reduced(job.overrides), f"outputs={outputs}") for name, job in plan().items()}
+
+
+@pytest.fixture(scope="module")
+def document(runs):
+    return thesis_document(runs)
+
+
+def blocks_of(document, *kinds):
+    return [block for block in outline.blocks(document) if isinstance(block, kinds)]
+
+
+def test_every_figure_and_table_of_chapters_2_to_4_is_there(document):
+    numbers = Counter(block.origin.number for block in blocks_of(document, Curves, Picture, Table))
+    del numbers[""]  # our own
+    expected = {f"figure {number}": 1 for number in ONCE}
+    expected |= {f"figure {number}": len(PRESETS) for number in FOR_EACH_PRESET}
+    expected |= {f"table {number}": 1 for number in TABLES}
+    assert numbers == expected
+
+
+def test_every_published_figure_carries_its_command(document):
+    for block in blocks_of(document, Curves, Picture, Table):
+        if block.origin.number:
+            assert block.origin.command.startswith("runner experiment=thesis/")
+
+
+def test_every_number_has_a_finding_for_each_preset(document):
+    claims = blocks_of(document, Claim)
+    assert [claim.number for claim in claims] == list("1234567")
+    for claim in claims:
+        assert tuple(finding.preset for finding in claim.findings) == PRESETS
+        assert claim.reason
+
+
+def test_the_minis_settling_time_cannot_be_reached(document):
+    claim = next(claim for claim in blocks_of(document, Claim) if claim.number == "5")
+    assert [finding.verdict for finding in claim.findings] == ["cannot", "cannot"]
+
+
+def test_the_table_of_verdicts_says_what_the_claims_say(document):
+    table = next(block for block in blocks_of(document, Table) if block.caption.startswith("Verdicts"))
+    claims = blocks_of(document, Claim)
+    assert [list(row) for row in table.rows] == [
+        [c.number, c.statement, c.printed, *(f"{f.measured}: {f.verdict}" for f in c.findings)] for c in claims
+    ]
+
+
+def test_the_plants_disagreement_is_measured_on_every_compared_figure(document):
+    sentences = [block.text for block in blocks_of(document, Text) if "Plant bullet, step" in block.text]
+    assert len(sentences) == len(FOR_EACH_PRESET)
+    for text in sentences:
+        assert text.count("the tips of bullet and rk4 are at most") == len(PRESETS)
+
+
+def test_every_formula_can_be_set(document):
+    assert faulty(document) == []
+
+
+def test_html_and_pdf_are_written(document, tmp_path):
+    html, pdf = write_report(document, tmp_path)
+    page = html.read_text()
+    for number in (*ONCE, *FOR_EACH_PRESET):
+        assert f"figure {number}" in page.lower()
+    assert not re.findall(r"(?:src|href)=[\"']?(?:https?:)?//", page)
+    assert pdf.read_bytes().startswith(b"%PDF")

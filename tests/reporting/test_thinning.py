@@ -1,0 +1,49 @@
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from runner.reporting.document import Series
+from runner.reporting.thinning import band, runs, thin
+
+
+@given(st.integers(2001, 9000), st.data())
+def test_every_peak_survives(length, data):
+    peak, trough = (data.draw(st.integers(0, length - 1)) for _ in range(2))
+    y = np.zeros(length)
+    y[peak], y[trough] = 5.0, -7.0
+    thinned = thin(Series("", np.arange(length, dtype=float), y))
+    assert thinned.y.max() == y.max()
+    assert thinned.y.min() == y.min()
+    assert thinned.x.size <= 2002
+    assert np.all(np.diff(thinned.x) > 0)
+
+
+def test_short_curves_stay_as_they_are():
+    series = Series("", np.arange(10.0), np.arange(10.0))
+    assert thin(series) is series
+
+
+def test_gaps_and_edges_of_a_band_survive():
+    y = np.zeros(5000)
+    y[2000] = np.nan
+    low, high = y - 1, y + 1
+    low[1234], high[4321] = -9, 9
+    thinned = thin(Series("", np.arange(5000.0), y, low=low, high=high))
+    assert np.isnan(thinned.y).any()
+    assert np.nanmin(thinned.low) == -9
+    assert np.nanmax(thinned.high) == 9
+
+
+def test_a_curve_of_nothing_but_gaps_is_no_error():
+    assert np.isnan(thin(Series("", np.arange(3000.0), np.full(3000, np.nan))).y).all()
+
+
+def test_runs_are_the_unbroken_stretches():
+    assert runs(np.array([True, True, False, True])) == [slice(0, 2), slice(3, 4)]
+
+
+def test_a_band_is_one_polygon_for_each_unbroken_stretch():
+    low = np.array([0.0, 0.0, np.nan, 0.0, 0.0])
+    x, y = band(Series("", np.arange(5.0), low, low=low, high=low + 1))
+    assert np.isnan(x).sum() == 1
+    assert y[:4].tolist() == [1, 1, 0, 0]

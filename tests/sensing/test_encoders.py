@@ -1,0 +1,104 @@
+import numpy as np
+import pytest
+
+from runner.sensing import JointEncoders
+
+PERIOD = 0.01
+
+
+def encoders(ticks=20_000, joints=3, amplitude=1e-3, distribution="uniform", velocity="exact", seed=0):
+    generator = np.random.default_rng(seed)
+    return JointEncoders(ticks, joints, PERIOD, amplitude, distribution, velocity, generator)
+
+
+def read(sensor, q, dq=None):
+    """Measure rows of true positions, and the true velocities 1, 2, 3 unless others are given."""
+    dq = np.tile([1.0, 2.0, 3.0], (len(q), 1)) if dq is None else dq
+    rows = [sensor.measure(tick, *state) for tick, state in enumerate(zip(q, dq, strict=True))]
+    return np.array([q for q, _ in rows]), np.array([dq for _, dq in rows])
+
+
+def noise(ticks=20_000, **config):
+    return read(encoders(ticks, **config), np.zeros((ticks, 3)))[0]
+
+
+def test_uniform_noise_keeps_its_half_width_and_variance():
+    found = noise(amplitude=2e-3)
+    assert np.abs(found).max() <= 2e-3
+    assert np.abs(found).max() > 0.999 * 2e-3
+    assert abs(found.mean()) < 4.0 * 2e-3 / np.sqrt(3.0 * found.size)  # four standard deviations of the mean
+    assert found.std() == pytest.approx(2e-3 / np.sqrt(3.0), rel=0.01)
+
+
+def test_gaussian_noise_has_the_amplitude_as_its_standard_deviation():
+    found = noise(amplitude=2e-3, distribution="gaussian")
+    assert found.std() == pytest.approx(2e-3, rel=0.02)
+    assert abs(found.mean()) < 4.0 * 2e-3 / np.sqrt(found.size)
+    assert np.mean(np.abs(found) > 2.0 * 2e-3) == pytest.approx(0.0455, abs=0.005)
+
+
+@pytest.mark.parametrize("config", [{"distribution": "none"}, {"amplitude": 0.0}])
+def test_without_noise_the_measurement_is_the_truth(config):
+    q = np.random.default_rng(3).uniform(-2.0, 2.0, (10, 3))
+    np.testing.assert_array_equal(read(encoders(**config), q)[0], q)
+
+
+def test_noise_is_added_to_the_true_position():
+    q = np.random.default_rng(3).uniform(-2.0, 2.0, (10, 3))
+    np.testing.assert_allclose(read(encoders(), q)[0] - q, noise()[:10], atol=1e-15)
+
+
+@pytest.mark.parametrize("distribution", ["uniform", "gaussian"])
+def test_each_joint_and_tick_has_a_draw_of_its_own(distribution):
+    found = noise(distribution=distribution)
+    assert len(np.unique(found)) == found.size
+    correlation = np.corrcoef(np.hstack([found[:-1], found[1:]]).T)  # joint to joint, and tick to tick
+    assert np.abs(correlation - np.eye(6)).max() < 4.0 / np.sqrt(len(found))
+
+
+@pytest.mark.parametrize("distribution", ["uniform", "gaussian"])
+def test_the_generator_alone_decides_the_noise(distribution):
+    first = noise(distribution=distribution)
+    np.testing.assert_array_equal(noise(distribution=distribution), first)
+    assert not np.array_equal(noise(distribution=distribution, seed=1), first)
+
+
+@pytest.mark.parametrize("distribution", ["uniform", "gaussian"])
+def test_the_amplitude_scales_the_same_draws(distribution):
+    small, large = (noise(amplitude=amplitude, distribution=distribution) for amplitude in (1e-5, 1e-3))
+    np.testing.assert_allclose(100.0 * small, large, rtol=1e-12)
+
+
+@pytest.mark.parametrize("distribution", ["uniform", "gaussian"])
+def test_a_longer_run_starts_with_the_noise_of_a_shorter_one(distribution):
+    short, long = (noise(ticks, distribution=distribution) for ticks in (10, 500))
+    np.testing.assert_array_equal(long[:10], short)
+
+
+def test_exact_velocities_carry_no_noise():
+    np.testing.assert_array_equal(read(encoders(), np.zeros((5, 3)))[1], np.tile([1.0, 2.0, 3.0], (5, 1)))
+
+
+def test_differenced_velocities_start_from_the_first_measurement_and_use_the_period():
+    q = np.random.default_rng(3).uniform(-2.0, 2.0, (10, 3))
+    measured, velocity = read(encoders(velocity="finite_difference"), q)
+    np.testing.assert_array_equal(velocity[0], np.zeros(3))
+    np.testing.assert_allclose(velocity[1:], np.diff(measured, axis=0) / PERIOD, rtol=1e-12)
+    assert np.abs(measured - q).max() > 1e-4  # noise included
+
+
+def test_differenced_velocities_do_not_see_a_state_that_is_renewed_in_place():
+    # Plants renew q in place; a sensor that kept it would find no difference.
+    sensor, q = encoders(distribution="none", velocity="finite_difference"), np.zeros(3)
+    sensor.measure(0, q, q)
+    q += 0.5
+    np.testing.assert_allclose(sensor.measure(1, q, q)[1], 0.5 / PERIOD)
+
+
+@pytest.mark.parametrize("distribution", ["uniform", "none"])
+def test_the_true_state_is_only_read(distribution):
+    q, dq = np.ones(3), np.ones(3)
+    q.setflags(write=False)
+    measured, _ = encoders(distribution=distribution).measure(0, q, dq)
+    measured += 1.0
+    np.testing.assert_array_equal(q, np.ones(3))

@@ -1,0 +1,82 @@
+import json
+
+import pytest
+
+from runner.config.compose import compose
+from runner.store import identity, run_hash, simulated_part
+
+CONFIG = {"seed": 0, "controller": {"period": 0.01, "kind": "a"}, "outputs": "x", "preset": {"feedforward": True}}
+
+
+@pytest.fixture(autouse=True)
+def _fresh_digest():
+    identity.source_digest.cache_clear()
+    yield
+    identity.source_digest.cache_clear()
+
+
+def changed(**keys):
+    return run_hash({**CONFIG, **keys}, "<robot/>")
+
+
+def test_a_hash_is_a_folder_name():
+    name = run_hash(CONFIG, "<robot/>")
+    assert len(name) == 24
+    assert set(name) <= set("0123456789abcdef")
+
+
+def test_equal_content_has_an_equal_hash_whatever_the_order():
+    turned = json.loads(json.dumps(dict(reversed(CONFIG.items()))))
+    assert run_hash(turned, "<robot/>") == run_hash(CONFIG, "<robot/>")
+
+
+@pytest.mark.parametrize("keys", [{"seed": 1}, {"controller": {"period": 0.02, "kind": "a"}}, {"new": None}])
+def test_every_key_counts(keys):
+    assert changed(**keys) != changed()
+
+
+@pytest.mark.parametrize("keys", [{"outputs": "y"}, {"preset": {"feedforward": False}}])
+def test_where_it_is_kept_and_the_preset_do_not_count(keys):
+    assert changed(**keys) == changed()
+
+
+def test_neither_does_the_experiment_that_says_the_same():
+    overrides = ("robot=macro", "trajectory=quintic", "noise=thesis", "torque_limits=thesis")
+    spelled_out = compose([*overrides, "repetitions=40", "controller.singularity_damping=0.0"]).resolved
+    named = compose(["experiment=thesis/figure_3_9"]).resolved
+    assert run_hash(named, "") == run_hash(spelled_out, "")
+
+
+def test_the_robot_counts():
+    assert run_hash(CONFIG, "<robot/>") != run_hash(CONFIG, "<robot />")
+
+
+def test_the_engines_versions_count(monkeypatch):
+    before = changed()
+    monkeypatch.setattr(identity, "version", lambda name: "9.9" if name == "pin" else "1")
+    assert changed() != before
+
+
+def test_the_source_counts_but_not_that_of_reports_and_commands(monkeypatch, tmp_path):
+    for name in ("simulation.py", "controllers/law.py", "reporting/page.py", "commands/run.py", "cli.py"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("1")
+    monkeypatch.setattr(identity, "package_dir", lambda: tmp_path)
+
+    def digest():
+        identity.source_digest.cache_clear()
+        return identity.source_digest()
+
+    before = digest()
+    for name in ("reporting/page.py", "commands/run.py", "cli.py"):
+        (tmp_path / name).write_text("2")
+    assert digest() == before
+    (tmp_path / "controllers/law.py").write_text("2")
+    assert digest() != before
+    before = digest()
+    (tmp_path / "controllers/law.py").rename(tmp_path / "controllers/rule.py")
+    assert digest() != before
+
+
+def test_the_simulated_part_leaves_out_what_does_not_count():
+    assert set(simulated_part(CONFIG)) == {"seed", "controller"}

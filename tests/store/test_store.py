@@ -1,0 +1,191 @@
+"""Stored runs: what is written, how it is read back, and what damage or a full disk leads to."""
+
+import errno
+import json
+import os
+import pathlib
+import shutil
+
+import numpy as np
+import pytest
+
+import runner
+from runner.errors import StoreError
+from runner.store import find_run, open_run, prepare
+from runner.store.atomic import write_atomically
+
+SHORT = ("robot=macro", "duration=0.05")
+
+
+@pytest.fixture
+def run(cli):
+    return open_run(cli(*SHORT, "repetitions=2", "noise=thesis").folder)
+
+
+def refuse(code):
+    """Return what raises an operating system's error, whatever it is asked for."""
+
+    def call(*_, **__):
+        raise OSError(code, os.strerror(code))
+
+    return call
+
+
+def test_the_record_follows_its_schema(run):
+    record = json.loads((run.folder / "metrics.json").read_text())
+    assert list(record) == ["schema", "status", "repetitions", "metrics", "timing", "provenance"]
+    assert (record["schema"], record["status"], record["repetitions"]) == (1, "ok", 2)
+    for metric in record["metrics"].values():
+        assert set(metric) == {"unit", "values", "median", "min", "max"}
+        assert len(metric["values"]) == 2
+    assert set(record["timing"]) == {"tick_time_median", "tick_time_p99", "wall_s", "cpu_s"}
+    assert {"commit", "versions", "machine", "seed", "command", "plant_step", "choices"} <= set(record["provenance"])
+
+
+def test_the_trace_carries_units(run):
+    assert list(run.trace.columns[:4]) == ["t", "q1", "q2", "q3"]
+    assert {run.units[name] for name in ("t", "q1", "dq1", "tau1", "tip_x", "error_z")} == {
+        "s",
+        "rad",
+        "rad/s",
+        "N m",
+        "m",
+    }
+    np.testing.assert_allclose(run.trace["t"], np.arange(6) * 0.01, rtol=1e-12)
+    np.testing.assert_array_equal(run.trace["error_x"], run.trace["desired_x"] - run.trace["tip_x"])
+
+
+def test_a_copied_run_is_read_elsewhere(run, tmp_path):
+    copy = open_run(shutil.copytree(run.folder, tmp_path / "else" / "where"))
+    shutil.rmtree(tmp_path / "outputs")
+    assert copy.metrics == run.metrics
+    assert copy.config["robot"]["name"] == "macro"
+    assert copy.urdf.startswith("<robot")
+    assert len(copy.trace) == 6
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("metrics.json", None, "is a run that did not finish: it has no metrics.json"),
+        ("metrics.json", b"", "cannot read the run in"),
+        ("metrics.json", b'{"schema": 1, "sta', "cannot read the run in"),
+        ("metrics.json", b"\xff\xfe\x00\x01", "cannot read the run in"),
+        ("metrics.json", b"[]", "is no metrics file: it needs "),
+        ("metrics.json", b"{}", "is no metrics file: it needs "),
+        ("metrics.json", b'{"schema": 2}', "has schema 2; this version reads 1"),
+        ("config.yaml", None, "cannot read the run in"),
+        ("config.yaml", b"a: [\n", "cannot read the run in"),
+        ("config.yaml", b"\xff\xfe\x00", "cannot read the run in"),
+        ("config.yaml", b"3", "config.yaml holds no config"),
+    ],
+)
+def test_a_damaged_run_is_said_by_every_command_and_made_again(cli, run, name, content, message):
+    path = run.folder / name
+    good = path.read_bytes()
+    path.unlink() if content is None else path.write_bytes(content)
+    for command in (("check", run.folder), ("diff", run.folder, run.folder), ("report", run.folder)):
+        ending = cli(*command)
+        assert (ending.code, ending.out) == (2, "")
+        assert message in ending.err
+        assert "Traceback" not in ending.err
+    assert cli(*SHORT, "repetitions=2", "noise=thesis").folder == run.folder
+    if name == "config.yaml":
+        assert path.read_bytes() == good
+    assert open_run(run.folder).metrics == run.metrics
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        {"metrics": 3},
+        {"metrics": {"energy": 3}},
+        {"metrics": {"energy": {}}},
+        {"provenance": []},
+        {"status": "failed"},
+        {"repetitions": None},
+    ],
+)
+def test_a_record_of_another_shape_is_no_record(run, edit):
+    (run.folder / "metrics.json").write_text(json.dumps({**run.record, **edit}))
+    with pytest.raises(StoreError, match="is no metrics file"):
+        open_run(run.folder)
+
+
+@pytest.mark.parametrize("content", [None, b"", b"\xff\xfe", b"cut"], ids=["missing", "empty", "binary", "truncated"])
+def test_a_damaged_trace_is_said_and_made_again(cli, run, content):
+    path = run.folder / "trace.parquet"
+    good = path.read_bytes()
+    path.unlink() if content is None else path.write_bytes(good[:1000] if content == b"cut" else content)
+    with pytest.raises(StoreError, match=r"cannot read .*trace\.parquet: .*; run it again to mend it"):
+        _ = open_run(run.folder).trace
+    ending = cli("report", run.folder)
+    assert ending.code == 2
+    assert "run it again to mend it" in ending.err
+    assert find_run(run.folder.parent.parent, run.hash) is None
+    assert cli(*SHORT, "repetitions=2", "noise=thesis").folder == run.folder
+    assert path.read_bytes() == good
+
+
+@pytest.mark.parametrize("content", [None, b"\xff\xfe"])
+def test_a_damaged_urdf_is_said(run, content):
+    path = run.folder / "robot.urdf"
+    path.unlink() if content is None else path.write_bytes(content)
+    with pytest.raises(StoreError, match=r"cannot read .*robot\.urdf: "):
+        _ = open_run(run.folder).urdf
+
+
+def test_a_failed_run_says_why_in_words(run):
+    failure = {"repetition": 1, "time": 0.12345, "joint": None, "reason": "singular"}
+    failed = runner.Run(run.folder, run.config, {**run.record, "status": "failed", "failure": failure})
+    assert run.failure_text == ""
+    assert failed.failure_text == "failed in repetition 1 at t = 0.1235 s: singular"
+
+
+@pytest.mark.parametrize("place", ["a_file", "/proc/nowhere", "a_file/below"])
+def test_an_outputs_folder_that_cannot_be_written_to_is_said_before_simulating(cli, tmp_path, monkeypatch, place):
+    (tmp_path / "a_file").write_text("kept")
+    monkeypatch.setattr(runner.execution, "simulate", None)
+    for command in (SHORT, ("-m", *SHORT, "seed=0,1")):
+        ending = cli(*command, f"outputs={place}")
+        assert (ending.code, ending.out) == (2, "")
+        assert ending.err.startswith(f"runner: cannot write {place}/runs/.writable: ")
+        assert ending.err.endswith("; choose a folder that can be written to, as in outputs=FOLDER\n")
+        assert ending.err.count("\n") == 1
+    assert (tmp_path / "a_file").read_text() == "kept"
+    assert [entry.name for entry in tmp_path.iterdir()] == ["a_file"]
+
+
+@pytest.mark.parametrize("code", [errno.ENOSPC, errno.EACCES, errno.EROFS, errno.EIO])
+@pytest.mark.parametrize("call", ["fsync", "replace"])
+def test_a_disk_that_gives_up_leaves_no_half_written_file(cli, tmp_path, monkeypatch, code, call):
+    prepare(tmp_path / "outputs")
+    monkeypatch.setattr("runner.store.prepare", lambda _: None)  # it fills up while the run is simulated
+    monkeypatch.setattr(*{"fsync": (os, "fsync"), "replace": (pathlib.Path, "replace")}[call], refuse(code))
+    ending = cli(*SHORT)
+    assert (ending.code, ending.out) == (2, "")
+    assert ending.err.startswith("runner: cannot write outputs/runs/")
+    assert ending.err.endswith(f": {os.strerror(code)}\n")
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
+
+
+def test_the_metrics_come_last(cli, tmp_path, monkeypatch):
+    written = []
+
+    def write(path, content):
+        written.append(path.name)
+        write_atomically(path, content)
+
+    monkeypatch.setattr("runner.store.writing.write_atomically", write)
+    cli(*SHORT)
+    assert written == [".writable", "config.yaml", "robot.urdf", "trace.parquet", "metrics.json"]
+
+
+def test_writing_over_a_file_keeps_the_old_one_until_the_new_one_is_whole(tmp_path, monkeypatch):
+    path = tmp_path / "deep" / "file"
+    write_atomically(path, b"old")
+    monkeypatch.setattr(os, "fsync", refuse(errno.ENOSPC))
+    with pytest.raises(StoreError, match="No space left on device"):
+        write_atomically(path, b"new")
+    assert path.read_bytes() == b"old"
+    assert list(path.parent.iterdir()) == [path]

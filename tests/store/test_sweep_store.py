@@ -1,0 +1,69 @@
+import json
+
+import pytest
+
+from runner.errors import StoreError
+from runner.store import is_run, is_sweep, open_runs, open_sweep, write_sweep
+
+
+@pytest.fixture
+def sweep(cli):
+    return cli("-m", "robot=macro", "seed=0,1", "duration=0.05").folder
+
+
+def test_a_sweep_opens_with_its_runs_in_order(sweep):
+    opened = open_sweep(sweep)
+    assert opened.overrides == [("robot=macro", f"seed={seed}", "duration=0.05") for seed in (0, 1)]
+    assert [run.config["seed"] for run in opened.runs()] == [0, 1]
+    assert [run.hash for run in opened.runs()] == list(opened.hashes)
+    assert [run.hash for run in open_runs(sweep)] == list(opened.hashes)
+
+
+def test_a_run_opens_as_a_list_of_one(sweep):
+    run = open_sweep(sweep).runs()[0]
+    assert [opened.hash for opened in open_runs(run.folder)] == [run.hash]
+
+
+def test_folders_tell_what_they_are(sweep, tmp_path):
+    run = open_sweep(sweep).runs()[0].folder
+    assert (is_sweep(sweep), is_run(sweep)) == (True, False)
+    assert (is_sweep(run), is_run(run)) == (False, True)
+    assert (is_sweep(tmp_path), is_run(tmp_path)) == (False, False)
+
+
+def test_the_same_jobs_are_the_same_sweep(tmp_path):
+    jobs = [(("seed=0",), "a"), (("seed=1",), "b")]
+    folder = write_sweep(tmp_path, jobs)
+    assert write_sweep(tmp_path, jobs) == folder
+    assert write_sweep(tmp_path, jobs[::-1]) != folder
+    assert json.loads((folder / "sweep.json").read_text())["schema"] == 1
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "cannot read the sweep in"),
+        (b'{"jobs": [{"overr', "cannot read the sweep in"),
+        (b"\xff\xfe", "cannot read the sweep in"),
+        (b"{}", "is no sweep file: it needs jobs with overrides and run each"),
+        (b"[]", "is no sweep file"),
+        (b'{"jobs": [{"overrides": []}]}', "is no sweep file"),
+        (b'{"jobs": 3}', "is no sweep file"),
+    ],
+)
+def test_a_damaged_sweep_is_said(sweep, content, message):
+    (sweep / "sweep.json").write_bytes(content)
+    with pytest.raises(StoreError, match=message):
+        open_runs(sweep)
+
+
+def test_a_missing_run_of_a_sweep_is_named(sweep):
+    gone = open_sweep(sweep).runs()[1].folder
+    (gone / "metrics.json").unlink()
+    with pytest.raises(StoreError, match=f"{gone.name} is a run that did not finish"):
+        open_runs(sweep)
+
+
+def test_a_folder_that_is_no_sweep(tmp_path):
+    with pytest.raises(StoreError, match="cannot read the sweep in"):
+        open_sweep(tmp_path)

@@ -1,0 +1,196 @@
+"""The door: what each command line prints, leaves behind and exits with."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+import yaml
+
+from runner import execution
+from runner.cli import COMMANDS, HELP
+
+SHORT = ("robot=macro", "duration=0.05")
+
+
+def start(*arguments, cwd, **options):
+    command = [sys.executable, "-m", "runner", *map(str, arguments)]
+    return subprocess.Popen(command, cwd=cwd, stdout=-1, stderr=-1, text=True, **options)
+
+
+@pytest.mark.parametrize("flag", ["-h", "--help", "help"])
+def test_help_names_every_command(cli, flag):
+    ending = cli(flag)
+    assert (ending.code, ending.out) == (0, HELP)
+    assert all(f"runner {command}" in HELP for command in COMMANDS)
+
+
+def test_version(cli):
+    assert cli("--version").out.strip() == "0.1.0"
+
+
+def test_unknown_command_names_the_nearest(cli):
+    ending = cli("chek", "outputs")
+    assert ending.code == 2
+    assert ending.err.startswith("runner: no command 'chek' (did you mean check?); commands: reproduce, report,")
+
+
+def test_bare_call_runs_the_macro_to_its_goal(cli):
+    ending = cli()
+    assert ending.code == 0
+    assert yaml.safe_load((ending.folder / "config.yaml").read_text())["robot"]["name"] == "macro"
+
+
+def test_a_run_prints_its_folder_and_writes_nothing_but_outputs(cli, tmp_path):
+    ending = cli(*SHORT)
+    assert (ending.code, ending.err) == (0, "")
+    assert [entry.name for entry in tmp_path.iterdir()] == ["outputs"]
+    assert ending.folder.parent == tmp_path / "outputs" / "runs"
+    assert sorted(entry.name for entry in ending.folder.iterdir()) == [
+        "config.yaml",
+        "metrics.json",
+        "robot.urdf",
+        "trace.parquet",
+    ]
+
+
+def test_the_same_command_again_simulates_nothing(cli, monkeypatch):
+    first = cli(*SHORT)
+    monkeypatch.setattr(execution, "simulate", None)
+    assert cli(*SHORT) == first
+
+
+def test_outputs_may_stand_elsewhere(cli, tmp_path):
+    ending = cli(*SHORT, f"outputs={tmp_path}/else/where")
+    assert ending.folder.parent == tmp_path / "else" / "where" / "runs"
+
+
+def test_interpolations_may_be_typed(cli):
+    ending = cli(*SHORT, "trajectory.start=${robot.goal}")
+    assert ending.code == 0
+    record = json.loads((ending.folder / "metrics.json").read_text())
+    assert record["provenance"]["command"] == "runner robot=macro duration=0.05 'trajectory.start=${robot.goal}'"
+
+
+def test_showing_the_config_runs_nothing(cli, tmp_path):
+    ending = cli("--cfg", "job", "robot=mini")
+    assert ending.code == 0
+    assert yaml.safe_load(ending.out)["robot"]["name"] == "mini"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_sweep_stores_every_combination_and_its_table(cli, tmp_path):
+    ending = cli("-m", "robot=macro,mini", "noise.position=0,1e-4", "duration=0.05")
+    assert (ending.code, ending.err) == (0, "")
+    jobs = json.loads((ending.folder / "sweep.json").read_text())["jobs"]
+    assert [job["overrides"][:2] for job in jobs] == [
+        ["robot=macro", "noise.position=0"],
+        ["robot=macro", "noise.position=0.0001"],
+        ["robot=mini", "noise.position=0"],
+        ["robot=mini", "noise.position=0.0001"],
+    ]
+    assert sorted(job["run"] for job in jobs) == sorted(run.name for run in (tmp_path / "outputs/runs").iterdir())
+    assert [entry.name for entry in tmp_path.iterdir()] == ["outputs"]
+
+
+def test_a_sweep_with_a_bad_cell_names_it_and_keeps_the_others(cli, tmp_path):
+    ending = cli("-m", *SHORT, "noise.position=1e-4,-1")
+    assert (ending.code, ending.out) == (2, "")
+    assert "[robot=macro duration=0.05 noise.position=-1] noise.position: must be 0 or more; found -1" in ending.err
+    assert "1 other runs of the sweep are stored already" in ending.err
+    assert len(list((tmp_path / "outputs/runs").iterdir())) == 1
+
+
+def test_a_sweep_over_an_unknown_option_starts_nothing(cli, tmp_path):
+    ending = cli("-m", "robot=macro,makro", "duration=0.05")
+    assert ending.code == 2
+    assert "robot: no 'makro' (did you mean macro?)" in ending.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_diverging_simulation_is_a_stored_result(cli):
+    overrides = ("plant=rk4", "controller.period=0.06", "controller.singularity_damping=0", "trajectory=quintic")
+    ending = cli("robot=macro", *overrides, "repetitions=2")
+    assert ending.code == 1
+    assert "failed in repetition 0 at t = 0.6 s (q1): diverged: not finite or above 1e+06 rad/s" in ending.err
+    record = json.loads((ending.folder / "metrics.json").read_text())
+    assert record["status"] == "failed"
+    assert record["failure"]["joint"] == "q1"
+    assert all(value is None for metric in record["metrics"].values() for value in metric["values"])
+    assert cli("robot=macro", *overrides, "repetitions=2") == ending  # found stored, it is told again
+
+
+def test_an_error_of_ours_is_no_problem_of_the_config(cli, monkeypatch):
+    def break_down(*_):
+        raise ValueError("a bug")
+
+    monkeypatch.setattr(execution, "simulate", break_down)
+    with pytest.raises(ValueError, match="a bug"):
+        cli(*SHORT)
+
+
+def test_too_little_memory_is_said(cli, monkeypatch):
+    def run_out(*_):
+        raise MemoryError("unable to allocate 2 TiB")
+
+    monkeypatch.setattr(execution, "simulate", run_out)
+    ending = cli(*SHORT)
+    assert ending.code == 2
+    assert ending.err == (
+        "runner: not enough memory: unable to allocate 2 TiB; shorten the run or ask for fewer repetitions\n"
+    )
+
+
+def test_two_processes_may_make_the_same_run_at_once(tmp_path):
+    both = [start(*SHORT, "noise=thesis", cwd=tmp_path) for _ in range(2)]
+    printed = [process.communicate(timeout=60) for process in both]
+    assert [process.returncode for process in both] == [0, 0]
+    assert printed[0] == printed[1]
+    folder = tmp_path / printed[0][0].strip()
+    assert json.loads((folder / "metrics.json").read_text())["status"] == "ok"
+    assert [entry.name for entry in folder.parent.rglob("*") if entry.name.startswith(".")] == []
+
+
+def test_interrupting_leaves_no_half_written_run(tmp_path):
+    process = start("robot=mini", "repetitions=10000", cwd=tmp_path)
+    deadline = time.monotonic() + 60
+    while not (tmp_path / "outputs").exists() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, out) == (130, "")
+    assert err.startswith("runner: interrupted")
+    assert list(tmp_path.rglob("metrics.json")) == []
+
+
+@pytest.mark.parametrize(("line", "expected"), [("robot=m", "robot=macro robot=mini"), ("dura", "duration=")])
+def test_completion(tmp_path, line, expected):
+    process = start("-sc", "query=bash", cwd=tmp_path, env={**os.environ, "COMP_LINE": f"runner {line}"})
+    assert process.communicate(timeout=60)[0].split() == expected.split()
+
+
+def test_listing_and_help_import_little():
+    heavy = "{'numpy', 'pydantic', 'pinocchio', 'pybullet', 'pandas', 'hydra'}"
+    for arguments in (["list", "robots"], ["--help"]):
+        lines = (
+            f"import sys; from runner.cli import dispatch; dispatch({arguments}); assert not {heavy} & {{*sys.modules}}"
+        )
+        subprocess.run([sys.executable, "-c", lines], check=True, stdout=subprocess.DEVNULL)
+
+
+def test_nobody_needs_to_read_to_the_end(tmp_path):
+    process = start("list", "robots", cwd=tmp_path)
+    process.stdout.close()
+    assert process.stderr.read() == ""
+    assert process.wait(timeout=60) == 0
+    process.stderr.close()
+
+
+def test_a_full_standard_output_is_said(tmp_path):
+    command = [sys.executable, "-m", "runner", "list", "robots"]
+    with open("/dev/full", "w") as full:  # noqa: PTH123 - a device
+        ending = subprocess.run(command, cwd=tmp_path, stdout=full, stderr=-1, text=True)
+    assert (ending.returncode, ending.stderr) == (2, "runner: [Errno 28] No space left on device\n")

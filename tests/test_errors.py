@@ -1,0 +1,34 @@
+import pytest
+
+from runner.errors import ConfigError, RunnerError, SimulationError, StoreError, nearest
+
+
+def test_what_a_user_can_mend_is_a_runner_error():
+    assert issubclass(ConfigError, RunnerError)
+    assert issubclass(StoreError, RunnerError)
+    assert not issubclass(SimulationError, RunnerError)
+
+
+def test_one_problem_and_many():
+    assert str(ConfigError(["a: wrong"])) == "1 problem in the config:\n  - a: wrong"
+    assert str(ConfigError(iter("ab"), "look there")) == "2 problems in the config:\n  - a\n  - b\nlook there"
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("makro", " (did you mean macro?)"),
+        ("macro", " (did you mean macro?)"),
+        ("xyz", ""),
+        ("", ""),
+    ],
+)
+def test_the_nearest_name(name, text):
+    assert nearest(name, iter(["macro", "mini"])) == text
+
+
+@pytest.mark.parametrize(("joint", "text"), [("q1", "gone at t = 0.1235 s, q1"), (None, "gone at t = 0.1235 s")])
+def test_a_simulation_error_says_when_and_where(joint, text):
+    error = SimulationError("gone", 0.12345, joint)
+    assert str(error) == text
+    assert (error.reason, error.time, error.joint) == ("gone", 0.12345, joint)

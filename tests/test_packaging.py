@@ -1,0 +1,66 @@
+"""The wheel carries all that a run needs, and works away from the checkout."""
+
+import os
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from runner.references import shipped_references
+
+ROOT = Path(__file__).resolve().parents[1]
+SCRIPT = """\
+import sys
+from pathlib import Path
+import runner
+from runner.cli import dispatch
+from runner.paths import conf_dir, robots_dir, templates_dir
+site = Path(sys.argv[1])
+for folder in (Path(runner.__file__).parent, conf_dir(), robots_dir(), templates_dir()):
+    assert folder.is_relative_to(site), folder
+assert (templates_dir() / "report.html.j2").is_file()
+assert dispatch(["list", "references"]) == 0
+assert dispatch(["list", "claims"]) == 0
+sys.exit(dispatch(["robot=macro", "duration=0.05"]))
+"""
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    """The wheel, made by the build backend itself, which needs no network."""
+    folder = tmp_path_factory.mktemp("wheel")
+    subprocess.run(
+        [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", folder],
+        cwd=ROOT,
+        check=True,
+        stdout=-3,
+        stderr=-3,
+    )
+    return next(folder.glob("*.whl"))
+
+
+def test_the_wheel_holds_configs_robots_templates_and_references(wheel):
+    names = set(zipfile.ZipFile(wheel).namelist())
+    for folder, inside in (("conf", "conf"), ("robots", "robots"), ("reports/templates", "reports/templates")):
+        ours = {path.relative_to(ROOT / folder).as_posix() for path in (ROOT / folder).rglob("*.*")}
+        assert {f"runner/_data/{inside}/{name}" for name in ours} <= names
+    assert {f"runner/references/{name}.yaml" for name in shipped_references()} <= names
+    assert not [name for name in names if name.startswith(("tests", "bench", "outputs"))]
+
+
+def test_the_wheel_runs_away_from_the_checkout(wheel, tmp_path):
+    zipfile.ZipFile(wheel).extractall(tmp_path / "site")
+    (tmp_path / "work").mkdir()
+    ending = subprocess.run(
+        [sys.executable, "-c", SCRIPT, str(tmp_path / "site")],
+        cwd=tmp_path / "work",
+        env={**os.environ, "PYTHONPATH": str(tmp_path / "site")},
+        capture_output=True,
+        text=True,
+    )
+    assert (ending.returncode, ending.stderr) == (0, "")
+    folder = tmp_path / "work" / ending.stdout.splitlines()[-1]
+    assert (folder / "metrics.json").is_file()
+    assert [entry.name for entry in (tmp_path / "work").iterdir()] == ["outputs"]

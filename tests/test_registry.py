@@ -1,0 +1,78 @@
+import sys
+import types
+from importlib.metadata import EntryPoint
+
+import pytest
+from pydantic import ValidationError
+
+from runner import registry
+from runner.errors import ConfigError
+from runner.registry import Registry, StrictModel
+
+
+class Config(StrictModel):
+    kind: str
+    size: float
+
+
+@pytest.fixture
+def parts(monkeypatch):
+    """A registry with one kind of its own and one of another package."""
+    for name in ("own", "foreign"):
+        module = types.ModuleType(f"some_{name}")
+        module.CONFIG, module.build = Config, lambda config, *args, name=name: (name, config.size, *args)
+        module.default_step = lambda tick: tick / 10
+        monkeypatch.setitem(sys.modules, f"some_{name}", module)
+    points = [EntryPoint("foreign", "some_foreign", "runner.part")]
+    monkeypatch.setattr(registry, "entry_points", lambda group: points if group == "runner.part" else [])
+    return Registry("part", {"own": "some_own"})
+
+
+def test_kinds_of_other_packages_stand_among_ours(parts):
+    assert parts.names() == ["foreign", "own"]
+    assert parts.config_model("foreign") is Config
+
+
+@pytest.mark.parametrize("kind", ["own", "foreign"])
+def test_the_kind_decides_what_is_built(parts, kind):
+    assert parts.build(Config(kind=kind, size=2.0), "arm") == (kind, 2.0, "arm")
+    assert parts.default_step(kind, 0.01) == 0.001
+
+
+def test_an_unknown_kind_names_the_nearest(parts):
+    with pytest.raises(ConfigError) as raised:
+        parts.config_model("owm")
+    assert raised.value.problems == ("part.kind: 'owm' is unknown (did you mean own?); known: foreign, own",)
+
+
+def test_a_module_is_imported_when_its_kind_is_used():
+    assert Registry("part", {"gone": "no.such.module"}).names() == ["gone"]
+    with pytest.raises(ModuleNotFoundError):
+        Registry("part", {"gone": "no.such.module"}).config_model("gone")
+
+
+@pytest.mark.parametrize("size", ["1", True, None, float("nan"), float("inf"), [1.0]])
+def test_models_convert_nothing(size):
+    with pytest.raises(ValidationError):
+        Config(kind="own", size=size)
+
+
+def test_models_take_whole_numbers_for_real_ones():
+    assert Config(kind="own", size=1).size == 1.0
+
+
+def test_models_refuse_unknown_keys_and_changes():
+    with pytest.raises(ValidationError, match="Extra inputs"):
+        Config(kind="own", size=1.0, colour="red")
+    with pytest.raises(ValidationError, match="frozen"):
+        Config(kind="own", size=1.0).size = 2.0
+
+
+def test_every_kind_of_ours_can_be_imported():
+    from runner.controllers import CONTROLLERS
+    from runner.plants import PLANTS
+    from runner.trajectories import TRAJECTORIES
+
+    for group in (CONTROLLERS, PLANTS, TRAJECTORIES):
+        for kind in group.names():
+            assert "kind" in group.config_model(kind).model_fields
