@@ -23,8 +23,13 @@ def main(arguments: Sequence[str]) -> int:
     runs = [run for folder in options.folders for run in store.open_runs(folder)]
     formats = [name for name in ("html", "pdf") if getattr(options, name)] or ["html", "pdf"]
     name = hashlib.sha256("".join(run.hash for run in runs).encode()).hexdigest()[:24]
-    outputs = runs[0].folder.parent.parent
-    folder = outputs / "reports" / name
+    folder = _outputs(options.folders[0]) / "reports" / name
     write_report(run_document(runs), folder, formats)
     print(folder)
     return 0
+
+
+def _outputs(folder: Path) -> Path:
+    """Return the outputs folder that a run or sweep lies in; ./outputs for a copy that lies elsewhere."""
+    place = folder.resolve().parent
+    return folder.parent.parent if place.name in ("runs", "sweeps") else Path("outputs")

@@ -1,6 +1,7 @@
 """`runner reproduce [NAME]`: run what is missing for a published work, and write its report."""
 
 import multiprocessing
+import shlex
 import sys
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -68,7 +69,8 @@ def run_all(jobs: Mapping[str, "Job"], outputs: Path) -> dict[str, "Run"]:
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
-    return {name: store.open_run(folders[name]) for name in jobs}
+    commands = {name: shlex.join(["runner", *job.overrides]) for name, job in jobs.items()}
+    return {name: store.open_run(folders[name]).made_by(commands[name]) for name in jobs}
 
 
 def _run_job(overrides: tuple[str, ...], outputs: str) -> str:

@@ -37,7 +37,7 @@ def _overview(runs: Sequence[Run]) -> Table:
             quantity(run.metrics[name]["median"], run.metrics[name]["unit"]) if name in run.metrics else "–"
             for name in names
         ]
-        rows.append([str(index), *(str(config.get(key, "–")) for key in varying), run.status, *values])
+        rows.append([str(index), *(_literal(str(config.get(key, "–"))) for key in varying), run.status, *values])
     header = ["run", *varying, "status", *names]
     first = len(varying) + 2
     return Table("Runs, with what distinguishes them; medians.", header, rows, tuple(range(first, len(header))))

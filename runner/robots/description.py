@@ -60,13 +60,12 @@ def read_urdf(path: Path, masses: Mapping[str, float]) -> str:
             )
         elif not 0.0 <= _mass(link) < math.inf:
             problems.append(f"robot.urdf: link '{name}' in {path} has mass {_mass(link):g} kg; allowed: 0 or more")
+        problems.extend(f"robot.urdf: link '{name}' in {path} has {bad}" for bad in _bad_inertia(link))
     for name in masses:
         if name not in links:
             problems.append(f"robot.masses.{name}: no such link{nearest(name, links)}; links: {', '.join(links)}")
         elif _mass(links[name]) == 0.0:
             problems.append(f"robot.masses.{name}: link '{name}' is massless in {path.name}; its mass cannot be scaled")
-        else:
-            problems.extend(f"robot.urdf: link '{name}' in {path} has {bad}" for bad in _bad_inertia(links[name]))
     if not problems:
         for name, mass in masses.items():
             _scale_inertial(links[name], mass)
@@ -90,12 +89,11 @@ def _number(text: str | None) -> float:
 
 def _bad_inertia(link: ET.Element) -> list[str]:
     inertia = link.find("inertial/inertia")
-    values = {} if inertia is None else inertia.attrib
-    return [
-        f"inertia {key}='{value}'; allowed: a number"
-        for key, value in values.items()
-        if not math.isfinite(_number(value))
-    ]
+    values = {} if inertia is None else {key: _number(value) for key, value in inertia.attrib.items()}
+    wrong = [f"inertia {key} that is no finite number" for key, value in values.items() if not math.isfinite(value)]
+    if not wrong and _mass(link) == 0.0 and any(values.values()):
+        wrong.append("inertia but no mass; PyBullet would drop it: give it a mass, or zero inertia")
+    return wrong
 
 
 def _scale_inertial(link: ET.Element, mass: float) -> None:

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -36,6 +36,10 @@ class Run:
     def hash(self) -> str:
         """Its content hash, the folder's name."""
         return self.folder.name
+
+    def made_by(self, command: str) -> "Run":
+        """Return this run with another command that makes it, as equal configs can be reached in several ways."""
+        return replace(self, record={**self.record, "provenance": {**self.provenance, "command": command}})
 
     @property
     def status(self) -> str:

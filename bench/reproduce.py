@@ -1,0 +1,36 @@
+"""Wall time of `runner reproduce thesis` in an empty folder: its runs, then its report."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+TARGET = 60.0  # s
+_BORDER = b"writing the report"  # said on standard error when the last run is stored
+
+
+def main() -> bool:
+    """Measure and print; return whether the target is met."""
+    command = [str(Path(sys.executable).parent / "runner"), "reproduce", "thesis"]
+    with tempfile.TemporaryDirectory() as folder:
+        start = time.perf_counter()
+        with subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
+            assert process.stderr is not None
+            said = b""
+            while _BORDER not in said and (piece := os.read(process.stderr.fileno(), 4096)):
+                said += piece
+            simulated = time.perf_counter() - start
+            process.stderr.read()
+        whole = time.perf_counter() - start
+        if process.returncode != 0:
+            raise subprocess.CalledProcessError(process.returncode, command, stderr=said)
+        runs = len(list(Path(folder, "outputs", "runs").glob("*/metrics.json")))
+        sizes = {path.name: path.stat().st_size for path in Path(folder).glob("outputs/reports/thesis/*")}
+    print("runner reproduce thesis, wall time in an empty folder")
+    print(f"  {runs} runs simulated and stored  {simulated:5.1f} s")
+    print(f"  figures and report         {whole - simulated:5.1f} s")
+    print(f"  whole                      {whole:5.1f} s  target {TARGET:g}: {'met' if whole <= TARGET else 'MISSED'}")
+    print("  " + ", ".join(f"{name} {size / 1e6:.1f} MB" for name, size in sorted(sizes.items())))
+    return whole <= TARGET

@@ -1,0 +1,123 @@
+"""CPU time of a control tick, against PyBullet's own calls alone.
+
+F is the least that a PyBullet plant can cost: torque, step and read of the same arm, in a plain loop, under the same
+torques. What the runner adds to it is control, measurement, limits, log and tip positions. Both are measured in
+turns, a block of ticks each, so that whatever else the machine does falls on both; targets are ratios. Work beside it
+slows Python more than C, by caches, so the quieter half of the rounds is judged.
+"""
+
+import os
+import time
+from collections.abc import Callable
+from statistics import median
+
+from runner.assembly import assemble, make_encoders
+from runner.config.compose import compose
+from runner.config.run import RunConfig
+from runner.config.validation import validate
+from runner.plants.bullet import Bullet
+from runner.plants.quiet import quiet_stderr
+from runner.simulation import ClosedLoop, simulate
+
+with quiet_stderr():
+    import pybullet
+
+TICKS = 2000
+ROUNDS = 40
+_SCENE = ("robot=macro", "trajectory=quintic", "trajectory.duration=19", "noise=thesis")
+_CASES = {
+    "bullet, 10 substeps": ("plant=bullet", "plant.step=0.001"),
+    "bullet, 1 substep": ("plant=bullet", "plant.step=0.01"),
+    "rk4, 1 step": ("plant=rk4", "plant.step=0.01"),
+}
+
+
+def main() -> bool:
+    """Measure and print; return whether every target is met."""
+    loops = {name: _assemble(*overrides) for name, overrides in _CASES.items()}
+    blocks: dict[str, Callable[[], None]] = {}
+    for name, (config, loop) in loops.items():
+        if isinstance(loop.plant, Bullet):
+            torques = simulate(loop, make_encoders(config, loop, 0)).tau[:-1].tolist()
+            blocks[f"F: {name}"] = _pybullet_alone(config, torques)
+        blocks[name] = _whole_run(config, loop)
+    times = _measure(blocks)
+
+    F10, F1 = times["F: bullet, 10 substeps"], times["F: bullet, 1 substep"]
+    bullet10, bullet1, rk4 = (times[name] for name in _CASES)
+    print(
+        f"CPU time of a control tick, 3 joints, median of the quieter {ROUNDS // 2} of {ROUNDS} rounds of {TICKS} ticks"
+    )
+    for name, values in times.items():
+        print(f"  {name:26} {median(values):6.2f} us  (quickest round {min(values):.2f})")
+    within = [
+        _judge("bullet, 10 substeps / F", _ratio(bullet10, F10), 1.5),
+        _judge("rk4 / F, 10 substeps", _ratio(rk4, F10), 0.9),
+        _judge("bullet, 1 substep - F (us)", median(a - b for a, b in zip(bullet1, F1, strict=True)), 12.0),
+    ]
+    print(f"  {'bullet, 1 substep / F':28} {_ratio(bullet1, F1):5.2f}")
+    load = os.getloadavg()[0]
+    if load > 1.3:
+        print(
+            f"  other work runs on this machine (load {load:.1f}) and slows Python more than C: repeat when it is quiet"
+        )
+    return all(within)
+
+
+def _assemble(*overrides: str) -> tuple[RunConfig, ClosedLoop]:
+    config = validate(compose([*_SCENE, *overrides]).resolved)
+    loop = assemble(config)
+    assert loop.ticks == TICKS
+    return config, loop
+
+
+def _whole_run(config: RunConfig, loop: ClosedLoop) -> Callable[[], None]:
+    def block() -> None:
+        trace = simulate(loop, make_encoders(config, loop, 0))
+        assert trace.failure is None
+
+    return block
+
+
+def _pybullet_alone(config: RunConfig, torques: list[list[float]]) -> Callable[[], None]:
+    """Return a loop over the raw calls, on an arm of its own that was made as the plant makes it."""
+    loop = assemble(config)
+    plant = loop.plant
+    assert isinstance(plant, Bullet)
+    client, body, joints = plant._client, plant._body, plant._joints
+    rest = loop.q_start * 0.0
+
+    def block() -> None:
+        plant.reset(loop.q_start, rest)
+        for tau in torques:
+            pybullet.setJointMotorControlArray(
+                body, joints, pybullet.TORQUE_CONTROL, forces=tau, physicsClientId=client
+            )
+            pybullet.stepSimulation(client)
+            pybullet.getJointStates(body, joints, client)
+
+    return block
+
+
+def _measure(blocks: dict[str, Callable[[], None]]) -> dict[str, list[float]]:
+    """Run all blocks in turns; return the CPU time per tick in the quieter half of the rounds, in us."""
+    for block in blocks.values():
+        block()  # caches filled, before anything counts
+    rounds = [{name: _cpu_time(block) for name, block in blocks.items()} for _ in range(ROUNDS)]
+    quieter = sorted(rounds, key=lambda times: sum(times.values()))[: ROUNDS // 2]
+    return {name: [times[name] for times in quieter] for name in blocks}
+
+
+def _cpu_time(block: Callable[[], None]) -> float:
+    start = time.process_time()
+    block()
+    return (time.process_time() - start) / TICKS * 1e6
+
+
+def _ratio(ours: list[float], theirs: list[float]) -> float:
+    return median(a / b for a, b in zip(ours, theirs, strict=True))
+
+
+def _judge(what: str, value: float, target: float) -> bool:
+    print(f"  {what:28} {value:5.2f}  target {target:g}: {'met' if value <= target else 'MISSED'}")
+    return value <= target
