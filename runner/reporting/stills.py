@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
+from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from runner.reporting import palette
 from runner.reporting.document import Curves, Panel, Series
@@ -23,7 +24,7 @@ WIDTH = 6.5
 """Width of the text on paper [in]."""
 
 # Measures in inches; fixed margins, because a layout engine costs more time than all the curves.
-_LEFT, _RIGHT, _BOTTOM = 0.58, 0.12, 0.42
+_LEFT, _RIGHT, _BOTTOM = 0.64, 0.12, 0.42
 _LINE, _CHARACTER, _HANDLE, _GAP = 0.135, 0.054, 0.42, 0.12
 _POINTS_PER_INCH = 300
 _LINES = {"line": "-", "dashed": "--", "dotted": ":", "points": "none", "points_line": "-"}
@@ -127,7 +128,7 @@ def _draw_panel(axes: Axes, frame: _Frame) -> None:
         axes.set_xscale("log", nonpositive="mask")
     if panel.y_log:
         axes.set_yscale("log", nonpositive="mask")
-    axes.yaxis.set_label_coords(-(_LEFT - 0.07) / frame.width, 0.5)  # beside the widest tick labels of a log axis
+    axes.yaxis.set_label_coords(-(_LEFT - 0.12) / frame.width, 0.5)  # beside the widest tick labels of a log axis
     axes.margins(x=0.02)
     chosen = palette.indices([series.color for series in panel.series])
     handles = [
@@ -138,7 +139,16 @@ def _draw_panel(axes: Axes, frame: _Frame) -> None:
         axes.set_xlim(panel.x_range)
     if usable(panel.y_range, panel.y_log):
         axes.set_ylim(panel.y_range)
+    for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        if axis.get_scale() == "log":
+            # Short labels between the powers of ten, and only where these alone would leave the axis bare.
+            axis.set_minor_formatter(FuncFormatter(_minor_label) if high < 30.0 * low else NullFormatter())
     _draw_legend(axes, frame, handles)
+
+
+def _minor_label(value: float, position: int | None) -> str:
+    mantissa, _, exponent = f"{value:.0e}".partition("e")
+    return f"{mantissa}e{int(exponent)}" if mantissa in "25" else ""
 
 
 def _draw_series(axes: Axes, series: Series, color: str) -> Line2D:
