@@ -5,14 +5,16 @@ import math
 import numpy as np
 
 from runner.config.per_joint import expand
+from runner.config.per_stage import by_stage
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS
 from runner.metrics import MetricContext
 from runner.plants import PLANTS
-from runner.plants.plant import Arm
-from runner.robots import solve_tip_position
+from runner.robots.inverse_kinematics import solve_tip_position
+from runner.robots.robot import end_points
 from runner.sensing import JointEncoders
 from runner.simulation import ClosedLoop
+from runner.trace import FloatArray
 from runner.trajectories import TRAJECTORIES
 
 
@@ -22,34 +24,76 @@ def assemble(config: RunConfig) -> ClosedLoop:
     Raises:
         ConfigError: where the start of the trajectory cannot be reached, or a part refuses its config.
     """
-    model = config.model
-    home = np.array(config.robot.home)
-    start = model.tip_position(home) if config.trajectory.start is None else np.array(config.trajectory.start)
+    arm, home = config.arm, config.arm.home
+    parallel = config.parallel
+    at_home = end_points(arm, home[None], parallel)[-1, 0]
+    start = at_home if config.trajectory.start is None else np.array(config.trajectory.start)
     trajectory = TRAJECTORIES.build(config.trajectory, start)
-    limits = math.inf if config.torque_limits.max is None else config.torque_limits.max
-    period = config.controller.period
     duration = trajectory.run_duration if config.settings.duration is None else config.settings.duration
     return ClosedLoop(
-        model=model,
-        plant=PLANTS.build(config.plant, Arm(config.urdf, model), config.step, config.steps_per_tick),
-        controller=CONTROLLERS.build(config.controller, model),
+        robot=arm,
+        plant=PLANTS.build(config.plant, arm, config.step, config.steps_per_tick),
+        loops=CONTROLLERS.build(config.controller, arm),
         trajectory=trajectory,
-        limits=np.array(expand("torque_limits.max", limits, model.joint_names)),
-        period=period,
-        ticks=math.ceil(duration / period - 1e-9),
-        q_start=solve_tip_position(model, start, home),
+        limits=_limits(config),
+        tick=config.tick,
+        ticks=math.ceil(duration / config.tick - 1e-9),
+        q_start=_start_posture(config, start),
+        parallel=parallel,
     )
 
 
-def make_encoders(config: RunConfig, loop: ClosedLoop, repetition: int) -> JointEncoders:
-    """Make the joint measurement of one repetition; its noise follows from (seed, repetition) alone."""
+def _limits(config: RunConfig) -> FloatArray:
+    limits = config.torque_limits.max
+    if limits is None:
+        return np.full(config.arm.model.nq, math.inf)
+    values = by_stage("torque_limits.max", limits, config.arm.stage_names)
+    per_stage = [
+        expand("torque_limits.max", value, stage.model.joint_names)
+        for value, stage in zip(values, config.arm.stages, strict=True)
+    ]
+    return np.array([limit for stage in per_stage for limit in stage])
+
+
+def _start_posture(config: RunConfig, start: FloatArray) -> FloatArray:
+    """Return joint positions that bring the tip to a start: the first stage moves, riding ones stay at home."""
+    arm = config.arm
+    home = end_points(arm, arm.home[None], config.parallel)[:, 0]
+    if np.array_equal(start, home[-1]):
+        return arm.home
+    if len(arm.stages) == 1 or not config.parallel:
+        return solve_tip_position(arm.model, start, arm.home)
+    first = arm.stages[0]
+    return np.concatenate(
+        [solve_tip_position(first.model, start - (home[-1] - home[0]), first.home), arm.home[first.joints.stop :]]
+    )
+
+
+def make_encoders(config: RunConfig, closed: ClosedLoop, repetition: int) -> list[JointEncoders]:
+    """Make the joint measurement of each loop for one repetition.
+
+    Its noise follows from (seed, repetition) and the loop's place alone: however long a run or another loop's period
+    is, it starts alike, so that runs can be compared in pairs.
+    """
     noise = config.noise
-    generator = np.random.default_rng([config.settings.seed, repetition])
-    return JointEncoders(
-        loop.ticks + 1, loop.model.nq, loop.period, noise.position, noise.distribution, noise.velocity, generator
+    per_stage = by_stage("noise.position", noise.position, config.arm.stage_names)
+    amplitudes = np.concatenate(
+        [np.full(stage.model.nq, value) for value, stage in zip(per_stage, config.arm.stages, strict=True)]
     )
+    return [
+        JointEncoders(
+            closed.ticks // closed.every(loop) + 1,
+            loop.period,
+            amplitudes,
+            noise.distribution,
+            noise.velocity,
+            np.random.default_rng([config.settings.seed, repetition, place]),
+        )
+        for place, loop in enumerate(closed.loops)
+    ]
 
 
-def metric_context(config: RunConfig, loop: ClosedLoop) -> MetricContext:
+def metric_context(config: RunConfig, closed: ClosedLoop) -> MetricContext:
     """Return what the metrics need to know of a run beside its trace."""
-    return MetricContext(loop.trajectory, config.robot.settling_band, loop.period)
+    reach = getattr(config.controller, "reach", None)
+    return MetricContext(closed.trajectory, config.robot.settling_band, closed.tick, reach)

@@ -39,7 +39,7 @@ def execute(composed: Composed) -> store.Run:
     """Run a composed config, or return its stored run; see `run`."""
     config = validate(composed.resolved, composed.config_dirs)
     outputs = Path(config.settings.outputs)
-    name = store.run_hash(composed.resolved, config.urdf)
+    name = store.run_hash(composed.resolved, config.arm.urdf)
     stored = store.find_run(outputs, name)
     if stored is not None:
         return stored
@@ -67,7 +67,7 @@ def _simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
     assert first is not None  # noqa: S101 - repetitions is at least 1
     return store.RunResult(
         resolved=config.resolved,
-        urdf=config.urdf,
+        urdf=config.arm.urdf,
         trace=first,
         metrics=summarize(metrics),
         repetitions=config.settings.repetitions,
@@ -84,7 +84,9 @@ def _provenance(config: RunConfig, composed: Composed) -> dict[str, object]:
         "choices": dict(composed.choices),
         "plant_step": config.step,
         "steps_per_tick": config.steps_per_tick,
-        "joints": list(config.model.joint_names),
+        "tip_frame": config.arm.model.tip_name,
+        "stages": {stage.name: stage.base_frame for stage in config.arm.stages},
+        "joints": list(config.arm.model.joint_names),
         "seed": config.settings.seed,
         "commit": provenance.commit(),
         "versions": provenance.versions(),

@@ -51,9 +51,9 @@ class Registry:
         """Make the object that a validated config describes; `args` are what every kind of this group gets."""
         return self._module(config.kind).build(config, *args)
 
-    def default_step(self, kind: str, tick: float) -> float:
+    def default_step(self, kind: str, tick: float, stages: int) -> float:
         """Return the step that a kind of plant takes when its config names none, in s."""
-        step: float = self._module(kind).default_step(tick)
+        step: float = self._module(kind).default_step(tick, stages)
         return step
 
     def _module(self, kind: str) -> ModuleType:

@@ -1,13 +1,14 @@
-"""The closed loop: plant, encoders, controller and desired motion, tick by tick, to a trace."""
+"""The closed loop: plant, encoders, controllers and desired motion, tick by tick, to a trace."""
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from runner.controllers import Controller
+from runner.controllers import Loop
 from runner.plants import Plant
-from runner.robots import RobotModel
+from runner.robots.robot import Robot, end_points
 from runner.sensing import JointEncoders
 from runner.trace import Failure, FloatArray, Trace
 from runner.trajectories import Trajectory
@@ -19,54 +20,64 @@ _CHECK_EVERY = 64  # ticks between two looks for divergence, which the metrics n
 
 @dataclass(frozen=True)
 class ClosedLoop:
-    """One control loop around one arm.
+    """The control loops around one robot.
 
     Attributes:
-        model: The arm's rigid-body model, for its true tip position.
-        plant: The simulated arm.
-        controller: The control law.
-        trajectory: The desired motion.
+        robot: The robot, for its true end points.
+        plant: The simulated robot.
+        loops: The control loops; together they command every joint once.
+        trajectory: The desired motion of the tip.
         limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
-        period: Time between two ticks, in s.
+        tick: Time between two ticks of the fastest loop, in s; every loop's period is a multiple of it.
         ticks: Number of ticks.
-        q_start: Joint positions at t = 0, shape (nq,), in rad; the arm starts at rest.
+        q_start: Joint positions at t = 0, shape (nq,), in rad; the robot starts at rest.
+        parallel: Whether riding stages keep the orientation of home, as the plant has it.
     """
 
-    model: RobotModel
+    robot: Robot
     plant: Plant
-    controller: Controller
+    loops: tuple[Loop, ...]
     trajectory: Trajectory
     limits: FloatArray
-    period: float
+    tick: float
     ticks: int
     q_start: FloatArray
+    parallel: bool
+
+    def every(self, loop: Loop) -> int:
+        """Return the number of ticks in a loop's period."""
+        return round(loop.period / self.tick)
 
 
-def simulate(loop: ClosedLoop, encoders: JointEncoders) -> Trace:
-    """Run a closed loop once.
+def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders]) -> Trace:
+    """Run the control loops once.
 
-    At each tick the encoders are read, the controller is asked, its torques are clipped joint by joint and held
-    while the plant advances by one period. The last row holds the final state, with the torque asked for there.
+    At each of its ticks a loop reads the encoders of every joint afresh, asks its controller, and its torques are
+    clipped joint by joint and held until its next tick, while the plant advances. The last row holds the final state,
+    with the torques asked for there.
 
     Args:
-        loop: The closed loop; its plant is reset here.
-        encoders: The joint measurement, with a draw for each tick.
+        closed: The control loops; plant and controllers are reset here.
+        encoders: The joint measurement of each loop, with a draw for each of its ticks.
 
     Returns:
         The trace; one that ends early carries a failure.
     """
-    n, nq = loop.ticks, loop.model.nq
-    times: FloatArray = np.arange(n + 1, dtype=np.float64) * loop.period
-    desired = loop.trajectory.sample(times)
+    n, nq = closed.ticks, closed.robot.model.nq
+    times: FloatArray = np.arange(n + 1, dtype=np.float64) * closed.tick
+    desired = closed.trajectory.sample(times)
     q_rows, dq_rows, tau_rows = (np.zeros((n + 1, nq)) for _ in range(3))
     clock = np.zeros(n + 1, dtype=np.int64)
-    plant, measure, torque = loop.plant, encoders.measure, loop.controller.torque
-    lower, upper = -loop.limits, loop.limits
-    limited = bool(np.isfinite(upper).any())
-    now = time.perf_counter_ns
+    plant, now, tau = closed.plant, time.perf_counter_ns, np.zeros(nq)
+    loops = [
+        (closed.every(loop), sensor.measure, loop.controller.torque, loop.joints, closed.limits[loop.joints])
+        for loop, sensor in zip(closed.loops, encoders, strict=True)
+    ]
+    limited = bool(np.isfinite(closed.limits).any())
 
-    plant.reset(loop.q_start, np.zeros(nq))
-    loop.controller.reset()
+    plant.reset(closed.q_start, np.zeros(nq))
+    for loop in closed.loops:
+        loop.controller.reset()
     failure = None
     rows = n + 1
     with np.errstate(over="ignore", invalid="ignore"):  # a diverging run ends as a failure, not as a warning
@@ -75,13 +86,18 @@ def simulate(loop: ClosedLoop, encoders: JointEncoders) -> Trace:
             q_rows[k] = q = plant.q
             dq_rows[k] = dq = plant.dq
             try:
-                tau = torque(times[k], *measure(k, q, dq), desired[k])
+                for every, measure, torque, joints, limits in loops:
+                    if k % every == 0:
+                        asked = torque(times[k], *measure(k // every, q, dq), desired[k])
+                        if limited:
+                            np.minimum(asked, limits, out=asked)
+                            np.maximum(asked, -limits, out=asked)
+                        tau[joints] = asked
             except np.linalg.LinAlgError as error:
-                failure, rows = Failure(str(error), float(times[k])), k + 1
+                diverged = _find_divergence(q_rows, dq_rows, k)  # then the law had nothing to answer
+                if diverged is None:
+                    failure, rows = Failure(str(error), float(times[k])), k + 1
                 break
-            if limited:
-                np.minimum(tau, upper, out=tau)
-                np.maximum(tau, lower, out=tau)
             tau_rows[k] = tau
             if k % _CHECK_EVERY == 0 and (diverged := _find_divergence(q_rows, dq_rows, k)) is not None:
                 break
@@ -90,19 +106,22 @@ def simulate(loop: ClosedLoop, encoders: JointEncoders) -> Trace:
         else:
             diverged = _find_divergence(q_rows, dq_rows, n)
     if failure is None and diverged is not None:
-        rows, joint = diverged[0] + 1, loop.model.joint_names[diverged[1]]
+        rows, joint = diverged[0] + 1, closed.robot.model.joint_names[diverged[1]]
         failure = Failure(f"diverged: not finite or above {DIVERGED_SPEED:g} rad/s", float(times[diverged[0]]), joint)
     kept = slice(0, rows)
+    home = end_points(closed.robot, closed.robot.home[None], closed.parallel)[:, 0]
     return Trace(
         t=times[kept],
         q=q_rows[kept],
         dq=dq_rows[kept],
         tau=tau_rows[kept],
-        tip=loop.model.tip_positions(q_rows[kept]),
+        end_points=end_points(closed.robot, q_rows[kept], closed.parallel),
+        offsets=home[-1] - home,
+        stage_names=closed.robot.stage_names,
         desired=desired[kept],
-        limits=loop.limits,
-        joint_names=loop.model.joint_names,
-        tick_seconds=np.diff(clock[kept]) * 1e-9,
+        limits=closed.limits,
+        joint_names=closed.robot.model.joint_names,
+        tick_seconds=np.diff(clock[:rows]) * 1e-9,
         failure=failure,
     )
 

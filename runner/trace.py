@@ -1,6 +1,6 @@
 """What one closed-loop run leaves behind: every signal at every control tick."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,9 @@ class Trace:
         q: Joint positions, shape (T, nq), in rad.
         dq: Joint velocities, shape (T, nq), in rad/s.
         tau: Torques after the limit, held until the next row, shape (T, nq), in N m.
-        tip: Tip positions in the base frame, shape (T, 3), in m.
+        end_points: End point of each stage in the base frame, shape (stages, T, 3), in m; the last is the tip.
+        offsets: Offset of the tip at home from each stage's end point, shape (stages, 3), in m; the last is zero.
+        stage_names: Names of the stages.
         desired: Desired tip position, velocity, acceleration, shape (T, 3, 3): rows in m, m/s, m/s^2.
         limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
         joint_names: Names of the joints.
@@ -44,12 +46,26 @@ class Trace:
     q: FloatArray
     dq: FloatArray
     tau: FloatArray
-    tip: FloatArray
+    end_points: FloatArray
+    offsets: FloatArray
+    stage_names: tuple[str, ...]
     desired: FloatArray
     limits: FloatArray
     joint_names: tuple[str, ...]
     tick_seconds: FloatArray
     failure: Failure | None = None
+
+    @property
+    def tip(self) -> FloatArray:
+        """Tip positions in the base frame, shape (T, 3), in m."""
+        tip: FloatArray = self.end_points[-1]
+        return tip
+
+    def at_stage(self, index: int) -> "Trace":
+        """Return the trace with a stage's end point in the tip's place, and x_d less its home offset desired of it."""
+        desired = self.desired.copy()
+        desired[:, 0] -= self.offsets[index]
+        return replace(self, end_points=self.end_points[index : index + 1], desired=desired)
 
     @property
     def error(self) -> FloatArray:

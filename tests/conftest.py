@@ -16,6 +16,7 @@ quiet_environment()
 from runner.assembly import assemble, make_encoders  # noqa: E402 - after the environment
 from runner.cli import dispatch  # noqa: E402
 from runner.robots import RobotModel, find_urdf, read_urdf  # noqa: E402
+from runner.robots.robot import Robot, Stage  # noqa: E402
 from runner.simulation import ClosedLoop, simulate  # noqa: E402
 from runner.trace import Trace  # noqa: E402
 
@@ -54,9 +55,26 @@ def arm(request: pytest.FixtureRequest) -> RobotModel:
 
 
 @pytest.fixture(scope="session")
+def one_stage() -> Callable[[str, RobotModel], Robot]:
+    """Make a robot of one arm, at home at zero."""
+
+    def make(urdf: str, model: RobotModel) -> Robot:
+        stage = Stage("arm", model, urdf, slice(0, model.nq), np.zeros(model.nq), None)
+        return Robot(urdf, model, (stage,))
+
+    return make
+
+
+@pytest.fixture(scope="session")
 def checked_config() -> Callable[..., RunConfig]:
     """Compose and check a config from overrides; noise-free, without torque limits, unless they ask for it."""
     return lambda *overrides: validate(compose(overrides).resolved)
+
+
+@pytest.fixture(scope="session")
+def combined(checked_config: Callable[..., RunConfig]) -> Robot:
+    """The Mini riding on the Macro."""
+    return checked_config("robot=combined").arm
 
 
 @pytest.fixture
@@ -105,7 +123,9 @@ def hand_made_trace() -> Callable[..., Trace]:
             q=np.zeros((rows, 2)) + q,
             dq=np.zeros((rows, 2)) + dq,
             tau=np.zeros((rows, 2)) + tau,
-            tip=np.zeros((rows, 3)) + tip,
+            end_points=np.zeros((1, rows, 3)) + tip,
+            offsets=np.zeros((1, 3)),
+            stage_names=("arm",),
             desired=motion,
             limits=np.zeros(2) + limits,
             joint_names=("q1", "q2"),

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from runner.assembly import assemble, make_encoders
+from runner.controllers import Loop
 from runner.sensing import JointEncoders
 from runner.simulation import ClosedLoop, simulate
 
@@ -59,8 +60,8 @@ def loop_of(closed_loop):
         return dataclasses.replace(
             real,
             plant=Integrator(period, jump),
-            controller=controller,
-            period=period,
+            loops=(Loop("arm", slice(0, 3), period, controller),),
+            tick=period,
             ticks=ticks,
             limits=np.zeros(3) + limits,
         )
@@ -69,13 +70,13 @@ def loop_of(closed_loop):
 
 
 def exact(loop):
-    return JointEncoders(loop.ticks + 1, 3, loop.period, 0.0, "none", "exact", np.random.default_rng(0))
+    return [JointEncoders(loop.ticks + 1, loop.tick, np.zeros(3), "none", "exact", np.random.default_rng(0))]
 
 
 def fingerprint(trace):
     """Every bit of a trace but the clock's."""
     digest = hashlib.sha256()
-    for array in (trace.t, trace.q, trace.dq, trace.tau, trace.tip, trace.desired):
+    for array in (trace.t, trace.q, trace.dq, trace.tau, trace.end_points, trace.desired):
         digest.update(np.ascontiguousarray(array).tobytes())
     return digest.hexdigest()
 
@@ -90,7 +91,7 @@ def test_time_is_counted_in_whole_ticks(loop_of):
     assert len(trace.q) == len(trace.tau) == len(trace.tip) == len(trace.desired) == 1001
     assert len(trace.tick_seconds) == 1000
     assert trace.tick_seconds.min() > 0.0
-    assert [call[0] for call in loop.controller.calls] == trace.t.tolist()
+    assert [call[0] for call in loop.loops[0].controller.calls] == trace.t.tolist()
 
 
 @pytest.mark.parametrize(
@@ -112,7 +113,7 @@ def test_the_last_row_holds_the_final_state_and_the_torque_asked_for_there(loop_
     trace = simulate(loop, exact(loop))
     np.testing.assert_array_equal(trace.tau[:, 0], np.arange(1.0, 9.0))
     np.testing.assert_array_equal(trace.q[-1], loop.plant.q)
-    np.testing.assert_array_equal(trace.tip[-1], loop.model.tip_position(loop.plant.q))
+    np.testing.assert_array_equal(trace.tip[-1], loop.robot.model.tip_position(loop.plant.q))
 
 
 def test_the_arm_starts_at_rest_where_the_trajectory_starts(loop_of, closed_loop):
@@ -126,7 +127,7 @@ def test_the_reference_is_the_motion_at_each_tick(loop_of):
     loop = loop_of(Recorder(), ticks=30, trajectory="quintic")
     trace = simulate(loop, exact(loop))
     np.testing.assert_array_equal(trace.desired, loop.trajectory.sample(trace.t))
-    np.testing.assert_array_equal([call[3] for call in loop.controller.calls], trace.desired)
+    np.testing.assert_array_equal([call[3] for call in loop.loops[0].controller.calls], trace.desired)
 
 
 def test_torques_are_clipped_joint_by_joint(loop_of):
@@ -148,21 +149,22 @@ def test_a_limit_for_each_joint_comes_from_the_config(simulated):
 @pytest.mark.parametrize("velocity", ["exact", "finite_difference"])
 def test_the_controller_reads_noise_and_the_trace_the_truth(checked_config, velocity):
     config = checked_config("noise=thesis", f"noise.velocity={velocity}", "duration=0.3")
-    loop = dataclasses.replace(assemble(config), controller=Recorder(lambda tick: np.array([0.0, 9.0, -9.0])))
+    recorder = Recorder(lambda tick: np.array([0.0, 9.0, -9.0]))
+    loop = dataclasses.replace(assemble(config), loops=(Loop("arm", slice(0, 3), 0.01, recorder),))
     try:
         trace = simulate(loop, make_encoders(config, loop, 0))
     finally:
         loop.plant.close()
     noise = np.random.default_rng([0, 0]).uniform(-1e-3, 1e-3, trace.q.shape)
-    measured = np.array([call[1] for call in loop.controller.calls])
+    measured = np.array([call[1] for call in loop.loops[0].controller.calls])
     np.testing.assert_allclose(measured, trace.q + noise, atol=1e-15)
-    told = np.array([call[2] for call in loop.controller.calls])
+    told = np.array([call[2] for call in loop.loops[0].controller.calls])
     if velocity == "exact":
         np.testing.assert_array_equal(told, trace.dq)
     else:
         np.testing.assert_array_equal(told[0], 0.0)
         np.testing.assert_allclose(told[1:], np.diff(measured, axis=0) / 0.01, rtol=1e-12, atol=1e-12)
-    np.testing.assert_array_equal(trace.tip, loop.model.tip_positions(trace.q))
+    np.testing.assert_array_equal(trace.tip, loop.robot.model.tip_positions(trace.q))
     np.testing.assert_array_equal(trace.error, trace.desired[:, 0] - trace.tip)
 
 
@@ -179,7 +181,7 @@ def test_noise_is_drawn_from_seed_and_repetition_alone(checked_config):
         config = checked_config("noise.position=1e-3", *overrides)
         loop = assemble(config)
         loop.plant.close()
-        encoders = make_encoders(config, loop, repetition)
+        (encoders,) = make_encoders(config, loop, repetition)
         return np.array([encoders.measure(tick, np.zeros(3), np.zeros(3))[0] for tick in range(20)])
 
     first = noise(3, "seed=5")
@@ -246,7 +248,7 @@ def test_the_controller_is_reset_before_each_run(loop_of):
     loop = loop_of(Recorder(), ticks=3)
     for count in (1, 2):
         simulate(loop, exact(loop))
-        assert loop.controller.resets == count
+        assert loop.loops[0].controller.resets == count
 
 
 # Leaving the domain of the equations.
@@ -292,6 +294,18 @@ def test_a_controller_without_an_answer_is_a_failure(loop_of, limit):
     assert (trace.failure.reason, trace.failure.time, trace.failure.joint) == ("no way out", trace.t[5], None)
     assert len(trace.t) == len(trace.q) == len(trace.tau) == 6
     assert len(trace.tick_seconds) == 5
+
+
+def test_a_law_without_an_answer_to_a_state_that_diverged_is_no_failure_of_its_own(loop_of):
+    def answer(tick):
+        if tick == 70:
+            raise np.linalg.LinAlgError("no matrix of NaN can be solved")
+        return np.zeros(3)
+
+    loop = loop_of(Recorder(answer), ticks=100, jump=(68, 2, np.nan))
+    failure = simulate(loop, exact(loop)).failure
+    assert failure is not None
+    assert (failure.reason.split(":")[0], failure.time, failure.joint) == ("diverged", pytest.approx(0.68), "q3")
 
 
 def test_a_singular_start_is_a_failure_without_damping(closed_loop):

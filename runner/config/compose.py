@@ -13,6 +13,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.options import groups
+from runner.config.stage_defaults import complete_stages
 from runner.paths import conf_dir
 
 
@@ -70,11 +71,12 @@ def from_hydra(
     """
     try:
         raw: Any = OmegaConf.to_container(config, resolve=False)
+        choices = {group: name for group, name in chosen.items() if name is not None and not group.startswith("hydra/")}
         own = OmegaConf.create({key: value for key, value in raw.items() if key != "hydra"})
+        complete_stages(own, choices, config_dirs)
         resolved: Any = OmegaConf.to_container(own, resolve=True)
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None
-    choices = {group: name for group, name in chosen.items() if name is not None and not group.startswith("hydra/")}
     return Composed(resolved, tuple(overrides), choices, tuple(config_dirs))
 
 

@@ -10,7 +10,7 @@ from runner.config.noise import NoiseConfig
 from runner.config.robot import RobotConfig
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.registry import StrictModel
-from runner.robots import RobotModel
+from runner.robots.robot import Robot
 
 
 class RunSettings(StrictModel):
@@ -43,10 +43,10 @@ class RunConfig:
         noise: Config of the joint measurement.
         torque_limits: Config of the torque limits.
         robot: Config of the robot.
-        model: The robot's rigid-body model.
-        urdf: The robot's URDF text, masses applied.
+        arm: The robot's rigid-body model, stage by stage.
+        tick: Period of the fastest control loop, in s.
         step: Integration step of the plant, in s.
-        steps_per_tick: Integration steps in one controller period.
+        steps_per_tick: Integration steps in one tick.
         resolved: The composed config as plain data, interpolations resolved.
     """
 
@@ -57,8 +57,13 @@ class RunConfig:
     noise: NoiseConfig
     torque_limits: TorqueLimitsConfig
     robot: RobotConfig
-    model: RobotModel
-    urdf: str
+    arm: Robot
+    tick: float
     step: float
     steps_per_tick: int
     resolved: Mapping[str, Any]
+
+    @property
+    def parallel(self) -> bool:
+        """Whether riding stages keep the orientation of home, in the plant's truth."""
+        return len(self.arm.stages) > 1 and self.plant.wrist_rotation == "parallel"

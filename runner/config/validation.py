@@ -8,30 +8,32 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from runner.config.arms import build_robot
 from runner.config.messages import describe
 from runner.config.noise import NoiseConfig
 from runner.config.per_joint import expand
+from runner.config.per_stage import by_stage
 from runner.config.preset import PresetConfig
-from runner.config.robot import RobotConfig
+from runner.config.robot import OneArmConfig, StagedRobotConfig
 from runner.config.run import RunConfig, RunSettings
+from runner.config.timing import check_duration, count_steps
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS
 from runner.errors import ConfigError, nearest
 from runner.plants import PLANTS
 from runner.registry import Registry, StrictModel
-from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.robots.model import STANDARD_GRAVITY
+from runner.robots.robot import Robot
 from runner.trajectories import TRAJECTORIES
 
 _KINDS: dict[str, Registry] = {"plant": PLANTS, "controller": CONTROLLERS, "trajectory": TRAJECTORIES}
 _PLAIN: dict[str, type[StrictModel]] = {
     "noise": NoiseConfig,
     "torque_limits": TorqueLimitsConfig,
-    "robot": RobotConfig,
+    "robot": OneArmConfig,
     "preset": PresetConfig,
 }
 _SETTINGS = tuple(RunSettings.model_fields)
-_MAX_TICKS = 10_000_000
 
 
 def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> RunConfig:
@@ -57,30 +59,29 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
     settings = collect(lambda: _parse("", RunSettings, {key: resolved.get(key) for key in _SETTINGS}))
     parts = {group: collect(partial(_parse_group, group, resolved)) for group in (*_KINDS, *_PLAIN)}
     robot, plant, controller, trajectory = (parts[g] for g in ("robot", "plant", "controller", "trajectory"))
-    built, timing = None, None
+    arm, timing = None, None
     if robot is not None:
         gravity = STANDARD_GRAVITY if settings is None else settings.gravity
-        built = collect(lambda: _build_model(robot, gravity, config_dirs))
-    if built is not None:
-        model, urdf = built
-        collect(lambda: _check_joint_values(model, robot, parts["torque_limits"]))
+        arm = collect(lambda: build_robot(robot, gravity, config_dirs))
+    if arm is not None:
+        collect(lambda: _check_stage_values(arm, parts["noise"], parts["torque_limits"]))
         if trajectory is not None:
-            collect(lambda: _check_reach(model, trajectory))
+            collect(lambda: _check_reach(arm, trajectory))
+        if plant is not None and controller is not None:
+            timing = collect(lambda: count_steps(arm, plant, controller))
         if controller is not None and not problems:
-            collect(lambda: CONTROLLERS.build(controller, model))
-    if plant is not None and controller is not None:
-        timing = collect(lambda: _count_steps(plant, controller))
-    if settings is not None and controller is not None and trajectory is not None:
-        collect(lambda: _check_duration(settings, controller, trajectory))
-    if problems or built is None or timing is None:
+            collect(lambda: CONTROLLERS.build(controller, arm))
+    if settings is not None and timing is not None and trajectory is not None:
+        collect(lambda: check_duration(settings, timing[0], trajectory))
+    if problems or arm is None or timing is None:
         raise ConfigError(problems)
-    step, steps_per_tick = timing
+    tick, step, steps_per_tick = timing
     parts.pop("preset")  # its values have been taken by the other groups
     return RunConfig(
         settings=settings,
         **parts,
-        model=model,
-        urdf=urdf,
+        arm=arm,
+        tick=tick,
         step=step,
         steps_per_tick=steps_per_tick,
         resolved=resolved,
@@ -99,7 +100,8 @@ def _parse_group(group: str, resolved: Mapping[str, Any]) -> StrictModel:
     if not isinstance(value, Mapping):
         raise ConfigError([f"{group}: must be a group of keys; found {value!r}"])
     if group in _PLAIN:
-        return _parse(group, _PLAIN[group], value)
+        staged = group == "robot" and "stages" in value
+        return _parse(group, StagedRobotConfig if staged else _PLAIN[group], value)
     registry = _KINDS[group]
     if "kind" not in value:
         raise ConfigError([f"{group}.kind: missing; known: {', '.join(registry.names())}"])
@@ -113,57 +115,36 @@ def _parse(group: str, model: type[StrictModel], value: Mapping[str, Any]) -> St
         raise ConfigError(describe(group, model, error)) from None
 
 
-def _build_model(robot: RobotConfig, gravity: float, config_dirs: Sequence[Path]) -> tuple[RobotModel, str]:
-    urdf = read_urdf(find_urdf(robot.urdf, config_dirs), robot.masses)
-    return RobotModel(urdf, robot.tip, gravity), urdf
-
-
-def _check_joint_values(model: RobotModel, robot: RobotConfig, torque_limits: TorqueLimitsConfig | None) -> None:
-    expand("robot.home", robot.home, model.joint_names)
+def _check_stage_values(arm: Robot, noise: NoiseConfig | None, torque_limits: TorqueLimitsConfig | None) -> None:
+    problems: list[str] = []
+    if noise is not None:
+        try:
+            by_stage("noise.position", noise.position, arm.stage_names)
+        except ConfigError as error:
+            problems += error.problems
     if torque_limits is not None and torque_limits.max is not None:
-        expand("torque_limits.max", torque_limits.max, model.joint_names)
+        try:
+            limits = by_stage("torque_limits.max", torque_limits.max, arm.stage_names)
+            for stage, limit in zip(arm.stages, limits, strict=True):
+                key = f"torque_limits.max.{stage.name}" if len(arm.stages) > 1 else "torque_limits.max"
+                expand(key, limit, stage.model.joint_names)
+        except ConfigError as error:
+            problems += error.problems
+    if problems:
+        raise ConfigError(problems)
 
 
-def _check_reach(model: RobotModel, trajectory: Any) -> None:  # noqa: ANN401 - any registered kind
+def _check_reach(arm: Robot, trajectory: Any) -> None:  # noqa: ANN401 - any registered kind
     problems = []
     for key in ("start", "goal"):
         point = getattr(trajectory, key, None)
         if point is None:
             continue
-        distance = float(np.linalg.norm(np.array(point) - model.shoulder))
-        if distance > model.reach * (1.0 + 1e-12):
+        distance = float(np.linalg.norm(np.array(point) - arm.model.shoulder))
+        if distance > arm.model.reach * (1.0 + 1e-12):
             problems.append(
                 f"trajectory.{key}: {point} m is outside the workspace: {distance:.4g} m from the shoulder, and the "
-                f"arm reaches {model.reach:.4g} m"
+                f"arm reaches {arm.model.reach:.4g} m"
             )
     if problems:
         raise ConfigError(problems)
-
-
-def _count_steps(plant: Any, controller: Any) -> tuple[float, int]:  # noqa: ANN401 - any registered kinds
-    step = PLANTS.default_step(plant.kind, controller.period) if plant.step is None else plant.step
-    steps = round(controller.period / step)
-    if steps < 1 or abs(steps * step - controller.period) > 1e-9 * controller.period:
-        raise ConfigError(
-            [
-                f"controller.period: {controller.period:g} s is no multiple of plant.step, {step:g} s; "
-                f"set plant.step to the period divided by a whole number, such as {controller.period / max(steps, 1):g}"
-            ]
-        )
-    return step, steps
-
-
-def _check_duration(settings: RunSettings, controller: Any, trajectory: Any) -> None:  # noqa: ANN401 - any kinds
-    key, length = "duration", settings.duration
-    if length is None:
-        key, length = "trajectory.duration", getattr(trajectory, "duration", controller.period)
-    elif length < controller.period:
-        raise ConfigError([f"duration: {length:g} s is shorter than one controller period, {controller.period:g} s"])
-    ticks = length / controller.period
-    if ticks > _MAX_TICKS:
-        raise ConfigError(
-            [
-                f"{key}: {length:g} s are {ticks:.3g} ticks of controller.period, {controller.period:g} s; allowed: "
-                f"up to {_MAX_TICKS:g} ticks, as a run is kept in memory"
-            ]
-        )

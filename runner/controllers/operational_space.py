@@ -4,13 +4,15 @@ from typing import Literal
 
 import numpy as np
 import pinocchio as pin
-from pydantic import NonNegativeFloat, PositiveFloat
+from pydantic import NonNegativeFloat
 from scipy.linalg.lapack import dgesv
 
-from runner.controllers.controller import Controller, FloatArray
+from runner.config.per_stage import PositivePerStage, by_stage
+from runner.controllers.controller import FloatArray, Loop
 from runner.errors import ConfigError
 from runner.registry import StrictModel
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
+from runner.robots.robot import Robot
 
 
 class OperationalSpaceConfig(StrictModel):
@@ -28,9 +30,9 @@ class OperationalSpaceConfig(StrictModel):
     """
 
     kind: Literal["operational_space"]
-    natural_frequency: PositiveFloat
-    damping_ratio: PositiveFloat
-    period: PositiveFloat
+    natural_frequency: PositivePerStage
+    damping_ratio: PositivePerStage
+    period: PositivePerStage
     gravity_compensation: bool
     feedforward: bool
     singularity_damping: NonNegativeFloat
@@ -89,8 +91,9 @@ class OperationalSpace:
                 ]
             )
         self._model = pin.Model(model.pin_model)
-        if not gravity_compensation:
-            self._model.gravity.linear = np.zeros(3)
+        self._gravity_compensation = gravity_compensation
+        self._no_gravity = np.zeros(3)
+        self.set_gravity(model.gravity)
         self._data = self._model.createData()
         self._tip = model.tip_frame
         # A view into Pinocchio's data: each update of the frame refreshes it, without a new object per tick.
@@ -101,6 +104,10 @@ class OperationalSpace:
         self._k_p, self._k_v = np.full(3, k_p), np.full(3, k_v)  # NumPy multiplies arrays quicker than a float
         self._damping = singularity_damping
         self._singular_below = 0.1 * model.reach
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector in the arm's base frame, shape (3,), in m/s^2."""
+        self._model.gravity.linear = gravity if self._gravity_compensation else self._no_gravity
 
     def reset(self) -> None:
         """Do nothing: the law has no memory."""
@@ -137,13 +144,29 @@ class OperationalSpace:
 CONFIG = OperationalSpaceConfig
 
 
-def build(config: OperationalSpaceConfig, model: RobotModel) -> Controller:
-    """Make the controller that a config describes."""
-    return OperationalSpace(
-        model,
-        config.natural_frequency,
-        config.damping_ratio,
+def build(config: OperationalSpaceConfig, robot: Robot) -> tuple[Loop, ...]:
+    """Make the one loop that a config describes; it commands every joint.
+
+    Raises:
+        ConfigError: if the robot has several stages, or its arm another number of joints than three.
+    """
+    names = robot.stage_names
+    if len(names) > 1:
+        raise ConfigError(
+            [
+                f"controller.kind: operational_space controls one arm with 3 joints; the robot has {robot.model.nq} in "
+                f"stages ({', '.join(names)}); take macro_mini or whole_body"
+            ]
+        )
+    (natural_frequency,) = by_stage("controller.natural_frequency", config.natural_frequency, names)
+    (damping_ratio,) = by_stage("controller.damping_ratio", config.damping_ratio, names)
+    (period,) = by_stage("controller.period", config.period, names)
+    controller = OperationalSpace(
+        robot.model,
+        natural_frequency,
+        damping_ratio,
         config.gravity_compensation,
         config.feedforward,
         config.singularity_damping,
     )
+    return (Loop(names[0], slice(0, robot.model.nq), period, controller),)

@@ -5,6 +5,6 @@ Names of single joints or axes carry a suffix (`peak_torque_q1`, `max_tracking_e
 """
 
 from runner.metrics.context import MetricContext
-from runner.metrics.summary import Summary, evaluate, summarize, units
+from runner.metrics.summary import Summary, evaluate, summarize, unit_of, units
 
-__all__ = ["MetricContext", "Summary", "evaluate", "summarize", "units"]
+__all__ = ["MetricContext", "Summary", "evaluate", "summarize", "unit_of", "units"]

@@ -18,7 +18,7 @@ UNITS = {
 def evaluate(trace: Trace, context: MetricContext) -> dict[str, float | None]:
     """Return torques, speeds, saturation, energy and effort, over the torques that were held (all rows but the last).
 
-    - peak_torque: largest magnitude of a joint's torque; so over all joints, and per joint with its name.
+    - peak_torque: largest magnitude of a joint's torque; so over all joints, and per joint, as peak_torque_q1.
     - rms_torque: root mean square of the torques, likewise.
     - peak_joint_speed: largest joint speed, likewise.
     - saturation_fraction: share of ticks with any joint at its limit; per joint, of those with this one.
@@ -27,7 +27,7 @@ def evaluate(trace: Trace, context: MetricContext) -> dict[str, float | None]:
     """
     tau, speed = trace.tau[:-1], np.abs(trace.dq)
     saturated = np.abs(tau) >= trace.limits * (1.0 - 1e-12)
-    joints = trace.joint_names
+    joints = [f"q{index + 1}" for index in range(tau.shape[1])]
     per_joint = {
         "peak_torque": np.abs(tau).max(axis=0),
         "rms_torque": np.sqrt((tau**2).mean(axis=0)),

@@ -1,18 +1,19 @@
 """Metrics of one run, and over its repetitions."""
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from importlib.metadata import entry_points
 from types import ModuleType
 
 import numpy as np
 
-from runner.metrics import effort, positioning, tracking
+from runner.metrics import effort, positioning, reaching, tracking
 from runner.metrics.context import MetricContext
 from runner.trace import Trace
+from runner.trajectories.shifted import Shifted
 
-_FAMILIES: tuple[ModuleType, ...] = (positioning, tracking, effort)
+_FAMILIES: tuple[ModuleType, ...] = (positioning, tracking, effort, reaching)
 
 
 @dataclass(frozen=True)
@@ -45,10 +46,20 @@ def units() -> dict[str, str]:
 
 
 def evaluate(trace: Trace, context: MetricContext) -> dict[str, float | None]:
-    """Return all metrics of one run; a run that failed has none."""
+    """Return all metrics of one run; a run that failed has none.
+
+    Where stages ride on each other, the positioning and tracking of a carrier's end point against x_d less the home
+    offset of what rides on it stand beside the tip's, with the stage's name in front: `macro_settling_time`.
+    """
     if trace.failure is not None:
         return {}
-    return {name: value for family in families() for name, value in family.evaluate(trace, context).items()}
+    values = {name: value for family in families() for name, value in family.evaluate(trace, context).items()}
+    for index, stage in enumerate(trace.stage_names[:-1]):
+        carrier = replace(context, trajectory=Shifted(context.trajectory, trace.offsets[index]))
+        for family in (positioning, tracking):
+            of_stage = family.evaluate(trace.at_stage(index), carrier)
+            values |= {f"{stage}_{name}": value for name, value in of_stage.items()}
+    return values
 
 
 def summarize(repetitions: Sequence[Mapping[str, float | None]]) -> dict[str, Summary]:
@@ -59,7 +70,18 @@ def summarize(repetitions: Sequence[Mapping[str, float | None]]) -> dict[str, Su
     for name in names:
         values = [values.get(name) for values in repetitions]
         numbers = [math.inf if value is None else value for value in values]
-        unit = next(unit for base, unit in known.items() if name == base or name.startswith(f"{base}_"))
+        unit = known[_base(name, known)]
         median, low, high = float(np.median(numbers)), min(numbers), max(numbers)
         summaries[name] = Summary(unit, values, *(x if math.isfinite(x) else None for x in (median, low, high)))
     return summaries
+
+
+def unit_of(name: str) -> str | None:
+    """Return the unit of a metric, whose name may carry a stage in front and a joint or axis behind; None for none."""
+    known = units()
+    return known.get(_base(name, known))
+
+
+def _base(name: str, known: Iterable[str]) -> str:
+    """Return the metric that a name is of: the longest known one within it; the name itself where there is none."""
+    return max((base for base in known if f"_{base}_" in f"_{name}_"), key=len, default=name)

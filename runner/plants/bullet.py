@@ -8,9 +8,12 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.errors import ConfigError
-from runner.plants.plant import Arm, FloatArray, Plant
+from runner.plants.decoupled import assemble_plant
+from runner.plants.plant import FloatArray, Plant
 from runner.plants.quiet import quiet_stderr
 from runner.registry import StrictModel
+from runner.robots.model import RobotModel
+from runner.robots.robot import Robot
 
 with quiet_stderr():  # PyBullet announces its build time
     import pybullet
@@ -24,18 +27,23 @@ class BulletConfig(StrictModel):
 
     Attributes:
         kind: Its name in the registry.
-        step: Integration step, in s; None is a tenth of the fastest controller period.
+        step: Integration step, in s; None is a tenth of the fastest controller period, a quarter with several stages.
+        dynamics: Whether stages that ride on each other act on each other; see assemble_plant.
+        wrist_rotation: Whether the carrier turns the rider's base; see assemble_plant.
     """
 
     kind: Literal["bullet"]
     step: PositiveFloat | None
+    dynamics: Literal["coupled", "decoupled"]
+    wrist_rotation: Literal["real", "parallel"]
 
 
 class Bullet:
     """An arm in PyBullet, torque-controlled, without motors, damping, contacts or speed limit.
 
     Args:
-        arm: The arm.
+        urdf: The arm's URDF text.
+        model: The model built from it, for gravity and the order of the joints.
         step: Integration step, in s.
         steps_per_tick: Integration steps for which the torques of one tick are held.
 
@@ -43,18 +51,18 @@ class Bullet:
         ConfigError: if PyBullet cannot load the URDF.
     """
 
-    def __init__(self, arm: Arm, step: float, steps_per_tick: int) -> None:
-        self.q = np.zeros(arm.model.nq)
-        self.dq = np.zeros(arm.model.nq)
+    def __init__(self, urdf: str, model: RobotModel, step: float, steps_per_tick: int) -> None:
+        self.q = np.zeros(model.nq)
+        self.dq = np.zeros(model.nq)
         self._client = pybullet.connect(pybullet.DIRECT)
         try:
-            self._body = self._load(arm.urdf)
-            self._joints = self._order_joints(arm.model.joint_names)
+            self._body = self._load(urdf)
+            self._joints = self._order_joints(model.joint_names)
         except ConfigError:
             self.close()
             raise
         self._remove_damping_and_motors()
-        pybullet.setGravity(*arm.model.pin_model.gravity.linear.tolist(), physicsClientId=self._client)
+        self.set_gravity(model.gravity)
         # Bullet splits one stepSimulation into the steps: bit-identical to as many calls, and cheaper. Its own
         # "substeps" start at 2; 0 means none.
         pybullet.setPhysicsEngineParameter(
@@ -66,7 +74,7 @@ class Bullet:
     def _load(self, urdf: str) -> int:
         # Bullet caches URDFs by file name within a process, so each arm gets a file name of its own.
         with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "arm.urdf"
+            path = Path(folder) / "urdf"
             path.write_text(urdf)
             flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
             try:
@@ -101,6 +109,10 @@ class Bullet:
             pybullet.resetJointState(self._body, joint, position, velocity, physicsClientId=self._client)
         self.q[:], self.dq[:] = q, dq
 
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector; see Plant."""
+        pybullet.setGravity(*gravity.tolist(), self._client)
+
     def advance(self, tau: FloatArray) -> None:
         """Hold the torques for one tick; see Plant."""
         client, body, joints = self._client, self._body, self._joints
@@ -119,11 +131,14 @@ class Bullet:
 CONFIG = BulletConfig
 
 
-def build(config: BulletConfig, arm: Arm, step: float, steps_per_tick: int) -> Plant:
+def build(config: BulletConfig, robot: Robot, step: float, steps_per_tick: int) -> Plant:
     """Make the plant that a config describes."""
-    return Bullet(arm, step, steps_per_tick)
+    return assemble_plant(config, robot, lambda urdf, model: Bullet(urdf, model, step, steps_per_tick))
 
 
-def default_step(tick: float) -> float:
-    """Return the step taken when the config names none, in s: a tenth of the fastest controller period."""
-    return tick / 10.0
+def default_step(tick: float, stages: int) -> float:
+    """Return the step taken when the config names none, in s.
+
+    It is a tenth of the fastest controller period, and a quarter where a fast arm rides on a slow one.
+    """
+    return tick / (10.0 if stages == 1 else 4.0)

@@ -1,27 +1,11 @@
 """What every plant offers."""
 
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.robots import RobotModel
-
 FloatArray = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Arm:
-    """What a plant simulates.
-
-    Attributes:
-        urdf: The URDF's text.
-        model: Its rigid-body model, with gravity.
-    """
-
-    urdf: str
-    model: RobotModel
 
 
 class Plant(Protocol):
@@ -37,6 +21,9 @@ class Plant(Protocol):
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Put the arm into a state."""
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector in the arm's base frame, shape (3,), in m/s^2."""
 
     def advance(self, tau: FloatArray) -> None:
         """Hold the torques, shape (nq,), in N m, for one control tick of simulated time."""

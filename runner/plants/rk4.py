@@ -6,8 +6,11 @@ import numpy as np
 import pinocchio as pin
 from pydantic import PositiveFloat
 
-from runner.plants.plant import Arm, FloatArray, Plant
+from runner.plants.decoupled import assemble_plant
+from runner.plants.plant import FloatArray, Plant
 from runner.registry import StrictModel
+from runner.robots.model import RobotModel
+from runner.robots.robot import Robot
 
 
 class Rk4Config(StrictModel):
@@ -16,10 +19,14 @@ class Rk4Config(StrictModel):
     Attributes:
         kind: Its name in the registry.
         step: Integration step, in s; None is the fastest controller period.
+        dynamics: Whether stages that ride on each other act on each other; see assemble_plant.
+        wrist_rotation: Whether the carrier turns the rider's base; see assemble_plant.
     """
 
     kind: Literal["rk4"]
     step: PositiveFloat | None
+    dynamics: Literal["coupled", "decoupled"]
+    wrist_rotation: Literal["real", "parallel"]
 
 
 class Rk4:
@@ -28,23 +35,27 @@ class Rk4:
     Fourth order in its step while the torques are held and the motion is smooth: no contact, no stops.
 
     Args:
-        arm: The arm.
+        model: The arm's rigid-body model.
         step: Integration step, in s.
         steps_per_tick: Integration steps for which the torques of one tick are held.
     """
 
-    def __init__(self, arm: Arm, step: float, steps_per_tick: int) -> None:
-        self._model = arm.model.pin_model
+    def __init__(self, model: RobotModel, step: float, steps_per_tick: int) -> None:
+        self._model = pin.Model(model.pin_model)
         # Each stage has its own, as aba returns a view of its result in there.
         self._data = [self._model.createData() for _ in range(4)]
         self._step = step
         self._steps_per_tick = steps_per_tick
-        self.q = np.zeros(arm.model.nq)
-        self.dq = np.zeros(arm.model.nq)
+        self.q = np.zeros(model.nq)
+        self.dq = np.zeros(model.nq)
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Put the arm into a state; see Plant."""
         self.q[:], self.dq[:] = q, dq
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector; see Plant."""
+        self._model.gravity.linear = gravity
 
     def advance(self, tau: FloatArray) -> None:
         """Hold the torques for one tick; see Plant."""
@@ -76,11 +87,11 @@ class Rk4:
 CONFIG = Rk4Config
 
 
-def build(config: Rk4Config, arm: Arm, step: float, steps_per_tick: int) -> Plant:
+def build(config: Rk4Config, robot: Robot, step: float, steps_per_tick: int) -> Plant:
     """Make the plant that a config describes."""
-    return Rk4(arm, step, steps_per_tick)
+    return assemble_plant(config, robot, lambda _, model: Rk4(model, step, steps_per_tick))
 
 
-def default_step(tick: float) -> float:
+def default_step(tick: float, stages: int) -> float:
     """Return the step taken when the config names none, in s: the fastest controller period itself."""
     return tick

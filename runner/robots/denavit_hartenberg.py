@@ -124,5 +124,10 @@ def _row(before: FloatArray, after: FloatArray) -> DenavitHartenbergRow:
     step = np.linalg.solve(before, after)
     theta = np.arctan2(step[1, 0], step[0, 0])
     a = step[0, 3] * np.cos(theta) + step[1, 3] * np.sin(theta)
-    values = (theta, step[2, 3], a, np.arctan2(step[2, 1], step[2, 2]))
+    values = (_positive(theta), step[2, 3], a, _positive(np.arctan2(step[2, 1], step[2, 2])))
     return DenavitHartenbergRow(*(0.0 if abs(value) < 1e-14 else float(value) for value in values))
+
+
+def _positive(angle: float) -> float:
+    """Return half a turn as pi, whichever sign rounding gave it."""
+    return angle + 2.0 * np.pi if angle < _TOLERANCE - np.pi else angle

@@ -1,9 +1,13 @@
 """The URDF of a robot as text: found, checked, and with the masses that a config asks for."""
 
+import itertools
 import math
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
 
 from runner.errors import ConfigError, nearest
 from runner.paths import robots_dir
@@ -33,12 +37,14 @@ def find_urdf(name: str, config_dirs: Sequence[Path] = ()) -> Path:
     )
 
 
-def read_urdf(path: Path, masses: Mapping[str, float]) -> str:
+def read_urdf(path: Path, masses: Mapping[str, float], rotor_inertia: float = 0.0) -> str:
     """Return a URDF's text with the given link masses, inertias scaled along (a uniform change of density).
 
     Args:
         path: The URDF file.
         masses: Mass of links by name, in kg; links not named keep theirs.
+        rotor_inertia: Inertia added to each moving link about its joint's axis, in kg m^2, and half of it across: a
+            rotor, a thin disc, that turns with the link, without gear.
 
     Raises:
         ConfigError: if the file is no URDF, a link named does not exist or has no mass to change, or a link's own
@@ -71,6 +77,9 @@ def read_urdf(path: Path, masses: Mapping[str, float]) -> str:
             _scale_inertial(links[name], mass)
     if problems:
         raise ConfigError(problems)
+    if rotor_inertia:
+        for joint in tree.iter("joint"):
+            _add_rotor(joint, links, rotor_inertia)
     return ET.tostring(tree, encoding="unicode")
 
 
@@ -106,3 +115,23 @@ def _scale_inertial(link: ET.Element, mass: float) -> None:
     for key, value in dict({} if inertia is None else inertia.attrib).items():
         if inertia is not None:
             inertia.set(key, repr(float(value) * scale))
+
+
+def _add_rotor(joint: ET.Element, links: Mapping[str, ET.Element], rotor_inertia: float) -> None:
+    child, axis = joint.find("child"), joint.find("axis")
+    link = None if child is None else links.get(child.get("link", ""))
+    inertia = None if link is None else link.find("inertial/inertia")
+    if joint.get("type") == "fixed" or link is None or inertia is None:
+        return
+    frame = link.find("inertial/origin")
+    rotation = pin.rpy.rpyToMatrix(_vector("0 0 0" if frame is None else frame.get("rpy", "0 0 0")))
+    direction = rotation.T @ _vector("1 0 0" if axis is None else axis.get("xyz", "1 0 0"))
+    # A thin disc: PyBullet drops an inertia that no body has, such as one about a single axis.
+    added = 0.5 * rotor_inertia * (np.eye(3) + np.outer(direction, direction) / float(direction @ direction))
+    for row, column in itertools.combinations_with_replacement(range(3), 2):
+        key = f"i{'xyz'[row]}{'xyz'[column]}"
+        inertia.set(key, repr(float(inertia.get(key, "0")) + float(added[row, column])))
+
+
+def _vector(text: str) -> np.ndarray:
+    return np.array([float(value) for value in text.split()])

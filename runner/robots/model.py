@@ -1,5 +1,6 @@
 """A robot arm as its rigid-body model: kinematics and dynamics in joint space and at the tip, by Pinocchio."""
 
+import copy
 from functools import cached_property
 
 import numpy as np
@@ -43,6 +44,7 @@ class RobotModel:
         frames = [frame.name for frame in self.pin_model.frames]
         if tip not in frames:
             raise ConfigError([f"robot.tip: no frame '{tip}'{nearest(tip, frames)}; frames: {', '.join(frames)}"])
+        self.tip_name = tip
         self.tip_frame: int = self.pin_model.getFrameId(tip)
         self.nq: int = self.pin_model.nq
         self._data = self.pin_model.createData()
@@ -113,6 +115,27 @@ class RobotModel:
     def energy(self, q: FloatArray, dq: FloatArray) -> float:
         """Return the mechanical energy, kinetic plus potential, in J."""
         return float(pin.computeMechanicalEnergy(self.pin_model, self._data, q, dq))
+
+    @property
+    def gravity(self) -> FloatArray:
+        """Gravity in the base frame, shape (3,), in m/s^2."""
+        gravity: FloatArray = self.pin_model.gravity.linear.copy()
+        return gravity
+
+    @property
+    def mass(self) -> float:
+        """Mass of all moving links, in kg."""
+        return float(sum(inertia.mass for inertia in list(self.pin_model.inertias)[1:]))
+
+    def with_payload(self, mass: float) -> "RobotModel":
+        """Return this arm with a point mass, in kg, fixed at its tip."""
+        loaded = copy.copy(self)
+        loaded.pin_model = pin.Model(self.pin_model)
+        frame = loaded.pin_model.frames[self.tip_frame]
+        point = pin.Inertia(mass, np.zeros(3), np.zeros((3, 3)))
+        loaded.pin_model.appendBodyToJoint(frame.parentJoint, point, frame.placement)
+        loaded._data = loaded.pin_model.createData()
+        return loaded
 
     @property
     def effort_limits(self) -> FloatArray:

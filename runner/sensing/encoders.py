@@ -15,9 +15,9 @@ class JointEncoders:
 
     Args:
         ticks: Number of measurements to come.
-        joints: Number of joints.
         period: Time between two measurements, in s.
-        amplitude: Half-width (uniform) or standard deviation (gaussian) of the position noise, in rad.
+        amplitudes: Half-width (uniform) or standard deviation (gaussian) of each joint's position noise, shape (nq,),
+            in rad.
         distribution: Shape of the position noise.
         velocity: Whether velocities are exact, or differences of the measured positions over the period.
         generator: Source of the draws.
@@ -26,19 +26,18 @@ class JointEncoders:
     def __init__(
         self,
         ticks: int,
-        joints: int,
         period: float,
-        amplitude: float,
+        amplitudes: FloatArray,
         distribution: Literal["uniform", "gaussian", "none"],
         velocity: Literal["exact", "finite_difference"],
         generator: np.random.Generator,
     ) -> None:
         if distribution == "none":
-            self._noise = np.zeros((ticks, joints))
+            self._noise = np.zeros((ticks, len(amplitudes)))
         elif distribution == "uniform":
-            self._noise = amplitude * generator.uniform(-1.0, 1.0, (ticks, joints))
+            self._noise = amplitudes * generator.uniform(-1.0, 1.0, (ticks, len(amplitudes)))
         else:
-            self._noise = amplitude * generator.standard_normal((ticks, joints))
+            self._noise = amplitudes * generator.standard_normal((ticks, len(amplitudes)))
         self._period = period
         self._differenced = velocity == "finite_difference"
         self._last: FloatArray | None = None

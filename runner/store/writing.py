@@ -109,6 +109,10 @@ def _parquet(trace: Trace) -> bytes:
     )
     for name, unit, values in tip_signals:
         columns += [(f"{name}_{axis}", unit, values[:, index]) for index, axis in enumerate("xyz")]
+    for index, stage in enumerate(trace.stage_names[:-1]):
+        carrier = trace.at_stage(index)
+        for name, values in ((f"{stage}_tip", carrier.tip), (f"{stage}_error", carrier.error)):
+            columns += [(f"{name}_{axis}", "m", values[:, number]) for number, axis in enumerate("xyz")]
     schema = pyarrow.schema(
         [pyarrow.field(name, pyarrow.float64(), metadata={"unit": unit}) for name, unit, _ in columns]
     )

@@ -9,6 +9,7 @@ from runner.errors import ConfigError
 from runner.paths import robots_dir
 
 OPTIONS = [f"{group}={name}" for group in groups() for name in group_options(group)]
+NEEDS = {"controller=macro_mini": ("robot=combined",)}  # what an option does not run without
 SMALL_ROBOT = """\
 # @package _global_
 # My arm
@@ -21,11 +22,13 @@ robot:
   tip: tip
   home: [0.0, 0.0, 0.0]
   masses: {link3: 2.0}
+  rotor_inertia: 0.0
   goal: [0.2, -0.7, 0.4]
   natural_frequency: 20.0
   damping_ratio: 1.0
   period: 0.01
   joint_error_limit: 1e-3
+  no_joint_error: 0.0
   torque_limit: [50.0, 50.0, 20.0]
   settling_band: 0.02
 """
@@ -37,12 +40,12 @@ def resolve(*overrides):
 
 @pytest.mark.parametrize("option", OPTIONS)
 def test_every_option_composes(option):
-    validate(resolve(option))
+    validate(resolve(*NEEDS.get(option, ()), option))
 
 
 @pytest.mark.parametrize("option", OPTIONS)
 def test_every_option_runs(cli, option):
-    ending = cli(option, "duration=0.05", "repetitions=1")
+    ending = cli(*NEEDS.get(option, ()), option, "duration=0.05", "repetitions=1")
     assert (ending.code, ending.err) == (0, "")
 
 
@@ -58,8 +61,14 @@ def test_precedence_group_preset_robot_experiment_command_line():
 
 
 def test_a_preset_leaves_noise_limits_and_times_alone():
-    sound, as_reported = resolve("preset=sound"), resolve("preset=as_reported")
-    assert {key for key in sound if sound[key] != as_reported[key]} == {"preset", "controller"}
+    for robot in ("macro", "combined"):
+        sound, as_reported = (resolve(f"preset={name}", f"robot={robot}") for name in ("sound", "as_reported"))
+        changed = {key for key in sound if sound[key] != as_reported[key]}
+        assert changed == {"preset", "controller", "plant"}
+        assert {key for key, value in sound["plant"].items() if value != as_reported["plant"][key]} == {
+            "dynamics",
+            "wrist_rotation",
+        }
 
 
 def test_what_was_chosen_is_kept():
@@ -93,9 +102,9 @@ def test_keys_are_forced_and_options_are_not(override, forced):
 @pytest.mark.parametrize(
     ("override", "message"),
     [
-        ("robot=makro", "robot: no 'makro' (did you mean macro?); known: macro, mini"),
+        ("robot=makro", f"robot: no 'makro' (did you mean macro?); known: {', '.join(group_options('robot'))}"),
         ("noise=1", "noise: no '1'; known: none, thesis"),
-        ("experiment=figure_3_5", "experiment: no 'figure_3_5' (did you mean thesis/figure_3_5?); known: thesis/"),
+        ("experiment=figure_3_5", "experiment: no 'figure_3_5' (did you mean thesis/figure_3_5?); known: "),
         ("trajectory.goal=${robot.nope}", "trajectory.goal: Interpolation key 'robot.nope' not found"),
         ("noise.position=[1,", "'noise.position=[1,' is no override: "),
         ("foo", "'foo' is no override: Error parsing override 'foo'"),

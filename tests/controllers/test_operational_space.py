@@ -223,7 +223,7 @@ def test_another_number_of_joints_is_refused():
         OperationalSpace(model, 30.0, 1.0, True, True, 0.0)
 
 
-def test_build_passes_every_value_on():
+def test_build_passes_every_value_on(one_stage):
     config = OperationalSpaceConfig(
         kind="operational_space",
         natural_frequency=20.0,
@@ -235,6 +235,7 @@ def test_build_passes_every_value_on():
     )
     q, dq, reference = np.array([0.1, 0.2, -1.5]), np.array([0.3, 0.2, 0.1]), np.ones((3, 3))
     expected = law("macro", 20.0, 0.7, gravity=False, feedforward=False, damping=0.2)
-    np.testing.assert_array_equal(
-        ask(build(config, MODELS["macro"]), q, dq, reference), ask(expected, q, dq, reference)
-    )
+    robot = one_stage(read_urdf(find_urdf("macro.urdf"), {}), MODELS["macro"])
+    (loop,) = build(config, robot)
+    assert (loop.period, loop.joints) == (0.01, slice(0, 3))
+    np.testing.assert_array_equal(ask(loop.controller, q, dq, reference), ask(expected, q, dq, reference))

@@ -4,7 +4,6 @@ import pytest
 
 from runner.errors import ConfigError
 from runner.plants.bullet import Bullet, BulletConfig, build, default_step
-from runner.plants.plant import Arm
 from runner.robots import RobotModel, find_urdf, read_urdf
 
 INERTIAL = '<inertial><mass value="{m}"/><inertia ixx="{i}" ixy="0" ixz="0" iyy="{i}" iyz="0" izz="{i}"/></inertial>'
@@ -35,7 +34,7 @@ def make():
     plants = []
 
     def make(urdf, tip="tip", step=1e-4, steps_per_tick=1, gravity=9.81):
-        plants.append(Bullet(Arm(urdf, RobotModel(urdf, tip, gravity)), step, steps_per_tick))
+        plants.append(Bullet(urdf, RobotModel(urdf, tip, gravity), step, steps_per_tick))
         return plants[-1]
 
     yield make
@@ -202,18 +201,17 @@ def test_joints_are_ordered_by_name_as_in_the_model(make):
 
 
 def test_close_releases_the_client(macro_urdf):
-    arm = Arm(macro_urdf, RobotModel(macro_urdf, "tip"))
-    plant = Bullet(arm, 1e-3, 1)
+    plant = Bullet(macro_urdf, RobotModel(macro_urdf, "tip"), 1e-3, 1)
     assert pybullet.getConnectionInfo(plant._client)["isConnected"]
     plant.close()
     assert not pybullet.getConnectionInfo(plant._client)["isConnected"]
 
 
 def test_an_urdf_that_bullet_refuses_is_an_error_and_leaves_no_client(macro_urdf):
-    arm = Arm("<robot name='none'/>", RobotModel(macro_urdf, "tip"))
+    model = RobotModel(macro_urdf, "tip")
     connected = [pybullet.getConnectionInfo(client)["isConnected"] for client in range(64)]
     with pytest.raises(ConfigError, match=r"robot\.urdf: PyBullet cannot load it"):
-        Bullet(arm, 1e-3, 1)
+        Bullet("<robot name='none'/>", model, 1e-3, 1)
     assert [pybullet.getConnectionInfo(client)["isConnected"] for client in range(64)] == connected
 
 
@@ -224,8 +222,13 @@ def test_torques_are_only_read(make, macro_urdf):
     np.testing.assert_array_equal(tau, [1.0, 2.0, 3.0])
 
 
-def test_build_and_default_step(macro_urdf):
-    plant = build(BulletConfig(kind="bullet", step=None), Arm(macro_urdf, RobotModel(macro_urdf, "tip")), 1e-3, 10)
+@pytest.mark.parametrize("dynamics", ["coupled", "decoupled"])
+@pytest.mark.parametrize("wrist_rotation", ["real", "parallel"])
+def test_build_and_default_step(macro_urdf, one_stage, dynamics, wrist_rotation):
+    # One stage has nothing to couple: neither key has an effect.
+    config = BulletConfig(kind="bullet", step=None, dynamics=dynamics, wrist_rotation=wrist_rotation)
+    plant = build(config, one_stage(macro_urdf, RobotModel(macro_urdf, "tip")), 1e-3, 10)
     assert isinstance(plant, Bullet)
     plant.close()
-    assert default_step(0.01) == pytest.approx(0.001)
+    assert default_step(0.01, 1) == pytest.approx(0.001)
+    assert default_step(0.001, 2) == pytest.approx(0.00025)

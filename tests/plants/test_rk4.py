@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from runner.plants.plant import Arm
 from runner.plants.rk4 import Rk4, Rk4Config, build, default_step
 from runner.robots import RobotModel, find_urdf, read_urdf
 
@@ -14,7 +13,7 @@ TICK = 0.1
 
 def make(name, step, steps_per_tick):
     urdf = read_urdf(find_urdf(f"{name}.urdf"), {})
-    return Rk4(Arm(urdf, RobotModel(urdf, "tip")), step, steps_per_tick)
+    return Rk4(RobotModel(urdf, "tip"), step, steps_per_tick)
 
 
 def final_state(name, scale, steps):
@@ -93,8 +92,12 @@ def test_reset_copies_its_arguments():
     np.testing.assert_array_equal(dq, START[1])
 
 
-def test_build_and_default_step(macro_urdf):
-    plant = build(Rk4Config(kind="rk4", step=None), Arm(macro_urdf, RobotModel(macro_urdf, "tip")), 0.01, 1)
+@pytest.mark.parametrize("dynamics", ["coupled", "decoupled"])
+@pytest.mark.parametrize("wrist_rotation", ["real", "parallel"])
+def test_build_and_default_step(macro_urdf, one_stage, dynamics, wrist_rotation):
+    # One stage has nothing to couple: neither key has an effect.
+    config = Rk4Config(kind="rk4", step=None, dynamics=dynamics, wrist_rotation=wrist_rotation)
+    plant = build(config, one_stage(macro_urdf, RobotModel(macro_urdf, "tip")), 0.01, 1)
     assert isinstance(plant, Rk4)
     plant.close()
-    assert default_step(0.01) == 0.01
+    assert default_step(0.01, 1) == default_step(0.01, 2) == 0.01

@@ -8,7 +8,7 @@ PERIOD = 0.01
 
 def encoders(ticks=20_000, joints=3, amplitude=1e-3, distribution="uniform", velocity="exact", seed=0):
     generator = np.random.default_rng(seed)
-    return JointEncoders(ticks, joints, PERIOD, amplitude, distribution, velocity, generator)
+    return JointEncoders(ticks, PERIOD, np.full(joints, amplitude), distribution, velocity, generator)
 
 
 def read(sensor, q, dq=None):

@@ -1,0 +1,74 @@
+"""A value for the one stage of a robot, or a mapping with one for each of several."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator
+
+from runner.errors import ConfigError, nearest
+
+
+def _number(value: Any, zero_allowed: bool) -> float:  # noqa: ANN401 - whatever a YAML file may hold
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        raise ValueError("must be a number")
+    if not math.isfinite(value):
+        raise ValueError("must be a finite number")
+    if value < 0.0 or (value == 0.0 and not zero_allowed):
+        raise ValueError("must be 0 or more" if zero_allowed else "must be above 0")
+    return float(value)
+
+
+def _per_stage(check: Any) -> BeforeValidator:  # noqa: ANN401 - a function of one value
+    def parse(value: Any) -> Any:  # noqa: ANN401
+        if isinstance(value, Mapping):
+            return {str(stage): _of_stage(check, stage, item) for stage, item in value.items()}
+        return check(value)
+
+    return BeforeValidator(parse)
+
+
+def _of_stage(check: Any, stage: Any, value: Any) -> Any:  # noqa: ANN401
+    try:
+        return check(value)
+    except ValueError as error:
+        raise ValueError(f"{stage} {error}") from None
+
+
+def _torque(value: Any) -> float | list[float]:  # noqa: ANN401
+    try:
+        if isinstance(value, list):
+            return [_number(item, zero_allowed=False) for item in value]
+        return _number(value, zero_allowed=False)
+    except ValueError:
+        raise ValueError("must be a number above 0, or a list of such numbers with one for each joint") from None
+
+
+PositivePerStage = Annotated[float | dict[str, float], _per_stage(lambda value: _number(value, zero_allowed=False))]
+NonNegativePerStage = Annotated[float | dict[str, float], _per_stage(lambda value: _number(value, zero_allowed=True))]
+TorquePerStage = Annotated[float | list[float] | dict[str, float | list[float]], _per_stage(_torque)]
+
+
+def by_stage(key: str, value: Any, stages: Sequence[str]) -> list[Any]:  # noqa: ANN401 - any per-stage value
+    """Return one value for each stage, in their order.
+
+    Raises:
+        ConfigError: for one value where the robot has several stages, a mapping where it has one, or stages that are
+            missing or unknown; names the stages.
+    """
+    names = ", ".join(stages)
+    if not isinstance(value, Mapping):
+        if len(stages) > 1:
+            raise ConfigError([f"{key}: needs a value for each stage ({names}); found {value!r} for all"])
+        return [value]
+    if len(stages) == 1:
+        raise ConfigError(
+            [f"{key}: the robot has one stage ({names}) and takes one value; found {dict(value)!r} by stage"]
+        )
+    problems = [
+        f"{key}.{name}: no such stage{nearest(name, stages)}; stages: {names}" for name in value if name not in stages
+    ]
+    problems += [f"{key}.{name}: missing; stages: {names}" for name in stages if name not in value]
+    if problems:
+        raise ConfigError(problems)
+    return [value[name] for name in stages]

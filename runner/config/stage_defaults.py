@@ -1,0 +1,46 @@
+"""Letting `controller.period.macro=0.03` change one stage where the group takes all of them from the robot."""
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import yaml
+from omegaconf import DictConfig, OmegaConf
+
+from runner.paths import conf_dir
+
+
+def complete_stages(config: DictConfig, choices: Mapping[str, str], config_dirs: Sequence[Path]) -> None:
+    """Complete mappings that name some stages with what their group's file takes from elsewhere for the others.
+
+    A group's file says `period: ${robot.period}`. An override of one stage replaces that reference by a mapping that
+    has this stage alone; here the others come back, so that a mapping override merges.
+
+    Args:
+        config: The composed config, completed in place.
+        choices: The option chosen in each group.
+        config_dirs: Config folders of the user's, searched before ours.
+    """
+    for group, option in choices.items():
+        for key, reference in _references(group, option, config_dirs):
+            node = config.get(group)
+            if not isinstance(node, DictConfig) or key not in node or OmegaConf.is_interpolation(node, key):
+                continue
+            given, default = node[key], OmegaConf.select(config, reference)
+            if isinstance(given, DictConfig) and isinstance(default, DictConfig):
+                node[key] = {**default, **given}
+
+
+def _references(group: str, option: str, config_dirs: Sequence[Path]) -> list[tuple[str, str]]:
+    """Return key and target of each value that is one reference, in the file of an option."""
+    for folder in (*config_dirs, conf_dir()):
+        path = folder / group / f"{option}.yaml"
+        if path.is_file():
+            content = yaml.safe_load(path.read_text())
+            found = [
+                (key, re.fullmatch(r"\$\{([\w.]+)\}", value))
+                for key, value in (content.items() if isinstance(content, Mapping) else ())
+                if isinstance(value, str)
+            ]
+            return [(str(key), match[1]) for key, match in found if match is not None]
+    return []

@@ -1,0 +1,70 @@
+"""Checking the times of a run: plant step, control periods, duration."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from runner.config.per_stage import by_stage
+from runner.config.run import RunSettings
+from runner.errors import ConfigError
+from runner.plants import PLANTS
+from runner.robots.robot import Robot
+
+_MAX_TICKS = 10_000_000
+
+
+def count_steps(arm: Robot, plant: Any, controller: Any) -> tuple[float, float, int]:  # noqa: ANN401 - any kinds
+    """Return the fastest loop's period, the plant's step, both in s, and the number of steps in that period.
+
+    Raises:
+        ConfigError: if a period is no multiple of the fastest one, or that no multiple of the plant's step.
+    """
+    periods = _periods(arm, controller.period)
+    fastest = min(periods, key=lambda name: periods[name])
+    tick = periods[fastest]
+    step = PLANTS.default_step(plant.kind, tick, len(arm.stages)) if plant.step is None else plant.step
+    problems = [
+        f"controller.period.{name}: {period:g} s is no multiple of the fastest stage's, {fastest} with {tick:g} s"
+        for name, period in periods.items()
+        if not _is_multiple(period, tick)
+    ]
+    steps = max(round(tick / step), 1)
+    if not _is_multiple(tick, step):
+        problems.append(
+            f"controller.period: {tick:g} s is no multiple of plant.step, {step:g} s; "
+            f"set plant.step to the period divided by a whole number, such as {tick / steps:g}"
+        )
+    if problems:
+        raise ConfigError(problems)
+    return tick, step, steps
+
+
+def check_duration(settings: RunSettings, tick: float, trajectory: Any) -> None:  # noqa: ANN401 - any kind
+    """Check that a run is neither shorter than a tick nor longer than memory holds.
+
+    Raises:
+        ConfigError: if it is.
+    """
+    key, length = "duration", settings.duration
+    if length is None:
+        key, length = "trajectory.duration", getattr(trajectory, "duration", tick)
+    elif length < tick:
+        raise ConfigError([f"duration: {length:g} s is shorter than one controller period, {tick:g} s"])
+    ticks = length / tick
+    if ticks > _MAX_TICKS:
+        raise ConfigError(
+            [
+                f"{key}: {length:g} s are {ticks:.3g} ticks of controller.period, {tick:g} s; allowed: "
+                f"up to {_MAX_TICKS:g} ticks, as a run is kept in memory"
+            ]
+        )
+
+
+def _periods(arm: Robot, period: Any) -> dict[str, float]:  # noqa: ANN401 - one number, or one for each stage
+    """Return the period of each loop by name; a controller with one period has one loop, whatever the stages."""
+    if isinstance(period, Mapping):
+        return dict(zip(arm.stage_names, by_stage("controller.period", period, arm.stage_names), strict=True))
+    return {arm.stage_names[0]: period}
+
+
+def _is_multiple(period: float, unit: float) -> bool:
+    return round(period / unit) >= 1 and abs(round(period / unit) * unit - period) <= 1e-9 * period

@@ -1,0 +1,127 @@
+"""Control of riding arms from each arm's own dynamics (thesis methods 2 and 3): one loop for each stage."""
+
+from typing import Literal
+
+import numpy as np
+from pydantic import NonNegativeFloat, PositiveFloat
+
+from runner.config.per_stage import PositivePerStage, by_stage
+from runner.controllers.controller import Controller, FloatArray, Loop
+from runner.controllers.stage_law import StageLaw
+from runner.controllers.stage_loops import CarrierController, HeldController, RiderController, Turns
+from runner.errors import ConfigError
+from runner.registry import StrictModel
+from runner.robots.robot import Robot, end_points
+
+
+class MacroMiniConfig(StrictModel):
+    """Config of stage-wise control; mappings have a value for each stage.
+
+    Attributes:
+        kind: Its name in the registry.
+        natural_frequency: omega_n of each stage's closed loop, in rad/s.
+        damping_ratio: xi of each.
+        period: Time between two ticks of each, in s; every other one a multiple of the shortest.
+        coupling: one_way, the riding arm makes up for what its carrier misses; two_way, the carrier in turn makes up
+            for where the rider stands; independent, the rider keeps its home offset; mini_held, its joints are held.
+        macro_target: minus_home, the carrier goes to x_d - r_0; tip_goal, to x_d itself, so that the rider folds.
+        mini_reference_velocity: Whether the rider follows its target's velocity (full) or a series of goals (zero).
+        wrist_rotation: Whether controllers know how the carrier turns the rider's base (real) or take it parallel.
+        gravity_compensation: Whether the laws hold the gravity term.
+        feedforward: Whether the carrier follows the desired velocity and acceleration.
+        schedule: both arms move at any time, or in turns, a carrier period each.
+        reach: Distance of the target from the rider's base up to which it follows it, in m; with further riders, of
+            the target that leaves them at their home offset. One for all riders.
+        beyond_reach: What the rider does beyond: hold its posture, or stretch towards the target.
+        payload: Whether the carrier's model knows the rider's mass.
+        singularity_damping: As in operational-space control.
+    """
+
+    kind: Literal["macro_mini"]
+    natural_frequency: PositivePerStage
+    damping_ratio: PositivePerStage
+    period: PositivePerStage
+    coupling: Literal["one_way", "two_way", "independent", "mini_held"]
+    macro_target: Literal["minus_home", "tip_goal"]
+    mini_reference_velocity: Literal["zero", "full"]
+    wrist_rotation: Literal["real", "parallel"]
+    gravity_compensation: bool
+    feedforward: bool
+    schedule: Literal["both", "turns"]
+    reach: PositiveFloat
+    beyond_reach: Literal["hold", "stretch"]
+    payload: Literal["unknown", "known"]
+    singularity_damping: NonNegativeFloat
+
+
+CONFIG = MacroMiniConfig
+
+
+def build(config: MacroMiniConfig, robot: Robot) -> tuple[Loop, ...]:
+    """Make the loops that a config describes, one for each stage.
+
+    Raises:
+        ConfigError: if the robot has one stage only, a value misses a stage, or a stage does not suit its law.
+    """
+    names = robot.stage_names
+    if len(names) < 2:
+        raise ConfigError(
+            [f"controller.kind: macro_mini couples stages and the robot has one ({names[0]}); take operational_space"]
+        )
+    periods = by_stage("controller.period", config.period, names)
+    controllers = [_controller(config, robot, index, periods[0]) for index in range(len(names))]
+    return tuple(
+        Loop(stage.name, stage.joints, period, controller)
+        for stage, period, controller in zip(robot.stages, periods, controllers, strict=True)
+    )
+
+
+def _controller(config: MacroMiniConfig, robot: Robot, index: int, carrier_period: float) -> Controller:
+    parallel = config.wrist_rotation == "parallel"
+    turns = Turns(carrier_period) if config.schedule == "turns" else None
+    law = _law(config, robot, index)
+    if index == 0:
+        return CarrierController(robot, law, _carrier_offset(config, robot), parallel, config.reach, turns)
+    if config.coupling == "mini_held":
+        return HeldController(robot, index, law, parallel)
+    return RiderController(
+        robot,
+        index,
+        law,
+        follow=config.coupling != "independent",
+        later_offset=later_home_offset(robot, index),
+        parallel=parallel,
+        moving_target=config.mini_reference_velocity == "full",
+        reach=config.reach,
+        stretch=config.beyond_reach == "stretch",
+        turns=turns,
+    )
+
+
+def _law(config: MacroMiniConfig, robot: Robot, index: int) -> StageLaw:
+    names, model = robot.stage_names, robot.stages[index].model
+    if config.payload == "known":
+        model = model.with_payload(sum(stage.model.mass for stage in robot.stages[index + 1 :]))
+    feedforward = config.feedforward if index == 0 else config.mini_reference_velocity == "full"
+    return StageLaw(
+        model,
+        by_stage("controller.natural_frequency", config.natural_frequency, names)[index],
+        by_stage("controller.damping_ratio", config.damping_ratio, names)[index],
+        config.gravity_compensation,
+        feedforward,
+        config.singularity_damping,
+        robot.stages[index].home,
+    )
+
+
+def _carrier_offset(config: MacroMiniConfig, robot: Robot) -> FloatArray | None:
+    if config.coupling == "two_way":
+        return None
+    follows_home = config.macro_target == "minus_home" or config.coupling in ("independent", "mini_held")
+    return later_home_offset(robot, 0) if follows_home else np.zeros(3)
+
+
+def later_home_offset(robot: Robot, index: int) -> FloatArray:
+    """Return the offset of the tip at home from the end point of a stage, in the base frame, shape (3,), in m."""
+    points = end_points(robot, robot.home[None])[:, 0]
+    return np.asarray(points[-1] - points[index])

@@ -1,0 +1,231 @@
+"""The block graph of stage-wise control of a Mini riding on a Macro (thesis figures 5.4, 5.5, 5.7 and 5.9)."""
+
+from dataclasses import dataclass, field
+
+from runner.controllers.graph import ControlGraph, Edge, Node, Side
+
+# Rows of the picture: above the Macro, between both arms, the Mini.
+_OUTER, _OVER, _BETWEEN, _LANE, _ABOVE_MINI, _MINI, _UNDER = -2.2, -1.2, 1.7, 2.55, 3.35, 4.5, 5.6
+_MINI_CONTROLLER = 5.5  # column
+
+
+@dataclass(frozen=True)
+class _Flags:
+    """The config's switches, as in macro_mini_graph."""
+
+    coupling: str
+    macro_target: str
+    moving: bool
+    real: bool
+    gravity: bool
+    feedforward: bool
+    limited: bool
+    goal: bool
+    turns: bool
+    stretch: bool
+
+    @property
+    def follows(self) -> bool:
+        return self.coupling in ("one_way", "two_way")
+
+    @property
+    def rotation(self) -> str:
+        return "R" if self.real else "R_0"
+
+    @property
+    def rest(self) -> bool:
+        """Whether anything takes the rest of the way."""
+        return self.follows or self.turns
+
+    @property
+    def kinematics(self) -> bool:
+        """Whether anything takes the Macro's end point or its rotation from the Macro's measured joints."""
+        return self.rest or (self.gravity and self.real)
+
+
+@dataclass
+class _Parts:
+    """Nodes and edges, collected."""
+
+    nodes: list[Node] = field(default_factory=list)
+    edges: list[Edge] = field(default_factory=list)
+
+
+def macro_mini_graph(
+    coupling: str,
+    macro_target: str,
+    mini_reference_velocity: str,
+    wrist_rotation: str,
+    gravity_compensation: bool,
+    feedforward: bool,
+    torque_limited: bool,
+    goal: bool,
+    schedule: str,
+    beyond_reach: str = "hold",
+) -> ControlGraph:
+    r"""Return the two closed loops that `CarrierController` and `RiderController` (or `HeldController`) execute.
+
+    The arms' own laws are a block each; they are the operational-space law of `operational_space_graph`. Encoders
+    give the Macro's joints q_M and the Mini's q_m; x_E is the Macro's end point, r = x_d - x_E the rest of the way,
+    R the rotation of the Macro's last link, R_0 that at home, which controllers take for it where wrist_rotation is
+    parallel, rho the reach. A signal that the config leaves out is absent. That the Macro carries the Mini is no
+    signal; it is written into the Mini's block.
+
+    Args:
+        coupling: one_way, two_way, independent or mini_held; this and the next ones as in MacroMiniConfig.
+        macro_target: minus_home or tip_goal; it counts for one_way alone.
+        mini_reference_velocity: full or zero.
+        wrist_rotation: real or parallel.
+        gravity_compensation: Whether the laws hold the gravity term.
+        feedforward: Whether the Macro follows the desired velocity and acceleration.
+        torque_limited: Whether torques are clipped.
+        goal: Whether the reference is a goal at rest, which has no derivatives.
+        schedule: both or turns.
+        beyond_reach: hold or stretch.
+    """
+    flags = _Flags(
+        coupling,
+        macro_target,
+        mini_reference_velocity == "full",
+        wrist_rotation == "real",
+        gravity_compensation,
+        feedforward,
+        torque_limited,
+        goal,
+        schedule == "turns",
+        beyond_reach == "stretch",
+    )
+    parts = _Parts()
+    _add_arm(parts, "macro", "Macro", 4.15 if flags.turns else 3.2, flags.limited)
+    _add_arm(parts, "mini", "Mini", _MINI_CONTROLLER, flags.limited)
+    _add_macro_target(parts, flags)
+    if flags.kinematics:
+        _add_kinematics(parts, flags)
+    _add_mini_target(parts, flags)
+    if flags.gravity:
+        _add_gravity(parts, flags)
+    return ControlGraph(tuple(parts.nodes), tuple(parts.edges))
+
+
+def _add_arm(parts: _Parts, stage: str, name: str, controller: float, limited: bool) -> None:
+    """Add an arm's own loop: controller, torque limit, arm, encoders."""
+    macro = stage == "macro"
+    index, row, lane = ("M", 0.0, _OVER) if macro else ("m", _MINI, _UNDER)
+    outside: Side
+    inside: Side
+    outside, inside = ("top", "bottom") if macro else ("bottom", "top")
+    arm = controller + (2.35 if macro else 2.6)
+    encoders = arm + (1.2 if macro else 1.45)
+    parts.nodes += [
+        Node(f"{stage}_controller", "block", f"{name}\ncontroller", controller, row),
+        Node(f"{stage}_arm", "block", "Macro\narm" if macro else "Mini arm\non Macro", arm, row),
+        Node(f"{stage}_encoders", "block", f"{name}\nencoders", encoders, row),
+        Node(f"{stage}_noise", "source", "Noise", encoders + 1.0, lane),
+    ]
+    measured = rf"$q_{index},\dot{{q}}_{index}$ measured"
+    parts.edges += [
+        Edge(f"{stage}_arm", f"{stage}_encoders"),
+        Edge(f"{stage}_noise", f"{stage}_encoders", leave=inside, enter="right"),
+        Edge(f"{stage}_encoders", f"{stage}_controller", measured, leave=outside, enter=outside, lane=lane),
+    ]
+    if limited:
+        parts.nodes.append(Node(f"{stage}_limit", "block", "Limit", controller + 1.3, row))
+        parts.edges += [
+            Edge(f"{stage}_controller", f"{stage}_limit", rf"$\tau_{index}$"),
+            Edge(f"{stage}_limit", f"{stage}_arm"),
+        ]
+    else:
+        parts.edges.append(Edge(f"{stage}_controller", f"{stage}_arm", rf"$\tau_{index}$"))
+    if not macro:
+        parts.nodes.append(Node("tip", "block", "Tip $x$", arm, _ABOVE_MINI))
+        parts.edges.append(Edge("mini_arm", "tip", leave="top", enter="bottom"))
+
+
+def _add_macro_target(parts: _Parts, flags: _Flags) -> None:
+    """Add the Macro's target x_d - o, and who has the turn."""
+    desired = "x_g" if flags.goal else "x_d"
+    bundle = rf"{desired},\dot{{x}}_d,\ddot{{x}}_d" if flags.feedforward and not flags.goal else desired
+    offset = flags.coupling != "one_way" or flags.macro_target == "minus_home"
+    where = "macro_turn" if flags.turns else "macro_controller"
+    row, rows = (_BETWEEN / 2.0, 4) if flags.rest else (0.0, 1)
+    parts.nodes.append(Node("reference", "source", "Goal" if flags.goal else "Trajectory", -0.3, row, rows))
+    if offset:
+        parts.nodes.append(Node("macro_target", "sum", "", 1.5, 0.0))
+        parts.edges += [
+            Edge("reference", "macro_target", f"${bundle}$", "+"),
+            Edge("macro_target", where, "" if flags.turns else f"${desired} - o$"),
+        ]
+    else:
+        parts.edges.append(Edge("reference", where, f"${bundle}$"))
+    if flags.coupling == "two_way":
+        parts.nodes.append(Node("mini_offset", "block", f"$o = {flags.rotation}\\,p(q_m)$", 2.6, _OUTER))
+        parts.edges += [
+            Edge("mini_offset", "macro_target", "$o$", "-", leave="left", enter="top"),
+            Edge("mini_encoders", "mini_offset", "$q_m$", leave="top", enter="right"),
+        ]
+        if flags.real:
+            parts.edges.append(Edge("macro_encoders", "mini_offset", leave="top", enter="bottom", lane=_OVER))
+    elif offset:
+        parts.nodes.append(Node("home_offset", "source", "$o = r_0$", 1.5, _OVER))
+        parts.edges.append(Edge("home_offset", "macro_target", sign="-", leave="bottom", enter="top"))
+    if flags.turns:
+        test = "Mini's turn\n" + r"and $|r| \leq \rho$?" + "\nthen hold"
+        parts.nodes.append(Node("macro_turn", "block", test, 2.75, 0.0))
+        parts.edges += [
+            Edge("macro_turn", "macro_controller"),
+            Edge("rest", "macro_turn", "$r$", leave="top", enter="bottom"),
+        ]
+
+
+def _add_kinematics(parts: _Parts, flags: _Flags) -> None:
+    """Add the Macro's end point as measured, and the rest of the way from there, r = x_d - x_E."""
+    moving = flags.follows and flags.moving
+    parts.nodes.append(Node("kinematics", "block", "Macro\nkinematics", 4.5, _BETWEEN))
+    symbol = r"$q_M,\dot{q}_M$" if moving else "$q_M$"
+    parts.edges.append(Edge("macro_encoders", "kinematics", symbol, leave="bottom", enter="right"))
+    if not flags.rest:
+        return
+    desired = "x_g" if flags.goal else "x_d"
+    parts.nodes.append(Node("rest", "sum", "", 1.5, _BETWEEN))
+    parts.edges += [
+        Edge("reference", "rest", rf"${desired},\dot{{x}}_d$" if moving and not flags.goal else f"${desired}$", "+"),
+        Edge("kinematics", "rest", r"$x_E,\dot{x}_E$" if moving else "$x_E$", "-", leave="left", enter="right"),
+    ]
+
+
+def _add_mini_target(parts: _Parts, flags: _Flags) -> None:
+    """Add the Mini's target: the rest of the way where it is within reach, its home offset, or its posture."""
+    if not flags.follows:
+        label = "Home posture $q_0$" if flags.coupling == "mini_held" else "Home offset $r_0$"
+        parts.nodes.append(Node("mini_target", "source", label, 3.3, _MINI))
+        parts.edges.append(Edge("mini_target", "mini_controller"))
+        return
+    R = flags.rotation
+    spin = r"(\dot{r} - \omega \times r)" if flags.real else r"\dot{r}"
+    label = f"${R}^T r$" + (f"\n${R}^T {spin}$" if flags.moving else "")
+    beyond = "stretch" if flags.stretch else "hold"
+    test = r"$|r| \leq \rho$?" + f"\nelse {beyond}"
+    if flags.turns:
+        either = "else hold,\n" if flags.stretch else ""
+        test = f"Own turn?\n{either}{test}"
+    parts.nodes += [
+        Node("mini_target", "block", label, 2.5, _MINI),
+        Node("reach", "block", test, 4.05, _MINI),
+    ]
+    parts.edges += [
+        Edge("rest", "mini_target", r"$r,\dot{r}$" if flags.moving else "$r$", leave="bottom", enter="left"),
+        Edge("mini_target", "reach"),
+        Edge("reach", "mini_controller"),
+    ]
+    if flags.real:
+        symbol = r"$R,\omega$" if flags.moving else "$R$"
+        parts.edges.append(Edge("kinematics", "mini_target", symbol, leave="bottom", enter="top", lane=_LANE))
+
+
+def _add_gravity(parts: _Parts, flags: _Flags) -> None:
+    """Add gravity as the Mini's base sees it."""
+    label, place = f"${flags.rotation}^T g$", (_MINI_CONTROLLER, _ABOVE_MINI)
+    parts.nodes.append(Node("gravity", "block" if flags.real else "source", label, *place))
+    parts.edges.append(Edge("gravity", "mini_controller", leave="bottom", enter="top"))
+    if flags.real:
+        parts.edges.append(Edge("kinematics", "gravity", "$R$", leave="bottom", enter="top", lane=_LANE))

@@ -1,0 +1,99 @@
+"""Stages simulated each with its own dynamics, as the thesis did it."""
+
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+import numpy as np
+
+from runner.errors import ConfigError
+from runner.plants.plant import FloatArray, Plant
+from runner.robots.model import RobotModel
+from runner.robots.robot import Robot, StageBase
+
+
+class StagedPlantConfig(Protocol):
+    """What a plant's config says of several stages."""
+
+    @property
+    def dynamics(self) -> str:
+        """Either "coupled" or "decoupled"."""
+        ...
+
+    @property
+    def wrist_rotation(self) -> str:
+        """Either "real" or "parallel"."""
+        ...
+
+
+def assemble_plant(config: StagedPlantConfig, robot: Robot, make: Callable[[str, RobotModel], Plant]) -> Plant:
+    """Make a plant for a robot: of the whole, or of its stages each for itself.
+
+    A robot of one stage has nothing to couple, and both keys no effect.
+
+    Args:
+        config: Says whether stages act on each other (dynamics) and whether a carrier turns its rider (wrist_rotation).
+        robot: The robot.
+        make: Makes the plant of one arm from its URDF text and model.
+
+    Raises:
+        ConfigError: for coupled dynamics with a base that does not turn, which no rigid body can do.
+    """
+    parallel = config.wrist_rotation == "parallel"
+    if len(robot.stages) == 1:
+        return make(robot.urdf, robot.model)
+    if config.dynamics == "coupled":
+        if parallel:
+            raise ConfigError(
+                [
+                    "plant.wrist_rotation: parallel leaves the rider's base unturned, which coupled rigid bodies "
+                    "cannot; set plant.dynamics=decoupled, or plant.wrist_rotation=real"
+                ]
+            )
+        return make(robot.urdf, robot.model)
+    return Decoupled(robot, [make(stage.urdf, stage.model) for stage in robot.stages], parallel)
+
+
+class Decoupled:
+    """Arms that ride on each other without feeling it.
+
+    A carrier feels no rider. A rider's base is carried kinematically: it feels gravity as R^T g, renewed at each tick,
+    and no inertial force of its base's motion.
+
+    Args:
+        robot: The robot.
+        plants: The plant of each stage.
+        parallel: Whether riders' bases keep their orientation of home.
+    """
+
+    def __init__(self, robot: Robot, plants: Sequence[Plant], parallel: bool) -> None:
+        self.q = np.zeros(robot.model.nq)
+        self.dq = np.zeros(robot.model.nq)
+        self._plants = plants
+        self._joints = [stage.joints for stage in robot.stages]
+        self._bases = [StageBase(robot, index, parallel) for index in range(1, len(robot.stages))]
+        self._gravity = robot.model.gravity
+
+    def reset(self, q: FloatArray, dq: FloatArray) -> None:
+        """Put the arms into a state; see Plant."""
+        for plant, joints in zip(self._plants, self._joints, strict=True):
+            plant.reset(q[joints], dq[joints])
+        self.q[:], self.dq[:] = q, dq
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector; see Plant."""
+        self._gravity = gravity
+        self._plants[0].set_gravity(gravity)
+
+    def advance(self, tau: FloatArray) -> None:
+        """Hold the torques for one tick; see Plant."""
+        for plant, base in zip(self._plants[1:], self._bases, strict=True):
+            base.update(self.q, self.dq)
+            plant.set_gravity(base.rotation.T.dot(self._gravity))
+        for plant, joints in zip(self._plants, self._joints, strict=True):
+            plant.advance(tau[joints])
+            self.q[joints], self.dq[joints] = plant.q, plant.dq
+
+    def close(self) -> None:
+        """Release what the plants hold."""
+        for plant in self._plants:
+            plant.close()

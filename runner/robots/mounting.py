@@ -1,0 +1,83 @@
+"""One arm mounted on another: two URDFs become one."""
+
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from runner.errors import ConfigError, nearest
+
+
+@dataclass(frozen=True)
+class Mount:
+    """Where an arm is mounted.
+
+    Attributes:
+        frame: Link of the carrying arm on which the mounted arm's root link is fixed.
+        translation: Origin of the mounted root in that link's frame, (3,), in m.
+        rotation: Roll, pitch, yaw of the mounted root in that link's frame, (3,), in rad.
+    """
+
+    frame: str
+    translation: Sequence[float]
+    rotation: Sequence[float]
+
+
+def mount(carrier: str, rider: str, prefix: str, place: Mount) -> tuple[str, str]:
+    """Return the URDF of an arm that carries another, and the name of the rider's root link in it.
+
+    The rider's links and joints take the prefix; the carrier's keep their names.
+
+    Args:
+        carrier: URDF text of the carrying arm, or of a chain made by this function.
+        rider: URDF text of the arm that is mounted.
+        prefix: What the rider's names start with, its stage's name and an underscore.
+        place: Where it is mounted.
+
+    Raises:
+        ConfigError: if the frame does not exist, or a name would stand twice.
+    """
+    whole, mounted = ET.fromstring(carrier), ET.fromstring(rider)  # noqa: S314 - resolves no external entities
+    links = _names(whole, "link")
+    if place.frame not in links:
+        raise ConfigError(
+            [
+                f"robot.stages.{prefix.rstrip('_')}.mount.frame: no link '{place.frame}'{nearest(place.frame, links)}; "
+                f"links: {', '.join(links)}"
+            ]
+        )
+    _rename(mounted, prefix)
+    for kind in ("link", "joint"):
+        twice = sorted(set(_names(whole, kind)) & set(_names(mounted, kind)))
+        if twice:
+            raise ConfigError(
+                [
+                    f"robot.stages.{prefix.rstrip('_')}: the {kind} name {twice[0]} stands in the carrying arm "
+                    "already; name the stage differently"
+                ]
+            )
+    children = {joint.find("child").get("link") for joint in mounted.iter("joint")}  # type: ignore[union-attr]
+    root = next(name for name in _names(mounted, "link") if name not in children)
+    joint = ET.SubElement(whole, "joint", name=f"{prefix}mount", type="fixed")
+    ET.SubElement(joint, "parent", link=place.frame)
+    ET.SubElement(joint, "child", link=root)
+    ET.SubElement(joint, "origin", xyz=_text(place.translation), rpy=_text(place.rotation))
+    whole.extend(element for element in mounted if element.tag in ("link", "joint"))
+    return ET.tostring(whole, encoding="unicode"), root
+
+
+def _names(robot: ET.Element, kind: str) -> list[str]:
+    return [element.get("name", "") for element in robot.findall(kind)]
+
+
+def _rename(robot: ET.Element, prefix: str) -> None:
+    for element in (*robot.findall("link"), *robot.findall("joint")):
+        element.set("name", prefix + element.get("name", ""))
+    for joint in robot.findall("joint"):
+        for role in ("parent", "child"):
+            end = joint.find(role)
+            if end is not None:
+                end.set("link", prefix + end.get("link", ""))
+
+
+def _text(values: Sequence[float]) -> str:
+    return " ".join(repr(float(value)) for value in values)

@@ -1,0 +1,142 @@
+"""A robot as a chain of stages: one arm, or arms riding on each other."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from runner.robots.model import FloatArray, RobotModel
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One arm of a robot.
+
+    Attributes:
+        name: Its name.
+        model: The arm alone, on a fixed base.
+        urdf: Its URDF text.
+        joints: Its joints within the robot's.
+        home: Its joint positions at home, in rad.
+        base_frame: The robot's frame that is its base; None for the first stage, whose base is the robot's.
+    """
+
+    name: str
+    model: RobotModel
+    urdf: str
+    joints: slice
+    home: FloatArray
+    base_frame: str | None
+
+    @property
+    def home_offset(self) -> FloatArray:
+        """Tip of the arm at home in its own base frame, shape (3,), in m: r_0."""
+        return self.model.tip_position(self.home)
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A chain of stages, from the base outwards.
+
+    Attributes:
+        urdf: URDF text of the whole.
+        model: Rigid-body model of the whole; its tip is the last stage's.
+        stages: The arms.
+    """
+
+    urdf: str
+    model: RobotModel
+    stages: tuple[Stage, ...]
+
+    @property
+    def home(self) -> FloatArray:
+        """Joint positions at home, shape (nq,), in rad."""
+        return np.concatenate([stage.home for stage in self.stages])
+
+    @property
+    def stage_names(self) -> tuple[str, ...]:
+        """Names of the stages."""
+        return tuple(stage.name for stage in self.stages)
+
+    def reach(self) -> float:
+        """Largest distance of the tip from the first joint that the link lengths admit, in m."""
+        return self.model.reach
+
+
+class StageBase:
+    """Where the base of a riding stage is, and how it moves, from the joints below it.
+
+    Args:
+        robot: The robot.
+        stage: Index of the riding stage, 1 or more.
+        parallel: Whether the base is taken to keep its orientation of home (the thesis' R = I), whatever the joints
+            below do. Only its origin moves then.
+    """
+
+    def __init__(self, robot: Robot, stage: int, parallel: bool) -> None:
+        self._model = robot.model.pin_model
+        self._data = self._model.createData()
+        self._frame = self._model.getFrameId(robot.stages[stage].base_frame)
+        self._zero = np.zeros(robot.model.nq)
+        placement = self._data.oMf[self._frame]
+        self.position: FloatArray = placement.translation
+        """Origin of the base in the robot's base frame, shape (3,), in m; renewed by `update`."""
+        self.rotation: FloatArray = placement.rotation
+        """Rotation from the stage's base frame into the robot's, shape (3, 3); renewed by `update`."""
+        self._parallel = parallel
+        if parallel:
+            pin.framesForwardKinematics(self._model, self._data, robot.home)
+            self.rotation = placement.rotation.copy()
+
+    def update(self, q: FloatArray, dq: FloatArray) -> None:
+        """Take the robot's joint positions and velocities, shapes (nq,)."""
+        pin.forwardKinematics(self._model, self._data, q, dq, self._zero)
+        pin.updateFramePlacement(self._model, self._data, self._frame)
+
+    def velocity(self) -> tuple[FloatArray, FloatArray]:
+        """Return linear and angular velocity of the base in the robot's base frame, shapes (3,), in m/s and rad/s."""
+        motion = pin.getFrameVelocity(self._model, self._data, self._frame, pin.LOCAL_WORLD_ALIGNED)
+        return motion.linear, np.zeros(3) if self._parallel else motion.angular
+
+
+def end_points(robot: Robot, q: FloatArray, parallel: bool = False) -> FloatArray:
+    """Return the end point of every stage for rows of joint positions.
+
+    The end point of a stage that carries another is the origin of that one's base; the last one's is the tip.
+
+    Args:
+        robot: The robot.
+        q: Joint positions, shape (T, nq), in rad.
+        parallel: Whether riding stages keep the orientation of home (the thesis' R = I).
+
+    Returns:
+        Positions in the robot's base frame, shape (stages, T, 3), in m.
+    """
+    if len(robot.stages) == 1:
+        return robot.model.tip_positions(q)[None]
+    if parallel:
+        return _parallel_end_points(robot, q)
+    frames = [stage.base_frame for stage in robot.stages[1:]]
+    positions = [_frame_positions(robot.model, q, str(frame)) for frame in frames]
+    return np.array([*positions, robot.model.tip_positions(q)])
+
+
+def _parallel_end_points(robot: Robot, q: FloatArray) -> FloatArray:
+    points: list[FloatArray] = [_frame_positions(robot.model, q, str(robot.stages[1].base_frame))]
+    for index, stage in enumerate(robot.stages[1:], start=1):
+        rotation = StageBase(robot, index, parallel=True).rotation
+        points.append(points[-1] + stage.model.tip_positions(q[:, stage.joints]) @ rotation.T)
+    return np.array(points)
+
+
+def _frame_positions(model: RobotModel, q: Sequence[FloatArray] | FloatArray, frame: str) -> FloatArray:
+    data = model.pin_model.createData()
+    index = model.pin_model.getFrameId(frame)
+    origin = data.oMf[index].translation  # a view that each update refreshes
+    positions = np.empty((len(q), 3))
+    for row, configuration in zip(positions, q, strict=True):
+        pin.forwardKinematics(model.pin_model, data, configuration)
+        pin.updateFramePlacement(model.pin_model, data, index)
+        row[:] = origin
+    return positions

@@ -1,0 +1,218 @@
+"""When the Mini follows and when it holds, whose turn it is, and the two rates of the loops."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from runner.assembly import assemble, make_encoders
+from runner.controllers.stage_loops import CarrierController, RiderController, Turns
+from runner.simulation import simulate
+
+REACH = 0.2
+
+
+class Spy:
+    """In a stage's law's place: keeps what it is told."""
+
+    def __init__(self):
+        self.told = []
+
+    def set_gravity(self, gravity):
+        pass
+
+    def move(self, time, q, dq, reference):
+        self.told.append(("move", np.array(reference)))
+        return np.zeros(3)
+
+    def hold(self, q, dq, posture):
+        self.told.append(("hold", np.array(posture)))
+        return np.zeros(3)
+
+
+@pytest.fixture
+def rider(combined):
+    """A Mini's loop, and what its law is told when the tip is wanted some way off its base."""
+
+    def make(moving_target=True, stretch=False, turns=None):
+        law = Spy()
+        loop = RiderController(combined, 1, law, True, np.zeros(3), False, moving_target, REACH, stretch, turns)
+
+        def ask(way, q=None, time=0.0):
+            q = np.array([0.3, -0.5, 0.7, 0.2, -0.4, 0.9]) if q is None else q
+            x_E = combined.stages[0].model.tip_position(q[:3])
+            loop.torque(time, q, np.ones(6), np.array([x_E + way, np.ones(3), np.zeros(3)]))
+            return law.told[-1]
+
+        return loop, ask
+
+    return make
+
+
+def along(distance, direction=(1.0, 2.0, -2.0)):
+    return distance * np.array(direction) / np.linalg.norm(direction)
+
+
+# Reach.
+
+
+@pytest.mark.parametrize("direction", [(1.0, 2.0, -2.0), (0.0, 0.0, 1.0), (-1.0, 1.0, 1.0)])
+def test_the_mini_follows_up_to_its_reach(rider, direction):
+    _, ask = rider()
+    assert ask(along(REACH * (1.0 - 1e-9), direction))[0] == "move"
+    assert ask(along(REACH * (1.0 + 1e-9), direction))[0] == "hold"
+    assert ask(along(0.0, direction))[0] == "move"
+
+
+def test_beyond_it_the_mini_holds_the_posture_of_the_moment_it_lost_reach(rider):
+    loop, ask = rider()
+    near, far = along(0.1), along(0.3)
+    first, second, third = (np.array([0.1, 0.2, 0.3, *own]) for own in ([0.4, 0.5, 0.6], [1.4, 0.5, 0.6], [0.0] * 3))
+    assert ask(near, first)[0] == "move"
+    np.testing.assert_array_equal(ask(far, first)[1], first[3:])
+    np.testing.assert_array_equal(ask(far, second)[1], first[3:])  # still the one of the moment
+    assert ask(near, second)[0] == "move"  # released
+    np.testing.assert_array_equal(ask(far, third)[1], third[3:])  # a new hold, a new posture
+    loop.reset()
+    np.testing.assert_array_equal(ask(far, second)[1], second[3:])
+
+
+def test_the_posture_held_is_a_copy(rider):
+    _, ask = rider()
+    q = np.zeros(6)
+    ask(along(0.3), q)
+    q += 1.0
+    np.testing.assert_array_equal(ask(along(0.3), q)[1], np.zeros(3))
+
+
+@pytest.mark.parametrize("distance", [0.1, 0.2 * (1.0 - 1e-9), 0.2 * (1.0 + 1e-9), 0.5, 3.0])
+def test_a_stretching_mini_goes_towards_the_target_as_far_as_it_reaches(rider, distance):
+    _, ask = rider(stretch=True)
+    kind, target = ask(along(distance))
+    assert kind == "move"
+    assert np.linalg.norm(target[0]) == pytest.approx(min(distance, REACH), rel=1e-12)
+    reachable = rider()[1](along(0.1))[1][0]
+    np.testing.assert_allclose(target[0] / np.linalg.norm(target[0]), reachable / 0.1, atol=1e-12)
+    assert (np.abs(target[1]).max() > 0.0) == (distance <= REACH)  # at its limit it stands
+    np.testing.assert_array_equal(target[2], 0.0)
+
+
+# Turns.
+
+
+@pytest.mark.parametrize("period", [0.01, 0.03])
+def test_turns_are_a_period_of_the_carrier_each_beginning_with_it(period):
+    turns = Turns(period)
+    for k in range(1, 2000):
+        tick = k * 0.001
+        assert turns.rider_moves(tick) == (round(tick * 1e6) // round(period * 1e6) % 2 == 1)
+    assert not turns.rider_moves(0.0)
+    for number in range(500):  # at the very start of each, whatever rounding leaves of it
+        assert turns.rider_moves(number * period) == (number % 2 == 1)
+
+
+def test_in_turns_each_arm_holds_while_the_other_moves(combined, rider):
+    turns, law = Turns(0.01), Spy()
+    carrier = CarrierController(combined, law, np.zeros(3), False, REACH, turns)
+    _, ask = rider(turns=turns)
+    q = np.array([0.3, -0.5, 0.7, 0.2, -0.4, 0.9])
+    x_E = combined.stages[0].model.tip_position(q[:3])
+    for k in range(40):
+        time, reference = k * 0.01, np.array([x_E + along(0.1), np.zeros(3), np.zeros(3)])
+        carrier.torque(time, q, np.zeros(6), reference)
+        kinds = law.told[-1][0], ask(along(0.1), q, time)[0]
+        assert kinds == (("move", "hold") if k % 2 == 0 else ("hold", "move"))
+
+
+def test_where_the_mini_cannot_reach_the_macro_moves_on(combined):
+    law = Spy()
+    carrier = CarrierController(combined, law, np.zeros(3), False, REACH, Turns(0.01))
+    q = np.array([0.3, -0.5, 0.7, 0.2, -0.4, 0.9])
+    x_E = combined.stages[0].model.tip_position(q[:3])
+    carrier.torque(0.01, q, np.zeros(6), np.array([x_E + along(0.3), np.zeros(3), np.zeros(3)]))
+    assert law.told[-1][0] == "move"
+    carrier.torque(0.03, q, np.zeros(6), np.array([x_E + along(0.1), np.zeros(3), np.zeros(3)]))
+    np.testing.assert_array_equal(law.told[-1][1], q[:3])
+    later = q + 0.1
+    x_E = combined.stages[0].model.tip_position(later[:3])
+    carrier.torque(0.035, later, np.zeros(6), np.array([x_E + along(0.1), np.zeros(3), np.zeros(3)]))
+    np.testing.assert_array_equal(law.told[-1][1], q[:3])  # the posture of the moment the hold began
+    carrier.reset()
+    carrier.torque(0.035, later, np.zeros(6), np.array([x_E + along(0.1), np.zeros(3), np.zeros(3)]))
+    np.testing.assert_array_equal(law.told[-1][1], later[:3])
+
+
+# Two rates, and what each loop measures.
+
+
+@pytest.mark.parametrize(("period", "ticks"), [(0.01, 10), (0.03, 30), (0.001, 1)])
+def test_a_macro_torque_is_held_for_its_own_period(simulated, period, ticks):
+    overrides = (f"controller.period.macro={period}", "trajectory=quintic", "noise=thesis", "duration=0.3")
+    trace = simulated("robot=combined", *overrides)
+    macro, mini = trace.tau[:300, :3], trace.tau[:300, 3:]
+    blocks = macro.reshape(-1, ticks, 3)
+    np.testing.assert_array_equal(blocks, np.repeat(blocks[:, :1], ticks, axis=1))
+    assert (np.diff(blocks[:, 0], axis=0) != 0.0).all()
+    assert (np.diff(mini, axis=0) != 0.0).all()
+
+
+class Recorder:
+    """In a controller's place: keeps what it is told."""
+
+    def __init__(self):
+        self.calls = []
+
+    def reset(self):
+        self.calls = []
+
+    def torque(self, time, q, dq, reference):
+        self.calls.append((time, q.copy(), dq.copy()))
+        return np.zeros(3)
+
+
+def recorded(checked_config, *overrides, repetition=0):
+    """Let loops of recorders run; return the trace and the calls of each."""
+    config = checked_config("robot=combined", "duration=0.3", *overrides)
+    closed = assemble(config)
+    loops = tuple(dataclasses.replace(loop, controller=Recorder()) for loop in closed.loops)
+    closed = dataclasses.replace(closed, loops=loops)
+    try:
+        trace = simulate(closed, make_encoders(config, closed, repetition))
+    finally:
+        closed.plant.close()
+    return trace, [loop.controller.calls for loop in loops]
+
+
+def test_each_loop_reads_every_joint_afresh_at_its_own_ticks(checked_config):
+    trace, (macro, mini) = recorded(checked_config, "noise=thesis")
+    assert [call[0] for call in macro] == pytest.approx(np.arange(31) * 0.01)
+    assert [call[0] for call in mini] == pytest.approx(np.arange(301) * 0.001)
+    noise = [np.array([call[1] for call in calls]) - trace.q[::every] for calls, every in ((macro, 10), (mini, 1))]
+    for found in noise:
+        assert 0.9e-3 < np.abs(found[:, :3]).max() <= 1e-3
+        assert 0.9e-5 < np.abs(found[:, 3:]).max() <= 1e-5 * (1.0 + 1e-9)
+        assert len(np.unique(found)) == found.size
+    assert np.abs(noise[0] - noise[1][::10]).min() > 0.0  # at the same instant, each its own draw
+    for calls, every in ((macro, 10), (mini, 1)):
+        np.testing.assert_array_equal([call[2] for call in calls], trace.dq[::every])
+
+
+def test_each_loop_differences_over_its_own_period(checked_config):
+    trace, loops = recorded(checked_config, "noise=thesis", "noise.velocity=finite_difference")
+    for calls, period in zip(loops, (0.01, 0.001), strict=True):
+        measured, velocity = (np.array([call[index] for call in calls]) for index in (1, 2))
+        np.testing.assert_array_equal(velocity[0], 0.0)
+        np.testing.assert_allclose(velocity[1:], np.diff(measured, axis=0) / period, rtol=1e-12, atol=1e-12)
+    assert trace.failure is None
+
+
+def test_a_loop_s_noise_does_not_depend_on_the_other_s_ticks(checked_config):
+    def mini(*overrides, repetition=0):
+        trace, (_, calls) = recorded(checked_config, "noise=thesis", *overrides, repetition=repetition)
+        return (np.array([call[1] for call in calls]) - trace.q)[:300]
+
+    first = mini()
+    np.testing.assert_allclose(mini("controller.period.macro=0.03"), first, atol=1e-15)
+    np.testing.assert_allclose(mini("duration=0.5"), first, atol=1e-15)
+    assert np.abs(mini(repetition=1) - first).min() > 0.0
+    assert np.abs(mini("seed=1") - first).min() > 0.0

@@ -1,0 +1,115 @@
+import itertools
+
+import numpy as np
+import pytest
+from graph_layout import check_structure, check_texts, check_ways
+
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.controllers.whole_body import WholeBody, WholeBodyConfig
+from runner.controllers.whole_body_graph import whole_body_graph
+
+FLAGS = list(itertools.product([False, True], repeat=6))
+NAMES = ("gravity_compensation", "feedforward", "torque_limited", "goal", "speed_limited", "posture_task")
+OMEGA, XI, OMEGA_N, SPEED, LIMIT = 30.0, 0.8, 20.0, 0.5, 40.0
+
+
+def graph_of(flags):
+    return whole_body_graph(**dict(zip(NAMES, flags, strict=True)))
+
+
+@pytest.fixture(scope="module")
+def arm():
+    return validate(compose(["robot=combined"]).resolved).arm
+
+
+def evaluate(graph, robot, q, dq, reference, rest):
+    """Follow the signals from the reference and the measured state to the torque at the arm's input."""
+    model = robot.model
+    J, M = model.tip_jacobian(q)[:3], model.mass_matrix(q)
+    Lambda = np.linalg.inv(J @ np.linalg.inv(M) @ J.T)
+    N = np.eye(6) - np.linalg.inv(M) @ J.T @ Lambda @ J
+    k_p, k_v = OMEGA**2, 2.0 * XI * OMEGA
+    at_rest = model.tip_jacobian(rest)[:3]
+    Z = np.vstack([-np.linalg.solve(at_rest[:, :3], at_rest[:, 3:]), np.eye(3)])  # the Mini moves, the tip does not
+    K = np.zeros((6, 6))
+    K[3:, 3:] = OMEGA_N**2 * Z.T @ model.mass_matrix(rest) @ Z
+    labels = {node.name: node.label for node in graph.nodes}
+    V = model.coriolis_torque(q, dq)
+    known = {
+        "position": model.tip_position(q),
+        "velocity": J @ dq,
+        "dJ_dq": model.tip_bias_acceleration(q, dq),
+        "h": V + model.gravity_torque(q) if "G" in labels["h"] else V,
+        "k_vn": 2.0 * OMEGA_N * M @ dq,
+        "posture": rest,
+        "encoders": q,  # what the posture's summing point takes of it
+    }
+    gains = {"k_p": k_p * np.eye(3), "k_v": k_v * np.eye(3), "Lambda": Lambda, "J^T": J.T, "N^T": N.T,
+             "K": K}  # fmt: skip
+    taps = {"h", "dJ_dq", "k_vn", *gains}
+
+    def signal(edge):
+        if edge.source == "reference":
+            return reference[edge.label.count("dot") and (2 if "ddot" in edge.label else 1)]
+        return value(edge.source)
+
+    def value(name):
+        if name in known:
+            return known[name]
+        inputs = [e for e in graph.edges if e.target == name and not (e.source == "encoders" and name in taps)]
+        total = sum((-1.0 if edge.sign == "-" else 1.0) * signal(edge) for edge in inputs)
+        if name in gains:
+            return gains[name] @ total
+        if name == "speed_limit":
+            return total * min(1.0, k_v * SPEED / np.linalg.norm(total))
+        return np.clip(total, -LIMIT, LIMIT) if name == "limit" else total
+
+    return value("arm")
+
+
+@pytest.mark.parametrize("flags", FLAGS)
+def test_the_graph_is_the_law_that_is_executed(arm, flags):
+    gravity_compensation, feedforward, torque_limited, goal, speed_limited, posture_task = flags
+    config = WholeBodyConfig(
+        kind="whole_body", natural_frequency=OMEGA, damping_ratio=XI, period=1e-3,
+        gravity_compensation=gravity_compensation, feedforward=feedforward,
+        null_space_frequency=OMEGA_N if posture_task else 0.0, max_tip_speed=SPEED if speed_limited else None,
+        singularity_damping=0.0,
+    )  # fmt: skip
+    rest = np.array([0.0, 0.0, 0.0, 0.1, -0.2, 0.3])
+    law = WholeBody(arm.model, config, rest)
+    generator = np.random.default_rng(0)
+    for _ in range(5):
+        q, dq = generator.uniform(-1.0, 1.0, (2, 6))
+        reference = generator.uniform(-1.0, 1.0, (3, 3))
+        if goal:
+            reference[1:] = 0.0
+        tau = law.torque(0.0, q, dq, reference)
+        if torque_limited:
+            tau = np.clip(tau, -LIMIT, LIMIT)
+        drawn = evaluate(graph_of(flags), arm, q, dq, reference, rest)
+        np.testing.assert_allclose(drawn, tau, rtol=1e-7, atol=1e-7 * max(1.0, np.abs(tau).max()))
+
+
+@pytest.mark.parametrize("flags", FLAGS)
+def test_what_the_config_leaves_out_is_absent(flags):
+    gravity_compensation, feedforward, torque_limited, goal, speed_limited, posture_task = flags
+    graph = graph_of(flags)
+    labels = {node.name: node.label for node in graph.nodes}
+    assert ("G(q)" in labels["h"]) == gravity_compensation
+    assert ("limit" in labels) == torque_limited
+    assert ("speed_limit" in labels) == speed_limited
+    assert ({"posture", "K", "k_vn", "N^T"} <= set(labels)) == posture_task
+    given = [edge.label for edge in graph.edges if edge.source == "reference"]
+    assert len(given) == (3 if feedforward and not goal else 1)
+    assert any("x_g" in label for label in given) == goal
+
+
+@pytest.mark.parametrize("flags", FLAGS)
+def test_the_picture_keeps_the_rules(flags):
+    graph = graph_of(flags)
+    check_structure(graph)
+    check_ways(graph)
+    if flags[2] or flags[4]:  # the widest ones; drawing takes time
+        check_texts(graph)

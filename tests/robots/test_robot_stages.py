@@ -1,0 +1,252 @@
+"""Chains of stages: where each one's base and end point are, how they move, and what an arm carries."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+import yaml
+
+from runner.assembly import assemble, make_encoders
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.paths import conf_dir
+from runner.plants.bullet import Bullet
+from runner.plants.rk4 import Rk4
+from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.robot import StageBase, end_points
+from runner.simulation import simulate
+
+P = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # from the Mini's base into the Macro's tip frame
+TOP = {
+    "urdf": "mini.urdf",
+    "tip": "tip",
+    "home": [0.1, 0.2, 0.3],
+    "masses": {"link2": 0.01},
+    "rotor_inertia": 0.0,
+    "mount": {"frame": "tip", "translation": [0.0, 0.0, 0.01], "rotation": [np.pi / 2, 0.0, np.pi / 2]},
+}
+
+
+@pytest.fixture(scope="module")
+def three(tmp_path_factory):
+    """The Macro, the Mini, and a second Mini on top: one YAML of one's own."""
+    own = tmp_path_factory.mktemp("own")
+    (own / "robot").mkdir()
+    content = yaml.safe_load((conf_dir() / "robot" / "combined.yaml").read_text())
+    robot = content["robot"]
+    for value in robot.values():
+        if isinstance(value, dict) and isinstance(value.get("mini"), float):
+            value["top"] = value["mini"]
+    robot["name"], robot["stages"]["top"] = "three", TOP
+    (own / "robot" / "three.yaml").write_text(f"# @package _global_\n{yaml.safe_dump(content, sort_keys=False)}")
+    overrides = ["robot=three", "controller.period.top=0.0005", "duration=0.02"]
+    return validate(compose(overrides, [own]).resolved, [own])
+
+
+def postures(robot, count=8, seed=0):
+    return np.random.default_rng(seed).uniform(-np.pi, np.pi, (count, robot.model.nq))
+
+
+def test_stages_divide_the_joints(combined):
+    assert combined.stage_names == ("macro", "mini")
+    assert [stage.joints for stage in combined.stages] == [slice(0, 3), slice(3, 6)]
+    assert combined.model.joint_names == ("q1", "q2", "q3", "mini_q1", "mini_q2", "mini_q3")
+    np.testing.assert_array_equal(combined.home, np.zeros(6))
+    np.testing.assert_allclose(combined.stages[1].home_offset, [0.0, 0.1, 0.1], atol=1e-15)
+
+
+def test_end_points_are_the_carrier_s_tip_and_the_rest_turned_with_it(combined):
+    macro, mini = (stage.model for stage in combined.stages)
+    q = postures(combined)
+    found = end_points(combined, q)
+    assert found.shape == (2, 8, 3)
+    for row, (wrist, tip) in zip(q, found.transpose(1, 0, 2), strict=True):
+        pose = macro.tip_pose(row[:3])
+        np.testing.assert_allclose(wrist, pose[:3, 3], atol=1e-12)
+        np.testing.assert_allclose(tip, pose[:3, 3] + pose[:3, :3] @ P @ mini.tip_position(row[3:]), atol=1e-12)
+
+
+def test_parallel_end_points_are_turned_as_at_home(combined):
+    macro, mini = (stage.model for stage in combined.stages)
+    q = postures(combined)
+    found = end_points(combined, q, parallel=True)
+    for row, (wrist, tip) in zip(q, found.transpose(1, 0, 2), strict=True):
+        np.testing.assert_allclose(wrist, macro.tip_position(row[:3]), atol=1e-12)
+        np.testing.assert_allclose(tip, wrist + mini.tip_position(row[3:]), atol=1e-12)  # R = I at q = 0
+    np.testing.assert_allclose(end_points(combined, np.zeros((1, 6)), True), end_points(combined, np.zeros((1, 6))))
+
+
+def test_one_stage_has_one_end_point(checked_config, macro):
+    q = np.random.default_rng(0).uniform(-1.0, 1.0, (4, 3))
+    found = end_points(checked_config("robot=macro").arm, q)
+    np.testing.assert_array_equal(found, macro.tip_positions(q)[None])
+
+
+# Bases.
+
+
+def test_the_base_is_where_the_macro_s_tip_is(combined):
+    base = StageBase(combined, 1, parallel=False)
+    for q in postures(combined):
+        base.update(q, np.zeros(6))
+        pose = combined.stages[0].model.tip_pose(q[:3])
+        np.testing.assert_allclose(base.position, pose[:3, 3], atol=1e-12)
+        np.testing.assert_allclose(base.rotation, pose[:3, :3] @ P, atol=1e-12)
+    base.update(np.zeros(6), np.zeros(6))
+    np.testing.assert_allclose(base.rotation, np.eye(3), atol=1e-15)
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_the_base_moves_at_the_difference_quotient_of_its_place(combined, parallel):
+    base, h = StageBase(combined, 1, parallel), 1e-5
+    for q, dq in zip(postures(combined), postures(combined, seed=1), strict=True):
+        places = []
+        for sign in (-1.0, 1.0):
+            base.update(q + sign * h * dq, dq)
+            places.append((base.position.copy(), base.rotation.copy()))
+        base.update(q, dq)
+        linear, angular = base.velocity()
+        (before, R_before), (after, R_after) = places
+        np.testing.assert_allclose(linear, (after - before) / (2.0 * h), atol=1e-8)
+        np.testing.assert_allclose(angular, pin.log3(R_after @ R_before.T) / (2.0 * h), atol=1e-8)
+        assert np.linalg.norm(linear) > 0.1
+        assert (np.linalg.norm(angular) > 0.1) != parallel
+
+
+def test_a_parallel_base_keeps_the_orientation_of_home(combined):
+    base = StageBase(combined, 1, parallel=True)
+    for q in postures(combined):
+        base.update(q, q)
+        np.testing.assert_allclose(base.rotation, np.eye(3), atol=1e-15)
+        np.testing.assert_array_equal(base.velocity()[1], 0.0)
+
+
+def test_the_base_does_not_depend_on_the_joints_above_it(combined):
+    base = StageBase(combined, 1, parallel=False)
+    q = postures(combined)[0]
+    found = []
+    for own in (q, np.concatenate([q[:3], [3.0, -2.0, 1.0]])):
+        base.update(own, own)
+        found.append((base.position.copy(), base.rotation.copy(), base.velocity()[0].copy()))
+    for one, other in zip(*found, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+# Three stages.
+
+
+def test_a_third_stage_is_one_more_entry_in_the_yaml(three, mini):
+    robot = three.arm
+    assert robot.stage_names == ("macro", "mini", "top")
+    assert robot.model.nq == 9
+    assert robot.model.joint_names[6:] == ("top_q1", "top_q2", "top_q3")
+    assert robot.stages[2].base_frame == "top_base"
+    np.testing.assert_array_equal(robot.home[6:], [0.1, 0.2, 0.3])
+    step = np.eye(4)
+    step[:3, :3], step[:3, 3] = P, [0.0, 0.0, 0.01]
+    for q in postures(robot):
+        pose = robot.stages[0].model.tip_pose(q[:3])
+        for joints, mounting in ((slice(3, 6), None), (slice(6, 9), step)):
+            place = np.block([[P, np.zeros((3, 1))], [np.zeros((1, 3)), 1.0]]) if mounting is None else mounting
+            pose = pose @ place @ mini.tip_pose(q[joints])
+        np.testing.assert_allclose(robot.model.tip_pose(q), pose, atol=1e-12)
+        points = end_points(robot, q[None])[:, 0]
+        np.testing.assert_allclose(points[-1], pose[:3, 3], atol=1e-12)
+        middle = robot.model.frame_poses(q, ("top_base",))[0]
+        np.testing.assert_allclose(points[1], middle[:3, 3], atol=1e-12)
+    assert robot.model.mass == pytest.approx(2.2 + 0.01 + 0.1)
+
+
+def test_three_stages_run(three):
+    loop = assemble(three)
+    try:
+        trace = simulate(loop, make_encoders(three, loop, 0))
+    finally:
+        loop.plant.close()
+    assert trace.failure is None
+    assert trace.q.shape == (41, 9)
+    assert len(loop.loops) == 3
+
+
+# Payload and rotors.
+
+
+@pytest.mark.parametrize("mass", [0.2, 5.0])
+def test_a_payload_is_a_point_mass_at_the_tip(macro, mass):
+    loaded, g = macro.with_payload(mass), macro.gravity
+    for q in np.random.default_rng(0).uniform(-2.0, 2.0, (6, 3)):
+        J = macro.tip_jacobian(q)[:3]
+        np.testing.assert_allclose(loaded.mass_matrix(q), macro.mass_matrix(q) + mass * J.T @ J, atol=1e-12)
+        np.testing.assert_allclose(loaded.gravity_torque(q), macro.gravity_torque(q) - mass * J.T @ g, atol=1e-12)
+        dq = q[::-1].copy()
+        added = mass * J.T @ macro.tip_bias_acceleration(q, dq)
+        np.testing.assert_allclose(loaded.coriolis_torque(q, dq), macro.coriolis_torque(q, dq) + added, atol=1e-11)
+        np.testing.assert_array_equal(loaded.tip_position(q), macro.tip_position(q))
+    assert loaded.mass == pytest.approx(macro.mass + mass)
+
+
+def test_a_payload_leaves_the_arm_itself_alone(macro):
+    before = macro.mass_matrix(np.ones(3)), macro.mass
+    macro.with_payload(3.0).mass_matrix(np.zeros(3))
+    np.testing.assert_array_equal(macro.mass_matrix(np.ones(3)), before[0])
+    assert macro.mass == before[1]
+
+
+@pytest.mark.parametrize("name", ["macro", "mini"])
+def test_a_rotor_adds_its_inertia_about_its_joint_and_half_of_it_across(name):
+    inertia = 0.3
+    plain, turned = (RobotModel(read_urdf(find_urdf(f"{name}.urdf"), {}, rotor), "tip") for rotor in (0.0, inertia))
+    for q in np.random.default_rng(3).uniform(-3.0, 3.0, (6, 3)):
+        added = turned.mass_matrix(q) - plain.mass_matrix(q)
+        axes = plain.tip_jacobian(q)[3:]
+        expected = np.zeros((3, 3))
+        for joint in range(3):
+            spin = np.where(np.arange(3) <= joint, axes, 0.0)  # the link's angular velocity per joint velocity
+            disc = 0.5 * inertia * (np.eye(3) + np.outer(axes[:, joint], axes[:, joint]))
+            expected += spin.T @ disc @ spin
+        np.testing.assert_allclose(added, expected, atol=1e-12)
+        assert added[2, 2] == pytest.approx(inertia, abs=1e-14)  # the last joint turns its own rotor alone
+        np.testing.assert_allclose(turned.gravity_torque(q), plain.gravity_torque(q), atol=1e-12)
+
+
+def test_rotors_keep_the_energy():
+    model = RobotModel(read_urdf(find_urdf("macro.urdf"), {}, 0.3), "tip")
+    plant = Rk4(model, 1e-3, 10)
+    plant.reset(np.array([0.3, 0.5, -0.4]), np.array([1.0, 0.5, -0.5]))
+    start = model.energy(plant.q, plant.dq)
+    kinetic = 0.5 * plant.dq @ model.mass_matrix(plant.q) @ plant.dq
+    assert start - model.energy(plant.q, np.zeros(3)) == pytest.approx(kinetic, rel=1e-12)
+    for _ in range(200):
+        plant.advance(np.zeros(3))
+    assert model.energy(plant.q, plant.dq) == pytest.approx(start, abs=1e-8 * abs(start) + 1e-8)
+    assert np.abs(plant.q - [0.3, 0.5, -0.4]).max() > 0.3
+
+
+@pytest.mark.parametrize("robot", ["macro", "combined"])
+def test_bullet_takes_the_rotors_too(checked_config, robot, capfd):
+    # It sets an inertia that no body can have to zero, and says so on standard error.
+    stages = ("robot.stages.macro", "robot.stages.mini") if robot == "combined" else ("robot",)
+    rotors = [f"{stage}.rotor_inertia={inertia}" for stage, inertia in zip(stages, (0.3, 1e-3), strict=False)]
+    arm = checked_config(f"robot={robot}", *rotors).arm
+    plant, h = Bullet(arm.urdf, arm.model, 1e-5, 1), 1e-5
+    try:
+        q, tau = np.linspace(0.1, 0.6, arm.model.nq), np.ones(arm.model.nq)
+        plant.reset(q, np.zeros_like(q))
+        plant.advance(tau)
+        expected = arm.model.forward_dynamics(q, np.zeros_like(q), tau)
+        np.testing.assert_allclose(plant.dq / h, expected, atol=1e-6 * np.abs(expected).max())
+    finally:
+        plant.close()
+    assert "Bad inertia" not in "".join(capfd.readouterr())
+
+
+def test_a_rotor_turns_about_its_axis_however_the_inertia_s_frame_lies(macro_urdf, tmp_path):
+    # Link 3's point mass looks the same from every inertial frame; the rotor must, too.
+    origin = '<origin xyz="0 0 1"/><mass'
+    assert origin in macro_urdf.replace(" />", "/>")
+    turned = macro_urdf.replace(" />", "/>").replace(origin, '<origin xyz="0 0 1" rpy="0.4 -0.5 0.6"/><mass')
+    models = []
+    for name, text in (("plain", macro_urdf), ("turned", turned)):
+        (tmp_path / f"{name}.urdf").write_text(text)
+        models.append(RobotModel(read_urdf(tmp_path / f"{name}.urdf", {}, 0.3), "tip"))
+    for q in np.random.default_rng(4).uniform(-3.0, 3.0, (4, 3)):
+        np.testing.assert_allclose(models[1].mass_matrix(q), models[0].mass_matrix(q), atol=1e-12)

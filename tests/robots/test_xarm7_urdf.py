@@ -1,0 +1,128 @@
+"""The xArm7's URDF against the chain of the xArm7 report and the arm's published data."""
+
+import math
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+
+from runner.robots import RobotModel, find_urdf, read_urdf
+
+EXACT = (math.hypot(0.0775, 0.3425), math.atan2(0.0775, 0.3425), math.hypot(0.076, 0.097), math.atan2(0.076, 0.097))
+ROUNDED = (0.3512, 0.2225, 0.1232, 0.6646)  # as the report prints l4, theta1, l5, theta2
+POSTURE = np.array([0.1, 0.75, 0.2, 1.5, -0.3, 0.75, 0.4])
+
+
+@pytest.fixture(scope="module")
+def urdf():
+    return read_urdf(find_urdf("xarm7.urdf"), {})
+
+
+@pytest.fixture(scope="module")
+def xarm7(urdf):
+    return RobotModel(urdf, "flange")
+
+
+def turn_x(angle):
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[1, 0, 0, 0], [0, c, -s, 0], [0, s, c, 0], [0, 0, 0, 1.0]])
+
+
+def turn_z(angle):
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
+
+
+def shift(x=0.0, z=0.0):
+    pose = np.eye(4)
+    pose[:3, 3] = x, 0.0, z
+    return pose
+
+
+def chain(q, l4, theta1, l5, theta2):
+    """Return the pose of the report's frame 7, factor by factor as it is written there."""
+    right = math.pi / 2
+    factors = (
+        (turn_z(q[0]), shift(z=0.267)),
+        (turn_x(-right), turn_z(q[1])),
+        (turn_x(right), turn_z(q[2]), shift(z=0.293)),
+        (turn_x(right), shift(x=0.0525), turn_z(q[3])),
+        (turn_x(right), shift(x=l4 * math.sin(theta1)), turn_z(q[4]), shift(z=l4 * math.cos(theta1))),
+        (turn_x(right), turn_z(q[5])),
+        (turn_x(-right), shift(x=l5 * math.sin(theta2)), turn_z(q[6]), shift(z=l5 * math.cos(theta2))),
+    )
+    return np.linalg.multi_dot([factor for joint in factors for factor in joint])
+
+
+def within_limits(model, count):
+    low, high = model.pin_model.lowerPositionLimit, model.pin_model.upperPositionLimit
+    return np.random.default_rng(7).uniform(low, high, (count, model.nq))
+
+
+def inertials(urdf):
+    for link in ET.fromstring(urdf).iter("link"):
+        values = {key: float(value) for key, value in link.find("inertial/inertia").attrib.items()}
+        tensor = np.array(
+            [
+                [values["ixx"], values["ixy"], values["ixz"]],
+                [values["ixy"], values["iyy"], values["iyz"]],
+                [values["ixz"], values["iyz"], values["izz"]],
+            ]
+        )
+        yield link.get("name"), float(link.find("inertial/mass").get("value")), tensor
+
+
+def test_forward_kinematics_is_the_report_s_chain_with_exact_constants(xarm7):
+    for q in within_limits(xarm7, 200):
+        np.testing.assert_allclose(xarm7.tip_pose(q), chain(q, *EXACT), rtol=0, atol=1e-12)
+
+
+def test_the_check_value_holds_to_the_rounding_of_the_report_s_constants(xarm7):
+    printed = np.array([0.58447967, 0.15969098, 0.15779577])
+    np.testing.assert_allclose(chain(POSTURE, *ROUNDED)[:3, 3], printed, rtol=0, atol=5e-9)
+    assert np.linalg.norm(xarm7.tip_position(POSTURE) - printed) < 6.6e-5  # half a unit of the last digit of l4 and l5
+
+
+def test_the_flange_at_zero_points_down(xarm7):
+    pose = xarm7.tip_pose(np.zeros(7))
+    np.testing.assert_allclose(pose[:3, 3], [0.206, 0.0, 0.1205], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(pose[:3, :3], np.diag([1.0, -1.0, -1.0]), rtol=0, atol=1e-15)
+
+
+def test_masses_are_the_set_s_and_the_flange_has_none(urdf, xarm7):
+    masses = {name: mass for name, mass, _ in inertials(urdf)}
+    assert list(masses) == ["link_base", *(f"link{index}" for index in range(1, 8)), "flange"]
+    assert xarm7.mass == pytest.approx(10.4315, abs=1e-12)  # the base does not move
+    assert masses["flange"] == 0.0
+
+
+def test_every_tensor_could_be_that_of_a_body(urdf):
+    for name, mass, tensor in inertials(urdf):
+        moments = np.linalg.eigvalsh(tensor)
+        if name == "flange":
+            assert not tensor.any()
+            continue
+        assert moments[0] > 0.0
+        assert moments[2] < moments[0] + moments[1]
+        assert 0.015 < math.sqrt(moments[0] / mass) < math.sqrt(moments[2] / mass) < 0.08
+
+
+def test_limits_are_those_of_the_arm(xarm7):
+    model = xarm7.pin_model
+    degrees = [(-360, 360), (-118, 120), (-360, 360), (-11, 225), (-360, 360), (-97, 180), (-360, 360)]
+    np.testing.assert_allclose(np.rad2deg(model.lowerPositionLimit), [low for low, _ in degrees], atol=1e-3)
+    np.testing.assert_allclose(np.rad2deg(model.upperPositionLimit), [high for _, high in degrees], atol=1e-3)
+    np.testing.assert_allclose(model.upperVelocityLimit, np.pi, atol=1e-6)
+    np.testing.assert_array_equal(xarm7.effort_limits, [50, 50, 30, 30, 30, 20, 20])
+
+
+def test_the_arm_can_carry_itself(xarm7):
+    torques = np.abs([xarm7.gravity_torque(q) for q in within_limits(xarm7, 2000)])
+    assert 31.0 < torques[:, 1].max() < 32.9  # its maximum, found by local search, is 32.9 N m
+    assert (torques.max(axis=0) < 0.66 * xarm7.effort_limits).all()
+
+
+def test_shapes_are_primitives(urdf):
+    geometries = {shape.tag for geometry in ET.fromstring(urdf).iter("geometry") for shape in geometry}
+    assert geometries == {"cylinder"}
+    assert not list(ET.fromstring(urdf).iter("collision"))
