@@ -25,6 +25,18 @@ class Bound(StrictModel):
     reason: str
 
 
+class Likeness(StrictModel):
+    """What a claim without a number is compared with: ours of another run.
+
+    Attributes:
+        experiment: The other experiment.
+        metric: The metric there.
+    """
+
+    experiment: str
+    metric: str
+
+
 class PublishedClaim(StrictModel):
     """One published number.
 
@@ -32,28 +44,30 @@ class PublishedClaim(StrictModel):
         number: Its number in the list.
         statement: What the source says.
         place: Where.
-        printed: The printed value, or the two ends of the printed range.
+        printed: The printed value, or the two ends of the printed range; empty where the source compares in words.
         unit: Its unit.
         experiment: The experiment that makes it.
         metric: The metric that it is compared with; a range is compared by its upper end, the worst axis.
         reason: What the comparison shows; inline mathematics between dollar signs.
+        like: Set where the source compares in words: the run of ours that it is said to be like.
         bound: Set where the number is beyond what the model can give.
     """
 
     number: int
     statement: str
     place: str
-    printed: Annotated[list[NonNegativeFloat], Field(min_length=1, max_length=2)]
+    printed: Annotated[list[NonNegativeFloat], Field(max_length=2)]
     unit: str
     experiment: str
     metric: str
     reason: str
     bound: Bound | None = None
+    like: Likeness | None = None
 
     @property
-    def value(self) -> float:
-        """The printed value that ours is compared with: the upper end of a range."""
-        return self.printed[-1]
+    def value(self) -> float | None:
+        """The printed value that ours is compared with: the upper end of a range; None where there is no number."""
+        return self.printed[-1] if self.printed else None
 
 
 def load_claims(source: str) -> list[PublishedClaim]:

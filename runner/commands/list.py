@@ -5,11 +5,15 @@ import shutil
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from runner.commands.arguments import Parser
 from runner.config.options import described_files, group_options
 from runner.errors import RunnerError, nearest
 from runner.paths import package_dir
+
+if TYPE_CHECKING:
+    from runner.claims import PublishedClaim
 
 _GROUPS = {
     "robots": "robot",
@@ -71,11 +75,15 @@ def _list_claims(_: Sequence[Path]) -> dict[str, str]:
     from runner.claims import load_claims
 
     return {
-        f"{source} {claim.number}": f"{claim.statement}: {' to '.join(f'{value:g}' for value in claim.printed)} "
-        f"{claim.unit} ({claim.place})"
+        f"{source} {claim.number}": f"{claim.statement}{_printed(claim)} ({claim.place})"
         for source in described_files(package_dir() / "claims")
         for claim in load_claims(source)
     }
+
+
+def _printed(claim: "PublishedClaim") -> str:
+    """Return a claim's value as printed; nothing where the source compares in words."""
+    return f": {' to '.join(f'{value:g}' for value in claim.printed)} {claim.unit}" if claim.printed else ""
 
 
 def _list_references(_: Sequence[Path]) -> dict[str, str]:

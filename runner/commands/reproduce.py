@@ -37,11 +37,13 @@ def main(arguments: Sequence[str]) -> int:
 def _reproduce(work: str, outputs: Path) -> int:
     from runner import store
     from runner.reporting.render import write_report
+    from runner.reporting.thesis.dynamics_benchmark import FILE, measure
     from runner.reporting.thesis.plan import plan
     from runner.reporting.thesis.report import thesis_document
 
     store.prepare(outputs)
     runs = run_all(plan(), outputs)
+    measure(outputs / FILE)
     folder = outputs / "reports" / work
     print("writing the report ...", file=sys.stderr)
     write_report(thesis_document(runs), folder)

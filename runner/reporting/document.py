@@ -2,7 +2,7 @@
 
 Blocks hold values, never markup. Text may carry inline mathematics between dollar signs, written as Typst
 mathematics (`"the sag is $g / omega_n^2$"`); everything else is shown literally, so that a name from a config
-or a file can never become markup. A dollar sign is written as two.
+or a file can never become markup. A dollar sign is written as two. `§2.1` is a link to that section.
 """
 
 from collections.abc import Sequence

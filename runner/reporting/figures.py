@@ -21,7 +21,7 @@ def origin(run: Run, number: str = "") -> Origin:
 
 def model_of(run: Run) -> RobotModel:
     """Return the rigid-body model of the robot that a run simulated, from the URDF stored with it."""
-    return RobotModel(run.urdf, run.config["robot"]["tip"], run.config["gravity"])
+    return RobotModel(run.urdf, run.provenance["tip_frame"], run.config["gravity"])
 
 
 def columns(trace: pd.DataFrame, stem: str) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Text of a report taken apart: what is shown literally, and the mathematics between dollar signs."""
+"""Text of a report taken apart: what is shown literally, mathematics between dollar signs, links to sections."""
 
 import re
 import unicodedata
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 _OVERRIDES = ("LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")
 _SPAN = re.compile(r"\$\$|\$((?:[^$])+)\$|\$|[^$]+")
+_LINK = re.compile(r"§(\d+(?:\.\d+)*)")
 _SPACE = re.compile(r"\s+")
 
 
@@ -15,6 +16,25 @@ class Literal:
 
     text: str
     math: bool = False
+    anchor: str = ""
+
+
+@dataclass(frozen=True)
+class Link:
+    """A link to a section of the report, by its number; shown literally where there is no such section."""
+
+    number: str
+    math: bool = False
+
+    @property
+    def text(self) -> str:
+        """What is shown."""
+        return f"section {self.number}"
+
+    @property
+    def anchor(self) -> str:
+        """Name of the place that the link leads to."""
+        return anchor(self.number)
 
 
 @dataclass(frozen=True)
@@ -25,7 +45,12 @@ class Math:
     math: bool = True
 
 
-Span = Literal | Math
+Span = Literal | Link | Math
+
+
+def anchor(number: str) -> str:
+    """Return the name of the place of a section, such as "s2-1" for number "2.1"."""
+    return "s" + number.replace(".", "-")
 
 
 def plain(text: str) -> str:
@@ -40,9 +65,10 @@ def plain(text: str) -> str:
 
 
 def spans(text: str) -> list[Span]:
-    """Split a text into literal and mathematical spans.
+    """Split a text into literal and mathematical spans, and links.
 
-    `$...$` is mathematics, `$$` a dollar sign, and so is a dollar sign without a partner.
+    `$...$` is mathematics, `$$` a dollar sign, and so is a dollar sign without a partner. `§2.1` is a link to that
+    section.
 
     Args:
         text: Text with inline mathematics as in `document.Text`.
@@ -59,7 +85,13 @@ def spans(text: str) -> list[Span]:
         if result and isinstance(result[-1], Literal):
             literal = result.pop().text + literal
         result.append(Literal(literal))
-    return result
+    return [part for span in result for part in (_links(span.text) if isinstance(span, Literal) else [span])]
+
+
+def _links(text: str) -> list[Span]:
+    parts = _LINK.split(text)  # literals at even places, section numbers at odd ones
+    found: list[Span] = [Link(part) if index % 2 else Literal(part) for index, part in enumerate(parts)]
+    return [span for span in found if span.text]
 
 
 def _visible(character: str) -> str:

@@ -16,7 +16,7 @@ from runner.reporting.document import (
     Table,
     Text,
 )
-from runner.reporting.markup import Math, spans
+from runner.reporting.markup import Math, anchor, spans
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Chapter:
     @property
     def anchor(self) -> str:
         """Name of the place in the page that the table of contents leads to."""
-        return "s" + self.number.replace(".", "-")
+        return anchor(self.number)
 
 
 def chapters(document: Document) -> list[Chapter]:

@@ -37,7 +37,11 @@ def find_twin(run: Run) -> Run | None:
     if other is None:
         return None
     for repetitions in (1, run.config["repetitions"]):
-        config = {**run.config, "plant": {"kind": other, "step": None}, "repetitions": repetitions}
+        config = {
+            **run.config,
+            "plant": {**run.config["plant"], "kind": other, "step": None},
+            "repetitions": repetitions,
+        }
         twin = find_run(run.folder.parent.parent, run_hash(config, run.urdf))
         if twin is not None:
             return twin

@@ -3,14 +3,14 @@ from pydantic import ValidationError
 
 from runner.claims import FACTOR, PublishedClaim, judge, load_claims
 from runner.config.options import group_options
-from runner.metrics import units
+from runner.metrics import unit_of
 
 CLAIMS = load_claims("thesis")
-PAIRS = [(claim, claim) for claim in CLAIMS] + [(claim, claim.bound) for claim in CLAIMS if claim.bound]
+PAIRS = [(claim, where) for claim in CLAIMS for where in (claim, claim.bound, claim.like) if where is not None]
 
 
-def test_the_seven_numbers_of_chapters_3_and_4_are_listed_in_order():
-    assert [claim.number for claim in CLAIMS] == [1, 2, 3, 4, 5, 6, 7]
+def test_the_numbers_of_chapters_3_to_5_are_listed_in_order():
+    assert [claim.number for claim in CLAIMS] == list(range(1, 17))
     assert [claim.printed for claim in CLAIMS] == [
         [1.4],
         [0.0, 9e-3],
@@ -19,13 +19,22 @@ def test_the_seven_numbers_of_chapters_3_and_4_are_listed_in_order():
         [0.3],
         [4e-4, 8e-4],
         [6e-5],
+        [1.0],
+        [0.0, 4e-4],
+        [1.5],
+        [0.0, 9e-4],
+        [0.01],
+        [0.06],
+        [0.0, 5e-4],
+        [0.0, 0.01],
+        [],  # in words
     ]
 
 
 @pytest.mark.parametrize(("claim", "where"), PAIRS, ids=lambda value: getattr(value, "experiment", ""))
 def test_a_claim_is_compared_with_a_metric_of_an_experiment_that_exists(claim, where, checked_config):
     assert where.experiment in group_options("experiment")
-    assert units()[where.metric] == claim.unit
+    assert unit_of(where.metric) == claim.unit
     config = checked_config(f"experiment={where.experiment}")
     assert config.settings.repetitions == 40
     tracked = config.resolved["trajectory"]["kind"] != "goal"
@@ -36,7 +45,8 @@ def test_a_claim_is_compared_with_a_metric_of_an_experiment_that_exists(claim, w
 def test_a_claim_says_where_it_stands_and_why(claim):
     assert claim.place.startswith("section ")
     assert claim.reason or claim.bound.reason
-    assert claim.value == max(claim.printed)
+    assert claim.value == max(claim.printed, default=None)
+    assert (claim.like is None) == bool(claim.printed)
 
 
 def test_only_the_minis_settling_time_is_out_of_reach():

@@ -1,6 +1,6 @@
 import pytest
 
-from runner.reporting.markup import Literal, Math, plain, spans
+from runner.reporting.markup import Link, Literal, Math, plain, spans
 
 
 def test_dollars_enclose_mathematics():
@@ -14,6 +14,11 @@ def test_dollars_enclose_mathematics():
 def test_other_dollars_are_literal(text, shown):
     assert "".join(span.text for span in spans(text)) == shown
     assert not any(isinstance(span, Math) for span in spans(text))
+
+
+def test_a_section_sign_with_a_number_is_a_link():
+    assert spans("see §2.1, not § 3") == [Literal("see "), Link("2.1"), Literal(", not § 3")]
+    assert (Link("2.1").text, Link("2.1").anchor) == ("section 2.1", "s2-1")
 
 
 def test_plain_is_one_line():

@@ -51,3 +51,10 @@ def test_long_tables_break_over_pages(monkeypatch):
         pdf.typst, "compile", lambda *given, **named: compile_typst(*given, **named | {"format": "svg"})
     )
     assert len(pdf.render(made)) > 4
+
+
+def test_a_link_leads_to_its_section_and_one_without_section_is_text():
+    table = Table("where", ["place"], [["§1"], ["§9.9"]])
+    links = pdf.render(Document("t", "s", "a", [Section("one", [table])], "2026-01-01"))
+    plain = pdf.render(Document("t", "s", "a", [Section("one", [replace(table, rows=[["1"], ["9.9"]])])], "2026-01-01"))
+    assert links.count(b"/Subtype/Link") == plain.count(b"/Subtype/Link") + 1

@@ -38,7 +38,7 @@ def kinematics(run: Run, figure: str, table: str, first: int, tip: str) -> Secti
         tip: Name of the tip frame.
     """
     model = model_of(run)
-    rows = [_dh_cells(first + index, row) for index, row in enumerate(denavit_hartenberg(model), start=1)]
+    rows = [dh_cells(first + index, row) for index, row in enumerate(denavit_hartenberg(model), start=1)]
     return Section(
         "Kinematic model",
         (
@@ -60,7 +60,8 @@ def kinematics(run: Run, figure: str, table: str, first: int, tip: str) -> Secti
     )
 
 
-def _dh_cells(link: int, row: DenavitHartenbergRow) -> list[str]:
+def dh_cells(link: int, row: DenavitHartenbergRow) -> list[str]:
+    """Return the cells of one row of a Denavit-Hartenberg table, angles as multiples of pi."""
     turn = f"$q_{link}$" if row.theta == 0.0 else f"{_angle(row.theta)} + $q_{link}$"
     return [str(link), turn, f"{row.d:g}", f"{row.a:g}", _angle(row.alpha)]
 

@@ -51,9 +51,16 @@ def _findings(claim: PublishedClaim, runs: Mapping[str, Run]) -> list[Finding]:
     findings = []
     for preset in PRESETS:
         metric = runs[f"{_figure(claim.experiment)}/{preset}"].metrics[claim.metric]
-        verdict = judge(claim.value, metric["median"], _bound(claim, preset, runs))
+        verdict = judge(_value(claim, preset, runs), metric["median"], _bound(claim, preset, runs))
         findings.append(Finding(preset, spread(metric), verdict))
     return findings
+
+
+def _value(claim: PublishedClaim, preset: str, runs: Mapping[str, Run]) -> float:
+    """Return what ours is compared with: the printed value, or ours of the run that it is said to be like."""
+    if claim.value is not None or claim.like is None:
+        return float(claim.value or 0.0)
+    return float(runs[f"{_figure(claim.like.experiment)}/{preset}"].metrics[claim.like.metric]["median"])
 
 
 def _bound(claim: PublishedClaim, preset: str, runs: Mapping[str, Run]) -> float | None:
@@ -68,4 +75,6 @@ def _figure(experiment: str) -> str:
 
 
 def _printed(claim: PublishedClaim) -> str:
+    if not claim.printed:
+        return "in words"
     return f"{' to '.join(number(value) for value in claim.printed)} {claim.unit}"

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from runner.reporting.thesis.combined_plan import combined_jobs
+
 PRESETS = ("as_reported", "sound")
 FIGURES = (
     "figure_3_5",
@@ -12,6 +14,16 @@ FIGURES = (
     "figure_4_2",
     "figure_4_3",
     "figure_4_4",
+)
+COMBINED = (
+    "figure_5_3",
+    "figure_5_8",
+    "figure_5_10",
+    "figure_5_11",
+    "figure_5_12",
+    "figure_5_13",
+    "macro_alone",
+    "macro_alone_goal",
 )
 TRACKED = ("figure_3_9", "figure_3_10")
 COMPARED = ("figure_3_5", "figure_3_9", "figure_3_10", "figure_4_2", "figure_4_4")
@@ -52,6 +64,15 @@ def plan() -> dict[str, Job]:
                 add(f"{figure}/{preset}/rk4", *base, "plant=rk4", "repetitions=1", ticks=ticks)
             for t_f in DURATIONS if figure in TRACKED else ():
                 add(f"{figure}/{preset}/{t_f}", *base, f"trajectory.duration={t_f}", "repetitions=5", ticks=2500)
+    for name in COMBINED:
+        repetitions = 1 if name in ("figure_5_3", "figure_5_11") else 40
+        for preset in PRESETS:
+            base = (f"experiment=thesis/{name}", f"preset={preset}")
+            add(f"{name}/{preset}", *base, ticks=6000 * repetitions)  # six joints take half as long again
+            if name in ("figure_5_8", "figure_5_10", "figure_5_12", "figure_5_13"):
+                add(f"{name}/{preset}/rk4", *base, "plant=rk4", "repetitions=1", ticks=6000)
+    for name, (overrides, ticks) in combined_jobs().items():
+        add(name, *overrides, ticks=ticks)
     for arm in ARMS:
         ticks = 4000 if arm == "mini" else 400
         add(f"gravity_term/{arm}", "experiment=thesis/gravity_term", f"robot={arm}", ticks=ticks)

@@ -1,0 +1,147 @@
+"""The Macro target x_d, under which the Mini folds onto its base, against x_d - r_0."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from runner.reporting.document import Block, Curves, Formula, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.figures import origin
+from runner.reporting.quantities import number, quantity
+from runner.reporting.thesis.combined_plan import FOLDING, MOTIONS, TARGETS
+from runner.reporting.thesis.studies import cell, clock, extension, failures, mini_dexterity
+from runner.store import Run
+
+_CASES = ("sound", "as_reported")
+_MOTION = {"goal": "goal", "quintic": "tracking"}
+
+
+def folding_section(runs: Mapping[str, Run]) -> Section:
+    """Return how close to a singular posture the Mini comes under both readings of the Macro's target."""
+    ours = {name: run for name, run in runs.items() if name.startswith("folding/")}
+    dexterity = {name: mini_dexterity(run) for name, run in ours.items()}
+    rows = []
+    for case in FOLDING:
+        for motion in MOTIONS:
+            for target in TARGETS:
+                name = f"folding/{case}/{target}/{motion}"
+                run, measures = ours[name], dexterity[name]
+                row = _closest(measures[:, 0])
+                rows.append(
+                    [
+                        case,
+                        _MOTION[motion],
+                        target,
+                        number(float(measures[row, 0])) if np.isfinite(measures[row, 0]) else "–",
+                        number(float(measures[row, 1])) if np.isfinite(measures[row, 1]) else "–",
+                        f"{clock(run)[row]:.2f}",
+                        number(float(extension(run)[row])),
+                        cell(run, "steady_state_error"),
+                    ]
+                )
+    home = float(dexterity["folding/sound/minus_home/quintic"][0, 0])
+    blocks: list[Block] = [
+        Text(
+            "The thesis lets the Macro's end point go to the goal position itself. Taken at its word, macro_target = "
+            "tip_goal, the Mini has nothing left to reach for and folds onto its base. Its remark that the Macro "
+            "with a Mini held still moves as it does alone asks for $x_d - r_0$, macro_target = minus_home. Folded, "
+            f"the Mini's Jacobian is singular; at home its smallest singular value is {quantity(home, 'm')}:"
+        ),
+        Formula("|det J| = L^3 |c_3 (c_2 - s_23)|, quad |p| = 2 L |cos((pi / 2 + q_3) / 2)|", "folded, p is zero"),
+        Table(
+            "Where the Mini comes closest to a singular posture: smallest singular value of its Jacobian, "
+            "manipulability and distance $|p|$ from its base to the tip at that time; no noise, the law as printed.",
+            [
+                "case",
+                "motion",
+                "Macro target",
+                "singular value (m)",
+                "$|det J|$ (m³)",
+                "at t (s)",
+                "$|p|$ (m)",
+                "steady error (m)",
+            ],
+            rows,
+            (3, 4, 5, 6, 7),
+            origin(runs["folding/sound/tip_goal/quintic"]),
+        ),
+        _curves(runs, dexterity),
+        _finding(runs, dexterity),
+        *failures(ours),
+    ]
+    return Section("Folding the Mini", blocks)
+
+
+def _closest(singular: np.ndarray) -> int:
+    return int(np.nanargmin(singular)) if np.isfinite(singular).any() else 0
+
+
+def _curves(runs: Mapping[str, Run], dexterity: Mapping[str, np.ndarray]) -> Curves:
+    singular, volume, folded = [], [], []
+    for index, case in enumerate(_CASES):
+        for target in TARGETS:
+            name = f"folding/{case}/{target}/quintic"
+            t = clock(runs[name])
+            style, label = "line" if target == "tip_goal" else "dashed", f"{case}, {target}"
+            singular.append(_series(label, t, dexterity[name][:, 0], style, index))
+            volume.append(_series(label, t, dexterity[name][:, 1], style, index))
+            folded.append(_series(label, t, extension(runs[name]), style, index))
+    return Curves(
+        "Tracking: how close the Mini is to a singular posture, and how far it is unfolded.",
+        (
+            Panel(
+                "Smallest singular value", "time (s)", "singular value (m)", singular, y_log=True, y_range=(1e-6, 1.0)
+            ),
+            Panel("Manipulability", "time (s)", "|det J| (m³)", volume, y_log=True, y_range=(1e-9, 1e-2)),
+            Panel("Distance from its base to the tip", "time (s)", "|p| (m)", folded),
+        ),
+        2,
+        origin(runs["folding/sound/tip_goal/quintic"]),
+    )
+
+
+def _series(name: str, t: np.ndarray, y: np.ndarray, style: str, color: int) -> Series:
+    return Series(name, t, np.where(y > 0.0, y, np.nan), "dashed" if style == "dashed" else "line", color=color)
+
+
+def _finding(runs: Mapping[str, Run], dexterity: Mapping[str, np.ndarray]) -> Notice:
+    def at_rest(case: str) -> str:
+        name = f"folding/{case}/tip_goal/quintic"
+        run, share = runs[name], dexterity[name][:, 0]
+        if run.status == "failed":
+            return f"With preset {case} the run ends: {run.failure_text}"
+        error = cell(run, "steady_state_error")
+        return (
+            f"With preset {case} the Mini ends {quantity(float(extension(run)[-1]), 'm', 2)} from its base, with a "
+            f"smallest singular value of {quantity(float(share[-1]), 'm', 2)} and a tip error of {error} m"
+        )
+
+    lost = [
+        case
+        for case in _CASES
+        for motion in MOTIONS
+        if _worse(runs[f"folding/{case}/tip_goal/{motion}"], runs[f"folding/{case}/minus_home/{motion}"])
+    ]
+    who = [case for case in _CASES if case in lost]
+    title = (
+        f"Folding costs the control with preset {' and '.join(who)}"
+        if who
+        else "Folding costs neither preset its control"
+    )
+    spared = [case for case in _CASES if case not in who]
+    sag = (
+        " What spares as_reported is its error: without gravity term the Macro sags, and that sag keeps the Mini "
+        "unfolded."
+        if spared == ["as_reported"]
+        else ""
+    )
+    return Notice("finding", title, ". ".join(at_rest(case) for case in _CASES) + "." + sag)
+
+
+def _worse(folded: Run, home: Run) -> bool:
+    """Tell whether folding ends a run, or leaves an error ten times that of x_d - r_0 and above a millimetre."""
+    if folded.status == "failed":
+        return home.status != "failed"
+    ours, theirs = (run.metrics.get("steady_state_error", {}).get("median") for run in (folded, home))
+    if ours is None or theirs is None:
+        return False
+    return bool(ours > max(10.0 * theirs, 1e-3))

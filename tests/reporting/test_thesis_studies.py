@@ -1,0 +1,142 @@
+"""Every study builds from short runs, and from runs of which some or all have failed."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from runner import store
+from runner.execution import run
+from runner.reporting import formulas
+from runner.reporting.document import Curves, Document, Notice, Section, Table, Text
+from runner.reporting.figures import torque_and_error
+from runner.reporting.thesis import dynamics_benchmark
+from runner.reporting.thesis.checklist import checklist_section
+from runner.reporting.thesis.combined_plan import combined_jobs
+from runner.reporting.thesis.coupling import coupling_section
+from runner.reporting.thesis.dynamics_cost import dynamics_cost_section
+from runner.reporting.thesis.folding import folding_section
+from runner.reporting.thesis.mass_ratio import mass_ratio_section
+from runner.reporting.thesis.questions import questions_section
+from runner.reporting.thesis.reference_velocity import reference_velocity_section
+from runner.reporting.thesis.stage_sampling import stage_sampling_section
+from runner.reporting.thesis.stretch import stretch_section
+from runner.reporting.thesis.turns import turns_section
+from runner.reporting.thesis.whole_body import whole_body_section
+from runner.store import Run
+
+SECTIONS = (
+    questions_section,
+    coupling_section,
+    mass_ratio_section,
+    stage_sampling_section,
+    folding_section,
+    stretch_section,
+    reference_velocity_section,
+    turns_section,
+    whole_body_section,
+    dynamics_cost_section,
+)
+FIGURES = ("figure_5_3", "figure_5_8", "figure_5_10", "figure_5_12", "figure_5_13", "macro_alone", "macro_alone_goal")
+FAILURE = {"reason": "diverged: for this test", "time": 0.01, "joint": "q1", "repetition": 0}
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
+    """Every run of the plan, cut to a moment; runs that differ in nothing else are made once."""
+    outputs = tmp_path_factory.mktemp("outputs")
+    jobs = {name: overrides for name, (overrides, _) in combined_jobs().items()}
+    jobs |= {f"{f}/{p}": (f"experiment=thesis/{f}", f"preset={p}") for f in FIGURES for p in ("as_reported", "sound")}
+    jobs["figure_4_4/sound"] = ("experiment=thesis/figure_4_4",)
+    short = ("repetitions=1", "duration=0.08", f"outputs={outputs}")
+    return {
+        name: run(*(o for o in overrides if not o.startswith("duration=")), *short) for name, overrides in jobs.items()
+    }
+
+
+def failed(run: Run) -> Run:
+    record = {**run.record, "status": "failed", "failure": FAILURE, "metrics": {}}
+    return replace(run, record=record)
+
+
+def document(sections: list[Section]) -> Document:
+    return Document("Studies", "", "", sections, "2026-01-01")
+
+
+def texts(section: Section) -> Iterator[str]:
+    for block in section.blocks:
+        match block:
+            case Notice():
+                yield from (block.title, block.text)
+            case Text():
+                yield block.text
+            case Table():
+                yield from (block.caption, *block.header, *(cell for row in block.rows for cell in row))
+            case Curves():
+                yield block.caption
+    for below in section.sections:
+        yield from texts(below)
+
+
+def every_run(runs: Mapping[str, Run]) -> dict[str, Run]:
+    return {name: failed(run) for name, run in runs.items()}
+
+
+def every_third(runs: Mapping[str, Run], offset: int) -> dict[str, Run]:
+    return {name: failed(run) if i % 3 == offset else run for i, (name, run) in enumerate(runs.items())}
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [dict, every_run, *(partial(every_third, offset=offset) for offset in range(3))],
+    ids=["none", "all", "third 0", "third 1", "third 2"],
+)
+def test_every_section_builds_whatever_has_failed(runs: dict[str, Run], spoil: Callable[..., dict[str, Run]]) -> None:
+    sections = [build(spoil(runs)) for build in SECTIONS]
+    assert formulas.faulty(document(sections)) == []
+    for section in sections:
+        assert section.blocks
+        assert not [text for text in texts(section) if "None" in text or "nan" in text.split() or "{" in text]
+
+
+@pytest.mark.parametrize("build", [s for s in SECTIONS if s not in (questions_section, dynamics_cost_section)])
+def test_a_failed_run_is_shown_with_its_failure(
+    runs: dict[str, Run], build: Callable[[Mapping[str, Run]], Section]
+) -> None:
+    assert any("for this test" in text for text in texts(build(every_run(runs))))
+
+
+def test_the_dynamics_are_measured_once_and_read(runs: dict[str, Run], monkeypatch: pytest.MonkeyPatch) -> None:
+    outputs = runs["mass/0.2/known"].folder.parent.parent
+    path = Path(outputs, dynamics_benchmark.FILE)
+    assert "Not measured" in list(texts(dynamics_cost_section(runs)))
+    monkeypatch.setattr(dynamics_benchmark, "_BLOCKS", 1)
+    monkeypatch.setattr(dynamics_benchmark, "_CALLS", 3)
+    dynamics_benchmark.measure(path)
+    content = path.read_bytes()
+    dynamics_benchmark.measure(path)
+    assert path.read_bytes() == content
+    record = dynamics_benchmark.load(path)
+    assert record is not None
+    assert [row["joints"] for row in record["rows"]] == list(range(3, 31, 3))
+    section = dynamics_cost_section(runs)
+    assert formulas.faulty(document([section])) == []
+    path.write_text("{}")
+    assert dynamics_benchmark.load(path) is None
+
+
+def test_the_checklist_finds_its_places_and_names_what_is_missing(runs: dict[str, Run]) -> None:
+    figure = torque_and_error(runs["figure_5_8/sound"], "A figure.", "figure 5.8")
+    section = checklist_section([Section("Elsewhere"), Section("Here", sections=(Section("Below", (figure,)),))])
+    rows = {row[0]: row for block in section.blocks if isinstance(block, Table) for row in block.rows}
+    assert len(rows) == 38
+    assert rows["Figure 5.8"][2:] == ["reproduced", "§2.1"]
+    assert rows["Figure 5.9"][2] == "missing"
+    assert rows["Figure 1.1"][2].startswith("not ours")
+
+
+def test_stored_runs_are_enough(runs: dict[str, Run]) -> None:
+    again = {name: store.open_run(run.folder) for name, run in runs.items()}
+    assert folding_section(again).title == folding_section(runs).title
