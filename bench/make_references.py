@@ -1,4 +1,4 @@
-"""Makes the reference bands that ship with the package, from many seeds: `python -m bench.make_references`.
+"""Makes the reference bands that ship with the package, from many seeds: `python -m bench.make_references [NAME...]`.
 
 Each band holds the smallest and the largest of the medians that SEEDS give, widened on both sides by half the
 interquartile range of single repetitions (some three standard errors of a median of 40) and by MARGIN of the
@@ -7,6 +7,7 @@ value, for other machines' rounding. Read the files before you commit them: a ba
 
 import math
 import multiprocessing
+import sys
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -35,12 +36,19 @@ METRICS = {
     "thesis/figure_3_10": _TRACKING,
     "thesis/figure_4_2": (*_POSITIONING, *_WHOLE_MOVE),
     "thesis/figure_4_4": _TRACKING,
+    "thesis/figure_5_8": ("settling_time", "steady_state_error"),
+    "thesis/figure_5_10": ("settling_time", "steady_state_error"),
+    "thesis/figure_5_12": ("max_tracking_error", "rms_tracking_error", "steady_state_error"),
+    "thesis/figure_5_13": ("max_tracking_error", "rms_tracking_error"),
+    "thesis/macro_alone": ("macro_max_tracking_error", "macro_steady_state_error"),
 }
 # Wider than the seeds tell, in the metric's unit: plant, velocity estimate and rounding change the branch of the
 # saturated transient, and move its median by 0.3 s of the run's 4 s. The Mini is the Macro scaled, times by a tenth.
 EXTRA = {
     ("thesis/figure_3_5", "settling_time"): 0.3,
     ("thesis/figure_3_5", "saturation_fraction"): 0.075,
+    ("thesis/figure_5_8", "settling_time"): 0.3,
+    ("thesis/figure_5_10", "settling_time"): 0.3,
     ("thesis/figure_4_2", "settling_time"): 0.03,
     ("thesis/figure_4_2", "saturation_fraction"): 0.0075,
 }
@@ -52,11 +60,37 @@ _LAG = "the lag without feedforward, up to (2 xi / omega_n) 1.875 D / t_f, with 
 _SUM = "a sum over the whole move, in which single noise draws hardly show"
 
 
+_BASE_ENCODERS = "the Macro's encoders, seen through the Mini's base"
+_STAGED = {
+    ("figure_5_8", "sound", "steady_state_error"): _BASE_ENCODERS,
+    ("figure_5_8", "as_reported", "steady_state_error"): _BASE_ENCODERS,
+    ("figure_5_10", "sound", "steady_state_error"): f"{_BASE_ENCODERS}, and more once the Mini is stretched",
+    ("figure_5_10", "as_reported", "steady_state_error"): "the Macro's sag once the Mini is stretched",
+    ("figure_5_12", "sound", "max_tracking_error"): _BASE_ENCODERS,
+    ("figure_5_12", "sound", "rms_tracking_error"): _BASE_ENCODERS,
+    ("figure_5_12", "sound", "steady_state_error"): _BASE_ENCODERS,
+    ("figure_5_12", "as_reported", "max_tracking_error"): "the Mini's lag behind a series of goals",
+    ("figure_5_12", "as_reported", "rms_tracking_error"): "the Mini's lag behind a series of goals",
+    ("figure_5_12", "as_reported", "steady_state_error"): _BASE_ENCODERS,
+    ("figure_5_13", "sound", "max_tracking_error"): "what is left where the Mini is stretched, late in the motion",
+    ("figure_5_13", "sound", "rms_tracking_error"): _BASE_ENCODERS,
+    ("figure_5_13", "as_reported", "max_tracking_error"): "the Macro's lag, as the Mini is stretched",
+    ("figure_5_13", "as_reported", "rms_tracking_error"): "the Macro's lag, as the Mini is stretched",
+    ("macro_alone", "sound", "macro_max_tracking_error"): _BASE_AXIS,
+    ("macro_alone", "as_reported", "macro_max_tracking_error"): _BASE_AXIS,
+    ("macro_alone", "sound", "macro_steady_state_error"): "the Mini's weight, which the Macro does not know, and noise",
+    ("macro_alone", "as_reported", "macro_steady_state_error"): _SAG,
+}
+
+
 def explain(experiment: str, preset: str, metric: str, zero: bool) -> str:
     """Return why a metric is where it is."""
     sound, limited = preset == "sound", experiment == "thesis/figure_3_9"
     if zero:
         return "no error beyond the settling band" if metric == "settling_time" else "no joint at a limit"
+    staged = _STAGED.get((experiment.rpartition("/")[2], preset, metric))
+    if staged is not None:
+        return staged
     reasons = {
         "settling_time": "back in the settling band " + ("after the base axis" if sound else "as the lag fades"),
         "steady_state_error": _NOISE if sound else _SAG,
@@ -116,12 +150,13 @@ def _round(value: float, direction: Callable[[float], int]) -> float:
 
 
 def main() -> None:
-    """Run all seeds of all experiments in both presets on two processes, and write the files."""
-    jobs = [(experiment, preset, seed) for experiment in METRICS for preset in PRESETS for seed in SEEDS]
+    """Run all seeds of the experiments named, or of all, in both presets on two processes, and write the files."""
+    chosen = {name: metrics for name, metrics in METRICS.items() if name in (sys.argv[1:] or METRICS)}
+    jobs = [(experiment, preset, seed) for experiment in chosen for preset in PRESETS for seed in SEEDS]
     with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
         folders = list(tqdm(pool.map(run_seed, *zip(*jobs, strict=True)), total=len(jobs), unit="run"))
     stored = dict(zip(jobs, folders, strict=True))
-    for experiment, metrics in METRICS.items():
+    for experiment, metrics in chosen.items():
         for preset in PRESETS:
             runs = [open_run(stored[experiment, preset, seed]) for seed in SEEDS]
             bands = {metric: make_band(runs, experiment, preset, metric) for metric in metrics}

@@ -24,11 +24,13 @@ with quiet_stderr():
 
 TICKS = 2000
 ROUNDS = 40
-_SCENE = ("robot=macro", "trajectory=quintic", "trajectory.duration=19", "noise=thesis")
+_SCENE = ("trajectory=quintic", "noise=thesis")
+_MACRO = ("robot=macro", "trajectory.duration=19")
 _CASES = {
-    "bullet, 10 substeps": ("plant=bullet", "plant.step=0.001"),
-    "bullet, 1 substep": ("plant=bullet", "plant.step=0.01"),
-    "rk4, 1 step": ("plant=rk4", "plant.step=0.01"),
+    "bullet, 10 substeps": (*_MACRO, "plant=bullet", "plant.step=0.001"),
+    "bullet, 1 substep": (*_MACRO, "plant=bullet", "plant.step=0.01"),
+    "rk4, 1 step": (*_MACRO, "plant=rk4", "plant.step=0.01"),
+    "combined, 4 substeps": ("robot=combined", "trajectory.duration=1", "plant=bullet", "plant.step=0.00025"),
 }
 
 
@@ -44,9 +46,11 @@ def main() -> bool:
     times = _measure(blocks)
 
     F10, F1 = times["F: bullet, 10 substeps"], times["F: bullet, 1 substep"]
-    bullet10, bullet1, rk4 = (times[name] for name in _CASES)
+    bullet10, bullet1, rk4, combined = (times[name] for name in _CASES)
+    F6 = times["F: combined, 4 substeps"]
     print(
-        f"CPU time of a control tick, 3 joints, median of the quieter {ROUNDS // 2} of {ROUNDS} rounds of {TICKS} ticks"
+        f"CPU time of a control tick, 3 joints (combined: 6), median of the quieter {ROUNDS // 2} of {ROUNDS} rounds "
+        f"of {TICKS} ticks"
     )
     for name, values in times.items():
         print(f"  {name:26} {median(values):6.2f} us  (quickest round {min(values):.2f})")
@@ -54,6 +58,7 @@ def main() -> bool:
         _judge("bullet, 10 substeps / F", _ratio(bullet10, F10), 1.5),
         _judge("rk4 / F, 10 substeps", _ratio(rk4, F10), 0.9),
         _judge("bullet, 1 substep - F (us)", median(a - b for a, b in zip(bullet1, F1, strict=True)), 12.0),
+        _judge("combined: all but F / F", _ratio(combined, F6) - 1.0, 2.0),
     ]
     print(f"  {'bullet, 1 substep / F':28} {_ratio(bullet1, F1):5.2f}")
     load = os.getloadavg()[0]

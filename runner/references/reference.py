@@ -13,7 +13,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from runner.config.messages import describe
 from runner.errors import StoreError, nearest
-from runner.metrics import units
+from runner.metrics import unit_of, units
 from runner.registry import StrictModel
 
 if TYPE_CHECKING:
@@ -133,7 +133,7 @@ def _check_content(content: Any, bands: dict[str, Band]) -> Iterator[str]:  # no
         return
     known = units()
     for name, band in metrics.items():
-        if not any(name == base or str(name).startswith(f"{base}_") for base in known):
+        if unit_of(str(name)) is None:
             yield f"metrics.{name}: unknown metric{nearest(str(name), known)}; metrics: {', '.join(known)}"
         try:
             bands[name] = Band.model_validate(band)
