@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 __all__ = ["Run", "open_run", "run"]
 
 
-def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the name stands for
+def __getattr__(name: str) -> Any:
     """Import the simulator only when it is asked for, so that `runner --help` answers at once."""
     if name == "run":
         from runner.execution import run

@@ -47,7 +47,7 @@ class Registry:
         model: type[StrictModel] = self._module(kind).CONFIG
         return model
 
-    def build(self, config: Any, *args: Any) -> Any:  # noqa: ANN401 - each registry's caller knows its own type
+    def build(self, config: Any, *args: Any) -> Any:
         """Make the object that a validated config describes; `args` are what every kind of this group gets."""
         return self._module(config.kind).build(config, *args)
 

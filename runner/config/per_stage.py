@@ -9,7 +9,7 @@ from pydantic import BeforeValidator
 from runner.errors import ConfigError, nearest
 
 
-def _number(value: Any, zero_allowed: bool) -> float:  # noqa: ANN401 - whatever a YAML file may hold
+def _number(value: Any, zero_allowed: bool) -> float:
     if not isinstance(value, int | float) or isinstance(value, bool):
         raise ValueError("must be a number")
     if not math.isfinite(value):
@@ -19,8 +19,8 @@ def _number(value: Any, zero_allowed: bool) -> float:  # noqa: ANN401 - whatever
     return float(value)
 
 
-def _per_stage(check: Any) -> BeforeValidator:  # noqa: ANN401 - a function of one value
-    def parse(value: Any) -> Any:  # noqa: ANN401
+def _per_stage(check: Any) -> BeforeValidator:
+    def parse(value: Any) -> Any:
         if isinstance(value, Mapping):
             return {str(stage): _of_stage(check, stage, item) for stage, item in value.items()}
         return check(value)
@@ -28,14 +28,14 @@ def _per_stage(check: Any) -> BeforeValidator:  # noqa: ANN401 - a function of o
     return BeforeValidator(parse)
 
 
-def _of_stage(check: Any, stage: Any, value: Any) -> Any:  # noqa: ANN401
+def _of_stage(check: Any, stage: Any, value: Any) -> Any:
     try:
         return check(value)
     except ValueError as error:
         raise ValueError(f"{stage} {error}") from None
 
 
-def _torque(value: Any) -> float | list[float]:  # noqa: ANN401
+def _torque(value: Any) -> float | list[float]:
     try:
         if isinstance(value, list):
             return [_number(item, zero_allowed=False) for item in value]
@@ -49,7 +49,7 @@ NonNegativePerStage = Annotated[float | dict[str, float], _per_stage(lambda valu
 TorquePerStage = Annotated[float | list[float] | dict[str, float | list[float]], _per_stage(_torque)]
 
 
-def by_stage(key: str, value: Any, stages: Sequence[str]) -> list[Any]:  # noqa: ANN401 - any per-stage value
+def by_stage(key: str, value: Any, stages: Sequence[str]) -> list[Any]:
     """Return one value for each stage, in their order.
 
     Raises:

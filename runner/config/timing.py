@@ -12,7 +12,7 @@ from runner.robots.robot import Robot
 _MAX_TICKS = 10_000_000
 
 
-def count_steps(arm: Robot, plant: Any, controller: Any) -> tuple[float, float, int]:  # noqa: ANN401 - any kinds
+def count_steps(arm: Robot, plant: Any, controller: Any) -> tuple[float, float, int]:
     """Return the fastest loop's period, the plant's step, both in s, and the number of steps in that period.
 
     Raises:
@@ -38,7 +38,7 @@ def count_steps(arm: Robot, plant: Any, controller: Any) -> tuple[float, float, 
     return tick, step, steps
 
 
-def check_duration(settings: RunSettings, tick: float, trajectory: Any) -> None:  # noqa: ANN401 - any kind
+def check_duration(settings: RunSettings, tick: float, trajectory: Any) -> None:
     """Check that a run is neither shorter than a tick nor longer than memory holds.
 
     Raises:
@@ -59,7 +59,7 @@ def check_duration(settings: RunSettings, tick: float, trajectory: Any) -> None:
         )
 
 
-def _periods(arm: Robot, period: Any) -> dict[str, float]:  # noqa: ANN401 - one number, or one for each stage
+def _periods(arm: Robot, period: Any) -> dict[str, float]:
     """Return the period of each loop by name; a controller with one period has one loop, whatever the stages."""
     if isinstance(period, Mapping):
         return dict(zip(arm.stage_names, by_stage("controller.period", period, arm.stage_names), strict=True))

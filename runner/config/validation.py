@@ -48,7 +48,7 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
     """
     problems: list[str] = []
 
-    def collect(check: Callable[[], Any]) -> Any:  # noqa: ANN401 - passes on what the check returns
+    def collect(check: Callable[[], Any]) -> Any:
         try:
             return check()
         except ConfigError as error:
@@ -134,7 +134,7 @@ def _check_stage_values(arm: Robot, noise: NoiseConfig | None, torque_limits: To
         raise ConfigError(problems)
 
 
-def _check_reach(arm: Robot, trajectory: Any) -> None:  # noqa: ANN401 - any registered kind
+def _check_reach(arm: Robot, trajectory: Any) -> None:
     problems = []
     for key in ("start", "goal"):
         point = getattr(trajectory, key, None)

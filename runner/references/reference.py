@@ -116,7 +116,7 @@ def check_run(run: "Run", reference: Reference) -> list[Finding]:
     return findings
 
 
-def _check_content(content: Any, bands: dict[str, Band]) -> Iterator[str]:  # noqa: ANN401 - whatever YAML may hold
+def _check_content(content: Any, bands: dict[str, Band]) -> Iterator[str]:
     """Yield the problems of a reference file's content; put its bands into `bands`."""
     if not isinstance(content, dict):
         yield "must hold schema and metrics"

@@ -102,7 +102,7 @@ class Run:
         return {field.name: (field.metadata or {}).get(b"unit", b"").decode() for field in self._table.schema}
 
     @cached_property
-    def _table(self) -> Any:  # noqa: ANN401 - pyarrow has no types
+    def _table(self) -> Any:
         import pyarrow
         import pyarrow.parquet
 
@@ -149,7 +149,7 @@ def open_run(folder: Path) -> Run:
     return Run(folder, config, record)
 
 
-def _is_record(record: Any) -> bool:  # noqa: ANN401 - whatever JSON may hold
+def _is_record(record: Any) -> bool:
     return (
         isinstance(record, dict)
         and all(isinstance(record.get(key), kind) for key, kind in _NEEDED.items())

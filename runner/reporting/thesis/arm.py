@@ -1,12 +1,12 @@
 """What chapters 3 and 4 share: kinematics, dynamics and control of one arm."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from runner.controllers.operational_space_graph import operational_space_graph
-from runner.reporting.document import Block, Formula, Picture, Section, Table, Text
+from runner.reporting.document import Block, Curves, Formula, Picture, Section, Table, Text
 from runner.reporting.drawings import block_diagram, frame_assignment
 from runner.reporting.figures import model_of, origin, torque_and_error
 from runner.reporting.plant_agreement import describe_agreement
@@ -95,9 +95,8 @@ def dynamics(run: Run, length: float, mass: float) -> Section:
             Formula("G(q) = vec(0, m g L (2 c_2 - s_23), - m g L s_23)", "gravity vector of the arm", "3.24"),
             Text(
                 "The gravity vector is printed with $s_2$ and $s_2 s_3$ where $s_23 = sin(q_2 + q_3)$ is meant. "
-                "With this repair "
-                f"all printed matrices equal the model (Pinocchio, built from our URDF) at {_SAMPLES} random states to "
-                "rounding:"
+                "With this repair all printed matrices equal the model (Pinocchio, built from our URDF) at "
+                f"{_SAMPLES} random states to rounding:"
             ),
             Table(
                 "Largest difference between the printed closed forms and the model.",
@@ -135,8 +134,8 @@ def control_law(run: Run, goal: bool, figure: str) -> list[Block]:
         law,
         Picture(
             "Control structure, drawn from the graph of the controller that ran (preset sound). With preset "
-            "as_reported the "
-            f"term $hat(p)(x)$ is absent{'' if goal else ' and so are the desired velocity and acceleration'}.",
+            "as_reported the term $hat(p)(x)$ is "
+            f"absent{'' if goal else ' and so are the desired velocity and acceleration'}.",
             block_diagram(graph),
             "Block diagram of the controller, the arm and its encoders",
             1.0,
@@ -146,7 +145,12 @@ def control_law(run: Run, goal: bool, figure: str) -> list[Block]:
 
 
 def reproduced(
-    runs: Mapping[str, Run], number: str, what: str, metrics: tuple[str, ...], until: float | None = None
+    runs: Mapping[str, Run],
+    number: str,
+    what: str,
+    metrics: tuple[str, ...],
+    until: float | None = None,
+    draw: Callable[[Run, str, str, float | None], Curves] = torque_and_error,
 ) -> list[Block]:
     """Return one published figure under both presets, its numbers, and the plants' agreement on it.
 
@@ -156,12 +160,11 @@ def reproduced(
         what: What is simulated.
         metrics: The metrics in its table.
         until: End of the time axis, in s; None shows the whole run.
+        draw: Lays the curves of a run out.
     """
     figure = f"figure_{number.replace('.', '_')}"
     blocks: list[Block] = [
-        torque_and_error(
-            runs[f"{figure}/{preset}"], f"{what}, preset {preset}, repetition 0 of 40.", f"figure {number}", until
-        )
+        draw(runs[f"{figure}/{preset}"], f"{what}, preset {preset}, repetition 0 of 40.", f"figure {number}", until)
         for preset in PRESETS
     ]
     rows = [[m, *(spread(runs[f"{figure}/{preset}"].metrics[m]) for preset in PRESETS)] for m in metrics]

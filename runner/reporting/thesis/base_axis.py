@@ -31,9 +31,8 @@ def base_axis_section(runs: Mapping[str, Run]) -> Section:
         "Past the base axis",
         (
             Text(
-                "The straight line from home to the goal passes the base axis at "
-                f"{_closest(desired, shoulder):.4f} m. There joint "
-                "1 has to turn the arm by nearly half a turn in a moment."
+                f"The straight line from home to the goal passes the base axis at {_closest(desired, shoulder):.4f} "
+                "m. There joint 1 has to turn the arm by nearly half a turn in a moment."
             ),
             Picture(
                 "The path seen from above, with the torque limit of 50 N m and without noise.",
@@ -44,8 +43,7 @@ def base_axis_section(runs: Mapping[str, Run]) -> Section:
             ),
             Curves(
                 f"Noise-free tracking, $t_f = 3$ s. Joint 1 stands at its limit from {pinned[0]:.2f} to "
-                f"{pinned[-1]:.2f} s "
-                f"({len(pinned)} ticks); without limit it would take "
+                f"{pinned[-1]:.2f} s ({len(pinned)} ticks); without limit it would take "
                 f"{number(free.metrics['peak_torque_q1']['median'])} N m.",
                 (
                     Panel(
@@ -91,20 +89,17 @@ def base_axis_section(runs: Mapping[str, Run]) -> Section:
             Notice(
                 "finding",
                 "Why claim 3 holds for any controller",
-                "Joint 1 keeps within 50 N m only from $t_f = 3.86$ s on (PyBullet at 1 ms; 3.87 s on the Runge-Kutta "
-                "plant). Below, the error near the axis is set by the torque limit, not by the law: both presets give "
-                "0.10 m.",
+                "Joint 1 keeps within 50 N m only from $t_f = 3.86$ s on (PyBullet at 1 ms; 3.87 s on the "
+                "Runge-Kutta plant). Below, the error near the axis is set by the torque limit, not by the law: "
+                "both presets give 0.10 m.",
             ),
             Notice(
                 "finding",
                 "Without a limit the goal move diverges",
-                "The goal move runs to within $10^(-5)$ m of the base axis. Under the law as printed, sampled at "
-                "10 ms and without a "
-                f"torque limit, it diverges at t = {number(singular.get('time'))} s (joint "
-                f"{singular.get('joint')}). The torque "
-                "limit hides this. Outside this report the runner therefore damps the inverse of J near singular "
-                "postures "
-                "(controller.singularity_damping).",
+                "The goal move runs to within $10^(-5)$ m of the base axis. Under the law as printed, sampled at 10 "
+                f"ms and without a torque limit, it diverges at t = {number(singular.get('time'))} s (joint "
+                f"{singular.get('joint')}). The torque limit hides this. Outside this report the runner therefore "
+                "damps the inverse of J near singular postures (controller.singularity_damping).",
             ),
         ),
     )
@@ -155,9 +150,8 @@ def duration_section(runs: Mapping[str, Run]) -> Section:
             ),
             Text(
                 "No single duration meets every number: with preset as_reported the largest printed error without "
-                "limit, "
-                f"{printed['figure_3_10'][1]:g} m, asks for $t_f = {needed[0]:.1f}$ s, the largest with limit, "
-                f"{printed['figure_3_9'][1]:g} m, for $t_f = {needed[1]:.1f}$ s. We take 3 s throughout."
+                f"limit, {printed['figure_3_10'][1]:g} m, asks for $t_f = {needed[0]:.1f}$ s, the largest with "
+                f"limit, {printed['figure_3_9'][1]:g} m, for $t_f = {needed[1]:.1f}$ s. We take 3 s throughout."
             ),
         ),
     )

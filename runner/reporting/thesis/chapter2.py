@@ -27,12 +27,11 @@ def chapter2(runs: Mapping[str, Run]) -> Section:
                 "Workspace",
                 (
                     Text(
-                        "With no joint limits the workspace of two equal links is a full ball around the shoulder. The "
-                        "thesis draws its outer sphere. The cross-section adds what the sphere does not show: how "
-                        "freely "
-                        "the tip moves. $|det J_v| = L^3 |c_3 (c_2 - s_23)|$ vanishes on the sphere, at its "
-                        "centre, and on "
-                        "the whole base axis, so the workspace has a singular line through its middle."
+                        "With no joint limits the workspace of two equal links is a full ball around the shoulder. "
+                        "The thesis draws its outer sphere. The cross-section adds what the sphere does not show: "
+                        "how freely the tip moves. $|det J_v| = L^3 |c_3 (c_2 - s_23)|$ vanishes on the sphere, at "
+                        "its centre, and on the whole base axis, so the workspace has a singular line through its "
+                        "middle."
                     ),
                     *_workspace("Macro", "figure 2.3", macro),
                     *_workspace("Mini", "figure 2.4", mini),
@@ -68,9 +67,8 @@ def _parameters(macro: Run, mini: Run) -> Table:
         "max. continuous torque (N m)",
     ]
     return Table(
-        "Parameters of both manipulators; lengths and masses read from the model, not typed. (The thesis prints "
-        "the joint "
-        "range as 0° to 360° and means that there is no limit.)",
+        "Parameters of both manipulators; lengths and masses read from the model, not typed. (The thesis prints the "
+        "joint range as 0° to 360° and means that there is no limit.)",
         header,
         rows,
         (5, 6),
@@ -91,10 +89,8 @@ def _workspace(name: str, figure: str, run: Run) -> list[Block]:
     return [
         Picture(
             f"Workspace of the {name}: {_SAMPLES} sampled tip positions in the sphere of reach, and a meridian "
-            "cross-section "
-            f"coloured by manipulability. Largest distance from the shoulder {number(found.outer, 4)} m (sum of "
-            "the link "
-            f"lengths {number(found.reach, 4)} m), smallest {found.inner:.1e} m.",
+            f"cross-section coloured by manipulability. Largest distance from the shoulder {number(found.outer, 4)} "
+            f"m (sum of the link lengths {number(found.reach, 4)} m), smallest {found.inner:.1e} m.",
             workspace_sphere(found),
             f"A sphere of radius {found.outer:.3g} m filled with points, and its cross-section",
             1.0,

@@ -4,13 +4,12 @@ from collections.abc import Mapping
 
 from runner.controllers.macro_mini_graph import macro_mini_graph
 from runner.controllers.whole_body_graph import whole_body_graph
-from runner.reporting.document import Block, Curves, Formula, Picture, Section, Table, Text
+from runner.reporting.document import Block, Formula, Picture, Section, Table, Text
 from runner.reporting.drawings import block_diagram, control_steps, frame_assignment
 from runner.reporting.figures import desired_motion, model_of, origin, playback
 from runner.reporting.figures_staged import macro_mini_targets, staged_torque_and_error
-from runner.reporting.plant_agreement import describe_agreement
 from runner.reporting.quantities import spread
-from runner.reporting.thesis.arm import dh_cells
+from runner.reporting.thesis.arm import dh_cells, reproduced
 from runner.reporting.thesis.plan import PRESETS
 from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.store import Run
@@ -84,9 +83,8 @@ def _structure(run: Run) -> Section:
             ),
             Table(
                 "Denavit-Hartenberg parameters of the combined arm. The thesis' table is lost in the text that is "
-                "left of it; "
-                "this one is computed from the model, and the model's torques equal the thesis' appendix at its "
-                "check values.",
+                "left of it; this one is computed from the model, and the model's torques equal the thesis' "
+                "appendix at its check values.",
                 ["link", "$theta_i$ (rad)", "$d_i$ (m)", "$a_i$ (m)", "$alpha_i$ (rad)"],
                 rows,
                 (),
@@ -94,8 +92,7 @@ def _structure(run: Run) -> Section:
             ),
             Text(
                 "Joint 4 lies along link 3, as the appendix's gravity terms say. Chaining tables 3.1 and 4.1 as "
-                "they stand would "
-                "put the Mini's base elsewhere, with the tip up to 0.34 m off."
+                "they stand would put the Mini's base elsewhere, with the tip up to 0.34 m off."
             ),
         ),
     )
@@ -131,8 +128,8 @@ def _control(runs: Mapping[str, Run]) -> Section:
                 origin(whole, "figure 5.2"),
             ),
             Text(
-                "Method 2 controls the arms independently: the Macro goes to $x_d - r_0$, the Mini keeps its "
-                "offset $r_0$."
+                "Method 2 controls the arms independently: the Macro goes to $x_d - r_0$, the Mini keeps its offset "
+                "$r_0$."
             ),
             macro_mini_targets(independent, "figure 5.3"),
             _graph(independent, "5.4", "Method 2: independent controllers."),
@@ -177,27 +174,7 @@ def _graph(run: Run, number: str, caption: str) -> Picture:
 
 
 def _reproduced(runs: Mapping[str, Run], number: str, what: str, metrics: tuple[str, ...]) -> list[Block]:
-    figure = f"figure_{number.replace('.', '_')}"
-    blocks: list[Block] = [
-        _curves(runs[f"{figure}/{preset}"], f"{what}, preset {preset}, repetition 0 of 40.", f"figure {number}")
-        for preset in PRESETS
-    ]
-    rows = [[metric, *(spread(runs[f"{figure}/{preset}"].metrics[metric]) for preset in PRESETS)] for metric in metrics]
-    blocks.append(
-        Table(
-            f"Numbers of figure {number}: median (smallest to largest) of 40 repetitions.",
-            ["metric", *PRESETS],
-            rows,
-            (1, 2),
-            origin(runs[f"{figure}/{PRESETS[0]}"]),
-        )
-    )
-    blocks.append(Text(" ".join(f"Preset {p}: {describe_agreement(runs[f'{figure}/{p}'])}" for p in PRESETS)))
-    return blocks
-
-
-def _curves(run: Run, caption: str, number: str) -> Curves:
-    return staged_torque_and_error(run, caption, number)
+    return reproduced(runs, number, what, metrics, draw=staged_torque_and_error)
 
 
 def _summary(runs: Mapping[str, Run]) -> Table:

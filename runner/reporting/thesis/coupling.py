@@ -82,15 +82,15 @@ def _verdict(runs: Mapping[str, Run], motion: str) -> Notice:
     title = f"The coupling is negligible for {who}{but}"
     rest = median(exact, "macro_steady_state_error") if motion == "quintic" else None
     sag = (
-        f" At rest the Mini's weight, unknown to the Macro, displaces its end point by {quantity(rest, 'm')}, "
-        "which the Mini makes up for and a Mini held still does not."
+        f" At rest the Mini's weight, unknown to the Macro, displaces its end point by {quantity(rest, 'm')}, which "
+        "the Mini makes up for and a Mini held still does not."
         if rest
         else ""
     )
     return Notice(
         "finding",
         f"{title} ({'goal position' if motion == 'goal' else 'tracking'})",
-        f"Taken as negligible: the coupling moves the tip by less than the thesis' encoder noise does with one-way "
+        "Taken as negligible: the coupling moves the tip by less than the thesis' encoder noise does with one-way "
         f"control on the same motion, {quantity(yardstick, 'm')} at most. The coupling moves it by "
         + ", ".join(f"{quantity(change, 'm', 2)} ({method})" for method, change in changes.items())
         + f". At the end of the run {_ends(runs, motion)}."

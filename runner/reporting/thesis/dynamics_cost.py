@@ -76,10 +76,10 @@ def dynamics_cost_section(runs: Mapping[str, Run]) -> Section:
         Notice(
             "finding",
             f"Six joints take {number(1e6 * six, 2)} µs, not minutes",
-            f"This is 1/{number(_CYCLE / six, 2)} of the 10 ms cycle, and some {number(_MINUTES / six, 1)} times less "
-            f"than two minutes. The time grows {growth} (power {exponent:.2f}): {joints[-1]:.0f} joints take "
-            f"{quantity(1e6 * float(total[-1]), 'µs', 2)}, which {'fits' if fits else 'does not fit'} into a tenth of "
-            "the cycle. Computing time is no reason against the dynamics of the whole.",
+            f"This is 1/{number(_CYCLE / six, 2)} of the 10 ms cycle, and some {number(_MINUTES / six, 1)} times "
+            f"less than two minutes. The time grows {growth} (power {exponent:.2f}): {joints[-1]:.0f} joints take "
+            f"{quantity(1e6 * float(total[-1]), 'µs', 2)}, which {'fits' if fits else 'does not fit'} into a tenth "
+            "of the cycle. Computing time is no reason against the dynamics of the whole.",
         ),
     ]
     return Section(_TITLE, blocks)

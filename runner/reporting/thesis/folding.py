@@ -41,8 +41,8 @@ def folding_section(runs: Mapping[str, Run]) -> Section:
     home = float(dexterity["folding/sound/minus_home/quintic"][0, 0])
     blocks: list[Block] = [
         Text(
-            "The thesis lets the Macro's end point go to the goal position itself. Taken at its word, macro_target = "
-            "tip_goal, the Mini has nothing left to reach for and folds onto its base. Its remark that the Macro "
+            "The thesis lets the Macro's end point go to the goal position itself. Taken at its word, macro_target "
+            "= tip_goal, the Mini has nothing left to reach for and folds onto its base. Its remark that the Macro "
             "with a Mini held still moves as it does alone asks for $x_d - r_0$, macro_target = minus_home. Folded, "
             f"the Mini's Jacobian is singular; at home its smallest singular value is {quantity(home, 'm')}:"
         ),

@@ -22,15 +22,13 @@ def gravity_section(runs: Mapping[str, Run]) -> Section:
     goal = runs["figure_3_5/as_reported"].metrics["steady_state_error"]
     blocks: list[Block] = [
         Text(
-            "A proportional-derivative law in operational space that lacks the term $hat(p)(x)$ comes to rest "
-            "where its "
-            "proportional part carries the weight:"
+            "A proportional-derivative law in operational space that lacks the term $hat(p)(x)$ comes to rest where "
+            "its proportional part carries the weight:"
         ),
         Formula("x_d - x = 1 / omega_n^2 J M^(-1) G", "the error at rest equals J M inverse G over omega n squared"),
         Table(
-            "Norm of the tip's sag at the end of a noise-free quintic, without gravity term; the closed form at "
-            "the run's "
-            "final true $q$.",
+            "Norm of the tip's sag at the end of a noise-free quintic, without gravity term; the closed form at the "
+            "run's final true $q$.",
             ["arm", "closed form (m)", "simulated (m)", "difference"],
             rows,
             (1, 2, 3),
@@ -41,10 +39,8 @@ def gravity_section(runs: Mapping[str, Run]) -> Section:
             "The thesis' steady-state errors are gravity, not noise",
             f"The goal run of figure 3.5 without gravity term rests at {quantity(goal['median'], 'm')} "
             f"({number(goal['min'])} to {number(goal['max'])} over the seeds), the thesis prints 0 to 9·10⁻³ m. By "
-            "similarity the "
-            "ratio of Macro to Mini is 1000 for encoder noise and 100 for gravity; the thesis reports 150. So its "
-            "controller "
-            "left out the gravity term that its equation (3.32) contains.",
+            "similarity the ratio of Macro to Mini is 1000 for encoder noise and 100 for gravity; the thesis "
+            "reports 150. So its controller left out the gravity term that its equation (3.32) contains.",
         ),
     ]
     return Section("The gravity term", blocks)
@@ -85,8 +81,7 @@ def lag_section(runs: Mapping[str, Run]) -> Section:
     blocks: list[Block] = [
         Text(
             "Without desired velocity and acceleration the goal law chases a moving goal. Its tip lags by the "
-            "velocity times "
-            "$2 xi slash omega_n$; the quintic's largest velocity is $1.875 D slash t_f$:"
+            "velocity times $2 xi slash omega_n$; the quintic's largest velocity is $1.875 D slash t_f$:"
         ),
         Formula(
             "max |x_d - x| = (2 xi) / omega_n (1.875 |D|) / t_f",
@@ -106,9 +101,9 @@ def lag_section(runs: Mapping[str, Run]) -> Section:
             origin(run),
         ),
         Text(
-            "The Mini's error of 4·10⁻⁴ to 8·10⁻⁴ m in the thesis is this lag at $t_f = 3$ s, 7.3·10⁻⁴ m on its worst "
-            "axis. So its tracking "
-            "law, too, was the goal law with a moving goal, not (3.40) with its feedforward."
+            "The Mini's error of 4·10⁻⁴ to 8·10⁻⁴ m in the thesis is this lag at $t_f = 3$ s, 7.3·10⁻⁴ m on its "
+            "worst axis. So its tracking law, too, was the goal law with a moving goal, not (3.40) with its "
+            "feedforward."
         ),
     ]
     return Section("The lag", blocks)

@@ -57,10 +57,10 @@ def mass_ratio_section(runs: Mapping[str, Run]) -> Section:
     ]
     blocks: list[Block] = [
         Text(
-            "One-way tracking (preset sound, coupled, $t_f = 3$ s, thesis torque limits, no noise) with ever heavier "
-            "Minis, which the Macro's model either does not know or knows as a point mass at its end. We call "
-            f"one-way control broken from that mass on whose largest tip error exceeds {_FACTOR:g} times that of the "
-            "thesis' Mini."
+            "One-way tracking (preset sound, coupled, $t_f = 3$ s, thesis torque limits, no noise) with ever "
+            "heavier Minis, which the Macro's model either does not know or knows as a point mass at its end. We "
+            f"call one-way control broken from that mass on whose largest tip error exceeds {_FACTOR:g} times that "
+            "of the thesis' Mini."
         ),
         Curves("Largest axis error over 0 to $t_f$.", panels, 2, origin(next(iter(ours.values())))),
         *(_breaking(runs, payload, carrier) for payload in PAYLOADS),

@@ -30,10 +30,9 @@ def plants_section(runs: Mapping[str, Run]) -> Section:
         "PyBullet against Runge-Kutta",
         (
             Text(
-                "PyBullet integrates by semi-implicit Euler, of first order; the Runge-Kutta plant is of fourth. "
-                "On a noise-free, "
-                "unlimited quintic of 2 s each halving of PyBullet's step should halve the difference of the final "
-                "state."
+                "PyBullet integrates by semi-implicit Euler, of first order; the Runge-Kutta plant is of fourth. On "
+                "a noise-free, unlimited quintic of 2 s each halving of PyBullet's step should halve the difference "
+                "of the final state."
             ),
             Table(
                 "Difference of the final joint positions, and largest distance of the tips during the motion.",
@@ -126,12 +125,10 @@ def similarity_section(runs: Mapping[str, Run]) -> Section:
         (
             Text(
                 "Lengths 0.1, masses 0.1, times 0.1 and torques 0.1 leave the equations of motion as they are, "
-                "apart from gravity. "
-                "Without gravity and noise the two arms' joint positions at equal ticks differ by at most "
-                f"{apart:.1e} rad and "
-                f"their torques (scaled) by {torque:.1e} N m; they settle after {number(settled[0])} and "
-                f"{number(settled[1])} s. This is why "
-                "claim 5, a Mini that takes 0.3 s where the Macro takes 1.4 s, cannot be met by any choice left open."
+                "apart from gravity. Without gravity and noise the two arms' joint positions at equal ticks differ "
+                f"by at most {apart:.1e} rad and their torques (scaled) by {torque:.1e} N m; they settle after "
+                f"{number(settled[0])} and {number(settled[1])} s. This is why claim 5, a Mini that takes 0.3 s "
+                "where the Macro takes 1.4 s, cannot be met by any choice left open."
             ),
             Curves(
                 "Tip error of the goal move without gravity and noise; the Mini's times and lengths are scaled by 10.",

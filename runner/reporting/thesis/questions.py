@@ -43,8 +43,8 @@ def _strategy(runs: Mapping[str, Run]) -> Notice:
     good = best is not None and alone is not None and known[best] < alone
     listed = ", ".join(f"{name} {quantity(error, 'm')}" for name, error in tracked.items())
     conditions = (
-        "Each arm needs its own dynamics alone, as long as the Macro's target leaves the Mini room ($x_d - r_0$) and "
-        "the Mini knows its target's velocity, and gravity in its turning base. "
+        "Each arm needs its own dynamics alone, as long as the Macro's target leaves the Mini room ($x_d - r_0$) "
+        "and the Mini knows its target's velocity, and gravity in its turning base. "
         if good
         else ""
     )
@@ -169,8 +169,8 @@ def _together(runs: Mapping[str, Run]) -> Notice:
         "finding",
         "6a. How good is the pair, compared with a Macro whose Mini holds still?",
         f"On a trajectory {f'{ratio(alone, tip)} times better' if gain else 'no better'}: the tip errs by "
-        f"{quantity(tip, 'm')} where the Macro alone errs by {quantity(alone, 'm')}{stuck}. To a goal, one-way against "
-        f"Macro alone: {settling}.{whole}",
+        f"{quantity(tip, 'm')} where the Macro alone errs by {quantity(alone, 'm')}{stuck}. To a goal, one-way "
+        f"against Macro alone: {settling}.{whole}",
     )
 
 

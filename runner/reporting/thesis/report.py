@@ -58,12 +58,10 @@ def thesis_document(runs: Mapping[str, Run]) -> Document:
         subtitle="The thesis (National University of Singapore, 2008), reproduced",
         abstract=(
             "Every figure, table and number of chapters 2 to 5 made again from simulation, with a verdict on each "
-            "number, and answers to the questions that the thesis asks. Its printed numbers follow from "
-            "controllers that "
-            "left out the gravity term and the feedforward which its own equations contain, and from arms "
-            "simulated each "
-            "for itself; with the full equations (preset sound) steady-state and tracking errors fall by one to three "
-            "powers of ten."
+            "number, and answers to the questions that the thesis asks. Its printed numbers follow from controllers "
+            "that left out the gravity term and the feedforward which its own equations contain, and from arms "
+            "simulated each for itself; with the full equations (preset sound) steady-state and tracking errors "
+            "fall by one to three powers of ten."
         ),
         sections=(*sections, checklist_section(sections)),
         date=max(str(run.provenance["date"]) for run in runs.values()),

@@ -39,10 +39,10 @@ def stretch_section(runs: Mapping[str, Run]) -> Section:
         )
     blocks: list[Block] = [
         Text(
-            "With two-way coupling the Macro's target is $x_d - R p$: wherever the Mini stands is where the Macro is "
-            "told to leave it. Once the tip is at the goal the Macro sees no error, whatever the Mini had to do for "
-            "it, and nothing in its law holds up a weight that its model leaves out. It sinks at the speed at which "
-            "its damping bears that weight, and the Mini stretches to keep the tip in place:"
+            "With two-way coupling the Macro's target is $x_d - R p$: wherever the Mini stands is where the Macro "
+            "is told to leave it. Once the tip is at the goal the Macro sees no error, whatever the Mini had to do "
+            "for it, and nothing in its law holds up a weight that its model leaves out. It sinks at the speed at "
+            "which its damping bears that weight, and the Mini stretches to keep the tip in place:"
         ),
         Formula(
             "v = abs(J hat(M)^(-1) (G - hat(G))) / k_v, quad k_v = 2 xi omega_n",

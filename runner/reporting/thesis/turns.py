@@ -32,8 +32,8 @@ def turns_section(runs: Mapping[str, Run]) -> Section:
     blocks: list[Block] = [
         Text(
             "Method 3 as the thesis words it: Macro and Mini take turns to move. Taken physically, while the target "
-            f"is within the Mini's reach each arm moves for a Macro period of {number(1e3 * period)} ms and holds its "
-            "posture for the next, and an arm that holds brakes. One-way coupling, no noise."
+            f"is within the Mini's reach each arm moves for a Macro period of {number(1e3 * period)} ms and holds "
+            "its posture for the next, and an arm that holds brakes. One-way coupling, no noise."
         ),
         Table(
             "Both arms at any time against turns.",
@@ -99,8 +99,9 @@ def _finding(runs: Mapping[str, Run]) -> Notice:
         f"{ratio(errors['as_reported'][1], errors['as_reported'][0])} times (as_reported). The Macro moves half of "
         f"the time and starts each turn from rest. Given {TURN_DURATIONS[-1]:g} s it "
         f"{'recovers' if recovers else 'does not recover'}: {quantity(last[1], 'm')} against "
-        f"{quantity(last[0], 'm')}. The goal move {_minds(goal)} ({number(goal[1])} against {number(goal[0])} s): the "
-        "Mini's turns begin only once the goal is within its reach. Both arms move at any time in all other chapters.",
+        f"{quantity(last[0], 'm')}. The goal move {_minds(goal)} ({number(goal[1])} against {number(goal[0])} s): "
+        "the Mini's turns begin only once the goal is within its reach. Both arms move at any time in all other "
+        "chapters.",
     )
 
 

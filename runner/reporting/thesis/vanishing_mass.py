@@ -39,7 +39,8 @@ def vanishing_section(runs: Mapping[str, Run]) -> Section:
             "One-way tracking without noise, Runge-Kutta plant, the Mini's two point masses made ever lighter. The "
             f"Macro of the decoupled plant {'converges' if proportional else 'does not converge'} to that of the "
             "coupled one in proportion to the mass. The Mini "
-            f"{'does not converge' if remains else 'converges as well'}: its base is accelerated, however light it is."
+            f"{'does not converge' if remains else 'converges as well'}: its base is accelerated, however light it "
+            "is."
         ),
         Table(
             "Largest difference of joint positions and Mini torques between the coupled and the decoupled arm.",

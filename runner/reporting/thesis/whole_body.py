@@ -40,12 +40,12 @@ def whole_body_section(runs: Mapping[str, Run]) -> Section:
     rate_mini, period_mini = (float(slow.config["controller"][key]["mini"]) for key in ("natural_frequency", "period"))
     blocks: list[Block] = [
         Text(
-            "The thesis holds method 1 to be unrealizable: its dynamics take too long, and the arm is redundant. The "
-            "first is no longer true, as the cost of the dynamics shows, the second is what a dynamically consistent "
-            "null space is for: the Mini's joints stay near home as far as the task lets them. Both methods here "
-            f"with thesis noise and limits, preset sound, the coupled arm, medians of {slow.record['repetitions']} "
-            f"repetitions. At 10 ms the Mini's loop keeps its $omega_n h$, {number(rate_mini * period_mini)}, so that "
-            f"its $omega_n$ falls to {number(rate_mini)} rad/s."
+            "The thesis holds method 1 to be unrealizable: its dynamics take too long, and the arm is redundant. "
+            "The first is no longer true, as the cost of the dynamics shows, the second is what a dynamically "
+            "consistent null space is for: the Mini's joints stay near home as far as the task lets them. Both "
+            "methods here with thesis noise and limits, preset sound, the coupled arm, medians of "
+            f"{slow.record['repetitions']} repetitions. At 10 ms the Mini's loop keeps its $omega_n h$, "
+            f"{number(rate_mini * period_mini)}, so that its $omega_n$ falls to {number(rate_mini)} rad/s."
         ),
         Table(
             "Methods 1 and 3. Two periods are those of Macro and Mini.",
@@ -153,6 +153,6 @@ def _speeds(runs: Mapping[str, Run]) -> Notice:
         "finding",
         f"With a largest tip speed method 1 is {'faster' if faster else 'no faster'} than any variant of method 3",
         f"With {best[0]:g} m/s the goal move settles after {quantity(best[1], 's')}, without limit after "
-        f"{quantity(free, 's')}; the fastest variant of method 3 ({other[0]}) takes {quantity(other[1], 's')}. A goal "
-        "two metres away asks for far more than the joints have; the saturated law asks for what they have.",
+        f"{quantity(free, 's')}; the fastest variant of method 3 ({other[0]}) takes {quantity(other[1], 's')}. A "
+        "goal two metres away asks for far more than the joints have; the saturated law asks for what they have.",
     )
