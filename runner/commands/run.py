@@ -45,7 +45,7 @@ class _Jobs:
         except ConfigError as error:
             prefix = f"[{' '.join(overrides)}] " if hydra_config.mode == RunMode.MULTIRUN else ""
             self.problems += [prefix + problem for problem in error.problems]
-        except Exception as error:
+        except Exception as error:  # main raises it: in here Hydra would print its own text and end the sweep
             self.crash = error
 
 

@@ -55,7 +55,7 @@ def mount(carrier: str, rider: str, prefix: str, place: Mount) -> tuple[str, str
                     "already; name the stage differently"
                 ]
             )
-    children = {joint.find("child").get("link") for joint in mounted.iter("joint")}  # type: ignore[union-attr]
+    children = {child.get("link") for child in mounted.findall("joint/child")}
     root = next(name for name in _names(mounted, "link") if name not in children)
     joint = ET.SubElement(whole, "joint", name=f"{prefix}mount", type="fixed")
     ET.SubElement(joint, "parent", link=place.frame)
