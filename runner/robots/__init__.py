@@ -1,7 +1,7 @@
 """Robot arms: their URDFs and rigid-body models."""
 
 from runner.robots.description import find_urdf, read_urdf
-from runner.robots.inverse_kinematics import solve_tip_position
+from runner.robots.inverse_kinematics import solve_tip_pose, solve_tip_position
 from runner.robots.model import RobotModel
 
-__all__ = ["RobotModel", "find_urdf", "read_urdf", "solve_tip_position"]
+__all__ = ["RobotModel", "find_urdf", "read_urdf", "solve_tip_pose", "solve_tip_position"]

@@ -1,4 +1,8 @@
-"""Denavit-Hartenberg parameters of a serial arm, found from its joint axes (thesis section 3.1, eq. 3.2)."""
+"""Denavit-Hartenberg parameters of a serial arm, in both conventions.
+
+The standard (distal) one is the thesis' (section 3.1, eq. 3.2) and is found from an arm's joint axes. The modified
+(proximal) one is Craig's, which the Meca500 report uses.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -49,6 +53,57 @@ def frames(rows: Sequence[DenavitHartenbergRow], q: FloatArray) -> FloatArray:
     for row, q_i in zip(rows, q, strict=True):
         poses.append(poses[-1] @ transform(row, float(q_i)))
     return np.array(poses)
+
+
+@dataclass(frozen=True)
+class ModifiedRow:
+    """One row of a modified (proximal, Craig's) D-H table: joint i turns about z_i, and frame i lies at its own axis.
+
+    Attributes:
+        alpha: Angle from z_{i-1} to z_i about x_{i-1}, in rad.
+        a: Distance from z_{i-1} to z_i along x_{i-1}, in m.
+        theta: Angle from x_{i-1} to x_i about z_i at q_i = 0, in rad; the joint position is added to it.
+        d: Distance from x_{i-1} to x_i along z_i, in m.
+    """
+
+    alpha: float
+    a: float
+    theta: float
+    d: float
+
+
+def modified_transform(row: ModifiedRow, q: float) -> FloatArray:
+    """Return Rx(alpha) Tx(a) Rz(theta + q) Tz(d), from frame i to frame i-1, at q in rad, shape (4, 4)."""
+    c, s = np.cos(row.theta + q), np.sin(row.theta + q)
+    ca, sa = np.cos(row.alpha), np.sin(row.alpha)
+    return np.array(
+        [
+            [c, -s, 0.0, row.a],
+            [s * ca, c * ca, -sa, -sa * row.d],
+            [s * sa, c * sa, ca, ca * row.d],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
+
+
+def modified_frames(rows: Sequence[ModifiedRow], q: FloatArray) -> FloatArray:
+    """Return frames 0 to n in frame 0 at joint positions q, shape (n + 1, 4, 4)."""
+    poses = [np.eye(4)]
+    for row, q_i in zip(rows, q, strict=True):
+        poses.append(poses[-1] @ modified_transform(row, float(q_i)))
+    return np.array(poses)
+
+
+def modified_jacobian(rows: Sequence[ModifiedRow], q: FloatArray) -> FloatArray:
+    """Return the geometric Jacobian of frame n in frame 0, shape (6, n): J_i = [z_i x (p_n - p_i); z_i]."""
+    poses = modified_frames(rows, q)[1:]
+    z, p = poses[:, :3, 2], poses[:, :3, 3]
+    return np.vstack([np.cross(z, p[-1] - p).T, z.T])
+
+
+def in_last_frame(jacobian: FloatArray, rotation: FloatArray) -> FloatArray:
+    """Return a geometric Jacobian, shape (6, n), in axes of frame n, from frame 0's: diag(R^T, R^T) J with R = 0R_n."""
+    return np.vstack([rotation.T @ jacobian[:3], rotation.T @ jacobian[3:]])
 
 
 def denavit_hartenberg(model: RobotModel) -> tuple[DenavitHartenbergRow, ...]:

@@ -1,6 +1,10 @@
-"""Joint positions for a tip position, on the branch that holds the home posture."""
+"""Joint positions for a tip position or a tip pose, on the branch that holds the home posture."""
+
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
+import pinocchio as pin
+from scipy.optimize import least_squares
 
 from runner.errors import ConfigError
 from runner.robots.model import FloatArray, RobotModel
@@ -8,6 +12,11 @@ from runner.robots.model import FloatArray, RobotModel
 TOLERANCE = 1e-12  # m; Newton's last step squares it, so that an arm starts at its trajectory's start to rounding
 _STEPS = 200  # way-points from home to the target; each needs a few Newton steps
 _MAX_NEWTON = 60
+_REACHED = 1e-9  # m, or rad
+_SEARCHES = 40  # random postures tried where no way leads from home
+
+# Error of the tip at joint positions, and the Jacobian of its velocity: shapes (k,) and (k, nq).
+Task = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
 
 def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) -> FloatArray:
@@ -15,7 +24,8 @@ def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) 
 
     The tip is led from home to the target by Newton steps from way-point to way-point: along the straight line, or,
     where that passes a singular posture and leaves the branch, around the shoulder. A branch is known by the sign of
-    det J, which only a singular posture changes.
+    det J, which only a singular posture changes. An arm with more joints than it needs moves them as little as it can.
+    Where joint limits bar both ways, other branches are searched.
 
     Args:
         model: The robot.
@@ -23,25 +33,88 @@ def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) 
         home: Joint positions at home, shape (nq,), in rad.
 
     Returns:
-        Joint positions, shape (nq,), in rad; `home` itself when the target is the home tip.
+        Joint positions within the limits, shape (nq,), in rad; `home` itself when the target is the home tip.
 
     Raises:
-        ConfigError: if no joint positions are found; gives the distance that is left.
+        ConfigError: if no joint positions are found; gives the distance that is left at the nearest found.
     """
     start = model.tip_position(np.asarray(home, dtype=float))
     if np.array_equal(start, target):
         return np.array(home, dtype=float)
-    found = [_follow(model, path, home) for path in (_straight(start, target), _around(model.shoulder, start, target))]
+    paths = (_straight(start, target), _around(model.shoulder, start, target))
+    found = [_follow(model, (_position_task(model, point) for point in path), home) for path in paths]
     missing = [float(np.linalg.norm(model.tip_position(q) - target)) for q in found]
-    reached = [q for q, distance in zip(found, missing, strict=True) if distance <= 1e-9]
-    if not reached:
-        raise ConfigError(
-            [
-                f"trajectory.start: no posture brings the tip to {np.round(target, 6).tolist()} m; "
-                f"{min(missing):.3g} m are left (reach {model.reach:.4g} m). Choose another start"
-            ]
-        )
-    return next((q for q in reached if _branch(model, q) == _branch(model, home)), reached[0])
+    reached = [q for q, distance in zip(found, missing, strict=True) if distance <= _REACHED]
+    if reached:
+        return next((q for q in reached if _branch(model, q) == _branch(model, home)), reached[0])
+    task = _position_task(model, target)
+    q = _search(model, task, [np.array(home, dtype=float), *found])
+    distance = float(np.linalg.norm(task(q)[0]))
+    if distance <= _REACHED:
+        return q
+    raise ConfigError(
+        [
+            f"trajectory.start: no posture found that brings the tip to {np.round(target, 6).tolist()} m; "
+            f"{distance:.3g} m are left{_where(model, target, q)}. Choose another start"
+        ]
+    )
+
+
+def solve_tip_pose(model: RobotModel, pose: FloatArray, home: FloatArray) -> FloatArray:
+    """Return joint positions that bring the tip to a position and an orientation, on the branch of the home posture.
+
+    The tip is led from home to the pose by Newton steps from way-point to way-point, along the straight line and the
+    shortest turn (the logarithm of the rotation that is left, which has no singular orientation below half a turn).
+    Where a joint limit or a singular posture bars that way, other branches are searched.
+
+    Args:
+        model: The robot.
+        pose: The tip's homogeneous transform in the base frame, shape (4, 4).
+        home: Joint positions at home, shape (nq,), in rad.
+
+    Returns:
+        Joint positions within the limits, shape (nq,), in rad; `home` itself when the pose is that of the home tip.
+
+    Raises:
+        ConfigError: if no joint positions are found; gives the distance and the angle left at the nearest found.
+    """
+    start = model.tip_pose(np.asarray(home, dtype=float))
+    if np.array_equal(start, pose):
+        return np.array(home, dtype=float)
+    turn = pin.log3(start[:3, :3].T @ pose[:3, :3])
+    points = _straight(start[:3, 3], pose[:3, 3])
+    turned = [start[:3, :3] @ pin.exp3(turn * (step + 1) / _STEPS) for step in range(_STEPS - 1)] + [pose[:3, :3]]
+    q = _follow(model, (_pose_task(model, p, R) for p, R in zip(points, turned, strict=True)), home)
+    task = _pose_task(model, pose[:3, 3], pose[:3, :3])
+    if np.linalg.norm(task(q)[0]) > _REACHED:
+        q = _search(model, task, [np.array(home, dtype=float), q])
+    error = task(q)[0]
+    if np.linalg.norm(error) <= _REACHED:
+        return q
+    turn = pin.log3(pose[:3, :3])
+    raise ConfigError(
+        [
+            f"trajectory.start: no posture found that brings the tip to {np.round(pose[:3, 3], 6).tolist()} m with "
+            f"the rotation vector {np.round(turn, 4).tolist()} rad; {np.linalg.norm(error[:3]):.3g} m and "
+            f"{np.linalg.norm(error[3:]):.3g} rad are left{_where(model, pose[:3, 3], q)}. Choose another start"
+        ]
+    )
+
+
+def _position_task(model: RobotModel, target: FloatArray) -> Task:
+    def task(q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return target - model.tip_position(q), model.tip_jacobian(q)[:3]
+
+    return task
+
+
+def _pose_task(model: RobotModel, position: FloatArray, rotation: FloatArray) -> Task:
+    def task(q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        pose = model.tip_pose(q)
+        turn = pin.log3(rotation @ pose[:3, :3].T)  # of the base frame's axes, as the Jacobian's angular rows
+        return np.concatenate([position - pose[:3, 3], turn]), model.tip_jacobian(q)
+
+    return task
 
 
 def _branch(model: RobotModel, q: FloatArray) -> float:
@@ -50,10 +123,10 @@ def _branch(model: RobotModel, q: FloatArray) -> float:
     return float(np.sign(np.linalg.det(J))) if J.shape == (3, 3) else 0.0
 
 
-def _follow(model: RobotModel, path: FloatArray, home: FloatArray) -> FloatArray:
+def _follow(model: RobotModel, tasks: Iterable[Task], home: FloatArray) -> FloatArray:
     q = np.array(home, dtype=float)
-    for point in path:
-        q = _newton(model, point, q)
+    for task in tasks:
+        q = _newton(task, q, model.position_limits)
     return q
 
 
@@ -76,13 +149,48 @@ def _around(centre: FloatArray, start: FloatArray, target: FloatArray) -> FloatA
     return points
 
 
-def _newton(model: RobotModel, target: FloatArray, q: FloatArray) -> FloatArray:
+def _newton(task: Task, q: FloatArray, limits: FloatArray) -> FloatArray:
+    lower, upper = limits
     for _ in range(_MAX_NEWTON):
-        error = target - model.tip_position(q)
+        error, J = task(q)
         if np.linalg.norm(error) < TOLERANCE:
             break
-        J = model.tip_jacobian(q)[:3]
         # The damping vanishes with the error: Newton's speed near the solution, no leaps near a singular posture.
-        damping = 1e-3 * float(error @ error)
-        q = q + J.T @ np.linalg.solve(J @ J.T + damping * np.eye(3), error)
+        damping = 1e-3 * float(error @ error) * np.eye(len(error))
+        step = J.T @ np.linalg.solve(J @ J.T + damping, error)
+        blocked = np.zeros(len(q), dtype=bool)
+        while (outside := ~blocked & ((q + step < lower) | (q + step > upper))).any():
+            blocked |= outside  # these joints stop at their limits, and the others do without them
+            held = np.clip(q + step, lower, upper) - q
+            free = np.where(blocked, 0.0, J)
+            rest = error - J @ np.where(blocked, held, 0.0)
+            step = np.where(blocked, held, free.T @ np.linalg.lstsq(free @ free.T + damping, rest, rcond=None)[0])
+        q = q + step
     return q
+
+
+def _search(model: RobotModel, task: Task, guesses: Sequence[FloatArray]) -> FloatArray:
+    """Return the joint positions within the limits that leave the least error, sought from guesses and at random."""
+    lower, upper = model.position_limits
+    span = np.clip(model.position_limits, -np.pi, np.pi)
+    postures = np.random.default_rng(0).uniform(span[0], span[1], (_SEARCHES, model.nq))
+    best, least = guesses[0], np.inf
+    for guess in (*guesses, *postures):
+        inside = np.clip(guess, lower + 1e-9, upper - 1e-9)
+        found = least_squares(lambda q: task(q)[0], inside, jac=lambda q: -task(q)[1], bounds=(lower, upper))
+        q = _newton(task, found.x, model.position_limits) if found.cost < 1e-6 else found.x
+        error = float(np.linalg.norm(task(q)[0]))
+        if error <= _REACHED:
+            return q
+        if error < 0.999 * least:  # the first of equally good ones: a later one may have turned without use
+            best, least = q, error
+    return best
+
+
+def _where(model: RobotModel, target: FloatArray, nearest: FloatArray) -> str:
+    """Return how far a target and the nearest tip position lie from the shoulder, and the joints that hold it back."""
+    there, here = (float(np.linalg.norm(point - model.shoulder)) for point in (target, model.tip_position(nearest)))
+    text = f"; it lies {there:.4g} m from the shoulder, the nearest found {here:.4g} m"
+    margins = model.limit_margins(nearest)
+    stopped = [name for name, margin in zip(model.joint_names, margins, strict=True) if margin < 1e-4]
+    return text + (f", {', '.join(stopped)} at a limit" if stopped else "")

@@ -13,6 +13,8 @@ FloatArray = NDArray[np.float64]
 
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value (its G(q) shows 9.81 and 19.62)
 
+_NO_LIMIT = 1e6  # rad, rad/s or N m; URDF demands limits, and a file without them writes a large number
+
 
 class RobotModel:
     """Rigid-body model of a fixed-base serial arm with revolute joints.
@@ -138,10 +140,26 @@ class RobotModel:
         return loaded
 
     @property
+    def position_limits(self) -> FloatArray:
+        """The URDF's lower and upper position limits, shape (2, nq), in rad; -inf and inf where it sets none."""
+        model = self.pin_model
+        return np.array([-_limits(-model.lowerPositionLimit), _limits(model.upperPositionLimit)])
+
+    @property
+    def velocity_limits(self) -> FloatArray:
+        """The URDF's speed limits, shape (nq,), in rad/s; inf where it sets none."""
+        return _limits(self.pin_model.upperVelocityLimit)
+
+    @property
     def effort_limits(self) -> FloatArray:
-        """The URDF's effort limits, shape (nq,), in N m."""
-        limits: FloatArray = self.pin_model.upperEffortLimit.copy()
-        return limits
+        """The URDF's effort limits, shape (nq,), in N m; inf where it sets none."""
+        return _limits(self.pin_model.upperEffortLimit)
+
+    def limit_margins(self, q: FloatArray) -> FloatArray:
+        """Return how far joint positions lie inside the nearer limit, shapes (..., nq), in rad; below 0 outside it."""
+        lower, upper = self.position_limits
+        margins: FloatArray = np.minimum(q - lower, upper - q)
+        return margins
 
     @cached_property
     def reach(self) -> float:
@@ -155,3 +173,9 @@ class RobotModel:
         """Origin of the first joint in the base frame, shape (3,), in m: the centre of the workspace."""
         origin: FloatArray = self.pin_model.jointPlacements[1].translation.copy()
         return origin
+
+
+def _limits(values: FloatArray) -> FloatArray:
+    """Return limits with inf where they only say that there is none."""
+    limits: FloatArray = np.where(values < _NO_LIMIT, values, np.inf)
+    return limits

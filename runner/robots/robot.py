@@ -43,11 +43,13 @@ class Robot:
         urdf: URDF text of the whole.
         model: Rigid-body model of the whole; its tip is the last stage's.
         stages: The arms.
+        flange: Frame on which a tool and a force/torque sensor are fixed; the tip itself where there is no tool.
     """
 
     urdf: str
     model: RobotModel
     stages: tuple[Stage, ...]
+    flange: str
 
     @property
     def home(self) -> FloatArray:

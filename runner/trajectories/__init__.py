@@ -3,6 +3,17 @@
 from runner.registry import Registry
 from runner.trajectories.trajectory import Trajectory
 
-TRAJECTORIES = Registry("trajectory", {"goal": "runner.trajectories.goal", "quintic": "runner.trajectories.quintic"})
+TRAJECTORIES = Registry(
+    "trajectory",
+    {
+        "circle": "runner.trajectories.circle",
+        "goal": "runner.trajectories.goal",
+        "line": "runner.trajectories.line",
+        "lissajous": "runner.trajectories.lissajous",
+        "quintic": "runner.trajectories.quintic",
+        "square": "runner.trajectories.square",
+        "waypoints": "runner.trajectories.waypoints",
+    },
+)
 
 __all__ = ["TRAJECTORIES", "Trajectory"]

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
 from runner.registry import StrictModel
-from runner.trajectories.line import distance_to_segment
+from runner.trajectories.segment import distance_to_segment
 from runner.trajectories.trajectory import FloatArray, Trajectory
+from runner.trajectories.vectors import Point
 
 
 class GoalConfig(StrictModel):
@@ -21,8 +21,8 @@ class GoalConfig(StrictModel):
     """
 
     kind: Literal["goal"]
-    start: list[float] | None = Field(min_length=3, max_length=3)
-    goal: list[float] = Field(min_length=3, max_length=3)
+    start: Point | None
+    goal: Point
 
 
 @dataclass(frozen=True)

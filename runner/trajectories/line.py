@@ -1,15 +1,89 @@
-"""Geometry of a straight segment."""
+"""From A to B and back along a straight line, over and over, by a cosine of time."""
+
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
+from pydantic import PositiveFloat
 
-from runner.trajectories.trajectory import FloatArray
+from runner.errors import ConfigError
+from runner.registry import StrictModel
+from runner.trajectories.segment import distance_to_segment
+from runner.trajectories.trajectory import FloatArray, Trajectory
+from runner.trajectories.vectors import Point
 
 
-def distance_to_segment(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-    """Return the distance of each point to a segment, shapes (T, 3), (3,), (3,) to (T,), in m."""
-    along = end - start
-    length_squared = float(along @ along)
-    share = np.zeros(len(points)) if length_squared == 0.0 else (points - start) @ along / length_squared
-    nearest = start + np.clip(share, 0.0, 1.0)[:, None] * along
-    distance: FloatArray = np.linalg.norm(points - nearest, axis=1)
-    return distance
+class LineConfig(StrictModel):
+    """Config of a line.
+
+    Attributes:
+        kind: Its name in the registry.
+        start: A, the tip position at t = 0, in m; None is the tip at home.
+        goal: B, the tip position half a period later, in m.
+        duration: Period T, from A to B and back, in s.
+    """
+
+    kind: Literal["line"]
+    start: Point | None
+    goal: Point
+    duration: PositiveFloat
+
+
+@dataclass(frozen=True)
+class Line:
+    r"""The periodic line of the xArm7 report, between its points P_A and P_B; see Trajectory for the attributes.
+
+    The report ("Trajectory planning") slows the tip down towards both ends by "a sinusoidal function" of its
+    coordinate P_ey and prints no formula. Read as the harmonic motion that starts at rest in A, with D = B - A:
+
+    .. math:: x(t) = A + \tfrac{1}{2} D (1 - \cos(2 \pi t / T))
+
+    Its speed is then such a function of the place: proportional to the sine whose cosine is the place. Peak speed is
+    pi |D| / T half way, peak acceleration 2 pi^2 |D| / T^2 at both ends, also at t = 0, where the arm stands at rest:
+    acceleration steps there.
+
+    Attributes:
+        end: B, shape (3,), in m.
+    """
+
+    start: FloatArray
+    end: FloatArray
+    duration: float
+    goal: None = None
+    tracked: bool = True
+
+    @property
+    def run_duration(self) -> float:
+        """One period."""
+        return self.duration
+
+    def sample(self, times: FloatArray) -> FloatArray:
+        """Return the motion, which goes on after a period."""
+        rate = 2.0 * np.pi / self.duration
+        D = self.end - self.start
+        motion = np.empty((len(times), 3, 3))
+        motion[:, 0] = self.start + np.outer(0.5 * (1.0 - np.cos(rate * times)), D)
+        motion[:, 1] = np.outer(0.5 * rate * np.sin(rate * times), D)
+        motion[:, 2] = np.outer(0.5 * rate**2 * np.cos(rate * times), D)
+        return motion
+
+    def distance_to_path(self, points: FloatArray) -> FloatArray:
+        """Return the distance to the segment from A to B."""
+        return distance_to_segment(points, self.start, self.end)
+
+
+CONFIG = LineConfig
+
+
+def build(config: LineConfig, start: FloatArray) -> Trajectory:
+    """Make the line that a config describes; `start` is the tip at t = 0.
+
+    Raises:
+        ConfigError: if it has no length.
+    """
+    end = np.array(config.goal)
+    if np.array_equal(start, end):
+        raise ConfigError(
+            [f"trajectory.goal: {config.goal} m is the start, and a line leads elsewhere. Choose another"]
+        )
+    return Line(start, end, config.duration)

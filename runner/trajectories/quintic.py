@@ -4,11 +4,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from pydantic import Field, PositiveFloat
+from pydantic import PositiveFloat
 
 from runner.registry import StrictModel
-from runner.trajectories.line import distance_to_segment
+from runner.trajectories.blend import quintic_blend
+from runner.trajectories.segment import distance_to_segment
 from runner.trajectories.trajectory import FloatArray, Trajectory
+from runner.trajectories.vectors import Point
 
 
 class QuinticConfig(StrictModel):
@@ -22,8 +24,8 @@ class QuinticConfig(StrictModel):
     """
 
     kind: Literal["quintic"]
-    start: list[float] | None = Field(min_length=3, max_length=3)
-    goal: list[float] = Field(min_length=3, max_length=3)
+    start: Point | None
+    goal: Point
     duration: PositiveFloat
 
 
@@ -50,13 +52,13 @@ class Quintic:
 
     def sample(self, times: FloatArray) -> FloatArray:
         """Return the motion, at rest at the goal after t_f."""
-        u = np.clip(times / self.duration, 0.0, 1.0)
+        s, s_prime, s_second = quintic_blend(times / self.duration)
         D = self.goal - self.start
         rate = 1.0 / self.duration
         motion = np.empty((len(times), 3, 3))
-        motion[:, 0] = self.start + np.outer(u**3 * (10.0 + u * (-15.0 + 6.0 * u)), D)
-        motion[:, 1] = np.outer(30.0 * u**2 * (1.0 - u) ** 2 * rate, D)
-        motion[:, 2] = np.outer(60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) * rate**2, D)
+        motion[:, 0] = self.start + np.outer(s, D)
+        motion[:, 1] = np.outer(s_prime * rate, D)
+        motion[:, 2] = np.outer(s_second * rate**2, D)
         return motion
 
     def distance_to_path(self, points: FloatArray) -> FloatArray:

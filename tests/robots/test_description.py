@@ -72,7 +72,7 @@ def test_a_file_that_is_nowhere(tmp_path):
         find_urdf("marco.urdf", [tmp_path])
     text = str(caught.value)
     assert "robot.urdf: no file 'marco.urdf' (did you mean macro.urdf?)" in text
-    for place in (tmp_path, tmp_path / "robots", robots_dir(), "macro.urdf, mini.urdf"):
+    for place in (tmp_path, tmp_path / "robots", robots_dir(), "macro.urdf, meca500.urdf, mini.urdf"):
         assert str(place) in text
 
 
@@ -133,6 +133,19 @@ def test_a_massless_link_cannot_be_scaled():
 def test_an_inertia_that_is_no_number_cannot_be_scaled(written):
     with pytest.raises(ConfigError, match=r"robot\.urdf: link 'hand' .* ixx"):
         read_urdf(written(robot(inertial(2.0, "round"))), {"hand": 1.0})
+
+
+def test_velocity_limits_are_applied_to_the_joints_named():
+    path = find_urdf("xarm7.urdf")
+    limits = RobotModel(read_urdf(path, {}, velocity_limits={"joint2": 2.14}), "flange").velocity_limits
+    np.testing.assert_array_equal(limits, [3.141593, 2.14, *[3.141593] * 5])
+
+
+def test_an_unknown_joint_is_named_with_the_nearest():
+    with pytest.raises(
+        ConfigError, match=r"robot\.velocity_limits\.jiont2: no such joint \(did you mean joint2\?\); j"
+    ):
+        read_urdf(find_urdf("xarm7.urdf"), {}, velocity_limits={"jiont2": 2.14})
 
 
 def test_all_problems_at_once():

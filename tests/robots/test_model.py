@@ -208,6 +208,29 @@ def test_the_reach_counts_from_the_shoulder():
     np.testing.assert_array_equal(model.effort_limits, [7.0])
 
 
+def test_limits_are_read():
+    limits = '<limit lower="-0.5" upper="2" effort="3" velocity="4"/>'
+    model = RobotModel(one_joint(limits=limits), "hand")
+    np.testing.assert_array_equal(model.position_limits, [[-0.5], [2.0]])
+    np.testing.assert_array_equal(model.velocity_limits, [4.0])
+    np.testing.assert_array_equal(model.effort_limits, [3.0])
+
+
+def test_a_million_and_more_is_no_limit():
+    limits = '<limit lower="-1e6" upper="2e7" effort="1e6" velocity="1e9"/>'
+    model = RobotModel(one_joint(limits=limits), "hand")
+    np.testing.assert_array_equal(model.position_limits, [[-np.inf], [np.inf]])
+    np.testing.assert_array_equal([model.velocity_limits, model.effort_limits], np.inf)
+    np.testing.assert_array_equal(model.limit_margins(np.array([5.0])), [np.inf])
+
+
+def test_margins_count_to_the_nearer_limit():
+    model = RobotModel(one_joint(limits='<limit lower="-0.5" upper="2" effort="3" velocity="4"/>'), "hand")
+    np.testing.assert_array_equal(
+        model.limit_margins(np.array([[0.0], [1.5], [2.5], [-1.0]])), [[0.5], [0.5], [-0.5], [-0.5]]
+    )
+
+
 def test_joint_names(macro):
     assert macro.joint_names == ("q1", "q2", "q3")
     assert macro.nq == 3

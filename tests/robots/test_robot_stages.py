@@ -20,8 +20,10 @@ TOP = {
     "urdf": "mini.urdf",
     "tip": "tip",
     "home": [0.1, 0.2, 0.3],
+    "inertials": None,
     "masses": {"link2": 0.01},
     "rotor_inertia": 0.0,
+    "velocity_limits": {},
     "mount": {"frame": "tip", "translation": [0.0, 0.0, 0.01], "rotation": [np.pi / 2, 0.0, np.pi / 2]},
 }
 

@@ -5,8 +5,10 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize
 
 from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.inertials import Payload
 
 EXACT = (math.hypot(0.0775, 0.3425), math.atan2(0.0775, 0.3425), math.hypot(0.076, 0.097), math.atan2(0.076, 0.097))
 ROUNDED = (0.3512, 0.2225, 0.1232, 0.6646)  # as the report prints l4, theta1, l5, theta2
@@ -55,7 +57,7 @@ def chain(q, l4, theta1, l5, theta2):
 
 
 def within_limits(model, count):
-    low, high = model.pin_model.lowerPositionLimit, model.pin_model.upperPositionLimit
+    low, high = model.position_limits
     return np.random.default_rng(7).uniform(low, high, (count, model.nq))
 
 
@@ -108,18 +110,73 @@ def test_every_tensor_could_be_that_of_a_body(urdf):
 
 
 def test_limits_are_those_of_the_arm(xarm7):
-    model = xarm7.pin_model
+    lower, upper = np.rad2deg(xarm7.position_limits)
     degrees = [(-360, 360), (-118, 120), (-360, 360), (-11, 225), (-360, 360), (-97, 180), (-360, 360)]
-    np.testing.assert_allclose(np.rad2deg(model.lowerPositionLimit), [low for low, _ in degrees], atol=1e-3)
-    np.testing.assert_allclose(np.rad2deg(model.upperPositionLimit), [high for _, high in degrees], atol=1e-3)
-    np.testing.assert_allclose(model.upperVelocityLimit, np.pi, atol=1e-6)
+    np.testing.assert_allclose(lower, [low for low, _ in degrees], atol=1e-3)
+    np.testing.assert_allclose(upper, [high for _, high in degrees], atol=1e-3)
+    np.testing.assert_allclose(xarm7.velocity_limits, np.pi, atol=1e-6)
     np.testing.assert_array_equal(xarm7.effort_limits, [50, 50, 30, 30, 30, 20, 20])
 
 
-def test_the_arm_can_carry_itself(xarm7):
-    torques = np.abs([xarm7.gravity_torque(q) for q in within_limits(xarm7, 2000)])
-    assert 31.0 < torques[:, 1].max() < 32.9  # its maximum, found by local search, is 32.9 N m
-    assert (torques.max(axis=0) < 0.66 * xarm7.effort_limits).all()
+def largest_gravity_torque(model, joint):
+    """Return the largest gravity torque of a joint within the limits, in N m: the best of random postures, refined."""
+    postures = within_limits(model, 1000)
+    torques = np.abs([model.gravity_torque(q)[joint] for q in postures])
+    limits = list(zip(*model.position_limits, strict=True))
+    found = [
+        minimize(lambda q: -(model.gravity_torque(q)[joint] ** 2), start, bounds=limits)
+        for start in postures[np.argsort(-torques)[:3]]
+    ]
+    return math.sqrt(max(-result.fun for result in found))
+
+
+@pytest.mark.parametrize(
+    ("inertials", "expected"),
+    [
+        ("type7_HT_BR2", 32.95),
+        ("type7_HT_BR", 30.04),
+        ("type7_HT_LD", 33.88),
+        ("type7_UJ_BR_2403", 36.88),
+        ("legacy_wrong", 9.70),
+    ],
+)
+def test_the_shoulder_carries_the_arm_with_every_set(inertials, expected):
+    model = RobotModel(read_urdf(find_urdf("xarm7.urdf"), {}, inertials=inertials), "flange")
+    assert largest_gravity_torque(model, 1) == pytest.approx(expected, abs=0.01)
+
+
+@pytest.mark.parametrize(("joint", "expected"), [(0, 0.0), (2, 15.81), (3, 12.71), (4, 1.14), (5, 1.13), (6, 0.011)])
+def test_the_other_joints_carry_the_arm(xarm7, joint, expected):
+    torque = largest_gravity_torque(xarm7, joint)
+    assert torque == pytest.approx(expected, abs=0.01)
+    assert torque < 0.66 * xarm7.effort_limits[joint]
+
+
+@pytest.mark.parametrize(("joint", "expected"), [(1, 59.4), (2, 33.8), (3, 28.9)])
+def test_the_rated_payload_is_more_than_the_efforts_hold_when_stretched(joint, expected):
+    loaded = read_urdf(find_urdf("xarm7.urdf"), {}, payloads=[Payload("flange", 3.5, (0.0, 0.0, 0.0))])
+    model = RobotModel(loaded, "flange")
+    torque = largest_gravity_torque(model, joint)
+    assert torque == pytest.approx(expected, abs=0.05)
+    assert (torque > model.effort_limits[joint]) == (joint != 3)
+
+
+@pytest.mark.parametrize("inertials", ["type7_HT_BR", "type7_HT_LD", "type7_UJ_BR_2403", "legacy_wrong"])
+def test_every_tensor_of_the_other_sets_could_be_that_of_a_body(inertials):
+    model = RobotModel(read_urdf(find_urdf("xarm7.urdf"), {}, inertials=inertials), "flange")
+    for inertia in list(model.pin_model.inertias)[1:]:
+        moments = np.linalg.eigvalsh(inertia.inertia)
+        assert moments[0] > 0.0
+        assert moments[2] < moments[0] + moments[1]
+
+
+@pytest.mark.parametrize(
+    ("inertials", "mass"),
+    [("type7_HT_BR", 9.5454), ("type7_HT_LD", 10.7234), ("type7_UJ_BR_2403", 11.7844), ("legacy_wrong", 2.76914)],
+)
+def test_the_other_sets_weigh_what_their_source_says(inertials, mass):
+    model = RobotModel(read_urdf(find_urdf("xarm7.urdf"), {}, inertials=inertials), "flange")
+    assert model.mass == pytest.approx(mass, abs=1e-12)
 
 
 def test_shapes_are_primitives(urdf):

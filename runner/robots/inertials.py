@@ -1,0 +1,185 @@
+"""What the links of a URDF weigh, changed as a config asks: other sets of inertials, masses, rotors, a payload."""
+
+import itertools
+import math
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import pinocchio as pin
+import yaml
+from pydantic import Field, NonNegativeFloat, TypeAdapter, ValidationError
+
+from runner.errors import ConfigError, nearest
+from runner.registry import StrictModel
+
+
+@dataclass(frozen=True)
+class Payload:
+    """A point mass fixed on a link.
+
+    Attributes:
+        link: Name of the link, the tip's.
+        mass: Its mass, in kg.
+        position: Its place in the link's frame, (3,), in m.
+    """
+
+    link: str
+    mass: float
+    position: Sequence[float]
+
+
+class _Tensor(StrictModel):
+    """Inertia about the centre of mass, in axes of the link's frame, in kg m^2."""
+
+    ixx: NonNegativeFloat
+    ixy: float
+    ixz: float
+    iyy: NonNegativeFloat
+    iyz: float
+    izz: NonNegativeFloat
+
+
+class _Inertial(StrictModel):
+    mass: NonNegativeFloat  # kg
+    centre_of_mass: Annotated[list[float], Field(min_length=3, max_length=3)]  # m, in the link's frame
+    inertia: _Tensor
+
+
+class _InertialSet(StrictModel):
+    source: str
+    links: dict[str, _Inertial]
+
+
+_SETS = TypeAdapter(dict[str, _InertialSet])
+
+
+def set_file(urdf: Path) -> Path:
+    """Return the file of a URDF's other inertial sets: `arm.inertials.yaml` beside `arm.urdf`."""
+    return urdf.with_suffix(".inertials.yaml")
+
+
+def replace_inertials(links: Mapping[str, ET.Element], urdf: Path, name: str) -> None:
+    """Give links the inertials of a named set; links that it leaves out keep theirs.
+
+    Args:
+        links: The URDF's links by name, changed in place.
+        urdf: The URDF's file.
+        name: Name of the set.
+
+    Raises:
+        ConfigError: if there is no such set, its file cannot be read, or it names a link that the URDF does not have.
+    """
+    sets = _read_sets(set_file(urdf))
+    if name not in sets:
+        there = f"sets: {', '.join(sets)}" if sets else f"there is no {set_file(urdf).name}; allowed: null"
+        raise ConfigError([f"robot.inertials: no set '{name}'{nearest(name, sets)}; {there}"])
+    strange = [link for link in sets[name].links if link not in links]
+    if strange:
+        raise ConfigError(
+            f"robot.inertials: set '{name}' names the link '{link}', which {urdf.name} does not have"
+            f"{nearest(link, links)}; links: {', '.join(links)}"
+            for link in strange
+        )
+    for link, values in sets[name].links.items():
+        _write(links[link], values.mass, values.centre_of_mass, values.inertia.model_dump())
+
+
+def _read_sets(path: Path) -> dict[str, _InertialSet]:
+    if not path.is_file():
+        return {}
+    try:
+        return _SETS.validate_python(yaml.safe_load(path.read_text()))
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise ConfigError([f"robot.inertials: {path} is no YAML: {error}"]) from error
+    except ValidationError as error:
+        raise ConfigError(
+            f"robot.inertials: {path}: {'.'.join(map(str, problem['loc']))}: {problem['msg']}; found "
+            f"{problem['input']!r}"
+            for problem in error.errors()
+        ) from None
+
+
+def scale_inertial(link: ET.Element, mass: float) -> None:
+    """Give a link another mass, in kg, and scale its inertia along (a uniform change of density)."""
+    element, inertia = link.find("inertial/mass"), link.find("inertial/inertia")
+    if element is None:
+        return
+    scale = mass / float(element.get("value", "nan"))
+    element.set("value", repr(float(mass)))
+    for key, value in dict({} if inertia is None else inertia.attrib).items():
+        if inertia is not None:
+            inertia.set(key, repr(float(value) * scale))
+
+
+def add_rotor(joint: ET.Element, links: Mapping[str, ET.Element], rotor_inertia: float) -> None:
+    """Add a rotor's inertia, in kg m^2 about a joint's axis, to the link that the joint moves."""
+    child, axis = joint.find("child"), joint.find("axis")
+    link = None if child is None else links.get(child.get("link", ""))
+    inertia = None if link is None else link.find("inertial/inertia")
+    if joint.get("type") == "fixed" or link is None or inertia is None:
+        return
+    direction = _inertial_frame(link).rotation.T @ _vector("1 0 0" if axis is None else axis.get("xyz", "1 0 0"))
+    # A thin disc: PyBullet drops an inertia that no body has, such as one about a single axis.
+    added = 0.5 * rotor_inertia * (np.eye(3) + np.outer(direction, direction) / float(direction @ direction))
+    for row, column in itertools.combinations_with_replacement(range(3), 2):
+        key = f"i{'xyz'[row]}{'xyz'[column]}"
+        inertia.set(key, repr(float(inertia.get(key, "0")) + float(added[row, column])))
+
+
+def add_payload(links: Mapping[str, ET.Element], payload: Payload) -> None:
+    """Merge a payload with the inertial of the link that carries it, so that every engine reads the same body.
+
+    Raises:
+        ConfigError: if the tip is no link of the URDF, but another frame.
+    """
+    if payload.link not in links:
+        raise ConfigError(
+            [
+                f"robot.payload: the tip frame '{payload.link}' is no link{nearest(payload.link, links)}; a payload "
+                f"needs one: add a massless link there, fixed. Links: {', '.join(links)}"
+            ]
+        )
+    link = links[payload.link]
+    frame, own = _inertial_frame(link), _own_inertia(link)
+    whole = frame.act(own) + pin.Inertia(payload.mass, np.array(payload.position, dtype=float), np.zeros((3, 3)))
+    tensor = {f"i{'xyz'[row]}{'xyz'[column]}": whole.inertia[row, column] for row, column in _UPPER}
+    _write(link, whole.mass, whole.lever, tensor)
+
+
+_UPPER = tuple(itertools.combinations_with_replacement(range(3), 2))
+
+
+def _own_inertia(link: ET.Element) -> pin.Inertia:
+    """Return a link's inertia in its inertial frame, whose origin is its centre of mass."""
+    mass, inertia = link.find("inertial/mass"), link.find("inertial/inertia")
+    tensor = np.zeros((3, 3))
+    for row, column in _UPPER:
+        value = "0" if inertia is None else inertia.get(f"i{'xyz'[row]}{'xyz'[column]}", "0")
+        tensor[row, column] = tensor[column, row] = float(value)
+    return pin.Inertia(math.nan if mass is None else float(mass.get("value", "nan")), np.zeros(3), tensor)
+
+
+def _inertial_frame(link: ET.Element) -> pin.SE3:
+    """Return the frame in which a link's inertial is given, in the link's frame."""
+    origin = link.find("inertial/origin")
+    xyz, rpy = ("0 0 0", "0 0 0") if origin is None else (origin.get("xyz", "0 0 0"), origin.get("rpy", "0 0 0"))
+    return pin.SE3(pin.rpy.rpyToMatrix(_vector(rpy)), _vector(xyz))
+
+
+def _write(link: ET.Element, mass: float, centre_of_mass: Sequence[float], tensor: Mapping[str, float]) -> None:
+    """Give a link an inertial in axes of its frame."""
+    old = link.find("inertial")
+    if old is not None:
+        link.remove(old)
+    inertial = ET.SubElement(link, "inertial")
+    ET.SubElement(inertial, "origin", xyz=" ".join(repr(float(value)) for value in centre_of_mass))
+    ET.SubElement(inertial, "mass", value=repr(float(mass)))
+    ET.SubElement(inertial, "inertia", {key: repr(float(value)) for key, value in tensor.items()})
+
+
+def _vector(text: str) -> np.ndarray:
+    return np.array([float(value) for value in text.split()])

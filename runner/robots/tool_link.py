@@ -1,0 +1,116 @@
+"""A tool on the flange, as links of the URDF."""
+
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from runner.errors import ConfigError
+
+TOOL, TOOL_TIP, TOOL_MOUNT = "tool", "tool_tip", "tool_mount"
+"""Names of the tool's link, of the massless one at its tip, the tool centre point, and of the joint to the flange."""
+
+
+@dataclass(frozen=True)
+class ToolBody:
+    """A rigid tool, in the flange's frame.
+
+    Attributes:
+        mass: In kg.
+        centre_of_mass: Shape (3,), in m.
+        inertia: Principal moments about the centre of mass, along the flange's axes, shape (3,), in kg m^2.
+        tip: The tool centre point, shape (3,), in m.
+        tip_radius: Radius of the ball at its tip that touches walls, in m.
+    """
+
+    mass: float
+    centre_of_mass: Sequence[float]
+    inertia: Sequence[float]
+    tip: Sequence[float]
+    tip_radius: float
+
+
+def mount_tool(urdf: str, flange: str, tool: ToolBody) -> str:
+    """Return a URDF's text with a tool fixed on a link.
+
+    Args:
+        urdf: The arm's URDF text.
+        flange: Name of the link that bears the tool.
+        tool: The tool.
+
+    Raises:
+        ConfigError: if there is no such link, or names clash.
+    """
+    robot = ET.fromstring(urdf)  # noqa: S314 - our own text, checked when it was read
+    links = [link.get("name", "") for link in robot.iter("link")]
+    if flange not in links:
+        raise ConfigError([f"robot.tool: the flange '{flange}' is no link to fix a tool on; links: {', '.join(links)}"])
+    if {TOOL, TOOL_TIP} & set(links):
+        raise ConfigError([f"robot.tool: the URDF has a link '{TOOL}' or '{TOOL_TIP}' of its own; allowed: null"])
+    body = ET.SubElement(robot, "link", name=TOOL)
+    inertial = ET.SubElement(body, "inertial")
+    ET.SubElement(inertial, "origin", xyz=_text(tool.centre_of_mass))
+    ET.SubElement(inertial, "mass", value=repr(float(tool.mass)))
+    moments = dict(zip(("ixx", "iyy", "izz"), (repr(float(value)) for value in tool.inertia), strict=True))
+    ET.SubElement(inertial, "inertia", {**moments, "ixy": "0", "ixz": "0", "iyz": "0"})
+    tip = np.array(tool.tip, dtype=float)
+    _add_rod(body, tip, tool.tip_radius)
+    ball = ET.SubElement(body, "collision")
+    ET.SubElement(ball, "origin", xyz=_text(tip))
+    ET.SubElement(ET.SubElement(ball, "geometry"), "sphere", radius=repr(float(tool.tip_radius)))
+    point = ET.SubElement(ET.SubElement(robot, "link", name=TOOL_TIP), "inertial")
+    ET.SubElement(point, "mass", value="0")
+    ET.SubElement(point, "inertia", dict.fromkeys(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), "0"))
+    for name, parent, child, place in (
+        (TOOL_MOUNT, flange, TOOL, "0 0 0"),
+        ("tool_end", TOOL, TOOL_TIP, _text(tip)),
+    ):
+        joint = ET.SubElement(robot, "joint", name=name, type="fixed")
+        ET.SubElement(joint, "parent", link=parent)
+        ET.SubElement(joint, "child", link=child)
+        ET.SubElement(joint, "origin", xyz=place)
+    return ET.tostring(robot, encoding="unicode")
+
+
+def find_tool(model: pin.Model, flange: int) -> pin.Inertia:
+    """Return the inertia of the tool on a flange, in its frame; zero where there is none."""
+    if not model.existFrame(TOOL_MOUNT):
+        return pin.Inertia.Zero()
+    mount = model.frames[model.getFrameId(TOOL_MOUNT)]  # Pinocchio keeps a fixed link's inertia at its joint
+    return (model.frames[flange].placement.inverse() * mount.placement).act(mount.inertia)
+
+
+def holding_wrench(model: pin.Model, data: pin.Data, flange: int, tool: pin.Inertia, gravity: np.ndarray) -> np.ndarray:
+    """Return what a flange puts on its tool to bear and to move it, by the tool's rigid-body balance.
+
+    Args:
+        model: The arm.
+        data: Its data, after forward kinematics with velocities and accelerations, the flange's frame updated.
+        flange: The flange's frame.
+        tool: The tool's inertia in that frame.
+        gravity: Gravity in the base frame, shape (3,), in m/s^2.
+
+    Returns:
+        Force in N and moment about the flange's origin in N m, along its axes, shape (6,).
+    """
+    velocity = pin.getFrameVelocity(model, data, flange)
+    acceleration = pin.getFrameAcceleration(model, data, flange)
+    acceleration.linear -= data.oMf[flange].rotation.T @ gravity
+    wrench: np.ndarray = (tool * acceleration + tool.vxiv(velocity)).vector
+    return wrench
+
+
+def _add_rod(body: ET.Element, tip: np.ndarray, radius: float) -> None:
+    length = float(np.linalg.norm(tip))
+    if length == 0.0:
+        return
+    rotation = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), tip).toRotationMatrix()
+    rod = ET.SubElement(body, "visual")
+    ET.SubElement(rod, "origin", xyz=_text(0.5 * tip), rpy=_text(pin.rpy.matrixToRpy(rotation)))
+    ET.SubElement(ET.SubElement(rod, "geometry"), "cylinder", radius=repr(radius), length=repr(length))
+
+
+def _text(values: Sequence[float] | np.ndarray) -> str:
+    return " ".join(repr(float(value)) for value in values)

@@ -1,0 +1,20 @@
+"""From 0 to 1, rest to rest, by a polynomial of fifth order in time."""
+
+import numpy as np
+
+from runner.trajectories.trajectory import FloatArray
+
+
+def quintic_blend(u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    r"""Return s and its first two derivatives in u, each of shape (T,), for u from 0 to 1 and at rest beyond.
+
+    .. math:: s(u) = 10 u^3 - 15 u^4 + 6 u^5
+
+    is the one quintic with s(0) = 0, s(1) = 1 and no first or second derivative at either end (thesis eq. 3.39).
+    """
+    u = np.clip(u, 0.0, 1.0)
+    return (
+        u**3 * (10.0 + u * (-15.0 + 6.0 * u)),
+        30.0 * u**2 * (1.0 - u) ** 2,
+        60.0 * u * (1.0 - u) * (1.0 - 2.0 * u),
+    )

@@ -1,0 +1,94 @@
+"""A circle about any axis."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from pydantic import PositiveFloat, PositiveInt, ValidationInfo, field_validator
+
+from runner.registry import StrictModel
+from runner.trajectories.closed_figure import ClosedFigure, Easing
+from runner.trajectories.trajectory import FloatArray, Trajectory
+from runner.trajectories.vectors import Direction, Point, check_perpendicular, plane_axes
+
+
+class CircleConfig(StrictModel):
+    """Config of a circle; it starts on its line, so that the centre is start + radius * centre_direction.
+
+    Attributes:
+        kind: Its name in the registry.
+        start: Tip position at t = 0, in m; None is the tip at home.
+        radius: Radius, in m.
+        normal: Axis about which it turns counter-clockwise, of any length.
+        centre_direction: Direction from the start to the centre, perpendicular to the normal, of any length.
+        turns: Number of turns.
+        easing: "quintic" for one motion from rest to rest, "none" for a steady speed, over and over.
+        duration: Time of all turns, in s.
+    """
+
+    kind: Literal["circle"]
+    start: Point | None
+    radius: PositiveFloat
+    normal: Direction
+    centre_direction: Direction
+    turns: PositiveInt
+    easing: Easing
+    duration: PositiveFloat
+
+    @field_validator("centre_direction")
+    @classmethod
+    def _check_plane(cls, value: list[float], info: ValidationInfo) -> list[float]:
+        return check_perpendicular(value, info.data["normal"]) if "normal" in info.data else value
+
+
+@dataclass(frozen=True)
+class Circle:
+    r"""A circle, with phi = 2 pi turns u and unit vectors e to the centre and f along the first motion.
+
+    .. math:: c(u) = x_0 + r (1 - \cos \varphi) e + r \sin \varphi f
+
+    Attributes:
+        start: x_0, shape (3,), in m.
+        radius: r, in m.
+        to_centre: e, shape (3,).
+        along: f, shape (3,), perpendicular to e.
+        turns: Number of turns for u from 0 to 1.
+    """
+
+    start: FloatArray
+    radius: float
+    to_centre: FloatArray
+    along: FloatArray
+    turns: int
+
+    def derivatives(self, u: FloatArray) -> FloatArray:
+        """Return point and derivatives in u, shape (T, 3, 3), in m."""
+        rate = 2.0 * np.pi * self.turns
+        cosine, sine = np.cos(rate * u), np.sin(rate * u)
+        e, f = self.radius * self.to_centre, self.radius * self.along
+        return np.stack(
+            [
+                self.start + np.outer(1.0 - cosine, e) + np.outer(sine, f),
+                rate * (np.outer(sine, e) + np.outer(cosine, f)),
+                rate**2 * (np.outer(cosine, e) - np.outer(sine, f)),
+            ],
+            axis=1,
+        )
+
+    def distance(self, points: FloatArray) -> FloatArray:
+        """Return each point's distance to the circle, shapes (T, 3) to (T,), in m."""
+        from_centre = points - self.start - self.radius * self.to_centre
+        height = from_centre @ np.cross(self.to_centre, self.along)
+        beyond = np.hypot(from_centre @ self.to_centre, from_centre @ self.along) - self.radius
+        distance: FloatArray = np.hypot(height, beyond)
+        return distance
+
+
+CONFIG = CircleConfig
+
+
+def build(config: CircleConfig, start: FloatArray) -> Trajectory:
+    """Make the circle that a config describes; `start` is the tip at t = 0."""
+    e, g = plane_axes(config.normal, config.centre_direction)
+    # Counter-clockwise about the normal, the start turns about the centre towards -g.
+    return ClosedFigure(Circle(start, config.radius, e, -g, config.turns), config.duration, config.easing)

@@ -1,0 +1,76 @@
+"""A closed curve, traced once from rest to rest or over and over at a steady pace."""
+
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+
+from runner.trajectories.blend import quintic_blend
+from runner.trajectories.trajectory import FloatArray
+
+Easing = Literal["quintic", "none"]
+
+
+class ClosedCurve(Protocol):
+    """A curve that ends where it starts."""
+
+    @property
+    def start(self) -> FloatArray:
+        """Point at u = 0 and u = 1, shape (3,), in m."""
+        ...
+
+    def derivatives(self, u: FloatArray) -> FloatArray:
+        """Return point and its first two derivatives in u, shape (T, 3, 3), in m; u goes from 0 to 1 and may go on."""
+        ...
+
+    def distance(self, points: FloatArray) -> FloatArray:
+        """Return each point's distance to the curve, shapes (T, 3) to (T,), in m."""
+        ...
+
+
+@dataclass(frozen=True)
+class ClosedFigure:
+    r"""A closed curve c(u) with u taken from time; see Trajectory for the attributes.
+
+    With easing "quintic", u = s(t / t_f) goes once from 0 to 1, from rest to rest (thesis eq. 3.39), and the motion
+    is twice continuously differentiable. With "none", u = t / T goes on evenly: the motion is periodic, and it
+    starts at speed, which an arm at rest does not follow at once. Then
+
+    .. math:: \dot x = c' \dot u, \quad \ddot x = c'' \dot u^2 + c' \ddot u
+
+    Attributes:
+        curve: The curve.
+        easing: How u follows from time.
+    """
+
+    curve: ClosedCurve
+    duration: float
+    easing: Easing
+    tracked: bool = True
+
+    @property
+    def start(self) -> FloatArray:
+        """Where the curve starts."""
+        return self.curve.start
+
+    @property
+    def goal(self) -> FloatArray | None:
+        """The start again where the motion comes to rest; None where it does not."""
+        return self.curve.start if self.easing == "quintic" else None
+
+    @property
+    def run_duration(self) -> float:
+        """One period, or one second more than the motion, so that the arm's rest is seen."""
+        return self.duration + 1.0 if self.easing == "quintic" else self.duration
+
+    def sample(self, times: FloatArray) -> FloatArray:
+        """Return the motion."""
+        share, rate = times / self.duration, 1.0 / self.duration
+        blend = quintic_blend(share) if self.easing == "quintic" else (share, np.ones_like(share), np.zeros_like(share))
+        u, u_dot, u_ddot = blend[0], (blend[1] * rate)[:, None], (blend[2] * rate**2)[:, None]
+        c = self.curve.derivatives(u)
+        return np.stack([c[:, 0], c[:, 1] * u_dot, c[:, 2] * u_dot**2 + c[:, 1] * u_ddot], axis=1)
+
+    def distance_to_path(self, points: FloatArray) -> FloatArray:
+        """Return the distance to the curve."""
+        return self.curve.distance(points)

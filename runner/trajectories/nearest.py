@@ -1,0 +1,74 @@
+"""The nearest point of a curve that has no closed form for it."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from runner.trajectories.trajectory import FloatArray
+
+_TABLE = 500_000  # distances of points to samples at a time
+_MAX_STEPS = 60
+_CONVERGED = 1e-14  # share of the curve's range of parameters
+
+
+def distance_to_curve(points: FloatArray, curve: Callable[[FloatArray], FloatArray], samples: FloatArray) -> FloatArray:
+    """Return each point's distance to a curve, to rounding, shapes (T, 3) to (T,), in m.
+
+    Every sample that is nearer than its two neighbours starts a search between them for the place where the line to
+    the point is perpendicular to the curve; the nearest place counts. Samples must lie so close that between two of
+    them the distance has one minimum.
+
+    Args:
+        points: The points, shape (T, 3), in m.
+        curve: From parameters, shape (N,), to point and first two derivatives, shape (N, 3, 3).
+        samples: Ascending parameters, from the curve's start to its end, shape (M,).
+    """
+    at_samples = curve(samples)[:, 0]
+    distance = np.empty(len(points))
+    rows = max(1, _TABLE // len(samples))
+    for first in range(0, len(points), rows):
+        chunk = slice(first, first + rows)
+        distance[chunk] = _nearest(points[chunk], curve, samples, at_samples)
+    return distance
+
+
+def _nearest(
+    points: FloatArray, curve: Callable[[FloatArray], FloatArray], samples: FloatArray, at_samples: FloatArray
+) -> FloatArray:
+    squared = (at_samples**2).sum(axis=1) - 2.0 * points @ at_samples.T  # less the square of the point itself
+    beside = np.pad(squared, ((0, 0), (1, 1)), constant_values=np.inf)
+    which, sample = np.nonzero((squared <= beside[:, :-2]) & (squared <= beside[:, 2:]))
+    last = len(samples) - 1
+    place = _perpendicular(
+        points[which], curve, samples[np.maximum(sample - 1, 0)], samples[np.minimum(sample + 1, last)]
+    )
+    distance: FloatArray = np.linalg.norm(points - at_samples[squared.argmin(axis=1)], axis=1)
+    np.minimum.at(distance, which, np.linalg.norm(curve(place)[:, 0] - points[which], axis=1))
+    return distance
+
+
+def _perpendicular(
+    points: FloatArray, curve: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray
+) -> FloatArray:
+    """Return parameters where g = (c - p) . c' vanishes, by Newton steps, or halving where they leave low..high.
+
+    The search starts in the middle: at a curve's end where the motion rests, c' and so g vanish for every point.
+    """
+    place = 0.5 * (low + high)
+    enough = _CONVERGED * float(high.max(initial=0.0))
+    searching = np.arange(len(points))
+    for _ in range(_MAX_STEPS):
+        here = place[searching]
+        c, c_prime, c_second = np.moveaxis(curve(here), 1, 0)
+        gap = c - points[searching]
+        g = (gap * c_prime).sum(axis=1)
+        slope = (c_prime**2).sum(axis=1) + (gap * c_second).sum(axis=1)
+        low[searching] = np.where(g < 0.0, here, low[searching])
+        high[searching] = np.where(g > 0.0, here, high[searching])
+        newton = here - np.divide(g, slope, out=np.full_like(g, np.inf), where=slope > 0.0)
+        within = (newton >= low[searching]) & (newton <= high[searching])
+        place[searching] = np.where(within, newton, 0.5 * (low[searching] + high[searching]))
+        searching = searching[np.abs(place[searching] - here) > enough]
+        if len(searching) == 0:
+            break
+    return place

@@ -1,0 +1,93 @@
+"""A square, with a rest at each corner."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from pydantic import PositiveFloat, ValidationInfo, field_validator
+
+from runner.registry import StrictModel
+from runner.trajectories.blend import quintic_blend
+from runner.trajectories.segment import distance_to_segment
+from runner.trajectories.trajectory import FloatArray, Trajectory
+from runner.trajectories.vectors import Direction, Point, check_perpendicular, plane_axes
+
+
+class SquareConfig(StrictModel):
+    """Config of a square, which starts at a corner.
+
+    Attributes:
+        kind: Its name in the registry.
+        start: Tip position at t = 0, in m; None is the tip at home.
+        half_edge: Half the length of an edge, in m.
+        normal: Axis about which the square is gone round counter-clockwise, of any length.
+        edge_direction: Direction of the first edge, perpendicular to the normal, of any length.
+        duration: t_f, the time of all four edges, in s.
+    """
+
+    kind: Literal["square"]
+    start: Point | None
+    half_edge: PositiveFloat
+    normal: Direction
+    edge_direction: Direction
+    duration: PositiveFloat
+
+    @field_validator("edge_direction")
+    @classmethod
+    def _check_plane(cls, value: list[float], info: ValidationInfo) -> list[float]:
+        return check_perpendicular(value, info.data["normal"]) if "normal" in info.data else value
+
+
+@dataclass(frozen=True)
+class Square:
+    """A square, gone round once, each edge from rest to rest by the quintic; see Trajectory for the attributes.
+
+    The corners are met exactly, and the motion is twice continuously differentiable. Peak speed is 1.875 times an
+    edge over a quarter of t_f.
+
+    Attributes:
+        corners: The corners in order, the first one again at the end, shape (5, 3), in m.
+    """
+
+    corners: FloatArray
+    duration: float
+    tracked: bool = True
+
+    @property
+    def start(self) -> FloatArray:
+        """The first corner."""
+        return np.array(self.corners[0])
+
+    @property
+    def goal(self) -> FloatArray:
+        """The first corner again."""
+        return self.start
+
+    @property
+    def run_duration(self) -> float:
+        """One second more than the motion, so that the arm's rest is seen."""
+        return self.duration + 1.0
+
+    def sample(self, times: FloatArray) -> FloatArray:
+        """Return the motion, at rest in the first corner after t_f."""
+        rate = 4.0 / self.duration
+        edge = np.clip(np.floor(rate * times), 0, 3).astype(int)
+        D = self.corners[edge + 1] - self.corners[edge]
+        s, s_prime, s_second = (value[:, None] for value in quintic_blend(rate * times - edge))
+        return np.stack([self.corners[edge] + s * D, rate * s_prime * D, rate**2 * s_second * D], axis=1)
+
+    def distance_to_path(self, points: FloatArray) -> FloatArray:
+        """Return the distance to the nearest edge."""
+        edges = zip(self.corners[:-1], self.corners[1:], strict=True)
+        distance: FloatArray = np.min([distance_to_segment(points, a, b) for a, b in edges], axis=0)
+        return distance
+
+
+CONFIG = SquareConfig
+
+
+def build(config: SquareConfig, start: FloatArray) -> Trajectory:
+    """Make the square that a config describes; `start` is the tip at t = 0."""
+    first, second = (2.0 * config.half_edge * axis for axis in plane_axes(config.normal, config.edge_direction))
+    corners = np.array([start, start + first, start + first + second, start + second, start])
+    return Square(corners, config.duration)

@@ -1,0 +1,50 @@
+"""Points and directions as they stand in the configs of trajectories."""
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import AfterValidator, Field
+
+from runner.trajectories.trajectory import FloatArray
+
+_PERPENDICULAR = 1e-6  # largest cosine of an angle that counts as right
+
+
+def _check_direction(value: list[float]) -> list[float]:
+    if np.linalg.norm(value) == 0.0:
+        raise ValueError("must have a direction, so not all zero")
+    return value
+
+
+Point = Annotated[list[float], Field(min_length=3, max_length=3)]
+Direction = Annotated[Point, AfterValidator(_check_direction)]
+
+
+def check_perpendicular(value: list[float], normal: list[float]) -> list[float]:
+    """Return a direction that lies in the plane of a normal.
+
+    Raises:
+        ValueError: if it does not; gives the angle.
+    """
+    unit, axis = (np.array(v) / np.linalg.norm(v) for v in (value, normal))
+    cosine = float(unit @ axis)
+    if abs(cosine) > _PERPENDICULAR:
+        angle = float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
+        raise ValueError(f"must be perpendicular to normal {normal}, which is {angle:.4g} deg away")
+    return value
+
+
+def plane_axes(normal: list[float], direction: list[float]) -> tuple[FloatArray, FloatArray]:
+    """Return two perpendicular unit vectors of a plane, each of shape (3,).
+
+    Args:
+        normal: Normal of the plane, of any length.
+        direction: Direction of the first vector, perpendicular to the normal; rounding is taken out.
+
+    Returns:
+        The first vector, and the one a quarter turn further, counter-clockwise about the normal.
+    """
+    n = np.array(normal) / np.linalg.norm(normal)
+    first = np.array(direction) - n * (n @ np.array(direction))
+    first /= np.linalg.norm(first)
+    return first, np.cross(n, first)

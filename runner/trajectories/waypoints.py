@@ -1,0 +1,140 @@
+"""Through way-points, from rest to rest, with the least jerk."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+from pydantic import PositiveFloat, ValidationInfo, field_validator
+from scipy.interpolate import BSpline, make_interp_spline
+
+from runner.errors import ConfigError
+from runner.registry import StrictModel
+from runner.trajectories.nearest import distance_to_curve
+from runner.trajectories.trajectory import FloatArray, Trajectory
+from runner.trajectories.vectors import Point
+
+_SAMPLES = 64  # between two way-points, from which the nearest point is refined
+_CLOSEST = 1e-9  # share of the duration or the length between two way-points, below which rounding would tell
+
+
+class WaypointsConfig(StrictModel):
+    """Config of a motion through way-points; the first is the start.
+
+    Attributes:
+        kind: Its name in the registry.
+        start: Tip position at t = 0, in m; None is the tip at home.
+        origin: Point of the base frame from which the way-points are measured, in m; None is the start.
+        scale: What one unit of the way-points is, in m: 1 for points in m.
+        points: The way-points after the start, in units of scale, along the axes of the base frame.
+        time_shares: When each of them is passed, as share of the duration, ascending to 1; None makes the time between
+            two way-points proportional to their distance.
+        duration: t_f, in s.
+    """
+
+    kind: Literal["waypoints"]
+    start: Point | None
+    origin: Point | None
+    scale: PositiveFloat
+    points: list[Point]
+    time_shares: list[PositiveFloat] | None
+    duration: PositiveFloat
+
+    @field_validator("points")
+    @classmethod
+    def _check_points(cls, value: list[list[float]]) -> list[list[float]]:
+        if not value:
+            raise ValueError("must have one way-point or more beside the start")
+        return value
+
+    @field_validator("time_shares")
+    @classmethod
+    def _check_time_shares(cls, value: list[float] | None, info: ValidationInfo) -> list[float] | None:
+        if value is None or "points" not in info.data:
+            return value
+        count = len(info.data["points"])
+        if len(value) != count or value[-1] != 1.0 or any(b - a < _CLOSEST for a, b in pairwise(value)):
+            raise ValueError(f"must be {count} ascending numbers, one for each of the points, the last of them 1")
+        return value
+
+
+@dataclass(frozen=True)
+class Waypoints:
+    """The motion of least jerk through points at given times; see Trajectory for the attributes.
+
+    Of all motions that pass the way-points at their times, from rest to rest, the one with the smallest integral of
+    squared jerk is a polynomial of fifth order between each two, with four continuous derivatives (Flash and Hogan
+    1985, whose hand motions it describes). With one way-point beside the start it is the quintic.
+
+    Attributes:
+        points: The way-points, the start first, shape (N, 3), in m.
+        times: When each is passed, ascending from 0, shape (N,), in s.
+        spline: Tip position over time, in m and s.
+    """
+
+    points: FloatArray
+    times: FloatArray
+    spline: BSpline
+    tracked: bool = True
+
+    @property
+    def start(self) -> FloatArray:
+        """The first way-point."""
+        return np.array(self.points[0])
+
+    @property
+    def goal(self) -> FloatArray:
+        """The last way-point."""
+        return np.array(self.points[-1])
+
+    @property
+    def duration(self) -> float:
+        """Time t_f of the last way-point, in s."""
+        return float(self.times[-1])
+
+    @property
+    def run_duration(self) -> float:
+        """One second more than the motion, so that the arm's rest is seen."""
+        return self.duration + 1.0
+
+    def sample(self, times: FloatArray) -> FloatArray:
+        """Return the motion, at rest in the last way-point after t_f."""
+        within = np.clip(times, 0.0, self.duration)
+        return np.stack([self.spline(within, order) for order in range(3)], axis=1)
+
+    def distance_to_path(self, points: FloatArray) -> FloatArray:
+        """Return the distance to the curve through the way-points."""
+        between = [np.linspace(a, b, _SAMPLES, endpoint=False) for a, b in pairwise(self.times)]
+        return distance_to_curve(points, self.sample, np.concatenate([*between, self.times[-1:]]))
+
+
+def least_jerk(points: FloatArray, times: FloatArray) -> Waypoints:
+    """Return the motion of least jerk through points at times; see Waypoints for both."""
+    rest = [(1, np.zeros(3)), (2, np.zeros(3))]
+    return Waypoints(points, times, make_interp_spline(times, points, k=5, bc_type=(rest, rest)))
+
+
+CONFIG = WaypointsConfig
+
+
+def build(config: WaypointsConfig, start: FloatArray) -> Trajectory:
+    """Make the motion that a config describes; `start` is the tip at t = 0.
+
+    Raises:
+        ConfigError: if two way-points in succession coincide.
+    """
+    origin = start if config.origin is None else np.array(config.origin)
+    points = np.vstack([start, origin + config.scale * np.array(config.points)])
+    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    if (lengths < _CLOSEST * lengths.sum()).any() or not lengths.any():
+        index = int(np.argmin(lengths))
+        before = f"trajectory.points.{index - 1}" if index else "the start"
+        raise ConfigError(
+            [
+                f"trajectory.points.{index}: lies where {before} does, at {points[index].tolist()} m; two in "
+                "succession must differ. Take one out"
+            ]
+        )
+    shares = np.cumsum(lengths) / lengths.sum() if config.time_shares is None else np.array(config.time_shares)
+    times = config.duration * np.concatenate([[0.0], shares[:-1], [1.0]])
+    return least_jerk(points, times)

@@ -1,0 +1,120 @@
+"""What holds for every robot that ships, on random postures within its joint limits."""
+
+import numpy as np
+import pybullet
+import pytest
+
+from runner.config.arms import build_robot
+from runner.config.compose import compose
+from runner.config.options import group_options
+from runner.config.robot import OneArmConfig, StagedRobotConfig
+from runner.plants.bullet import Bullet
+
+ZOO = sorted(group_options("robot"))
+SAMPLES = 20
+PAYLOAD = ("robot.payload.mass=0.3", "robot.payload.position=[0.01,-0.02,0.03]")
+
+
+def config_of(name, *overrides):
+    # The robots' own controllers are of no interest here.
+    values = compose((f"robot={name}", "controller=operational_space", "trajectory=goal", *overrides)).resolved["robot"]
+    return (StagedRobotConfig if "stages" in values else OneArmConfig).model_validate(values)
+
+
+def robot(name, *overrides):
+    return build_robot(config_of(name, *overrides), 9.81)
+
+
+@pytest.fixture(scope="module", params=ZOO)
+def name(request):
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def model(name):
+    return robot(name).model
+
+
+def postures(model, seed=0):
+    lower, upper = np.clip(model.position_limits, -np.pi, np.pi)
+    return np.random.default_rng(seed).uniform(lower, upper, (SAMPLES, model.nq))
+
+
+def differences(function, q, h=1e-6):
+    """Central differences of a function along each joint, the joint last."""
+    return np.stack([(function(q + h * e) - function(q - h * e)) / (2.0 * h) for e in np.eye(len(q))], axis=-1)
+
+
+def test_the_linear_jacobian_is_the_gradient_of_the_tip(model):
+    for q in postures(model):
+        np.testing.assert_allclose(model.tip_jacobian(q)[:3], differences(model.tip_position, q), atol=2e-9)
+
+
+def test_the_angular_jacobian_is_the_rate_of_the_tip_s_rotation(model):
+    for q in postures(model):
+        rotation = model.tip_pose(q)[:3, :3]
+        for joint, rate in enumerate(np.moveaxis(differences(lambda q: model.tip_pose(q)[:3, :3], q), -1, 0)):
+            skew = rate @ rotation.T
+            np.testing.assert_allclose(
+                model.tip_jacobian(q)[3:, joint], [skew[2, 1], skew[0, 2], skew[1, 0]], atol=2e-9
+            )
+
+
+def test_gravity_is_the_gradient_of_the_energy(model):
+    rest = np.zeros(model.nq)
+    for q in postures(model):
+        gradient = differences(lambda q: np.array(model.energy(q, rest)), q)
+        np.testing.assert_allclose(model.gravity_torque(q), gradient, atol=1e-7)
+
+
+@pytest.mark.parametrize("overrides", [(), PAYLOAD], ids=["unloaded", "loaded"])
+def test_both_engines_have_the_same_dynamics(name, overrides):
+    arm = robot(name, *overrides)
+    model, plant = arm.model, Bullet(arm.urdf, arm.model, 1e-3, 1)
+    generator = np.random.default_rng(1)
+    try:
+        for q in postures(model):
+            dq, ddq = generator.uniform(-1.0, 1.0, (2, model.nq))
+            state = [values.tolist() for values in (q, dq, ddq)]
+            theirs = pybullet.calculateInverseDynamics(plant._body, *state, physicsClientId=plant._client)
+            ours = model.mass_matrix(q) @ ddq + model.coriolis_torque(q, dq) + model.gravity_torque(q)
+            # PyBullet turns every tensor into its principal axes: 1e-10 of the largest torque, or 1e-10 N m.
+            np.testing.assert_allclose(theirs, ours, rtol=0, atol=1e-10 * max(1.0, np.abs(ours).max()))
+    finally:
+        plant.close()
+
+
+def test_a_payload_adds_the_torque_of_its_weight_and_its_inertia(name, model):
+    loaded = robot(name, *PAYLOAD).model
+    mass, place, g = 0.3, np.array([0.01, -0.02, 0.03]), 9.81
+    assert loaded.mass == pytest.approx(model.mass + mass, rel=1e-14)
+    for q in postures(model):
+        J, rotation = model.tip_jacobian(q), model.tip_pose(q)[:3, :3]
+        J_load = J[:3] - np.cross(rotation @ place, J[3:].T).T  # velocity of the payload, v + omega x r
+        np.testing.assert_allclose(
+            loaded.gravity_torque(q) - model.gravity_torque(q), mass * g * J_load[2], rtol=0, atol=1e-11
+        )
+        np.testing.assert_allclose(
+            loaded.mass_matrix(q) - model.mass_matrix(q), mass * J_load.T @ J_load, rtol=0, atol=1e-12
+        )
+
+
+def test_home_is_inside_the_limits(name, model):
+    assert model.limit_margins(robot(name).home).min() > 0.1
+
+
+@pytest.mark.parametrize(("name", "rated"), [("xarm7", 3.5), ("meca500", 0.5), ("meca500_r4", 0.5)])
+def test_a_payload_beyond_the_rating_is_warned_of_and_built(name, rated):
+    assert config_of(name, "robot.tool=null", f"robot.payload.mass={rated}").warnings == []
+    config = config_of(name, "robot.tool=null", f"robot.payload.mass={rated + 0.1}")
+    (warning,) = config.warnings
+    assert warning.startswith(f"robot.payload.mass: {rated + 0.1:g} kg is more than the {rated:g} kg that {name} is")
+    bare = build_robot(config_of(name, "robot.tool=null"), 9.81).model.mass
+    assert build_robot(config, 9.81).model.mass > bare + rated
+
+
+def test_the_r4_is_the_r3_with_faster_joints():
+    r3, r4 = robot("meca500").model, robot("meca500_r4").model
+    np.testing.assert_allclose(np.rad2deg(r4.velocity_limits), [225, 225, 225, 350, 350, 500], atol=1e-4)
+    np.testing.assert_array_equal(r4.position_limits, r3.position_limits)
+    np.testing.assert_array_equal(r4.effort_limits, r3.effort_limits)
