@@ -29,6 +29,7 @@ PRESETS = ("sound", "as_reported")
 _POSITIONING = ("settling_time", "steady_state_error", "peak_torque", "saturation_fraction")
 _WHOLE_MOVE = ("overshoot", "cross_track_error", "energy", "control_effort")
 _TRACKING = (*_POSITIONING, *_WHOLE_MOVE, "max_tracking_error", "rms_tracking_error")
+_LINE = ("max_tracking_error", "rms_tracking_error", "peak_joint_speed", "peak_torque")
 METRICS = {
     # What the Macro's goal move does on the whole depends on the branch that it takes: no band would mean much.
     "thesis/figure_3_5": _POSITIONING,
@@ -41,6 +42,10 @@ METRICS = {
     "thesis/figure_5_12": ("max_tracking_error", "rms_tracking_error", "steady_state_error"),
     "thesis/figure_5_13": ("max_tracking_error", "rms_tracking_error"),
     "thesis/macro_alone": ("macro_max_tracking_error", "macro_steady_state_error"),
+    "xarm7/three_joints": _LINE,
+    "xarm7/round_posture": _LINE,
+    "xarm7/seven_joints": (*_LINE, "cross_track_error"),
+    "xarm7/seven_joints_pose": (*_LINE, "cross_track_error"),
 }
 # Wider than the seeds tell, in the metric's unit: plant, velocity estimate and rounding change the branch of the
 # saturated transient, and move its median by 0.3 s of the run's 4 s. The Mini is the Macro scaled, times by a tenth.
@@ -81,10 +86,30 @@ _STAGED = {
     ("macro_alone", "sound", "macro_steady_state_error"): "the Mini's weight, which the Macro does not know, and noise",
     ("macro_alone", "as_reported", "macro_steady_state_error"): _SAG,
 }
+# Reasons of tracking errors on the xArm7's line: by three joints, which feed nothing back, and by seven.
+_LINE_ERRORS = {
+    ("three", "sound"): "what the motion's third derivative does within a period, as the first two are known",
+    ("three", "as_reported"): "the way that the tip goes within a period: so late are joints without feedforward",
+    ("seven", "sound"): "what the integration over a period leaves",
+    ("seven", "as_reported"): "the lag behind the error feedback, the tip's speed over its gain",
+}
+
+
+def explain_line(experiment: str, preset: str, metric: str) -> str:
+    """Return why a metric of the xArm7's line is where it is."""
+    reasons = {
+        "peak_joint_speed": "the line, its period and the inverse kinematics alone",
+        "peak_torque": "the arm's weight on joint 2, by inverse dynamics",
+        "cross_track_error": _LINE_ERRORS["seven", "sound"],
+    }
+    joints = "seven" if experiment.startswith("xarm7/seven") else "three"
+    return reasons.get(metric, _LINE_ERRORS[joints, preset])
 
 
 def explain(experiment: str, preset: str, metric: str, zero: bool) -> str:
     """Return why a metric is where it is."""
+    if experiment.startswith("xarm7/"):
+        return explain_line(experiment, preset, metric)
     sound, limited = preset == "sound", experiment == "thesis/figure_3_9"
     if zero:
         return "no error beyond the settling band" if metric == "settling_time" else "no joint at a limit"

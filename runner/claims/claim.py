@@ -1,10 +1,12 @@
 """The published numbers as data."""
 
 from importlib.resources import files
-from typing import Annotated
+from typing import Annotated, Literal, Self
 
+import numpy as np
 import yaml
-from pydantic import Field, NonNegativeFloat, PositiveFloat
+from numpy.typing import NDArray
+from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
 from runner.registry import StrictModel
 
@@ -37,6 +39,30 @@ class Likeness(StrictModel):
     metric: str
 
 
+class Extent(StrictModel):
+    """Where the tip moves along one axis of the base.
+
+    Attributes:
+        axis: The axis.
+        span: Distance between its least and its largest coordinate, in m.
+        middle: What lies half way between them, in m; None where nothing is said of it.
+        tolerance: How far ours may be from these, in m: half a unit of the last printed digit.
+    """
+
+    axis: Literal["x", "y", "z"]
+    span: NonNegativeFloat
+    middle: float | None = None
+    tolerance: PositiveFloat
+
+    def met(self, path: NDArray[np.float64]) -> bool:
+        """Tell whether a path, shape (T, 3), in m, has this extent; one that has gaps (NaN) has not."""
+        values = path[:, "xyz".index(self.axis)]
+        low, high = values.min(), values.max()
+        wide = bool(abs(high - low - self.span) <= self.tolerance)
+        ends = (low + 0.5 * self.span, high - 0.5 * self.span)
+        return wide and (self.middle is None or all(abs(end - self.middle) <= self.tolerance for end in ends))
+
+
 class PublishedClaim(StrictModel):
     """One published number.
 
@@ -48,6 +74,8 @@ class PublishedClaim(StrictModel):
         unit: Its unit.
         experiment: The experiment that makes it.
         metric: The metric that it is compared with; a range is compared by its upper end, the worst axis.
+        extents: Where it says how the tip moves, in place of a metric.
+        fails: Whether it says that this motion is not met.
         reason: What the comparison shows; inline mathematics between dollar signs.
         like: Set where the source compares in words: the run of ours that it is said to be like.
         bound: Set where the number is beyond what the model can give.
@@ -59,10 +87,18 @@ class PublishedClaim(StrictModel):
     printed: Annotated[list[NonNegativeFloat], Field(max_length=2)]
     unit: str
     experiment: str
-    metric: str
+    metric: str = ""
+    extents: list[Extent] = Field(default_factory=list)
+    fails: bool = False
     reason: str
     bound: Bound | None = None
     like: Likeness | None = None
+
+    @model_validator(mode="after")
+    def _check_comparison(self) -> Self:
+        if bool(self.metric) == bool(self.extents):
+            raise ValueError("is compared by metric or by extents, one of the two")
+        return self
 
     @property
     def value(self) -> float | None:

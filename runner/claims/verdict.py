@@ -1,6 +1,12 @@
 """From a printed value and ours to a verdict."""
 
+from collections.abc import Sequence
 from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.claims.claim import Extent
 
 FACTOR = 1.5
 """How far ours may be from a printed value that still holds: the sources read theirs off plots, to one digit."""
@@ -25,3 +31,26 @@ def judge(printed: float, measured: float | None, bound: float | None = None) ->
     if measured is None or measured > printed * FACTOR:
         return "worse"
     return "better" if measured < printed / FACTOR else "holds"
+
+
+def judge_motion(
+    extents: Sequence[Extent], fails: bool, tip: NDArray[np.float64], desired: NDArray[np.float64]
+) -> Verdict:
+    """Return the verdict on what a source says of the tip's motion.
+
+    Args:
+        extents: The motion that it tells.
+        fails: Whether it says that this motion is not met.
+        tip: Path of the tip, shape (T, 3), in m.
+        desired: Desired path at the same times, shape (T, 3), in m.
+
+    Returns:
+        "cannot" when the source's own desired path is another motion; else "holds" where the tip moves as told, and
+        "worse" where it does not. Where the source says that it fails, "holds" when it does and "better" when not.
+    """
+    met = all(extent.met(tip) for extent in extents)
+    if fails:
+        return "better" if met else "holds"
+    if not all(extent.met(desired) for extent in extents):
+        return "cannot"
+    return "holds" if met else "worse"

@@ -1,0 +1,1 @@
+"""The report that reproduces the xArm7 path-planning report, and makes its second part work."""

@@ -1,0 +1,72 @@
+"""The whole xArm7 report, from its stored runs."""
+
+from collections.abc import Mapping
+
+from runner.reporting.document import Document, Section, Text
+from runner.reporting.run_report import provenance
+from runner.reporting.xarm7.checklist import checklist_section
+from runner.reporting.xarm7.claims import claims_section
+from runner.reporting.xarm7.kinematics import kinematics_section
+from runner.reporting.xarm7.null_space import null_space_section
+from runner.reporting.xarm7.payload import payload_section
+from runner.reporting.xarm7.plants import plants_section
+from runner.reporting.xarm7.rates import rates_section
+from runner.reporting.xarm7.servo import servo_section
+from runner.reporting.xarm7.seven_joints import seven_joints_section
+from runner.reporting.xarm7.source import source_section
+from runner.reporting.xarm7.three_joints import three_joints_section
+from runner.reporting.xarm7.torque_level import torque_level_section
+from runner.reporting.xarm7.why_it_failed import why_it_failed_section
+from runner.store import Run
+
+
+def xarm7_document(runs: Mapping[str, Run]) -> Document:
+    """Return the report on the xArm7 path-planning report.
+
+    Args:
+        runs: The stored runs of `plan()`, by name.
+    """
+    sections = (
+        claims_section(runs),
+        source_section(runs),
+        kinematics_section(runs),
+        three_joints_section(runs),
+        why_it_failed_section(runs),
+        seven_joints_section(runs),
+        _beyond(runs),
+        plants_section(runs),
+        Section(
+            "Provenance",
+            (
+                Text(
+                    f"{len({run.hash for run in runs.values()})} runs lie behind this report, each stored with its "
+                    "config, trace and metrics under outputs/runs."
+                ),
+                provenance(list(runs.values())),
+            ),
+        ),
+    )
+    return Document(
+        title="Robotic Manipulator: Path Planning",
+        subtitle="The xArm7 report (National Technical University of Athens, 2024), reproduced and made to work",
+        abstract=(
+            "A UFACTORY xArm7 moves its flange between two points 40 cm apart. The report's first part, three "
+            "joints by inverse kinematics in closed form, is reproduced, with the misprints of its formulas in "
+            "numbers. Its second part, all seven joints by a pseudo-inverse, did not work: the printed inverse does "
+            "not exist and the printed Jacobian is wrong. Here it works, and the report goes on to what it could "
+            "not show."
+        ),
+        sections=(*sections, checklist_section(sections)),
+        date=max(str(run.provenance["date"]) for run in runs.values()),
+    )
+
+
+def _beyond(runs: Mapping[str, Run]) -> Section:
+    parts = (
+        null_space_section(runs),
+        rates_section(runs),
+        servo_section(runs),
+        payload_section(runs),
+        torque_level_section(runs),
+    )
+    return Section("What the report could not show", sections=parts)

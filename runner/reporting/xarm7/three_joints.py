@@ -1,0 +1,180 @@
+"""The report's first part: the line by three joints, its figures, and the X that it prints."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from runner.reporting.document import Block, Curves, Formula, Notice, Panel, Picture, Section, Series, Table, Text
+from runner.reporting.drawings import arm_motion
+from runner.reporting.figures import columns, joint_columns, model_of, origin, playback
+from runner.reporting.quantities import number, quantity
+from runner.reporting.thesis.plan import PRESETS
+from runner.reporting.xarm7.studies import smallest_margin
+from runner.robots.three_joint import MOVING
+from runner.store import Run
+
+HEIGHT = 0.5  # m, of the axes of x, y and z alike, so that what does not move looks like it
+_STILLS = (0.0, 0.25, 0.5)  # of the period: at A, half way, at B
+
+
+def three_joints_section(runs: Mapping[str, Run]) -> Section:
+    """Return the report's figures, ours beside them, and the two values of X."""
+    run = runs["three_joints/sound"]
+    period = float(run.config["trajectory"]["duration"])
+    return Section(
+        "The line by three joints",
+        (
+            Text(
+                "Joints 1, 2 and 4 move; $q_3 = q_5 = q_7 = 0$ and $q_6 = 0.75$ rad. Every 10 ms the desired tip is "
+                "turned into joint positions, which a perfect position servo reaches until the next. The desired tip "
+                "goes from A to B and back by"
+            ),
+            Formula(
+                "x(t) = A + 1/2 (B - A) (1 - cos(2 pi t slash T))",
+                "x of t equals A plus half of B minus A times one minus cosine of two pi t over T",
+            ),
+            sketch(run),
+            tip_curves([(preset, runs[f"three_joints/{preset}"]) for preset in PRESETS], "Graphs of x, y and z"),
+            joint_curves(runs),
+            _error_curves(runs),
+            _errors(runs),
+            playback(run, "The line by three joints, preset sound: from A to B.", 0.5 * period),
+        ),
+        (_two_values_of_x(runs),),
+    )
+
+
+def sketch(run: Run) -> Picture:
+    """Return the arm at A, half way and at B in one picture."""
+    trace, period = run.trace, float(run.config["trajectory"]["duration"])
+    rows = [int(np.searchsorted(trace["t"].to_numpy(), share * period - 1e-9)) for share in _STILLS]
+    tip, desired = columns(trace, "tip"), columns(trace, "desired")
+    times = trace["t"].to_numpy()[rows].tolist()
+    svg = arm_motion(model_of(run), joint_columns(trace, "q")[rows], times, tip, desired, desired[rows[-1]])
+    return Picture(
+        "The motion: the arm at A, half way, and at B (goal), drawn from the simulation.",
+        svg,
+        "The xArm7 in three postures with its tip on a horizontal line",
+        0.75,
+        origin(run, "sketch of the motion"),
+    )
+
+
+def tip_curves(runs: Sequence[tuple[str, Run]], label: str = "") -> Curves:
+    """Return x, y and z of the tip over time, on axes of equal height.
+
+    Args:
+        runs: The runs with the names of their curves; the first one's desired tip is shown, too.
+        label: What the source calls the figure.
+    """
+    first = runs[0][1]
+    desired = columns(first.trace, "desired")
+    panels = []
+    for index, axis in enumerate("xyz"):
+        series = [Series(name, run.trace["t"].to_numpy(), columns(run.trace, "tip")[:, index]) for name, run in runs]
+        series.append(Series("desired", first.trace["t"].to_numpy(), desired[:, index], "dotted"))
+        middle = 0.5 * float(desired[:, index].min() + desired[:, index].max())
+        span = (middle - 0.5 * HEIGHT, middle + 0.5 * HEIGHT)
+        panels.append(Panel(f"Axis {axis}", "time (s)", f"{axis} (m)", series, y_range=span))
+    return Curves("Position of the tip over two periods.", panels, 3, origin(first, label))
+
+
+def joint_curves(runs: Mapping[str, Run]) -> Curves:
+    """Return q1, q2 and q4 over time."""
+    pairs = [(preset, runs[f"three_joints/{preset}"]) for preset in PRESETS]
+    panels = [
+        Panel(
+            f"Joint {joint + 1}",
+            "time (s)",
+            f"q{joint + 1} (rad)",
+            [
+                Series(
+                    preset,
+                    run.trace["t"].to_numpy(),
+                    run.trace[f"q{joint + 1}"].to_numpy(),
+                    "line" if preset == PRESETS[0] else "dashed",
+                )
+                for preset, run in pairs
+            ],
+        )
+        for joint in MOVING
+    ]
+    return Curves("Positions of the moving joints.", panels, 3, origin(pairs[0][1], "Graphs of q1, q2 and q4"))
+
+
+def _error_curves(runs: Mapping[str, Run]) -> Curves:
+    panels = []
+    for preset in PRESETS:
+        trace = runs[f"three_joints/{preset}"].trace
+        error = columns(trace, "error")
+        series = [Series(axis, trace["t"].to_numpy(), error[:, index]) for index, axis in enumerate("xyz")]
+        panels.append(Panel(f"Preset {preset}", "time (s)", "tip error (m)", series))
+    return Curves(
+        "What the graphs above do not show: desired less actual tip position.",
+        panels,
+        2,
+        origin(runs["three_joints/as_reported"]),
+    )
+
+
+def _errors(runs: Mapping[str, Run]) -> Table:
+    names = ("max_tracking_error", "cross_track_error", "peak_joint_speed", "peak_torque")
+    rows = [
+        [name, *(quantity(m["median"], m["unit"]) for p in PRESETS for m in [runs[f"three_joints/{p}"].metrics[name]])]
+        for name in names
+    ]
+    return Table(
+        "Errors and efforts; the torque is what the motion asks for, by inverse dynamics.",
+        ["metric", *PRESETS],
+        rows,
+        (1, 2),
+        origin(runs["three_joints/as_reported"]),
+    )
+
+
+def _two_values_of_x(runs: Mapping[str, Run]) -> Section:
+    pair = [runs["three_joints/sound"], runs["round_posture/sound"]]
+    model = model_of(pair[0])
+    home = np.array(pair[0].config["robot"]["home"])
+    tip = model.tip_position(home)
+    cells = [_posture_cells(run) for run in pair]
+    xs = [float(run.config["trajectory"]["start"][0]) for run in pair]
+    margins = [smallest_margin(run) for run in pair]
+    rows = [[name, *values] for name, *values in zip(cells[0], *(c.values() for c in cells), strict=True)]
+    blocks: list[Block] = [
+        Text(
+            f"The report prints X = {xs[0]:g} m. The posture with round angles ({', '.join(f'{q:g}' for q in home)} "
+            f"rad), which has the report's own $q_6$, holds the tip at X = {tip[0]:.4f}, Z = {tip[2]:.4f} m: the "
+            f"printed Z to its last digit, and the printed X with a digit left out. So {xs[0]:g} is probably a "
+            f"misprint of {xs[1]:g}. We keep the printed value and run both."
+        ),
+        Table(
+            "Both values of X, preset sound, over two periods.",
+            ["quantity", *(f"X = {x:g} m" for x in xs)],
+            rows,
+            (1, 2),
+            origin(pair[1]),
+        ),
+        Notice(
+            "finding",
+            "Both can be reached, with room at every joint",
+            f"The smallest distance to a joint limit, in rad, is {margins[0]} at X = {xs[0]:g} m and {margins[1]} at "
+            f"X = {xs[1]:g} m. The larger X stretches the arm further. Reachability does not tell which of the two the "
+            "authors ran.",
+        ),
+    ]
+    return Section("X = 0.643 or 0.6043?", blocks)
+
+
+def _posture_cells(run: Run) -> dict[str, str]:
+    q, model = joint_columns(run.trace, "q"), model_of(run)
+    tip = columns(run.trace, "tip")
+    distance = float(np.linalg.norm(tip - model.shoulder, axis=1).max())
+    cells = {f"q{j + 1} (rad)": f"{q[:, j].min():.3f} to {q[:, j].max():.3f}" for j in MOVING}
+    return cells | {
+        "smallest margin to a joint limit (rad)": smallest_margin(run),
+        "largest distance from the shoulder (m)": number(distance),
+        "largest tracking error (m)": number(run.metrics["max_tracking_error"]["median"]),
+        "largest torque of q2 (N m)": number(run.metrics["peak_torque_q2"]["median"]),
+        "largest joint speed (rad/s)": number(run.metrics["peak_joint_speed"]["median"]),
+    }
