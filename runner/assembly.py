@@ -1,63 +1,146 @@
 """From a checked config to the objects of a closed loop: the only place where a `kind:` becomes an object."""
 
 import math
+from typing import Any
 
 import numpy as np
 
 from runner.config.per_joint import expand
 from runner.config.per_stage import by_stage
 from runner.config.run import RunConfig
-from runner.controllers import CONTROLLERS
+from runner.controllers import CONTROLLERS, Loop
+from runner.controllers.admittance_stability import check_wall
+from runner.environments import ENVIRONMENTS, Environment
+from runner.environments.wall import Wall
+from runner.errors import ConfigError
+from runner.feasibility import check_path
+from runner.interaction import Interaction
 from runner.metrics import MetricContext
-from runner.plants import PLANTS
+from runner.plants import PLANTS, Plant, PositionPlant
+from runner.plants.servo import JointServo
 from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.robot import end_points
-from runner.sensing import JointEncoders
+from runner.sensing import ForceTorqueSensor, JointEncoders
 from runner.simulation import ClosedLoop
 from runner.trace import FloatArray
-from runner.trajectories import TRAJECTORIES
+from runner.trajectories import TRAJECTORIES, Trajectory
 
 
 def assemble(config: RunConfig) -> ClosedLoop:
     """Make the closed loop that a config describes.
 
     Raises:
-        ConfigError: where the start of the trajectory cannot be reached, or a part refuses its config.
+        ConfigError: where the start of the trajectory cannot be reached, joints that are told where to go cannot
+            follow it, or a part refuses its config.
     """
     arm, home = config.arm, config.arm.home
     parallel = config.parallel
     at_home = end_points(arm, home[None], parallel)[-1, 0]
     start = at_home if config.trajectory.start is None else np.array(config.trajectory.start)
     trajectory = TRAJECTORIES.build(config.trajectory, start)
+    _check_path_reach(config, trajectory)
+    limits, q_start = _limits(config), _start_posture(config, trajectory.start)
+    if CONTROLLERS.follows_paths(config.controller.kind):
+        check_path(config.controller, arm, trajectory, q_start, config.robot.settling_band)
     duration = trajectory.run_duration if config.settings.duration is None else config.settings.duration
+    environment: Environment | None = ENVIRONMENTS.build(config.environment)
+    loops: tuple[Loop, ...] = CONTROLLERS.build(config.controller, arm)
+    plant = _make_plant(config, limits)
     return ClosedLoop(
         robot=arm,
-        plant=PLANTS.build(config.plant, arm, config.step, config.steps_per_tick),
-        loops=CONTROLLERS.build(config.controller, arm),
+        plant=plant,
+        loops=loops,
         trajectory=trajectory,
-        limits=_limits(config),
+        limits=limits,
         tick=config.tick,
         ticks=math.ceil(duration / config.tick - 1e-9),
-        q_start=_start_posture(config, start),
+        commands=config.commands,
+        interaction=_make_interaction(config, loops, environment, plant, trajectory.start),
+        q_start=q_start,
         parallel=parallel,
     )
 
 
+def _check_path_reach(config: RunConfig, trajectory: Trajectory) -> None:
+    model, times = config.arm.model, np.linspace(0.0, trajectory.duration, 1001)
+    distance = np.linalg.norm(trajectory.sample(times)[:, 0] - model.shoulder, axis=1)
+    row = int(distance.argmax())
+    if distance[row] > model.reach * (1.0 + 1e-12):
+        raise ConfigError(
+            [
+                f"trajectory: at t = {times[row]:.4g} s the path lies {distance[row]:.4g} m from the shoulder, and the "
+                f"arm reaches {model.reach:.4g} m: {distance[row] - model.reach:.4g} m too far; make it smaller, or "
+                "start elsewhere"
+            ]
+        )
+
+
+def _make_plant(config: RunConfig, limits: FloatArray) -> Plant | PositionPlant:
+    arm = config.arm
+    plant: Plant | PositionPlant
+    if PLANTS.commands(config.plant.kind) == "position":
+        plant = PLANTS.build(config.plant, arm, config.tick, round(config.controller.period / config.tick))
+        return plant
+    plant = PLANTS.build(config.plant, arm, config.step, config.steps_per_tick)
+    if config.commands == "torque":
+        return plant
+    every = round(config.controller.period / config.tick)
+    return JointServo(plant, arm.model, config.plant.servo, arm.home, limits, every)
+
+
+def _make_interaction(
+    config: RunConfig, loops: tuple[Loop, ...], environment: Environment | None, plant: Any, start: FloatArray
+) -> Interaction | None:
+    """Return what the tip feels; a wall stands in the plant itself where that makes contacts."""
+    within = getattr(plant, "plant", plant)  # below a servo
+    if isinstance(environment, Wall):
+        tool = config.robot.tool
+        if tool is None:
+            raise ConfigError(["environment.kind: a wall is touched by the tip of a tool, and robot.tool is null"])
+        _check_wall(config, environment)
+        if hasattr(within, "add_wall"):
+            environment.reset(start)
+            ball = tool.tip_radius * environment.normal  # it is the ball's centre that is led
+            wall = environment.config
+            within.add_wall(environment.point - ball, environment.normal, wall.stiffness, wall.damping)
+            environment = None
+    elif environment is None and not any(loop.feels for loop in loops):
+        return None
+    return Interaction(config.arm, environment, config.tick)
+
+
+def _check_wall(config: RunConfig, wall: Wall) -> None:
+    if getattr(config.controller, "check_stability", False):
+        delay = 0 if PLANTS.commands(config.plant.kind) == "position" else 1
+        law, values = config.controller.law, wall.config
+        check_wall(law, config.controller.period, values.stiffness, values.damping, delay)
+
+
 def _limits(config: RunConfig) -> FloatArray:
-    limits = config.torque_limits.max
+    """Return the torque limits: those of the config, and the efforts of the URDF where they are smaller."""
+    limits, efforts = config.torque_limits.max, config.arm.model.effort_limits
     if limits is None:
-        return np.full(config.arm.model.nq, math.inf)
+        return efforts
     values = by_stage("torque_limits.max", limits, config.arm.stage_names)
     per_stage = [
         expand("torque_limits.max", value, stage.model.joint_names)
         for value, stage in zip(values, config.arm.stages, strict=True)
     ]
-    return np.array([limit for stage in per_stage for limit in stage])
+    return np.minimum([limit for stage in per_stage for limit in stage], efforts)
 
 
 def _start_posture(config: RunConfig, start: FloatArray) -> FloatArray:
-    """Return joint positions that bring the tip to a start: the first stage moves, riding ones stay at home."""
+    """Return joint positions that bring the tip to a start, as the controller wants it.
+
+    Where it has no wish, the first stage moves and riding ones stay at home.
+    """
     arm = config.arm
+    try:
+        wanted: FloatArray | None = CONTROLLERS.start_posture(config.controller, arm, start)
+    except np.linalg.LinAlgError as error:
+        raise ConfigError([f"trajectory.start: {error}"]) from error
+    if wanted is not None:
+        return wanted
     home = end_points(arm, arm.home[None], config.parallel)[:, 0]
     if np.array_equal(start, home[-1]):
         return arm.home
@@ -91,6 +174,14 @@ def make_encoders(config: RunConfig, closed: ClosedLoop, repetition: int) -> lis
         )
         for place, loop in enumerate(closed.loops)
     ]
+
+
+def make_wrist_sensor(config: RunConfig, closed: ClosedLoop, repetition: int) -> ForceTorqueSensor | None:
+    """Make the force/torque sensor for one repetition, where there is something to feel; noise as for the encoders."""
+    if closed.interaction is None:
+        return None
+    generator = np.random.default_rng([config.settings.seed, repetition, len(closed.loops)])
+    return ForceTorqueSensor(closed.ticks + 1, closed.tick, config.wrist_sensor, generator)
 
 
 def metric_context(config: RunConfig, closed: ClosedLoop) -> MetricContext:

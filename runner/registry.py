@@ -9,7 +9,7 @@ import importlib
 from collections.abc import Mapping
 from importlib.metadata import entry_points
 from types import ModuleType
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict
 
@@ -50,6 +50,20 @@ class Registry:
     def build(self, config: Any, *args: Any) -> Any:
         """Make the object that a validated config describes; `args` are what every kind of this group gets."""
         return self._module(config.kind).build(config, *args)
+
+    def commands(self, kind: str) -> Literal["torque", "position"]:
+        """Return what a kind of controller gives, or a kind of plant takes: "torque" or "position" of the joints."""
+        commands: Literal["torque", "position"] = getattr(self._module(kind), "COMMANDS", "torque")
+        return commands
+
+    def follows_paths(self, kind: str) -> bool:
+        """Tell whether a kind of controller brings a perfect arm along any path that the arm can follow."""
+        return bool(getattr(self._module(kind), "FOLLOWS_PATHS", False))
+
+    def start_posture(self, config: Any, *args: Any) -> Any:
+        """Return where the arm stands at a trajectory's start, or None where the controller's kind has no wish."""
+        choose = getattr(self._module(config.kind), "start_posture", None)
+        return None if choose is None else choose(config, *args)
 
     def default_step(self, kind: str, tick: float, stages: int) -> float:
         """Return the step that a kind of plant takes when its config names none, in s."""

@@ -1,15 +1,17 @@
 """The closed loop: plant, encoders, controllers and desired motion, tick by tick, to a trace."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any, Literal
 
 import numpy as np
 
 from runner.controllers import Loop
-from runner.plants import Plant
+from runner.interaction import Interaction, Touch
+from runner.plants import Plant, PositionPlant
 from runner.robots.robot import Robot, end_points
-from runner.sensing import JointEncoders
+from runner.sensing import ForceTorqueSensor, JointEncoders
 from runner.trace import Failure, FloatArray, Trace
 from runner.trajectories import Trajectory
 
@@ -24,23 +26,27 @@ class ClosedLoop:
 
     Attributes:
         robot: The robot, for its true end points.
-        plant: The simulated robot.
+        plant: The simulated robot, which takes what the loops give.
         loops: The control loops; together they command every joint once.
         trajectory: The desired motion of the tip.
         limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
         tick: Time between two ticks of the fastest loop, in s; every loop's period is a multiple of it.
         ticks: Number of ticks.
+        commands: Whether the loops give joint torques, or joint positions to a plant that follows them.
+        interaction: What the tip feels of the world; None where there is nothing to feel.
         q_start: Joint positions at t = 0, shape (nq,), in rad; the robot starts at rest.
         parallel: Whether riding stages keep the orientation of home, as the plant has it.
     """
 
     robot: Robot
-    plant: Plant
+    plant: Plant | PositionPlant
     loops: tuple[Loop, ...]
     trajectory: Trajectory
     limits: FloatArray
     tick: float
     ticks: int
+    commands: Literal["torque", "position"]
+    interaction: Interaction | None
     q_start: FloatArray
     parallel: bool
 
@@ -49,16 +55,18 @@ class ClosedLoop:
         return round(loop.period / self.tick)
 
 
-def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders]) -> Trace:
+def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: ForceTorqueSensor | None = None) -> Trace:
     """Run the control loops once.
 
     At each of its ticks a loop reads the encoders of every joint afresh, asks its controller, and its torques are
     clipped joint by joint and held until its next tick, while the plant advances. The last row holds the final state,
-    with the torques asked for there.
+    with the torques asked for there. Joint positions are handed on as they are; the torques are then the plant's, and
+    the last row repeats those of the last tick.
 
     Args:
         closed: The control loops; plant and controllers are reset here.
         encoders: The joint measurement of each loop, with a draw for each of its ticks.
+        wrist: The force/torque sensor, with a draw for each tick; needed where there is something to feel.
 
     Returns:
         The trace; one that ends early carries a failure.
@@ -66,18 +74,25 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders]) -> Trace:
     n, nq = closed.ticks, closed.robot.model.nq
     times: FloatArray = np.arange(n + 1, dtype=np.float64) * closed.tick
     desired = closed.trajectory.sample(times)
-    q_rows, dq_rows, tau_rows = (np.zeros((n + 1, nq)) for _ in range(3))
+    q_rows, dq_rows, tau_rows, held_rows = (np.zeros((n + 1, nq)) for _ in range(4))
     clock = np.zeros(n + 1, dtype=np.int64)
-    plant, now, tau = closed.plant, time.perf_counter_ns, np.zeros(nq)
+    plant: Any = closed.plant  # a Plant or PositionPlant, as `commands` says
+    now = time.perf_counter_ns
+    positions = closed.commands == "position"
+    held = closed.q_start.copy() if positions else np.zeros(nq)
+    laws = [_reset(loop, closed) for loop in closed.loops]
     loops = [
-        (closed.every(loop), sensor.measure, loop.controller.torque, loop.joints, closed.limits[loop.joints])
-        for loop, sensor in zip(closed.loops, encoders, strict=True)
+        (closed.every(loop), sensor.measure, law, loop.joints, closed.limits[loop.joints])
+        for loop, sensor, law in zip(closed.loops, encoders, laws, strict=True)
     ]
-    limited = bool(np.isfinite(closed.limits).any())
+    touch = None
+    if closed.interaction is not None and wrist is not None:
+        feeling: Any = [loop.controller for loop in closed.loops if loop.feels]
+        touch = Touch(closed.interaction, wrist, feeling, closed.q_start, n + 1)
+    load: FloatArray | None = None
+    limited = not positions and bool(np.isfinite(closed.limits).any())
 
     plant.reset(closed.q_start, np.zeros(nq))
-    for loop in closed.loops:
-        loop.controller.reset()
     failure = None
     rows = n + 1
     with np.errstate(over="ignore", invalid="ignore"):  # a diverging run ends as a failure, not as a warning
@@ -85,24 +100,32 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders]) -> Trace:
             clock[k] = now()
             q_rows[k] = q = plant.q
             dq_rows[k] = dq = plant.dq
+            if touch is not None:
+                load = touch.update(k, times[k], q, dq, getattr(plant, "plant", plant))  # what is below a servo
             try:
-                for every, measure, torque, joints, limits in loops:
+                for every, measure, law, joints, limits in loops:
                     if k % every == 0:
-                        asked = torque(times[k], *measure(k // every, q, dq), desired[k])
+                        asked = law(times[k], *measure(k // every, q, dq), desired[k])
                         if limited:
                             np.minimum(asked, limits, out=asked)
                             np.maximum(asked, -limits, out=asked)
-                        tau[joints] = asked
+                        held[joints] = asked
             except np.linalg.LinAlgError as error:
                 diverged = _find_divergence(q_rows, dq_rows, k)  # then the law had nothing to answer
                 if diverged is None:
                     failure, rows = Failure(str(error), float(times[k])), k + 1
                 break
-            tau_rows[k] = tau
+            held_rows[k] = held
             if k % _CHECK_EVERY == 0 and (diverged := _find_divergence(q_rows, dq_rows, k)) is not None:
                 break
             if k < n:
-                plant.advance(tau)
+                if positions:
+                    if load is not None:
+                        plant.load[:] = load
+                    plant.advance(held)
+                    tau_rows[k] = tau_rows[k + 1] = plant.tau
+                else:
+                    plant.advance(held if load is None else held + load)
         else:
             diverged = _find_divergence(q_rows, dq_rows, n)
     if failure is None and diverged is not None:
@@ -114,7 +137,9 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders]) -> Trace:
         t=times[kept],
         q=q_rows[kept],
         dq=dq_rows[kept],
-        tau=tau_rows[kept],
+        tau=(tau_rows if positions else held_rows)[kept],
+        q_command=held_rows[kept] if positions else None,
+        touch=None if touch is None else touch.signals(kept),
         end_points=end_points(closed.robot, q_rows[kept], closed.parallel),
         offsets=home[-1] - home,
         stage_names=closed.robot.stage_names,
@@ -124,6 +149,18 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders]) -> Trace:
         tick_seconds=np.diff(clock[:rows]) * 1e-9,
         failure=failure,
     )
+
+
+def _reset(loop: Loop, closed: ClosedLoop) -> Callable[..., FloatArray]:
+    """Reset a loop's controller, and return its law."""
+    controller: Any = loop.controller  # one or the other, as `commands` says
+    if closed.commands == "torque":
+        controller.reset()
+        law: Callable[..., FloatArray] = controller.torque
+    else:
+        controller.reset(closed.q_start)
+        law = controller.joint_positions
+    return law
 
 
 def _find_divergence(q: FloatArray, dq: FloatArray, until: int) -> tuple[int, int] | None:

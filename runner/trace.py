@@ -24,6 +24,25 @@ class Failure:
 
 
 @dataclass(frozen=True)
+class TouchSignals:
+    """Wrenches of one run, a row of force in N and moment in N m for each control tick, shapes (T, 6).
+
+    Attributes:
+        external: Of the world on the tip, moment about the tip, along the base's axes.
+        felt: The same as the controller believes it; zero where none feels.
+        reading: Of the wrist's sensor, about its origin, along its axes.
+        load: Of world and tool on the flange, about its origin, along its axes: what the sensor is to read.
+        reaction: The same as PyBullet computes it in the joint, for comparison; zero on other plants.
+    """
+
+    external: FloatArray
+    felt: FloatArray
+    reading: FloatArray
+    load: FloatArray
+    reaction: FloatArray
+
+
+@dataclass(frozen=True)
 class Trace:
     """Signals of one run, a row for each control tick from t = 0 to the end, true values unless said.
 
@@ -39,6 +58,8 @@ class Trace:
         limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
         joint_names: Names of the joints.
         tick_seconds: Wall-clock time that each tick took, shape (T - 1,), in s.
+        q_command: Joint positions commanded, held until the next row, shape (T, nq), in rad; None under torques.
+        touch: What the tip felt, by what is meant; None where there was nothing to feel.
         failure: Why the run ended early, or None.
     """
 
@@ -53,6 +74,8 @@ class Trace:
     limits: FloatArray
     joint_names: tuple[str, ...]
     tick_seconds: FloatArray
+    q_command: FloatArray | None = None
+    touch: TouchSignals | None = None
     failure: Failure | None = None
 
     @property

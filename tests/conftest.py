@@ -13,7 +13,7 @@ from runner.config.validation import validate
 
 quiet_environment()
 
-from runner.assembly import assemble, make_encoders  # noqa: E402 - after the environment
+from runner.assembly import assemble, make_encoders, make_wrist_sensor  # noqa: E402 - after the environment
 from runner.cli import dispatch  # noqa: E402
 from runner.robots import RobotModel, find_urdf, read_urdf  # noqa: E402
 from runner.robots.robot import Robot, Stage  # noqa: E402
@@ -60,7 +60,7 @@ def one_stage() -> Callable[[str, RobotModel], Robot]:
 
     def make(urdf: str, model: RobotModel) -> Robot:
         stage = Stage("arm", model, urdf, slice(0, model.nq), np.zeros(model.nq), None)
-        return Robot(urdf, model, (stage,))
+        return Robot(urdf, model, (stage,), model.tip_name)
 
     return make
 
@@ -75,6 +75,12 @@ def checked_config() -> Callable[..., RunConfig]:
 def combined(checked_config: Callable[..., RunConfig]) -> Robot:
     """The Mini riding on the Macro."""
     return checked_config("robot=combined").arm
+
+
+@pytest.fixture(scope="session")
+def xarm7(checked_config: Callable[..., RunConfig]) -> Robot:
+    """The UFACTORY xArm7."""
+    return checked_config("robot=xarm7", "trajectory=goal").arm
 
 
 @pytest.fixture
@@ -99,7 +105,8 @@ def simulated(checked_config: Callable[..., RunConfig]) -> Callable[..., Trace]:
         config = checked_config(*overrides)
         loop = assemble(config)
         try:
-            return simulate(loop, make_encoders(config, loop, repetition))
+            wrist = make_wrist_sensor(config, loop, repetition)
+            return simulate(loop, make_encoders(config, loop, repetition), wrist)
         finally:
             loop.plant.close()
 

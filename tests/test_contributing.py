@@ -24,9 +24,16 @@ robot:
   urdf: crane.urdf
   tip: hook
   home: [0.0, 0.3, -1.2]
+  inertials: null
   masses: {jib: 12.0}
   rotor_inertia: 0.0
+  velocity_limits: {}
+  start: null
   goal: [0.4, 1.1, 0.9]
+  path_size: 0.1
+  tool: null
+  payload: {mass: 0.0, position: [0.0, 0.0, 0.0]}
+  rated_payload: null
   natural_frequency: 10.0
   damping_ratio: 1.0
   period: 0.02
@@ -122,15 +129,15 @@ from pydantic import Field, PositiveFloat
 from runner.registry import StrictModel
 
 
-class CircleConfig(StrictModel):
-    kind: Literal["circle"]
+class SpinConfig(StrictModel):
+    kind: Literal["spin"]
     start: list[float] | None = Field(min_length=3, max_length=3)
     radius: PositiveFloat
     duration: PositiveFloat
 
 
 @dataclass(frozen=True)
-class Circle:
+class Spin:
     start: np.ndarray
     radius: float
     duration: float
@@ -155,11 +162,11 @@ class Circle:
         return np.hypot(np.hypot(offset[:, 0], offset[:, 1]) - self.radius, offset[:, 2])
 
 
-CONFIG = CircleConfig
+CONFIG = SpinConfig
 
 
 def build(config, start):
-    return Circle(start, config.radius, config.duration)
+    return Spin(start, config.radius, config.duration)
 '''
 
 PLANT = '''\
@@ -229,7 +236,7 @@ ENTRY_POINTS = """\
 [runner.controller]
 jacobian_transpose = workshop.jacobian_transpose
 [runner.trajectory]
-circle = workshop.circle
+spin = workshop.spin
 [runner.plant]
 euler = workshop.euler
 [runner.metric]
@@ -240,7 +247,7 @@ GROUPS = {
     "controller/jacobian_transpose": (
         "kind: jacobian_transpose\nperiod: ${robot.period}\nstiffness: 400.0\ndamping: 8.0\n"
     ),
-    "trajectory/circle": "# Round and round\nkind: circle\nstart: [0.0, 1.0, 1.0]\nradius: 0.3\nduration: 4.0\n",
+    "trajectory/spin": "# Round and round\nkind: spin\nstart: [0.0, 1.0, 1.0]\nradius: 0.3\nduration: 4.0\n",
     "plant/euler": "kind: euler\nstep: null\n",
 }
 
@@ -268,7 +275,7 @@ def workshop(in_tmp, monkeypatch):
     for name, text in (
         ("workshop/__init__.py", ""),
         ("workshop/jacobian_transpose.py", CONTROLLER),
-        ("workshop/circle.py", TRAJECTORY),
+        ("workshop/spin.py", TRAJECTORY),
         ("workshop/euler.py", PLANT),
         ("workshop/path_length.py", METRIC),
         ("workshop-1.0.dist-info/METADATA", "Metadata-Version: 2.1\nName: workshop\nVersion: 1.0\n"),
@@ -324,7 +331,7 @@ def test_the_mass_of_ones_own_robot_is_that_of_its_config(crane):
 
 
 def test_parts_of_ones_own_run_together(workshop):
-    overrides = ("robot=macro", "controller=jacobian_transpose", "trajectory=circle", "plant=euler")
+    overrides = ("robot=macro", "controller=jacobian_transpose", "trajectory=spin", "plant=euler")
     run = runner.run(*overrides, config_dirs=[workshop])
     assert run.status == "ok"
     assert run.provenance["plant_step"] == pytest.approx(0.0005)
@@ -336,7 +343,7 @@ def test_parts_of_ones_own_run_together(workshop):
 
 
 @pytest.mark.parametrize(
-    "part", ["controller=jacobian_transpose", "trajectory=circle", "plant=euler"], ids=lambda part: part.split("=")[0]
+    "part", ["controller=jacobian_transpose", "trajectory=spin", "plant=euler"], ids=lambda part: part.split("=")[0]
 )
 def test_each_part_runs_beside_ours(workshop, part):
     run = runner.run("robot=macro", part, "duration=0.5", config_dirs=[workshop])
@@ -352,7 +359,7 @@ def test_a_wrong_value_for_ones_own_part_is_told_as_for_ours(workshop):
 
 def test_ones_own_kinds_are_named_where_a_kind_is_unknown(workshop):
     with pytest.raises(
-        ConfigError, match=r"did you mean jacobian_transpose\?.*known: jacobian_transpose, macro_mini, operational"
+        ConfigError, match=r"did you mean jacobian_transpose\?.*jacobian_transpose, macro_mini, operational"
     ):
         runner.run("controller.kind=jacobian_transposed", config_dirs=[workshop])
 

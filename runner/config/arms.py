@@ -9,18 +9,24 @@ from runner.config.per_joint import expand
 from runner.config.robot import ArmConfig, RobotConfig, StageConfig
 from runner.errors import ConfigError
 from runner.robots.description import find_urdf, read_urdf
+from runner.robots.inertials import Payload
 from runner.robots.model import RobotModel
 from runner.robots.mounting import Mount, mount
 from runner.robots.robot import Robot, Stage
+from runner.robots.tool_link import TOOL_TIP, ToolBody, mount_tool
+from runner.sensing.force_torque import ForceTorqueConfig
 
 
-def build_robot(config: RobotConfig, gravity: float, config_dirs: Sequence[Path] = ()) -> Robot:
+def build_robot(
+    config: RobotConfig, gravity: float, config_dirs: Sequence[Path] = (), sensor: ForceTorqueConfig | None = None
+) -> Robot:
     """Return the robot that a config describes.
 
     Args:
         config: The robot's config.
         gravity: Magnitude of gravity along -z of the base, in m/s^2.
         config_dirs: Config folders of the user's, in which URDFs are looked for.
+        sensor: Config of the force/torque sensor on the last arm's tip frame, whose mass it bears; None for none.
 
     Raises:
         ConfigError: for a URDF that cannot be found or built, a frame or link that does not exist, a posture of the
@@ -31,21 +37,37 @@ def build_robot(config: RobotConfig, gravity: float, config_dirs: Sequence[Path]
     whole, prefix, tip, first = "", "", "", 0
     for name, arm in config.arms.items():
         key = f"robot.stages.{name}" if several else "robot"
-        urdf = read_urdf(find_urdf(arm.urdf, config_dirs), arm.masses, arm.rotor_inertia)
-        model = RobotModel(urdf, arm.tip, gravity)
+        outermost = len(stages) + 1 == len(config.arms)
+        payloads = _payloads(config, arm.tip, sensor) if outermost else []
+        path = find_urdf(arm.urdf, config_dirs)
+        urdf = read_urdf(path, arm.masses, arm.rotor_inertia, arm.inertials, arm.velocity_limits, payloads)
+        own_tip = arm.tip
+        if outermost and config.tool is not None:
+            urdf, own_tip = mount_tool(urdf, arm.tip, ToolBody(**config.tool.model_dump())), TOOL_TIP
+        model = RobotModel(urdf, own_tip, gravity)
         base_frame = None
         if not stages:
             _refuse_mount(key, arm)
-            whole, tip = urdf, arm.tip
+            whole, tip = urdf, own_tip
         else:
             below, prefix = prefix, f"{name}_"
             whole, base_frame = _mount(key, whole, urdf, below, prefix, arm)
-            tip = prefix + arm.tip
+            tip = prefix + own_tip
         joints = slice(first, first + model.nq)
         home = np.array(expand(f"{key}.home", arm.home, model.joint_names))
         stages.append(Stage(name, model, urdf, joints, home, base_frame))
         first = joints.stop
-    return Robot(whole, RobotModel(whole, tip, gravity) if several else stages[0].model, tuple(stages))
+    flange = prefix + list(config.arms.values())[-1].tip
+    return Robot(whole, RobotModel(whole, tip, gravity) if several else stages[0].model, tuple(stages), flange)
+
+
+def _payloads(config: RobotConfig, flange: str, sensor: ForceTorqueConfig | None) -> list[Payload]:
+    """Return what the flange bears beside a tool: the payload at the tip, and the force/torque sensor."""
+    tip = np.zeros(3) if config.tool is None else np.array(config.tool.tip)
+    payloads = [Payload(flange, config.payload.mass, (tip + config.payload.position).tolist())]
+    if sensor is not None:
+        payloads.append(Payload(flange, sensor.mass, (0.0, 0.0, 0.5 * sensor.height)))
+    return payloads
 
 
 def _mount(key: str, whole: str, urdf: str, below: str, prefix: str, arm: ArmConfig) -> tuple[str, str]:

@@ -2,7 +2,11 @@
 
 from collections.abc import Sequence
 
+from pydantic import PositiveFloat
+
 from runner.errors import ConfigError
+
+PositivePerJoint = PositiveFloat | list[PositiveFloat]
 
 
 def expand(key: str, value: float | list[float], joints: Sequence[str]) -> list[float]:

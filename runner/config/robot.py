@@ -18,15 +18,20 @@ class ArmConfig(StrictModel):
         urdf: Its URDF: a file among ours, in a config folder of the user's, or an absolute path.
         tip: Name of its tip frame.
         home: Joint positions at home, in rad.
-        masses: Mass of links by name, in kg, in place of the URDF's.
+        inertials: Set of masses, centres of mass and inertias, of those in `<urdf>.inertials.yaml`, in place of the
+            URDF's; None keeps these.
+        masses: Mass of links by name, in kg, in place of the URDF's or the set's.
         rotor_inertia: Inertia added to each moving link about its joint's axis, in kg m^2.
+        velocity_limits: Largest speed of joints by name, in rad/s, in place of the URDF's.
     """
 
     urdf: Name
     tip: Name
     home: list[float]
+    inertials: Name | None
     masses: dict[str, PositiveFloat]
     rotor_inertia: NonNegativeFloat
+    velocity_limits: dict[str, PositiveFloat]
 
 
 class MountConfig(StrictModel):
@@ -53,12 +58,47 @@ class StageConfig(ArmConfig):
     mount: MountConfig | None
 
 
+class PayloadConfig(StrictModel):
+    """A point mass fixed at the tip, which both the plant and the controllers' model hold.
+
+    Attributes:
+        mass: Its mass, in kg.
+        position: Its place in the tip frame, in m.
+    """
+
+    mass: NonNegativeFloat
+    position: Vector
+
+
+class ToolConfig(StrictModel):
+    """A rigid tool on the flange, which both the plant and the controllers' model hold; its tip is what is controlled.
+
+    Attributes:
+        mass: In kg.
+        centre_of_mass: In the flange's frame, in m.
+        inertia: Principal moments about the centre of mass, along the flange's axes, in kg m^2.
+        tip: Its tip, the tool centre point, in the flange's frame, in m.
+        tip_radius: Radius of the ball at its tip that touches walls, in m.
+    """
+
+    mass: PositiveFloat
+    centre_of_mass: Vector
+    inertia: Annotated[list[PositiveFloat], Field(min_length=3, max_length=3)]
+    tip: Vector
+    tip_radius: PositiveFloat
+
+
 class RobotValues(StrictModel):
     """The values that a robot's sources give for it; other groups take them as `${robot.x}`.
 
     Attributes:
         name: Its name.
-        goal: Tip position that goal and quintic go to, in m.
+        start: Tip position where trajectories start, in m; None is the tip at home.
+        goal: Tip position that goal, quintic and line go to, in m.
+        path_size: Size of the paths that have one, such as a circle's radius, in m.
+        tool: What is fixed on its tip frame, whose own tip is controlled then; None for nothing.
+        payload: What its tip carries.
+        rated_payload: The largest payload that its maker allows, in kg; None where none is stated.
         natural_frequency: omega_n of its controller, in rad/s, by stage where it has several; so all that follow.
         damping_ratio: xi of its controller.
         period: Its controller's period, in s.
@@ -69,7 +109,12 @@ class RobotValues(StrictModel):
     """
 
     name: Name
+    start: Vector | None
     goal: Vector
+    path_size: PositiveFloat
+    tool: ToolConfig | None
+    payload: PayloadConfig
+    rated_payload: PositiveFloat | None
     natural_frequency: PositivePerStage
     damping_ratio: PositivePerStage
     period: PositivePerStage
@@ -77,6 +122,22 @@ class RobotValues(StrictModel):
     no_joint_error: NonNegativePerStage
     torque_limit: TorquePerStage
     settling_band: PositiveFloat
+
+    @property
+    def warnings(self) -> list[str]:
+        """What is unusual in these values though it can be run."""
+        tool = 0.0 if self.tool is None else self.tool.mass
+        if self.rated_payload is None or self.payload.mass + tool <= self.rated_payload:
+            return []
+        borne = (
+            f"robot.payload.mass: {self.payload.mass:g} kg is"
+            if self.tool is None
+            else (f"robot.tool.mass and robot.payload.mass: {tool:g} and {self.payload.mass:g} kg are")
+        )
+        return [
+            f"{borne} more than the {self.rated_payload:g} kg that {self.name} is rated for; the run goes on and shows "
+            "where effort limits bite"
+        ]
 
 
 class OneArmConfig(RobotValues, ArmConfig):

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveFloat, PositiveInt
 
@@ -11,6 +11,7 @@ from runner.config.robot import RobotConfig
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.sensing import ForceTorqueConfig
 
 
 class RunSettings(StrictModel):
@@ -42,9 +43,12 @@ class RunConfig:
         trajectory: Config of the trajectory, likewise.
         noise: Config of the joint measurement.
         torque_limits: Config of the torque limits.
+        environment: Config of the world around the tip, likewise.
+        wrist_sensor: Config of the force/torque sensor.
         robot: Config of the robot.
         arm: The robot's rigid-body model, stage by stage.
-        tick: Period of the fastest control loop, in s.
+        tick: Period of the fastest loop, in s: of the controller, or of the servo below it.
+        commands: Whether the controller gives joint torques, or joint positions to a plant that follows them.
         step: Integration step of the plant, in s.
         steps_per_tick: Integration steps in one tick.
         resolved: The composed config as plain data, interpolations resolved.
@@ -56,9 +60,12 @@ class RunConfig:
     trajectory: Any
     noise: NoiseConfig
     torque_limits: TorqueLimitsConfig
+    environment: Any
+    wrist_sensor: ForceTorqueConfig
     robot: RobotConfig
     arm: Robot
     tick: float
+    commands: Literal["torque", "position"]
     step: float
     steps_per_tick: int
     resolved: Mapping[str, Any]

@@ -5,6 +5,7 @@ from typing import Any
 
 from runner.config.per_stage import by_stage
 from runner.config.run import RunSettings
+from runner.controllers import CONTROLLERS
 from runner.errors import ConfigError
 from runner.plants import PLANTS
 from runner.robots.robot import Robot
@@ -16,21 +17,31 @@ def count_steps(arm: Robot, plant: Any, controller: Any) -> tuple[float, float, 
     """Return the fastest loop's period, the plant's step, both in s, and the number of steps in that period.
 
     Raises:
-        ConfigError: if a period is no multiple of the fastest one, or that no multiple of the plant's step.
+        ConfigError: if a period is no multiple of the fastest one, or that no multiple of the plant's step, or the
+            servo is slower than its commands.
     """
     periods = _periods(arm, controller.period)
+    slowest = max(periods.values())
+    if CONTROLLERS.commands(controller.kind) == "position" and PLANTS.commands(plant.kind) == "torque":
+        periods = {"plant.servo.period": plant.servo.period, **periods}
     fastest = min(periods, key=lambda name: periods[name])
     tick = periods[fastest]
     step = PLANTS.default_step(plant.kind, tick, len(arm.stages)) if plant.step is None else plant.step
-    problems = [
-        f"controller.period.{name}: {period:g} s is no multiple of the fastest stage's, {fastest} with {tick:g} s"
+    problems = []
+    if fastest != "plant.servo.period" and "plant.servo.period" in periods:
+        problems.append(
+            f"plant.servo.period: {plant.servo.period:g} s is longer than controller.period, {slowest:g} s; the servo "
+            "must be as fast as its commands, or faster"
+        )
+    problems += [
+        f"{name}: {period:g} s is no multiple of the fastest loop's, {fastest} with {tick:g} s"
         for name, period in periods.items()
         if not _is_multiple(period, tick)
     ]
     steps = max(round(tick / step), 1)
     if not _is_multiple(tick, step):
         problems.append(
-            f"controller.period: {tick:g} s is no multiple of plant.step, {step:g} s; "
+            f"{fastest}: {tick:g} s is no multiple of plant.step, {step:g} s; "
             f"set plant.step to the period divided by a whole number, such as {tick / steps:g}"
         )
     if problems:
@@ -60,10 +71,11 @@ def check_duration(settings: RunSettings, tick: float, trajectory: Any) -> None:
 
 
 def _periods(arm: Robot, period: Any) -> dict[str, float]:
-    """Return the period of each loop by name; a controller with one period has one loop, whatever the stages."""
+    """Return the period of each loop by its key; a controller with one period has one loop, whatever the stages."""
     if isinstance(period, Mapping):
-        return dict(zip(arm.stage_names, by_stage("controller.period", period, arm.stage_names), strict=True))
-    return {arm.stage_names[0]: period}
+        by_name = by_stage("controller.period", period, arm.stage_names)
+        return {f"controller.period.{name}": value for name, value in zip(arm.stage_names, by_name, strict=True)}
+    return {"controller.period": period}
 
 
 def _is_multiple(period: float, unit: float) -> bool:

@@ -34,6 +34,49 @@ class Controller(Protocol):
         ...
 
 
+class PositionController(Protocol):
+    """A control law that tells the joints where to go, pure in its arguments apart from what `reset` clears."""
+
+    def reset(self, q: FloatArray) -> None:
+        """Forget everything of an earlier run; the arm stands at joint positions, shape (nq,), in rad."""
+
+    def joint_positions(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
+        """Return the joint positions to reach by the loop's next tick.
+
+        Args:
+            time: Time since the start, in s.
+            q: Measured joint positions, shape (nq,), in rad.
+            dq: Measured joint velocities, shape (nq,), in rad/s.
+            reference: Desired tip position, velocity and acceleration in the base frame, shape (3, 3); see
+                Controller.torque.
+
+        Returns:
+            Positions of the joints it commands, in rad; valid until the next call.
+
+        Raises:
+            numpy.linalg.LinAlgError: where the law has no solution.
+        """
+        ...
+
+
+class FeelingController(PositionController, Protocol):
+    """A control law that feels what its tool touches.
+
+    Attributes:
+        felt: Wrench of the world on the tip as it believes it: force in N, moment about the tip in N m, along the
+            base's axes, shape (6,).
+    """
+
+    felt: FloatArray
+
+    def feel(self, reading: FloatArray) -> None:
+        """Take the wrist sensor's reading, force in N and moment in N m along its own axes, shape (6,)."""
+
+    def notices(self) -> list[str]:
+        """Return what a user should know of how the last run went, a text for each."""
+        ...
+
+
 @dataclass(frozen=True)
 class Loop:
     """One control loop of a robot.
@@ -43,9 +86,11 @@ class Loop:
         joints: The joints that it commands, within the robot's.
         period: Time between two of its ticks, in s.
         controller: The control law; it is given the measurement of every joint.
+        feels: Whether it is given the wrist sensor's reading too, by its `feel`.
     """
 
     name: str
     joints: slice
     period: float
-    controller: Controller
+    controller: Controller | PositionController
+    feels: bool = False

@@ -1,4 +1,4 @@
-"""Operational-space control of the tip position."""
+"""Operational-space control of the tip's position or pose."""
 
 from typing import Literal
 
@@ -7,8 +7,10 @@ import pinocchio as pin
 from pydantic import NonNegativeFloat
 from scipy.linalg.lapack import dgesv
 
-from runner.config.per_stage import PositivePerStage, by_stage
+from runner.config.per_stage import NonNegativePerStage, PositivePerStage, by_stage
 from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.tip_task import TaskName, held_orientation, task_start
+from runner.controllers.whole_body import WholeBody, WholeBodyLaw
 from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
@@ -20,6 +22,7 @@ class OperationalSpaceConfig(StrictModel):
 
     Attributes:
         kind: Its name in the registry.
+        task: Whether the tip's position is led, or its pose, with home's orientation held.
         natural_frequency: omega_n of the closed loop in every direction of the tip, in rad/s.
         damping_ratio: xi of the closed loop.
         period: Time between two ticks, in s.
@@ -27,19 +30,23 @@ class OperationalSpaceConfig(StrictModel):
         feedforward: Whether the law follows the desired velocity and acceleration, or sees a moving goal.
         singularity_damping: Share of the tip's error by which the inverse of J is damped near a singular posture;
             0 is the law as printed.
+        null_space_frequency: omega_n of the posture task, home, of an arm with more joints than the task needs, in
+            rad/s.
     """
 
     kind: Literal["operational_space"]
+    task: TaskName
     natural_frequency: PositivePerStage
     damping_ratio: PositivePerStage
     period: PositivePerStage
     gravity_compensation: bool
     feedforward: bool
     singularity_damping: NonNegativeFloat
+    null_space_frequency: NonNegativePerStage
 
 
 class OperationalSpace:
-    r"""Dynamic decoupling and linear control of the tip of an arm with three joints.
+    r"""Dynamic decoupling and linear control of the tip position of an arm with three joints.
 
     The thesis writes the law in operational space, eq. (3.32) with (3.40):
 
@@ -141,6 +148,35 @@ class OperationalSpace:
         return solution
 
 
+def tip_law(
+    model: RobotModel, numbers: WholeBodyLaw, home: FloatArray, orientation: FloatArray | None = None
+) -> OperationalSpace | WholeBody:
+    """Return the law that leads an arm's tip, whatever its number of joints.
+
+    Three joints lead the tip's position by OperationalSpace. More do by WholeBody, whose null space draws all of them
+    home; without that an arm drifts into its joint stops.
+
+    Args:
+        model: The arm.
+        numbers: The law's numbers.
+        home: Joint positions at home, shape (nq,), in rad.
+        orientation: The orientation that the tip holds, in the base frame, shape (3, 3); None leads its position alone.
+
+    Raises:
+        ConfigError: if the arm has fewer than three joints.
+    """
+    if model.nq == 3 and orientation is None:
+        return OperationalSpace(
+            model,
+            numbers.natural_frequency,
+            numbers.damping_ratio,
+            numbers.gravity_compensation,
+            numbers.feedforward,
+            numbers.singularity_damping,
+        )
+    return WholeBody(model, numbers, home, first_held=0, orientation=orientation)
+
+
 CONFIG = OperationalSpaceConfig
 
 
@@ -148,25 +184,34 @@ def build(config: OperationalSpaceConfig, robot: Robot) -> tuple[Loop, ...]:
     """Make the one loop that a config describes; it commands every joint.
 
     Raises:
-        ConfigError: if the robot has several stages, or its arm another number of joints than three.
+        ConfigError: if the robot has several stages, or its arm fewer joints than the task has dimensions.
     """
     names = robot.stage_names
     if len(names) > 1:
         raise ConfigError(
             [
-                f"controller.kind: operational_space controls one arm with 3 joints; the robot has {robot.model.nq} in "
+                f"controller.kind: operational_space controls one arm; the robot has {robot.model.nq} joints in "
                 f"stages ({', '.join(names)}); take macro_mini or whole_body"
             ]
         )
+    orientation = held_orientation(config.task, robot.model, robot.home)
     (natural_frequency,) = by_stage("controller.natural_frequency", config.natural_frequency, names)
     (damping_ratio,) = by_stage("controller.damping_ratio", config.damping_ratio, names)
     (period,) = by_stage("controller.period", config.period, names)
-    controller = OperationalSpace(
-        robot.model,
-        natural_frequency,
-        damping_ratio,
-        config.gravity_compensation,
-        config.feedforward,
-        config.singularity_damping,
+    (null_space_frequency,) = by_stage("controller.null_space_frequency", config.null_space_frequency, names)
+    numbers = WholeBodyLaw(
+        natural_frequency=natural_frequency,
+        damping_ratio=damping_ratio,
+        gravity_compensation=config.gravity_compensation,
+        feedforward=config.feedforward,
+        null_space_frequency=null_space_frequency,
+        max_tip_speed=None,
+        singularity_damping=config.singularity_damping,
     )
+    controller = tip_law(robot.model, numbers, robot.home, orientation)
     return (Loop(names[0], slice(0, robot.model.nq), period, controller),)
+
+
+def start_posture(config: OperationalSpaceConfig, robot: Robot, start: FloatArray) -> FloatArray | None:
+    """Return where the arm stands at a trajectory's start: for a pose, with home's orientation."""
+    return task_start(config.task, robot, start)

@@ -2,15 +2,15 @@
 
 from runner.controllers.controller import FloatArray
 from runner.controllers.joint_hold import JointHold
-from runner.controllers.operational_space import OperationalSpace
-from runner.controllers.whole_body import WholeBody, WholeBodyLaw
+from runner.controllers.operational_space import tip_law
+from runner.controllers.whole_body import WholeBodyLaw
 from runner.robots.model import RobotModel
 
 
 class StageLaw:
     """What a stage can be told to do from its own model alone: bring its tip somewhere, or hold a posture.
 
-    Three joints bring the tip there by OperationalSpace. More do by WholeBody, whose null space draws all of them home.
+    The tip is brought there by tip_law: more joints than three are drawn home in its null space.
 
     Args:
         model: The stage's arm on a fixed base.
@@ -35,22 +35,16 @@ class StageLaw:
         singularity_damping: float,
         home: FloatArray,
     ) -> None:
-        self._tip: OperationalSpace | WholeBody
-        if model.nq == 3:
-            self._tip = OperationalSpace(
-                model, natural_frequency, damping_ratio, gravity_compensation, feedforward, singularity_damping
-            )
-        else:
-            numbers = WholeBodyLaw(
-                natural_frequency=natural_frequency,
-                damping_ratio=damping_ratio,
-                gravity_compensation=gravity_compensation,
-                feedforward=feedforward,
-                null_space_frequency=natural_frequency,
-                max_tip_speed=None,
-                singularity_damping=singularity_damping,
-            )
-            self._tip = WholeBody(model, numbers, home, first_held=0)
+        numbers = WholeBodyLaw(
+            natural_frequency=natural_frequency,
+            damping_ratio=damping_ratio,
+            gravity_compensation=gravity_compensation,
+            feedforward=feedforward,
+            null_space_frequency=natural_frequency,
+            max_tip_speed=None,
+            singularity_damping=singularity_damping,
+        )
+        self._tip = tip_law(model, numbers, home)
         self._posture = JointHold(model, natural_frequency, damping_ratio, gravity_compensation)
 
     def set_gravity(self, gravity: FloatArray) -> None:

@@ -12,6 +12,7 @@ def whole_body_graph(
     goal: bool,
     speed_limited: bool = False,
     posture_task: bool = True,
+    all_joints: bool = False,
 ) -> ControlGraph:
     r"""Return the closed loop of the law that `WholeBody` executes.
 
@@ -19,6 +20,7 @@ def whole_body_graph(
 
         \tau = h + J^T \Lambda (F^* - \dot J \dot q) + N^T (K (q_0 - q) - k_{vn} M \dot q), \qquad h = V + G
 
+    Where all joints are drawn home, its last term is M (1 - J^+ J) (k_p0 (q_0 - q) - k_v0 dq); N^T leaves it as it is.
     A term that the config leaves out is absent from the graph. All the model's terms are taken at the measured state,
     which is the upper and the lower line of the picture. The damping of Lambda beside a singular posture, which is no
     part of the law as printed, is not shown.
@@ -30,6 +32,7 @@ def whole_body_graph(
         goal: Whether the reference is a goal at rest, which has no derivatives.
         speed_limited: Whether the approach to the goal saturates at a largest tip speed V.
         posture_task: Whether the null space holds a posture: null_space_frequency is not 0.
+        all_joints: Whether that posture is of all joints alike (HeldPosture), or of some (HeldJoints).
     """
     bottom = 4.0 if posture_task else 2.0
     force = 3.2 if speed_limited else 2.75
@@ -39,7 +42,7 @@ def whole_body_graph(
         _task(feedforward and not goal, "x_g" if goal else "x_d", speed_limited, force, torque),
     ]
     if posture_task:
-        parts.append(_posture(torque, bottom))
+        parts.append(_posture(torque, bottom, all_joints))
     nodes = [node for part in parts for node in part[0]]
     edges = [edge for part in parts for edge in part[1]]
     return ControlGraph(tuple(nodes), tuple(edges))
@@ -132,22 +135,26 @@ def _task(
     return nodes, edges
 
 
-def _posture(torque: float, bottom: float) -> tuple[list[Node], list[Edge]]:
+def _posture(torque: float, bottom: float, all_joints: bool) -> tuple[list[Node], list[Edge]]:
     """Return the null space's part: a posture's torque, projected so that the tip does not feel it."""
+    if all_joints:
+        stiffness, damping, asked, projector = "$k_{p0}$", "$k_{v0}$", r"$\ddot{q}_0$", r"$M(1 - J^+\!J)$"
+    else:
+        stiffness, damping, asked, projector = "$K$", "$k_{vn} M$", r"$\tau_0$", "$N^T$"
     nodes = [
         Node("posture", "source", "Home", torque - 4.1, 2.0),
         Node("posture_error", "sum", "", torque - 2.95, 2.0),
-        Node("K", "block", "$K$", torque - 2.2, 2.0),
-        Node("k_vn", "block", "$k_{vn} M$", torque - 1.3, 3.0),
+        Node("K", "block", stiffness, torque - 2.2, 2.0),
+        Node("k_vn", "block", damping, torque - 1.3, 3.0),
         Node("tau_0", "sum", "", torque - 1.3, 2.0),
-        Node("N^T", "block", "$N^T$", torque, 2.0),
+        Node("N^T", "block", projector, torque, 2.0),
     ]
     edges = [
         Edge("posture", "posture_error", "$q_0$", "+"),
         Edge("posture_error", "K"),
         Edge("K", "tau_0", sign="+"),
         Edge("k_vn", "tau_0", sign="-", leave="top", enter="bottom"),
-        Edge("tau_0", "N^T", r"$\tau_0$"),
+        Edge("tau_0", "N^T", asked),
         Edge("N^T", "tau", sign="+", leave="top", enter="bottom"),
         Edge("encoders", "posture_error", sign="-", leave="bottom", enter="bottom", lane=bottom),
         *(

@@ -16,7 +16,8 @@ def evaluate(trace: Trace, context: MetricContext) -> dict[str, float | None]:
       still beyond at the end.
     - steady_state_error: largest axis error over the last 0.5 s; None when less than 0.5 s lies after t_f, or
       the motion is periodic.
-    - overshoot: largest distance past the goal along the direction from start to goal; None without a goal.
+    - overshoot: largest distance past the goal along the direction from start to goal, less how far the desired motion
+      itself goes there; None without a goal.
     """
     worst = np.abs(trace.error).max(axis=1)
     goal = context.trajectory.goal
@@ -45,4 +46,6 @@ def _overshoot(trace: Trace, start: np.ndarray, goal: np.ndarray) -> float:
     distance = float(np.linalg.norm(goal - start))
     if distance == 0.0:
         return 0.0
-    return max(0.0, float(((trace.tip - goal) @ (goal - start)).max()) / distance)
+    along = (goal - start) / distance
+    past, wanted = (float(((points - goal) @ along).max()) for points in (trace.tip, trace.desired[:, 0]))
+    return max(0.0, past - max(0.0, wanted))

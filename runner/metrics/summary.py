@@ -8,12 +8,12 @@ from types import ModuleType
 
 import numpy as np
 
-from runner.metrics import effort, positioning, reaching, tracking
+from runner.metrics import contact, effort, positioning, reaching, tracking
 from runner.metrics.context import MetricContext
 from runner.trace import Trace
 from runner.trajectories.shifted import Shifted
 
-_FAMILIES: tuple[ModuleType, ...] = (positioning, tracking, effort, reaching)
+_FAMILIES: tuple[ModuleType, ...] = (positioning, tracking, effort, reaching, contact)
 
 
 @dataclass(frozen=True)

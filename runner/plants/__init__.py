@@ -1,8 +1,11 @@
-"""Simulated arms: from torques to true motion."""
+"""Simulated arms: from torques, or joint positions commanded, to true motion."""
 
-from runner.plants.plant import Plant
+from runner.plants.plant import Plant, PositionPlant
 from runner.registry import Registry
 
-PLANTS = Registry("plant", {"bullet": "runner.plants.bullet", "rk4": "runner.plants.rk4"})
+PLANTS = Registry(
+    "plant",
+    {"bullet": "runner.plants.bullet", "kinematic": "runner.plants.kinematic", "rk4": "runner.plants.rk4"},
+)
 
-__all__ = ["PLANTS", "Plant"]
+__all__ = ["PLANTS", "Plant", "PositionPlant"]

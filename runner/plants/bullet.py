@@ -5,15 +5,18 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
+import pinocchio as pin
 from pydantic import PositiveFloat
 
 from runner.errors import ConfigError
 from runner.plants.decoupled import assemble_plant
 from runner.plants.plant import FloatArray, Plant
 from runner.plants.quiet import quiet_stderr
+from runner.plants.servo import ServoConfig
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
+from runner.robots.tool_link import TOOL_MOUNT
 
 with quiet_stderr():  # PyBullet announces its build time
     import pybullet
@@ -30,16 +33,18 @@ class BulletConfig(StrictModel):
         step: Integration step, in s; None is a tenth of the fastest controller period, a quarter with several stages.
         dynamics: Whether stages that ride on each other act on each other; see assemble_plant.
         wrist_rotation: Whether the carrier turns the rider's base; see assemble_plant.
+        servo: The joints' position servos, where the controller commands joint positions.
     """
 
     kind: Literal["bullet"]
     step: PositiveFloat | None
     dynamics: Literal["coupled", "decoupled"]
     wrist_rotation: Literal["real", "parallel"]
+    servo: ServoConfig
 
 
 class Bullet:
-    """An arm in PyBullet, torque-controlled, without motors, damping, contacts or speed limit.
+    """An arm in PyBullet, torque-controlled, without motors, damping or speed limit; a wall is all that it can touch.
 
     Args:
         urdf: The arm's URDF text.
@@ -55,6 +60,7 @@ class Bullet:
         self.q = np.zeros(model.nq)
         self.dq = np.zeros(model.nq)
         self._client = pybullet.connect(pybullet.DIRECT)
+        self._wall: int | None = None
         try:
             self._body = self._load(urdf)
             self._joints = self._order_joints(model.joint_names)
@@ -62,6 +68,7 @@ class Bullet:
             self.close()
             raise
         self._remove_damping_and_motors()
+        self._tool_mount = self._feel_tool()
         self.set_gravity(model.gravity)
         # Bullet splits one stepSimulation into the steps: bit-identical to as many calls, and cheaper. Its own
         # "substeps" start at 2; 0 means none.
@@ -83,11 +90,22 @@ class Bullet:
                 raise ConfigError([f"robot.urdf: PyBullet cannot load it: {error}"]) from error
         return body
 
+    def _feel_tool(self) -> int | None:
+        """Let Bullet compute the reaction in the tool's mount, at its origin in world axes; return that joint."""
+        index = self._joint_indices().get(TOOL_MOUNT)
+        if index is not None:
+            pybullet.setPhysicsEngineParameter(jointFeedbackMode=3, physicsClientId=self._client)
+            pybullet.enableJointForceTorqueSensor(self._body, index, 1, physicsClientId=self._client)
+        return index
+
     def _order_joints(self, names: tuple[str, ...]) -> list[int]:
+        index = self._joint_indices()
+        return [index[name] for name in names]
+
+    def _joint_indices(self) -> dict[str, int]:
         count = pybullet.getNumJoints(self._body, physicsClientId=self._client)
         infos = [pybullet.getJointInfo(self._body, i, physicsClientId=self._client) for i in range(count)]
-        index = {info[1].decode(): info[0] for info in infos}
-        return [index[name] for name in names]
+        return {info[1].decode(): info[0] for info in infos}
 
     def _remove_damping_and_motors(self) -> None:
         # Two calls: PyBullet 3.2.7 ignores jointDamping in a call that holds maxJointVelocity.
@@ -122,6 +140,53 @@ class Bullet:
         pybullet.stepSimulation(client)
         states = pybullet.getJointStates(body, joints, client)
         self.q[:], self.dq[:], _, _ = zip(*states, strict=True)
+
+    def add_wall(self, point: FloatArray, normal: FloatArray, stiffness: float, damping: float) -> None:
+        """Put up a flat frictionless wall that gives way, for the links that have a collision shape.
+
+        Args:
+            point: A point of its face in the base frame, shape (3,), in m.
+            normal: Unit vector out of it, shape (3,).
+            stiffness: In N/m.
+            damping: In N s/m.
+        """
+        client = self._client
+        box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[1.0, 1.0, 0.5], physicsClientId=client)
+        turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), normal).coeffs()
+        middle = (point - 0.5 * normal).tolist()
+        self._wall = pybullet.createMultiBody(
+            0.0, box, basePosition=middle, baseOrientation=turn.tolist(), physicsClientId=client
+        )
+        pybullet.setPhysicsEngineParameter(contactSlop=0.0, physicsClientId=client)  # else 10 um bear no force
+        pybullet.changeDynamics(
+            self._wall,
+            -1,
+            contactStiffness=stiffness,
+            contactDamping=damping,
+            lateralFriction=0.0,
+            physicsClientId=client,
+        )
+
+    @property
+    def tool_reaction(self) -> FloatArray | None:
+        """Bullet's own reading of what the tool puts on the flange in the last step; None where there is no tool.
+
+        Force in N and moment about the flange's origin in N m, along the base's axes, shape (6,). In motion it is off
+        by a term in the square of the speeds, at any step.
+        """
+        if self._tool_mount is None:
+            return None
+        return -np.array(pybullet.getJointState(self._body, self._tool_mount, physicsClientId=self._client)[2])
+
+    @property
+    def contact_wrench(self) -> FloatArray:
+        """Wrench of the wall on the arm: force in N, moment about the base's origin in N m, its axes, shape (6,)."""
+        wrench = np.zeros(6)
+        if self._wall is not None:
+            for contact in pybullet.getContactPoints(self._body, self._wall, physicsClientId=self._client):
+                place, force = np.array(contact[5]), contact[9] * np.array(contact[7])
+                wrench += np.concatenate([force, np.cross(place, force)])
+        return wrench
 
     def close(self) -> None:
         """Disconnect from the physics server."""

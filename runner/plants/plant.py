@@ -30,3 +30,15 @@ class Plant(Protocol):
 
     def close(self) -> None:
         """Release what the plant holds."""
+
+
+class PositionPlant(Plant, Protocol):
+    """A simulated arm whose joints follow commanded positions; `advance` takes these, shape (nq,), in rad.
+
+    Attributes:
+        tau: Torques of the tick that `advance` just made, shape (nq,), in N m; renewed in place.
+        load: Joint torques that the world adds in the next tick, shape (nq,), in N m; written in place.
+    """
+
+    tau: FloatArray
+    load: FloatArray

@@ -8,6 +8,7 @@ from pydantic import PositiveFloat
 
 from runner.plants.decoupled import assemble_plant
 from runner.plants.plant import FloatArray, Plant
+from runner.plants.servo import ServoConfig
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
@@ -21,12 +22,14 @@ class Rk4Config(StrictModel):
         step: Integration step, in s; None is the fastest controller period.
         dynamics: Whether stages that ride on each other act on each other; see assemble_plant.
         wrist_rotation: Whether the carrier turns the rider's base; see assemble_plant.
+        servo: The joints' position servos, where the controller commands joint positions.
     """
 
     kind: Literal["rk4"]
     step: PositiveFloat | None
     dynamics: Literal["coupled", "decoupled"]
     wrist_rotation: Literal["real", "parallel"]
+    servo: ServoConfig
 
 
 class Rk4:

@@ -8,8 +8,16 @@ from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.paths import robots_dir
 
-OPTIONS = [f"{group}={name}" for group in groups() for name in group_options(group)]
-NEEDS = {"controller=macro_mini": ("robot=combined",)}  # what an option does not run without
+OPTIONS = [f"{group}={name}" for group in groups() if group != "calibration" for name in group_options(group)]
+NEEDS = {  # what an option does not run without
+    "controller=admittance": ("robot=meca500",),
+    "controller=macro_mini": ("robot=combined",),
+    "controller=three_joint": ("robot=xarm7",),
+    "controller=xarm7_as_printed": ("robot=xarm7", "controller.inverse=right"),
+    "environment=wall": ("robot=meca500",),
+    "experiment=xarm7/as_printed": ("controller.inverse=right",),
+    "plant=kinematic": ("robot=xarm7",),
+}
 SMALL_ROBOT = """\
 # @package _global_
 # My arm
@@ -21,9 +29,16 @@ robot:
   urdf: mine.urdf
   tip: tip
   home: [0.0, 0.0, 0.0]
+  inertials: null
   masses: {link3: 2.0}
   rotor_inertia: 0.0
+  velocity_limits: {}
+  start: null
   goal: [0.2, -0.7, 0.4]
+  path_size: 0.2
+  tool: null
+  payload: {mass: 0.0, position: [0.0, 0.0, 0.0]}
+  rated_payload: null
   natural_frequency: 20.0
   damping_ratio: 1.0
   period: 0.01

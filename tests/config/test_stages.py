@@ -13,8 +13,10 @@ SECOND_MINI = {
     "urdf": "mini.urdf",
     "tip": "tip",
     "home": [0.0, 0.0, 0.0],
+    "inertials": None,
     "masses": {},
     "rotor_inertia": 0.0,
+    "velocity_limits": {},
     "mount": {"frame": "tip", "translation": [0.0, 0.0, 0.0], "rotation": [0.0, 0.0, 0.0]},
 }
 
@@ -105,11 +107,12 @@ def test_the_tick_is_the_fastest_stage_s(checked_config):
         ),
         (
             "controller.period.macro=0.0105",
-            "controller.period.macro: 0.0105 s is no multiple of the fastest stage's, mini with 0.001 s",
+            "controller.period.macro: 0.0105 s is no multiple of the fastest loop's, controller.period.mini with "
+            "0.001 s",
         ),
         (
             "controller.period.mini=0.004",
-            "controller.period.macro: 0.01 s is no multiple of the fastest stage's, mini with 0.004 s",
+            "controller.period.macro: 0.01 s is no multiple of the fastest loop's, controller.period.mini with 0.004 s",
         ),
         (
             "torque_limits.max.mini=[5,5]",
@@ -130,8 +133,8 @@ def test_the_tick_is_the_fastest_stage_s(checked_config):
         ),
         (
             "controller=operational_space",
-            "controller.kind: operational_space controls one arm with 3 joints; the robot has 6 in stages (macro, "
-            "mini); take macro_mini or whole_body",
+            "controller.kind: operational_space controls one arm; the robot has 6 joints in stages (macro, mini); "
+            "take macro_mini or whole_body",
         ),
     ],
 )

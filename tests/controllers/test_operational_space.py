@@ -226,12 +226,14 @@ def test_another_number_of_joints_is_refused():
 def test_build_passes_every_value_on(one_stage):
     config = OperationalSpaceConfig(
         kind="operational_space",
+        task="position",
         natural_frequency=20.0,
         damping_ratio=0.7,
         period=0.01,
         gravity_compensation=False,
         feedforward=False,
         singularity_damping=0.2,
+        null_space_frequency=20.0,
     )
     q, dq, reference = np.array([0.1, 0.2, -1.5]), np.array([0.3, 0.2, 0.1]), np.ones((3, 3))
     expected = law("macro", 20.0, 0.7, gravity=False, feedforward=False, damping=0.2)

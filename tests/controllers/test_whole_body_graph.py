@@ -113,3 +113,33 @@ def test_the_picture_keeps_the_rules(flags):
     check_ways(graph)
     if flags[2] or flags[4]:  # the widest ones; drawing takes time
         check_texts(graph)
+
+
+@pytest.mark.parametrize("flags", FLAGS[1::2])
+def test_the_posture_of_all_joints_has_its_own_terms(arm, flags):
+    graph = whole_body_graph(**dict(zip(NAMES, flags, strict=True)), all_joints=True)
+    labels = {node.name: node.label for node in graph.nodes}
+    config = WholeBodyConfig(
+        kind="whole_body", natural_frequency=OMEGA, damping_ratio=XI, period=1e-3, gravity_compensation=flags[0],
+        feedforward=flags[1], null_space_frequency=OMEGA_N, max_tip_speed=SPEED if flags[4] else None,
+        singularity_damping=0.0,
+    )  # fmt: skip
+    assert (labels["K"], labels["k_vn"], labels["N^T"]) == ("$k_{p0}$", "$k_{v0}$", r"$M(1 - J^+\!J)$")
+    # What the posture adds to the law is what these three blocks say.
+    rest, generator = np.array([0.0, 0.0, 0.0, 0.1, -0.2, 0.3]), np.random.default_rng(1)
+    q, dq, reference = *generator.uniform(-1.0, 1.0, (2, 6)), generator.uniform(-1.0, 1.0, (3, 3))
+    with_posture, without = (
+        WholeBody(arm.model, config.model_copy(update={"null_space_frequency": frequency}), rest, first_held=0)
+        .torque(0.0, q, dq, reference)
+        .copy()
+        for frequency in (OMEGA_N, 0.0)
+    )
+    J = arm.model.tip_jacobian(q)[:3]
+    projector = arm.model.mass_matrix(q) @ (np.eye(6) - np.linalg.pinv(J) @ J)
+    expected = projector @ (OMEGA_N**2 * (rest - q) - 2.0 * OMEGA_N * dq)
+    scale = np.abs(with_posture).max()
+    np.testing.assert_allclose(with_posture - without, expected, atol=1e-9 * scale)
+    check_structure(graph)
+    check_ways(graph)
+    if flags[2] or flags[4]:
+        check_texts(graph)

@@ -1,0 +1,16 @@
+"""Calibrations as they are carried out on an arm, judged by the truth that simulation has."""
+
+from runner.calibration.procedures.bench import Bench
+from runner.calibration.procedures.procedure import Outcome, Procedure
+from runner.registry import Registry
+
+CALIBRATIONS = Registry(
+    "calibration",
+    {
+        "gravity": "runner.calibration.procedures.gravity",
+        "tool_centre_point": "runner.calibration.procedures.tool_centre_point",
+        "tool_direction": "runner.calibration.procedures.tool_direction",
+    },
+)
+
+__all__ = ["CALIBRATIONS", "Bench", "Outcome", "Procedure"]

@@ -1,0 +1,54 @@
+"""What every kind of calibration offers: to be repeated, and to be judged by the truth."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Protocol
+
+import numpy as np
+
+from runner.robots.model import FloatArray
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What one repetition found.
+
+    Attributes:
+        estimates: In the order of the procedure's `estimates`, shape (m,).
+        errors: Estimate less truth, in the order of its `errors`, shape (n,).
+        covariance: Of the errors as the calibration gives it, shape (n, n).
+        measures: Values of its `measures` by name.
+        notices: What a user should know of it.
+    """
+
+    estimates: FloatArray
+    errors: FloatArray
+    covariance: FloatArray
+    measures: Mapping[str, float]
+    notices: Sequence[str] = ()
+
+
+class Procedure(Protocol):
+    """One way to calibrate.
+
+    Attributes:
+        estimates: Unit of each estimate by name.
+        errors: Unit of each error by name.
+        measures: Unit of each measure of the poses, or of the result, by name.
+        truth: True values of the estimates, shape (m,).
+        postures: True joint positions in which the arm is read, shape (N, nq), in rad.
+    """
+
+    estimates: ClassVar[Mapping[str, str]]
+    errors: ClassVar[Mapping[str, str]]
+    measures: ClassVar[Mapping[str, str]]
+    truth: FloatArray
+    postures: FloatArray
+
+    def repeat(self, generator: np.random.Generator) -> Outcome:
+        """Calibrate once, with noise from a generator.
+
+        Raises:
+            ConfigError: if the postures leave something unknown.
+        """
+        ...

@@ -1,0 +1,99 @@
+"""Where the tip of a tool is, from poses in which it touches one fixed point (Meca500 report, section 2)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from runner.errors import ConfigError
+from runner.robots.model import FloatArray
+from runner.sensing.wrench import cross_matrix
+
+MIN_SINGULAR_VALUE = 0.01
+"""Per pose; below it, an error of the poses becomes more than a hundred times as large at the tip."""
+
+
+@dataclass(frozen=True)
+class ToolCentrePoint:
+    """An identified tool centre point.
+
+    Attributes:
+        position: The tip in the flange's frame, shape (3,), in m.
+        covariance: Covariance of its error, shape (3, 3), in m^2.
+        condition_number: Ratio of the largest to the smallest singular value of the stacked rotation differences.
+        smallest_singular_value: The smallest of them, over the square root of their number.
+        residual: Root mean square of the distance by which the poses miss one point, in m.
+    """
+
+    position: FloatArray
+    covariance: FloatArray
+    condition_number: float
+    smallest_singular_value: float
+    residual: float
+
+
+def identify_tool_centre_point(poses: FloatArray, pose_covariances: FloatArray) -> ToolCentrePoint:
+    r"""Return the tool centre point by the four-point method, for any number of poses from three on.
+
+    Pose 1 is subtracted from each other pose (report eqs. 4, 5), and the stack solved by least squares:
+
+    .. math:: (R_1 - R_k) p = P_k - P_1, \qquad k = 2 \dots N
+
+    Pose 1 stands in every row, so that the rows' errors are not independent. With A the stack, B the differences of
+    the tips and S the tips' covariances, block by block, the covariance is
+
+    .. math:: A^+ B S B^T A^{+T}, \qquad S_k = J_k \Sigma_k J_k^T, \quad J_k = [1, -[R_k p]_\times]
+
+    Args:
+        poses: Flange in the base frame, shape (N, 4, 4), with the tip at the same point in each.
+        pose_covariances: Covariance of each pose's error in the base frame, position in m and rotation vector in rad,
+            shape (N, 6, 6).
+
+    Raises:
+        ConfigError: if the poses are too few, too much alike, or turned about parallel axes only.
+    """
+    R, P = poses[:, :3, :3], poses[:, :3, 3]
+    if len(poses) < 3:
+        raise ConfigError([f"calibration.poses: {len(poses)} poses; a tool centre point needs 3 or more"])
+    A = (R[0] - R[1:]).reshape(-1, 3)
+    rows = len(poses) - 1
+    singular_values = np.linalg.svd(A, compute_uv=False)
+    smallest = float(singular_values[-1]) / np.sqrt(rows)
+    if smallest < MIN_SINGULAR_VALUE:
+        raise ConfigError([_refusal(R, singular_values, smallest)])
+    inverse = np.linalg.pinv(A)
+    b = (P[1:] - P[0]).reshape(-1)
+    p = inverse @ b
+    blocks = inverse.reshape(3, rows, 3).transpose(1, 0, 2)
+    blocks = np.concatenate([-blocks.sum(axis=0)[None], blocks])  # A+ B: how each pose's tip error enters
+    covariance = np.zeros((3, 3))
+    for block, rotation, pose_covariance in zip(blocks, R, pose_covariances, strict=True):
+        gain = block @ np.hstack([np.eye(3), -cross_matrix(rotation @ p)])
+        covariance += gain @ pose_covariance @ gain.T
+    tips = R @ p + P
+    return ToolCentrePoint(
+        position=p,
+        covariance=covariance,
+        condition_number=float(singular_values[0] / singular_values[-1]),
+        smallest_singular_value=smallest,
+        residual=float(np.sqrt(np.mean(np.sum((tips - tips.mean(axis=0)) ** 2, axis=1)))),
+    )
+
+
+def _refusal(R: FloatArray, singular_values: FloatArray, smallest: float) -> str:
+    turns = np.array([pin.log3(R[0].T @ other) for other in R[1:]])
+    angles = np.linalg.norm(turns, axis=1)
+    condition = singular_values[0] / singular_values[-1] if singular_values[-1] > 0.0 else np.inf
+    found = f"smallest singular value {smallest:.3g}, condition number {condition:.3g}"
+    if angles.max() < 10.0 * MIN_SINGULAR_VALUE:
+        why = f"the poses are too much alike: none is turned by more than {np.degrees(angles.max()):.3g} deg"
+    else:
+        axis = np.round(turns[np.argmax(angles)] / angles.max(), 3) + 0.0  # which makes -0 plain 0
+        why = (
+            f"all poses are turned about parallel axes, {axis.tolist()} in the flange's frame, along "
+            f"which the tip stays unknown"
+        )
+    return (
+        f"calibration.poses: {why} ({found}); allowed: {MIN_SINGULAR_VALUE:g} or more. Turn the flange about two axes "
+        f"that are not parallel, by 30 deg or more"
+    )

@@ -1,0 +1,135 @@
+"""From wrenches to motion, as a mass on a damper and a spring would move (Meca500 report, section 5)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+from scipy.linalg import expm
+
+from runner.controllers.controller import FloatArray
+from runner.errors import ConfigError
+
+AXES = ("x", "y", "z", "rotation x", "rotation y", "rotation z")
+
+
+@dataclass(frozen=True)
+class Admittance:
+    r"""The law of each axis, three of translation and three of rotation (report eq. 8).
+
+    .. math:: M \ddot x + B \dot x + K x = f
+
+    Attributes:
+        mass: M, shape (6,), in kg and kg m^2.
+        damping: B, shape (6,), in N s/m and N m s/rad.
+        stiffness: K, shape (6,), in N/m and N m/rad; zero lets an axis be guided by hand.
+
+    Raises:
+        ConfigError: if M is not positive definite, or B or K not positive semi-definite; names the axes.
+    """
+
+    mass: FloatArray
+    damping: FloatArray
+    stiffness: FloatArray
+
+    def __post_init__(self) -> None:
+        problems = []
+        for name, letter, values in (
+            ("mass", "M", self.mass),
+            ("damping", "B", self.damping),
+            ("stiffness", "K", self.stiffness),
+        ):
+            allowed = values > 0.0 if name == "mass" else values >= 0.0
+            wrong = [f"{value:g} for {axis}" for axis, value, ok in zip(AXES, values, allowed, strict=True) if not ok]
+            if wrong:
+                bound, definite = ("above 0", "definite") if name == "mass" else ("0 or more", "semi-definite")
+                problems.append(
+                    f"controller.{name}: {letter} must be positive {definite}: allowed on each axis: {bound}; "
+                    f"found {', '.join(wrong)}"
+                )
+        if problems:
+            raise ConfigError(problems)
+
+
+def discretise(law: Admittance, period: float) -> tuple[FloatArray, FloatArray]:
+    r"""Return the law sampled exactly for a load that is held over a period (zero-order hold).
+
+    .. math::
+
+        \begin{pmatrix} \Phi & \Gamma \\ 0 & 1 \end{pmatrix} = \exp \left( h
+        \begin{pmatrix} 0 & 1 & 0 \\ -K/M & -B/M & 1/M \\ 0 & 0 & 0 \end{pmatrix} \right)
+
+    Args:
+        law: The law.
+        period: h, in s.
+
+    Returns:
+        Phi, shape (6, 2, 2), and Gamma, shape (6, 2): (x, dx) at the next sample is Phi (x, dx) + Gamma f.
+    """
+    continuous = np.zeros((6, 3, 3))
+    continuous[:, 0, 1] = 1.0
+    continuous[:, 1] = np.column_stack([-law.stiffness, -law.damping, np.ones(6)]) / law.mass[:, None]
+    sampled = expm(period * continuous)
+    return sampled[:, :2, :2], sampled[:, :2, 2]
+
+
+class AdmittanceFilter:
+    """The law as a filter from a wrench to a displacement of a frame, sampled exactly at any rate.
+
+    Axes are those of the frame in which the wrench is given, which does not turn along. Rotation is that of a body:
+    the moment accelerates the angular velocity along fixed axes, each period's turn is composed onto the rotation
+    before it, and the spring pulls along the rotation vector (the logarithm). About one axis that is the law to
+    rounding; where the axis changes as it turns, it converges with the period. The report integrates angles.
+
+    Args:
+        law: The law.
+        period: Time between two steps, in s.
+    """
+
+    def __init__(self, law: Admittance, period: float) -> None:
+        Phi, Gamma = discretise(law, period)
+        (self._xx, self._xv), (self._vx, self._vv) = Phi.transpose(1, 2, 0)
+        self._xf, self._vf = Gamma.T
+        self.reset()
+
+    def reset(self) -> None:
+        """Rest where the spring is relaxed."""
+        self._displacement = np.zeros(6)
+        self._velocity = np.zeros(6)
+        self._rotation = pin.Quaternion.Identity()
+
+    @property
+    def translation(self) -> FloatArray:
+        """Displacement from where the spring is relaxed, shape (3,), in m."""
+        return self._displacement[:3].copy()
+
+    @property
+    def rotation(self) -> FloatArray:
+        """Rotation from there, shape (3, 3)."""
+        matrix: FloatArray = self._rotation.matrix()
+        return matrix
+
+    @property
+    def displacement(self) -> FloatArray:
+        """Translation in m and rotation vector, of at most half a turn, in rad, shape (6,)."""
+        return self._displacement.copy()
+
+    @property
+    def velocity(self) -> FloatArray:
+        """Linear velocity in m/s and angular velocity in rad/s, shape (6,)."""
+        return self._velocity.copy()
+
+    def place(self, translation: FloatArray, rotation: FloatArray) -> None:
+        """Rest at a displacement, shape (3,), in m, and a rotation, shape (3, 3), where something holds the frame."""
+        self._rotation = pin.Quaternion(rotation)
+        self._displacement = np.concatenate([translation, pin.log3(self._rotation.coeffs())])
+        self._velocity = np.zeros(6)
+
+    def step(self, wrench: FloatArray) -> None:
+        """Move on by one period under a wrench, force in N and moment in N m, shape (6,)."""
+        x, v = self._displacement, self._velocity
+        moved = self._xx * x + self._xv * v + self._xf * wrench
+        self._velocity = self._vx * x + self._vv * v + self._vf * wrench
+        self._rotation = pin.Quaternion(pin.exp3_quat(moved[3:] - x[3:])) * self._rotation
+        self._rotation.normalize()
+        moved[3:] = pin.log3(self._rotation.coeffs())
+        self._displacement = moved

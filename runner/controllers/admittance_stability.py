@@ -1,0 +1,87 @@
+"""Against which wall a sampled admittance stays stable."""
+
+import numpy as np
+from scipy.optimize import brentq
+
+from runner.controllers.admittance_filter import AXES, Admittance, discretise
+from runner.controllers.controller import FloatArray
+from runner.errors import ConfigError
+
+
+def contact_matrix(
+    Phi: FloatArray, Gamma: FloatArray, period: float, stiffness: float, damping: float, delay: int
+) -> FloatArray:
+    r"""Return the matrix that takes one axis in contact with a wall from one tick to the next.
+
+    The arm reaches each command by the next tick, and the filter feels the wall d ticks late:
+
+    .. math:: f_k = -k x_{k-d} - c (x_{k-d} - x_{k-d-1}) / h
+
+    Args:
+        Phi: The axis' sampled law, shape (2, 2); see discretise.
+        Gamma: Its input, shape (2,).
+        period: h, in s.
+        stiffness: k of the wall, in N/m, or N m/rad.
+        damping: c of the wall, in N s/m, or N m s/rad.
+        delay: d, in ticks: 0 for an arm that follows exactly, 1 for a servo that lags by a tick.
+
+    Returns:
+        For the state (dx_k, x_k, x_{k-1} ... x_{k-d-1}), shape (d + 3, d + 3).
+    """
+    (xx, xv), (vx, vv) = Phi
+    xf, vf = Gamma
+    matrix = np.zeros((delay + 3, delay + 3))
+    matrix[0, :2], matrix[1, :2] = (vv, vx), (xv, xx)
+    force = np.zeros(delay + 3)
+    force[delay + 1], force[delay + 2] = -stiffness - damping / period, damping / period
+    matrix[0] += vf * force
+    matrix[1] += xf * force
+    matrix[2:, 1:-1] = np.eye(delay + 1)
+    return matrix
+
+
+def spectral_radius(law: Admittance, period: float, axis: int, stiffness: float, damping: float, delay: int) -> float:
+    """Return the largest modulus of the contact's eigenvalues: it is stable below 1; see contact_matrix."""
+    Phi, Gamma = discretise(law, period)
+    return _radius(contact_matrix(Phi[axis], Gamma[axis], period, stiffness, damping, delay))
+
+
+def stiffest_wall(law: Admittance, period: float, axis: int, damping: float, delay: int) -> float:
+    """Return the wall stiffness up to which contact is stable, in N/m or N m/rad; see contact_matrix.
+
+    Zero where no wall is soft enough, as for an axis without damping.
+    """
+
+    def excess(exponent: float) -> float:
+        return _radius(contact_matrix(Phi[axis], Gamma[axis], period, 10.0**exponent, damping, delay)) - 1.0
+
+    Phi, Gamma = discretise(law, period)
+    middle = -float(np.log10(Gamma[axis, 0]))  # there a period under the wall's force undoes what caused it
+    exponents = np.linspace(middle - 8.0, middle + 3.0, 111)
+    unstable = [excess(exponent) >= 0.0 for exponent in exponents]
+    first = unstable.index(True)
+    return 0.0 if first == 0 else float(10.0 ** brentq(excess, exponents[first - 1], exponents[first]))
+
+
+def _radius(matrix: FloatArray) -> float:
+    return float(np.abs(np.linalg.eigvals(matrix)).max())
+
+
+def check_wall(law: Admittance, period: float, stiffness: float, damping: float, delay: int) -> None:
+    """Check that every axis of translation may touch a wall; see contact_matrix.
+
+    Raises:
+        ConfigError: if one would be unstable; names the stiffness that would not.
+    """
+    problems = []
+    for axis in range(3):
+        radius = spectral_radius(law, period, axis, stiffness, damping, delay)
+        if radius >= 1.0:
+            bound = stiffest_wall(law, period, axis, damping, delay)
+            problems.append(
+                f"controller.period: at {period:g} s the admittance along {AXES[axis]} is unstable against a wall of "
+                f"{stiffness:g} N/m (spectral radius {radius:.4g}); predicted bound: {bound:.4g} N/m. Take a softer "
+                f"wall, a shorter period, or more controller.damping or controller.mass"
+            )
+    if problems:
+        raise ConfigError(problems)

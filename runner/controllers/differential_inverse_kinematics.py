@@ -1,0 +1,173 @@
+"""Inverse kinematics by integrating joint velocities, with the tip's error fed back."""
+
+from typing import Literal
+
+import numpy as np
+import pinocchio as pin
+from pydantic import NonNegativeFloat, PositiveFloat
+
+from runner.config.per_joint import PositivePerJoint, expand
+from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.null_space import NullSpaceConfig, NullSpaceTask
+from runner.controllers.resolved_rate import ResolvedRate
+from runner.controllers.tip_task import TaskName, held_orientation, task_start
+from runner.errors import ConfigError
+from runner.registry import StrictModel
+from runner.robots.model import RobotModel
+from runner.robots.robot import Robot
+
+COMMANDS = "position"
+FOLLOWS_PATHS = True
+
+# Explicit Runge-Kutta rules: where within the period each slope is taken, along the one before, and its weight.
+_RULES = {
+    "euler": ((0.0,), (1.0,)),
+    "midpoint": ((0.0, 0.5), (0.0, 1.0)),
+    "rk4": ((0.0, 0.5, 0.5, 1.0), (1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0)),
+}
+
+
+class DifferentialInverseKinematicsConfig(StrictModel):
+    """Config of differential inverse kinematics.
+
+    Attributes:
+        kind: Its name in the registry.
+        period: Time between two commands, in s.
+        task: Whether the tip's position is led, or its pose, with home's orientation kept.
+        gain: K, how fast a tip error is to vanish, in 1/s; at most 1 / period.
+        feedforward: Whether the law knows the desired motion's derivatives, or sees a moving goal.
+        feedback: Where the tip's error is taken: at the measured joint positions, or at those commanded.
+        integration: Rule by which a command follows from the one before.
+        damping: Singular value, as a share of the arm's reach, below which the inverse is damped; 0: J^+ undamped.
+        weights: What the motion of each joint costs, of all or one for each.
+        null_space: The null-space task.
+    """
+
+    kind: Literal["differential_inverse_kinematics"]
+    period: PositiveFloat
+    task: TaskName
+    gain: NonNegativeFloat
+    feedforward: bool
+    feedback: Literal["measured", "commanded"]
+    integration: Literal["euler", "midpoint", "rk4"]
+    damping: NonNegativeFloat
+    weights: PositivePerJoint
+    null_space: NullSpaceConfig
+
+
+class DifferentialInverseKinematics:
+    r"""Closed-loop inverse kinematics: joint velocities that lead the tip, integrated to joint positions.
+
+    .. math:: \dot q = J^\# (\dot x_d + K (x_d - x)) + (1 - J^\# J) \dot q_0
+
+    J^# and its bounds are those of ResolvedRate, the speed and position limits of the URDF; q0' is the null-space
+    task's. For a pose the orientation of home is kept: the angular error is the rotation vector from the tip's
+    orientation to it, in the base frame. Commands continue the command before, and the error of the measured tip is
+    fed back on top: a servo's sag is corrected, as integral action would, and the measurement's noise enters by K only.
+
+    Args:
+        model: The arm.
+        config: The law's numbers.
+        home: Joint positions at home, shape (nq,), in rad.
+
+    Raises:
+        ConfigError: for a task of more dimensions than the arm has joints, a list of the wrong length, a gain that no
+            sampled loop stands.
+    """
+
+    def __init__(self, model: RobotModel, config: DifferentialInverseKinematicsConfig, home: FloatArray) -> None:
+        _check_gain(config)
+        self._orientation = held_orientation(config.task, model, home)
+        self._rows = 3 if self._orientation is None else 6
+        self._model = pin.Model(model.pin_model)
+        self._data = self._model.createData()
+        self._tip = model.tip_frame
+        self._period = config.period
+        self._gain = config.gain
+        self._feedforward = config.feedforward
+        self._measured = config.feedback == "measured"
+        self._rule = tuple(zip(*_RULES[config.integration], strict=True))
+        weights = np.array(expand("controller.weights", config.weights, model.joint_names))
+        self._resolved_rate = ResolvedRate(weights, config.damping * model.reach)
+        posture = config.null_space.posture
+        rest = home if posture is None else np.array(_expand_posture(posture, model))
+        self._null_space = NullSpaceTask(config.null_space, rest, model.position_limits)
+        self._speed_limits = model.velocity_limits
+        self._position_limits = model.position_limits
+        self._command = home.copy()
+
+    def reset(self, q: FloatArray) -> None:
+        """Start from joint positions; see PositionController."""
+        self._command = q.copy()
+
+    def joint_positions(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
+        """Return the next command; see PositionController.joint_positions."""
+        off, turn = self._tip_offset(q) if self._measured else (np.zeros(3), np.eye(3))
+        command, slope, motion = self._command, np.zeros_like(q), np.zeros_like(q)
+        for place, weight in self._rule:
+            ahead = place * self._period
+            slope = self._joint_velocity(command + ahead * slope, ahead, off, turn, reference)
+            motion += weight * slope
+        self._command = command + self._period * motion
+        return self._command
+
+    def _tip_offset(self, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return translation and rotation from the commanded tip to the measured one."""
+        x, R, _ = self._tip_at(self._command)
+        x_measured, R_measured, _ = self._tip_at(q)
+        return x_measured - x, R_measured @ R.T
+
+    def _joint_velocity(
+        self, q: FloatArray, ahead: float, off: FloatArray, turn: FloatArray, reference: FloatArray
+    ) -> FloatArray:
+        """Return the law's joint velocities at joint positions commanded for a time ahead, in s."""
+        x, R, J = self._tip_at(q)
+        x_d, dx_d, ddx_d = reference
+        v = self._gain * (x_d - x - off)
+        if self._feedforward:
+            v += dx_d + ahead * ddx_d + self._gain * (ahead * dx_d + 0.5 * ahead**2 * ddx_d)
+        if self._orientation is not None:
+            v = np.concatenate([v, self._gain * pin.log3(self._orientation @ (turn @ R).T)])
+        dq0 = self._null_space.velocity(q, J, self._rows)
+        lower, upper = (self._position_limits - self._command) / self._period
+        lower = np.clip(lower, -self._speed_limits, self._speed_limits)
+        upper = np.clip(upper, -self._speed_limits, self._speed_limits)
+        return self._resolved_rate.solve(J[: self._rows], v, dq0, lower, upper)
+
+    def _tip_at(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return position, orientation and basic Jacobian of the tip in the base frame."""
+        J = pin.computeFrameJacobian(self._model, self._data, q, self._tip, pin.LOCAL_WORLD_ALIGNED)
+        placement = self._data.oMf[self._tip]
+        return placement.translation.copy(), placement.rotation.copy(), J
+
+
+def _expand_posture(posture: list[float], model: RobotModel) -> list[float]:
+    return expand("controller.null_space.posture", posture, model.joint_names)
+
+
+def _check_gain(config: DifferentialInverseKinematicsConfig) -> None:
+    if config.gain * config.period > 1.0 + 1e-9:
+        raise ConfigError(
+            [
+                f"controller.gain: {config.gain:g} 1/s times controller.period, {config.period:g} s, is above 1: the "
+                f"error would overshoot at each tick; allowed: up to {1.0 / config.period:g}"
+            ]
+        )
+
+
+CONFIG = DifferentialInverseKinematicsConfig
+
+
+def build(config: DifferentialInverseKinematicsConfig, robot: Robot) -> tuple[Loop, ...]:
+    """Make the one loop that a config describes; it commands every joint.
+
+    Raises:
+        ConfigError: see DifferentialInverseKinematics.
+    """
+    controller = DifferentialInverseKinematics(robot.model, config, robot.home)
+    return (Loop(robot.stage_names[-1], slice(0, robot.model.nq), config.period, controller),)
+
+
+def start_posture(config: DifferentialInverseKinematicsConfig, robot: Robot, start: FloatArray) -> FloatArray | None:
+    """Return where the arm starts: at home's orientation for a pose; None leaves it to the position alone."""
+    return task_start(config.task, robot, start)

@@ -1,0 +1,71 @@
+"""Joint velocities for a tip velocity: weighted, damped, within bounds, with a null-space motion beside."""
+
+import numpy as np
+
+from runner.controllers.controller import FloatArray
+
+
+class ResolvedRate:
+    r"""The joint velocities that give a tip its velocity, closest to those of a null-space task.
+
+    .. math::
+
+        \dot q = \dot q_0 + W^{-1} J^T (J W^{-1} J^T + \lambda^2 1)^{-1} (v - J \dot q_0)
+
+    With lambda = 0 and W = 1 this is J^+ v + (1 - J^+ J) q0', J^+ = J^T (J J^T)^-1: of a wide Jacobian it is J J^T
+    that has an inverse. lambda grows from zero as the smallest singular value sigma of J W^-1/2 falls below a
+    threshold, lambda^2 = damping^2 (1 - (sigma / damping)^2) (Nakamura and Hanafusa, Journal of Dynamic Systems,
+    Measurement and Control 108, 1986).
+
+    Joints that would leave their bounds are held at them, the worst first, and the others asked again (saturation in
+    the null space: Flacco, De Luca and Khatib, IEEE Transactions on Robotics 31(3), 2015). Where the others cannot do
+    it, what is left is as near as least squares bring it, and clipped.
+
+    Args:
+        weights: Diagonal of W, shape (nq,): what each joint's motion costs.
+        damping: Threshold of the singular value, and largest lambda, in the unit of J; 0 is no damping.
+    """
+
+    def __init__(self, weights: FloatArray, damping: float) -> None:
+        self._mobility = 1.0 / weights
+        self._damping = damping
+
+    def solve(self, J: FloatArray, v: FloatArray, dq0: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
+        """Return joint velocities within their bounds, shape (nq,), in rad/s.
+
+        Args:
+            J: Jacobian of the tip's task, shape (m, nq).
+            v: Velocity of the tip's task, shape (m,).
+            dq0: Joint velocities of the null-space task, shape (nq,), in rad/s.
+            lower: Smallest joint velocities, shape (nq,), in rad/s.
+            upper: Largest joint velocities, likewise.
+
+        Raises:
+            numpy.linalg.LinAlgError: at a singular posture, without damping.
+        """
+        dq = self._solve(J, v, dq0)
+        beyond = np.maximum(lower - dq, dq - upper)
+        if beyond.max() <= 0.0:
+            return dq
+        free = np.ones(len(dq), dtype=bool)
+        while beyond.max() > 0.0 and free.sum() > len(v):
+            worst = int(np.argmax(beyond))
+            free[worst] = False
+            dq[worst] = min(max(dq[worst], lower[worst]), upper[worst])
+            left = v - J[:, ~free] @ dq[~free]
+            try:
+                dq[free] = self._solve(J[:, free], left, dq0[free], self._mobility[free])
+            except np.linalg.LinAlgError:
+                break  # the others cannot do it
+            beyond = np.where(free, np.maximum(lower - dq, dq - upper), 0.0)
+        bounded: FloatArray = np.clip(dq, lower, upper)
+        return bounded
+
+    def _solve(self, J: FloatArray, v: FloatArray, dq0: FloatArray, mobility: FloatArray | None = None) -> FloatArray:
+        spread = (self._mobility if mobility is None else mobility)[:, None] * J.T
+        A = J @ spread
+        if self._damping:
+            smallest = max(float(np.linalg.eigvalsh(A)[0]), 0.0)
+            A[np.diag_indices_from(A)] += max(self._damping**2 - smallest, 0.0)
+        solution: FloatArray = dq0 + spread @ np.linalg.solve(A, v - J @ dq0)
+        return solution

@@ -1,0 +1,98 @@
+"""What a redundant arm is asked in the null space of its tip's task: to hold a posture."""
+
+from typing import Protocol
+
+import numpy as np
+from scipy.linalg.lapack import dposv
+
+from runner.controllers.controller import FloatArray
+from runner.robots.model import RobotModel
+
+
+class Posture(Protocol):
+    """A posture task; its torque is M a + s, before the tip's part is taken out of it."""
+
+    def ask(self, J: FloatArray, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return a joint acceleration a, in rad/s^2, and a torque s, in N m, both of shape (nq,).
+
+        Args:
+            J: Jacobian of the tip's task, shape (rows, nq).
+            q: Joint positions, shape (nq,), in rad.
+            dq: Joint velocities, likewise, in rad/s.
+        """
+        ...
+
+
+class HeldJoints:
+    r"""Joints from one on are held, and all are damped.
+
+    .. math:: \tau_0 = -k_{vn} M \dot q - K (q - q_\mathrm{rest})
+
+    Damping alone would let a Mini that rides on a Macro stretch. K is constant, symmetric, and zero but for the joints
+    whose posture is held: a spring, so that the posture can only lose energy while the tip rests. At rest it gives them
+    omega_n = frequency: K is omega_n^2 times the inertia that they meet there with the tip held. An acceleration,
+    M S (q - q_rest), is no spring: of one of the Mini's joints alone N^T leaves nothing at home.
+
+    Args:
+        model: The arm.
+        frequency: omega_n of the posture, in rad/s.
+        rest: The posture, shape (nq,), in rad.
+        first: The first joint that is held, and with it all after it; as many as the tip's position takes stay free.
+    """
+
+    def __init__(self, model: RobotModel, frequency: float, rest: FloatArray, first: int) -> None:
+        self.stiffness = frequency**2 * _inertia_at_rest(model, rest, first)
+        """K, shape (nq, nq), in N m/rad."""
+        self._k_vn = 2.0 * frequency
+        self._rest = rest
+
+    def ask(self, J: FloatArray, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return -k_vn dq and the spring's torque; see Posture."""
+        return -self._k_vn * dq, self.stiffness.dot(self._rest - q)
+
+
+class HeldPosture:
+    r"""All joints are drawn to a posture, as far as the tip's task leaves them.
+
+    .. math:: \tau_0 = M (1 - J^+ J) (-2 \omega_n \dot q - \omega_n^2 (q - q_\mathrm{rest}))
+
+    While the tip rests, |dq|^2 + omega_n^2 |q - q_rest|^2 falls, and the arm ends where it is nearest to the posture
+    counted in joint angles. A spring of every joint's own inertia would count in these: it turns the light wrist of an
+    arm by radians before it moves the heavy shoulder.
+
+    Args:
+        frequency: omega_n of the posture, in rad/s.
+        rest: The posture, shape (nq,), in rad.
+    """
+
+    def __init__(self, frequency: float, rest: FloatArray) -> None:
+        self._k_p, self._k_v = frequency**2, 2.0 * frequency
+        self._rest = rest
+        self._no_torque = np.zeros(len(rest))
+
+    def ask(self, J: FloatArray, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the joint acceleration that the tip does not feel, and no torque; see Posture."""
+        return without_tip_motion(J, self.acceleration(q, dq)), self._no_torque
+
+    def acceleration(self, q: FloatArray, dq: FloatArray) -> FloatArray:
+        """Return the joint acceleration towards the posture, whatever the tip does, shape (nq,), in rad/s^2."""
+        return np.asarray(self._k_p * (self._rest - q) - self._k_v * dq)
+
+
+def without_tip_motion(J: FloatArray, ddq: FloatArray) -> FloatArray:
+    """Return (1 - J^+ J) ddq, shapes (rows, nq) and (nq,); smooth through singular postures."""
+    square = J.dot(J.T)
+    square[np.diag_indices_from(square)] += 1e-12 * np.trace(square)
+    _, solution, _ = dposv(square, J.dot(ddq))
+    return np.asarray(ddq - J.T.dot(solution))
+
+
+def _inertia_at_rest(model: RobotModel, rest: FloatArray, first: int) -> FloatArray:
+    """Return the inertia that the joints from a first one on meet at rest, shape (nq, nq), zero for the others."""
+    inertia = np.zeros((model.nq, model.nq))
+    held = slice(first, model.nq)
+    M, J = model.mass_matrix(rest), model.tip_jacobian(rest)[:3]
+    M_inverse = np.linalg.pinv(M, hermitian=True)
+    mobility = M_inverse - M_inverse @ J.T @ np.linalg.pinv(J @ M_inverse @ J.T, hermitian=True) @ J @ M_inverse
+    inertia[held, held] = np.linalg.pinv(mobility[held, held], hermitian=True)
+    return inertia

@@ -1,0 +1,16 @@
+"""What the world does to the tip: pushes, walls, hands."""
+
+from runner.environments.environment import Environment
+from runner.registry import Registry
+
+ENVIRONMENTS = Registry(
+    "environment",
+    {
+        "free": "runner.environments.free",
+        "hand": "runner.environments.hand",
+        "push": "runner.environments.push",
+        "wall": "runner.environments.wall",
+    },
+)
+
+__all__ = ["ENVIRONMENTS", "Environment"]

@@ -1,0 +1,59 @@
+"""A hand that leads the tip: a spring and a damper from it to the tip."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field, NonNegativeFloat, PositiveFloat
+
+from runner.environments.environment import Environment, FloatArray
+from runner.registry import StrictModel
+from runner.trajectories.blend import quintic_blend
+
+
+class HandConfig(StrictModel):
+    """Config of a hand.
+
+    Attributes:
+        kind: Its name in the registry.
+        travel: Where it leads the tip, from where the tip starts, along the base's axes, in m.
+        begin: When it sets out, in s.
+        duration: How long it takes, from rest to rest, in s; then it holds still.
+        stiffness: Of its grip, in N/m.
+        damping: Of its grip, in N s/m.
+    """
+
+    kind: Literal["hand"]
+    travel: Annotated[list[float], Field(min_length=3, max_length=3)]
+    begin: NonNegativeFloat
+    duration: PositiveFloat
+    stiffness: PositiveFloat
+    damping: NonNegativeFloat
+
+
+class Hand:
+    """The hand; see Environment. It moves as the rest-to-rest quintic does, and turns nothing."""
+
+    def __init__(self, config: HandConfig) -> None:
+        self._config = config
+        self._travel = np.array(config.travel)
+        self._origin = np.zeros(3)
+
+    def reset(self, tip: FloatArray) -> None:
+        """Take hold of the tip where it is."""
+        self._origin = tip.copy()
+
+    def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
+        """Return the wrench on the tip; see Environment.wrench."""
+        config = self._config
+        share, speed, _ = quintic_blend(np.array([(time - config.begin) / config.duration]))
+        pull = config.stiffness * (self._origin + share * self._travel - tip)
+        pull += config.damping * (speed / config.duration * self._travel - velocity)
+        return np.concatenate([pull, np.zeros(3)])
+
+
+CONFIG = HandConfig
+
+
+def build(config: HandConfig) -> Environment:
+    """Make the hand that a config describes."""
+    return Hand(config)

@@ -1,0 +1,129 @@
+"""Whether joints that are told where to go can follow a path: asked of a perfect arm before anything runs."""
+
+import copy
+import math
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from runner.controllers import CONTROLLERS
+from runner.errors import ConfigError
+from runner.robots.model import RobotModel
+from runner.robots.robot import Robot
+from runner.trace import FloatArray
+from runner.trajectories import Trajectory
+
+_AT_LIMIT = 1e-6  # rad
+_SINGULAR = 0.1  # of the reach; damping keeps a tip from the path well before the singular posture itself
+
+
+def check_path(controller: Any, robot: Robot, trajectory: Trajectory, q_start: FloatArray, tolerance: float) -> None:
+    """Let a controller of joint positions lead a perfect arm without speed limits along the path, without noise.
+
+    Args:
+        controller: Config of the controller.
+        robot: The robot.
+        trajectory: The desired motion.
+        q_start: Joint positions at t = 0, shape (nq,), in rad.
+        tolerance: Distance from the path at which it is left, in m.
+
+    Raises:
+        ConfigError: if the path cannot be followed: says when, which joint, and why; or not so fast: says the
+            shortest feasible time.
+    """
+    if not trajectory.tracked:
+        return
+    times: FloatArray = np.arange(math.floor(trajectory.duration / controller.period) + 1) * controller.period
+    q, stuck = _roll_out(controller, _without_speed_limits(robot), trajectory.sample(times), q_start)
+    problem = (
+        _find_end(times, q, stuck)
+        or _find_stop(robot.model, trajectory, times, q, tolerance)
+        or _find_haste(robot.model, trajectory, times, q)
+        or _find_departure(robot.model, trajectory, times, q, tolerance)
+    )
+    if problem:
+        raise ConfigError([problem])
+
+
+def _roll_out(controller: Any, robot: Robot, desired: FloatArray, q_start: FloatArray) -> tuple[FloatArray, str]:
+    """Return the joint positions reached, a row for each time, and what stopped the law before the end, or ""."""
+    (loop,) = CONTROLLERS.build(controller, robot)
+    law, q = loop.controller, q_start
+    law.reset(q)
+    rows = [q]
+    for k, reference in enumerate(desired[:-1]):
+        try:
+            q = law.joint_positions(k * loop.period, q, np.zeros_like(q), reference).copy()
+        except np.linalg.LinAlgError as error:
+            return np.array(rows), str(error)
+        rows.append(q)
+    return np.array(rows), ""
+
+
+def _find_end(times: FloatArray, q: FloatArray, stuck: str) -> str:
+    return f"trajectory: the arm cannot follow it beyond t = {times[len(q) - 1]:.4g} s: {stuck}" if stuck else ""
+
+
+def _find_stop(model: RobotModel, trajectory: Trajectory, times: FloatArray, q: FloatArray, tolerance: float) -> str:
+    """Return which joint's limit, or what singular posture, keeps the tip from the path; "" where none does."""
+    lower, upper = model.position_limits
+    outside = (q < lower - _AT_LIMIT) | (q > upper + _AT_LIMIT)
+    if outside.any():
+        row, joint = np.argwhere(outside)[0]
+        return (
+            f"trajectory: at t = {times[row]:.4g} s {model.joint_names[joint]} would be at {q[row, joint]:.4g} rad; "
+            f"its limits are {lower[joint]:.4g} to {upper[joint]:.4g} rad"
+        )
+    distance = trajectory.distance_to_path(model.tip_positions(q))
+    if distance.max() <= tolerance:
+        return ""
+    row = int(np.argmax(distance > tolerance))
+    reasons = [
+        f"{name} stands at its limit of {limit:.4g} rad"
+        for name, *limits, value in zip(model.joint_names, lower, upper, q[row], strict=True)
+        for limit in limits
+        if abs(value - limit) < _AT_LIMIT
+    ]
+    smallest = float(np.linalg.svd(model.tip_jacobian(q[row])[:3], compute_uv=False)[-1])
+    if smallest < _SINGULAR * model.reach:
+        reasons.append(
+            f"the posture is singular, or nearly so (smallest singular value {smallest:.3g} m; reach "
+            f"{model.reach:.4g} m)"
+        )
+    return f"{_departure(times[row], distance)}: {' and '.join(reasons)}" if reasons else ""
+
+
+def _find_departure(
+    model: RobotModel, trajectory: Trajectory, times: FloatArray, q: FloatArray, tolerance: float
+) -> str:
+    distance = trajectory.distance_to_path(model.tip_positions(q))
+    if distance.max() <= tolerance:
+        return ""
+    when = _departure(times[int(np.argmax(distance > tolerance))], distance)
+    return f"{when}: no joint is at a limit; controller.period is too long for it, or controller.gain too low"
+
+
+def _departure(time: float, distance: FloatArray) -> str:
+    return f"trajectory: at t = {time:.4g} s the tip leaves the path, by {distance.max():.4g} m at most"
+
+
+def _find_haste(model: RobotModel, trajectory: Trajectory, times: FloatArray, q: FloatArray) -> str:
+    speeds = np.abs(np.diff(q, axis=0)) / (times[1] - times[0])
+    share = speeds / model.velocity_limits
+    if share.max(initial=0.0) <= 1.0 + 1e-9:
+        return ""
+    row, joint = np.unravel_index(int(np.argmax(share)), share.shape)
+    name, speed, limit = model.joint_names[joint], speeds[row, joint], model.velocity_limits[joint]
+    return (
+        f"trajectory.duration: {trajectory.duration:g} s is too fast: at t = {times[row]:.4g} s {name} would turn at "
+        f"{speed:.4g} rad/s, and its limit is {limit:.4g} rad/s; the shortest feasible time is "
+        f"{trajectory.duration * share.max():.4g} s"
+    )
+
+
+def _without_speed_limits(robot: Robot) -> Robot:
+    free = copy.copy(robot.model)
+    free.pin_model = pin.Model(robot.model.pin_model)
+    free.pin_model.upperVelocityLimit = np.full(robot.model.nq, 1e30)
+    return Robot(robot.urdf, free, robot.stages, robot.flange)

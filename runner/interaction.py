@@ -1,0 +1,144 @@
+"""Between arm and world: what the tip feels, what that does to the joints, and what loads the wrist's sensor."""
+
+from collections.abc import Sequence
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from runner.controllers.controller import FeelingController
+from runner.environments import Environment
+from runner.robots.robot import Robot
+from runner.robots.tool_link import find_tool, holding_wrench
+from runner.sensing.force_torque import ForceTorqueSensor
+from runner.sensing.wrench import wrench_transform
+from runner.trace import FloatArray, TouchSignals
+
+_NOTHING = np.zeros(6)
+
+
+class Interaction:
+    """The wrench on the tip and its way into the arm, tick by tick.
+
+    The load of the wrist's sensor is the tool's rigid-body balance, exact in motion, where PyBullet's joint reaction
+    is off by a term in the square of the speeds.
+
+    Args:
+        robot: The robot; a tool on its flange is what the sensor bears.
+        environment: The world around the tip; None where a plant makes the contact itself, or there is none.
+        tick: Time between two updates, in s.
+    """
+
+    def __init__(self, robot: Robot, environment: Environment | None, tick: float) -> None:
+        self._model = pin.Model(robot.model.pin_model)
+        self._data = self._model.createData()
+        self._environment = environment
+        self._tick = tick
+        self._tip = robot.model.tip_frame
+        self._flange = self._model.getFrameId(robot.flange)
+        self._tool = find_tool(self._model, self._flange)
+        self._gravity = robot.model.gravity
+        self._zero = np.zeros(robot.model.nq)
+        self._last_dq = np.zeros(robot.model.nq)
+        self.external = np.zeros(6)
+        """Wrench of the world on the tip: force in N, moment about the tip in N m, along the base's axes."""
+        self.load = np.zeros(6)
+        """Wrench of world and tool on the flange: force in N, moment about its origin in N m, along its axes."""
+
+    def reset(self, q: FloatArray) -> None:
+        """Start at rest at joint positions, shape (nq,), in rad."""
+        self._last_dq = np.zeros_like(q)
+        pin.framesForwardKinematics(self._model, self._data, q)
+        if self._environment is not None:
+            self._environment.reset(self._data.oMf[self._tip].translation.copy())
+
+    def update(self, time: float, q: FloatArray, dq: FloatArray, contact: FloatArray) -> FloatArray:
+        """Take the arm's true state, and return the joint torques of the world that the plant does not make itself.
+
+        Args:
+            time: Time since the start, in s.
+            q: Joint positions, shape (nq,), in rad.
+            dq: Joint velocities, shape (nq,), in rad/s.
+            contact: Wrench of contacts that the plant made in the last tick: force in N and moment about the base's
+                origin in N m, along its axes, shape (6,).
+
+        Returns:
+            Shape (nq,), in N m.
+        """
+        model, data = self._model, self._data
+        ddq = (dq - self._last_dq) / self._tick
+        self._last_dq = dq.copy()
+        pin.forwardKinematics(model, data, q, dq, ddq)
+        pin.computeJointJacobians(model, data)
+        tip = pin.updateFramePlacement(model, data, self._tip)
+        J = pin.getFrameJacobian(model, data, self._tip, pin.LOCAL_WORLD_ALIGNED)
+        applied = np.zeros(6)
+        if self._environment is not None:
+            applied = self._environment.wrench(time, tip.translation.copy(), J[:3] @ dq)
+        self.external[:] = applied + contact
+        self.external[3:] -= np.cross(tip.translation, contact[:3])
+        self.load[:] = self._load_on_flange(tip)
+        torques: FloatArray = J.T @ applied
+        return torques
+
+    def to_flange_axes(self, wrench: FloatArray) -> FloatArray:
+        """Return a wrench given along the base's axes, shape (6,), along the flange's."""
+        R = self._data.oMf[self._flange].rotation
+        return np.concatenate([wrench[:3] @ R, wrench[3:] @ R])
+
+    def _load_on_flange(self, tip: pin.SE3) -> FloatArray:
+        model, data = self._model, self._data
+        flange = pin.updateFramePlacement(model, data, self._flange)
+        from_base = pin.SE3(flange.rotation.T, flange.rotation.T @ (tip.translation - flange.translation))
+        load: FloatArray = wrench_transform(from_base.homogeneous) @ self.external
+        load -= holding_wrench(model, data, self._flange, self._tool, self._gravity)
+        return load
+
+
+class Touch:
+    """The interaction of one run: it loads the sensor, lets the controllers feel its reading, and keeps a record.
+
+    Args:
+        interaction: Between arm and world.
+        wrist: The force/torque sensor, with a draw for each tick.
+        feeling: The controllers that feel its reading.
+        q_start: Joint positions at t = 0, shape (nq,), in rad.
+        rows: Number of ticks, the last included.
+    """
+
+    def __init__(
+        self,
+        interaction: Interaction,
+        wrist: ForceTorqueSensor,
+        feeling: Sequence[FeelingController],
+        q_start: FloatArray,
+        rows: int,
+    ) -> None:
+        self._interaction = interaction
+        self._wrist = wrist
+        self._feeling = feeling
+        self._signals = TouchSignals(*(np.zeros((rows, 6)) for _ in range(5)))
+        interaction.reset(q_start)
+
+    def update(self, k: int, time: float, q: FloatArray, dq: FloatArray, plant: Any) -> FloatArray:
+        """Take the state at tick k, and return the joint torques of the world; see Interaction.update.
+
+        A plant that makes contacts offers their `contact_wrench`, and one that computes it the `tool_reaction`.
+        """
+        interaction, signals = self._interaction, self._signals
+        torques = interaction.update(time, q, dq, getattr(plant, "contact_wrench", _NOTHING))
+        reading = self._wrist.read(k, interaction.load)
+        signals.external[k], signals.load[k], signals.reading[k] = interaction.external, interaction.load, reading
+        reaction = getattr(plant, "tool_reaction", None)
+        if reaction is not None:
+            signals.reaction[k] = interaction.to_flange_axes(reaction)
+        for controller in self._feeling:
+            controller.feel(reading)
+        if self._feeling:
+            signals.felt[k] = self._feeling[0].felt  # of its last tick
+        return torques
+
+    def signals(self, kept: slice) -> TouchSignals:
+        """Return the record of some ticks."""
+        return TouchSignals(**{field.name: getattr(self._signals, field.name)[kept] for field in fields(TouchSignals)})

@@ -1,0 +1,83 @@
+"""An arm whose joints go where they are told: a perfect position servo with speed limits."""
+
+from typing import Literal
+
+import numpy as np
+import pinocchio as pin
+
+from runner.plants.plant import FloatArray, Plant
+from runner.plants.set_points import SetPoints
+from runner.registry import StrictModel
+from runner.robots.model import RobotModel
+from runner.robots.robot import Robot
+
+COMMANDS = "position"
+
+
+class KinematicConfig(StrictModel):
+    """Config of the kinematic plant.
+
+    Attributes:
+        kind: Its name in the registry.
+        step: None: nothing is integrated.
+        wrist_rotation: Whether the carrier turns the rider's base, where arms ride on each other.
+    """
+
+    kind: Literal["kinematic"]
+    step: None
+    wrist_rotation: Literal["real"]
+
+
+class Kinematic:
+    """Joint positions that follow their commands exactly, moving evenly, up to the joints' speed limits.
+
+    Its torques are what inverse dynamics asks for that motion under the world's load; no limit acts on them.
+
+    Args:
+        model: The arm's rigid-body model.
+        tick: Time that one `advance` takes, in s.
+        ticks_per_command: Ticks from one command to the next.
+    """
+
+    def __init__(self, model: RobotModel, tick: float, ticks_per_command: int) -> None:
+        self._model = pin.Model(model.pin_model)
+        self._data = self._model.createData()
+        self._tick = tick
+        self._set_points = SetPoints(ticks_per_command, tick, model.velocity_limits, interpolate=True)
+        self.q = np.zeros(model.nq)
+        self.dq = np.zeros(model.nq)
+        self.tau = np.zeros(model.nq)
+        self.load = np.zeros(model.nq)
+
+    def reset(self, q: FloatArray, dq: FloatArray) -> None:
+        """Put the arm into a state; see Plant."""
+        self.q[:], self.dq[:] = q, dq
+        self._set_points.reset(q)
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector; see Plant."""
+        self._model.gravity.linear = gravity
+
+    def advance(self, command: FloatArray) -> None:
+        """Move towards the commanded joint positions for one tick; see PositionPlant."""
+        self._set_points.advance(command)
+        dq = self._set_points.velocity
+        ddq = (dq - self.dq) / self._tick
+        self.tau[:] = pin.rnea(self._model, self._data, self.q, dq, ddq) - self.load
+        self.q[:], self.dq[:] = self._set_points.position, dq
+
+    def close(self) -> None:
+        """Hold nothing, release nothing."""
+
+
+CONFIG = KinematicConfig
+
+
+def build(config: KinematicConfig, robot: Robot, tick: float, ticks_per_command: int) -> Plant:
+    """Make the plant that a config describes."""
+    return Kinematic(robot.model, tick, ticks_per_command)
+
+
+def default_step(tick: float, stages: int) -> float:
+    """Return the tick itself, in s: nothing is integrated within it."""
+    return tick

@@ -1,0 +1,112 @@
+"""Position servos at the joints of an arm that is driven by torques."""
+
+import numpy as np
+import pinocchio as pin
+from pydantic import NonNegativeFloat, PositiveFloat
+from scipy.linalg.lapack import dposv
+
+from runner.config.per_joint import PositivePerJoint, expand
+from runner.plants.plant import FloatArray, Plant
+from runner.plants.set_points import SetPoints
+from runner.registry import StrictModel
+from runner.robots.model import RobotModel
+
+
+class ServoConfig(StrictModel):
+    """Config of the joints' position servos, which act where the controller commands joint positions.
+
+    Attributes:
+        stiffness: K, in N m/rad, of every joint or one for each.
+        damping_ratio: xi of each joint on its own, the others held at home; its damping is D = 2 xi sqrt(K M_ii).
+        period: Time between two torques of the servo, in s.
+        gravity_compensation: Whether the servo adds the torques that hold the arm and its payload.
+        interpolate: Whether set-points move evenly between commands, or jump.
+    """
+
+    stiffness: PositivePerJoint
+    damping_ratio: NonNegativeFloat
+    period: PositiveFloat
+    gravity_compensation: bool
+    interpolate: bool
+
+
+class JointServo:
+    r"""Proportional-derivative control of every joint around a plant that takes torques.
+
+    The spring and the damper are evaluated at the end of the servo's period h, with the acceleration that follows from
+    them, so that no stiffness or damping makes the sampled servo unstable (as Tan, Liu and Turk do for the damper,
+    Stable proportional-derivative controllers, IEEE Computer Graphics and Applications 31(4), 2011):
+
+    .. math::
+
+        \tau = K (q_c - q - h \dot q - h^2 \ddot q) + D (\dot q_c - \dot q - h \ddot q) + G, \qquad
+        (M + h D + h^2 K) \ddot q = K (q_c - q - h \dot q) + D (\dot q_c - \dot q) - V
+
+    q_c and its velocity are the set-point's at the end of the period; G is there with gravity compensation, and in the
+    second equation -G without. The torques are clipped at the effort limits.
+
+    Args:
+        plant: The plant; one `advance` of it takes a servo period.
+        model: The arm, for M, V and G.
+        config: The servo's numbers.
+        home: Posture at which the damping is set, shape (nq,), in rad.
+        limits: Torque limits, shape (nq,), in N m; infinite where there is none.
+        ticks_per_command: Servo periods from one command to the next.
+
+    Raises:
+        ConfigError: if the stiffness is a list of another length than the arm has joints.
+    """
+
+    def __init__(
+        self,
+        plant: Plant,
+        model: RobotModel,
+        config: ServoConfig,
+        home: FloatArray,
+        limits: FloatArray,
+        ticks_per_command: int,
+    ) -> None:
+        self.plant = plant
+        """What the servos drive, by torques."""
+        self.q, self.dq = plant.q, plant.dq
+        self.tau = np.zeros(model.nq)
+        self.load = np.zeros(model.nq)
+        self._model = pin.Model(model.pin_model)
+        self._data = self._model.createData()
+        self._period = config.period
+        self._limits = limits
+        self._stiffness = np.array(expand("plant.servo.stiffness", config.stiffness, model.joint_names))
+        inertia = np.diagonal(model.mass_matrix(home))
+        self._damping = 2.0 * config.damping_ratio * np.sqrt(self._stiffness * inertia)
+        self._added_inertia = config.period * self._damping + config.period**2 * self._stiffness
+        self._gravity_compensation = config.gravity_compensation
+        self._set_points = SetPoints(ticks_per_command, config.period, model.velocity_limits, config.interpolate)
+
+    def reset(self, q: FloatArray, dq: FloatArray) -> None:
+        """Put the arm into a state, its set-points where it stands; see Plant."""
+        self.plant.reset(q, dq)
+        self._set_points.reset(q)
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector; see Plant."""
+        self.plant.set_gravity(gravity)
+        self._model.gravity.linear = gravity
+
+    def advance(self, command: FloatArray) -> None:
+        """Pull the joints towards their commanded positions for one servo period; see PositionPlant."""
+        self._set_points.advance(command)
+        model, data, q, dq, h = self._model, self._data, self.q, self.dq, self._period
+        bias = pin.nonLinearEffects(model, data, q, dq).copy()
+        M = pin.crba(model, data, q)  # its upper triangle is all that dposv reads
+        G = pin.computeGeneralizedGravity(model, data, q) if self._gravity_compensation else 0.0
+        spring = self._stiffness * (self._set_points.position - q - h * dq)
+        slip = self._set_points.velocity - dq
+        np.einsum("ii->i", M)[:] += self._added_inertia
+        asked = spring + self._damping * slip + G
+        _, ddq, _ = dposv(M, asked - bias)
+        np.clip(asked - self._added_inertia * ddq, -self._limits, self._limits, out=self.tau)
+        self.plant.advance(self.tau + self.load)
+
+    def close(self) -> None:
+        """Release what the plant holds."""
+        self.plant.close()

@@ -1,0 +1,42 @@
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from turns import rotation
+
+from runner.calibration import joint_deviation
+from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.inverse_kinematics import solve_tip_pose
+
+REPEATABILITY = 5e-6  # m, the Meca500's
+POINT = np.array([0.26, 0.0, 0.13])  # m, in the base frame, which the tip touches
+HOME = np.array([0.0, 0.1, 0.1, 0.0, 0.8, 0.0])  # rad, flange forwards and down
+
+
+@pytest.fixture(scope="session")
+def meca500() -> RobotModel:
+    return RobotModel(read_urdf(find_urdf("meca500.urdf"), {}), "flange")
+
+
+@pytest.fixture(scope="session")
+def deviation(meca500) -> float:
+    """Standard deviation of each joint, in rad."""
+    return joint_deviation(meca500, np.zeros((1, 6)), REPEATABILITY)
+
+
+@pytest.fixture(scope="session")
+def touching(meca500) -> Callable[..., np.ndarray]:
+    """Postures in which a tool's tip touches POINT, the flange tilted about axes all around it by an angle."""
+
+    def make(tip, count, tilt) -> np.ndarray:
+        postures = []
+        for k in range(count):
+            pose = np.eye(4)
+            around = 2.0 * np.pi * k / count
+            axis = tilt * np.array([np.cos(around), np.sin(around), 0.4])
+            pose[:3, :3] = rotation(np.array([0.0, 2.1, 0.0])) @ rotation(axis)
+            pose[:3, 3] = POINT - pose[:3, :3] @ tip
+            postures.append(solve_tip_pose(meca500, pose, HOME))
+        return np.array(postures)
+
+    return make

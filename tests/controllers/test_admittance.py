@@ -1,0 +1,130 @@
+"""Admittance control of the Meca500, in free space, under pushes, at a wall and by hand."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from runner.controllers.admittance_response import step_response
+
+STILL = ("robot=meca500", "trajectory.start=[0.18,0.01,0.06]", "trajectory.goal=[0.18,0.01,0.06]")
+PUSH = (*STILL, "environment=push", "environment.begin=0.1", "duration=1.2")
+
+
+def turned(model, rows) -> np.ndarray:
+    """Return the tip's rotation vector since the first row."""
+    first = model.tip_pose(rows[0])[:3, :3]
+    return np.array([Rotation.from_matrix(model.tip_pose(q)[:3, :3] @ first.T).as_rotvec() for q in rows])
+
+
+@pytest.mark.parametrize("axis", range(6))
+def test_each_axis_answers_a_push_as_its_mass_damper_and_spring(simulated, checked_config, axis):
+    load = np.zeros(6)
+    load[axis] = 2.0 if axis < 3 else 0.05
+    overrides = (*PUSH, f"environment.force={load[:3].tolist()}", f"environment.moment={load[3:].tolist()}")
+    trace, config = simulated(*overrides), checked_config(*overrides)
+    expected = step_response(config.controller.law, load, np.maximum(trace.t - 0.1, 0.0))[:, axis]
+    displaced = np.hstack([trace.tip - trace.tip[0], turned(config.arm.model, trace.q)])
+    answer = displaced[:, axis]
+    assert np.abs(answer - expected).max() < 1e-5 * expected.max()
+
+
+def test_a_force_through_the_tip_turns_nothing(simulated, checked_config):
+    trace = simulated(*PUSH, "environment.force=[3,-2,4]")
+    assert np.abs(turned(checked_config(*PUSH).arm.model, trace.q)).max() < 1e-9
+    assert np.abs(trace.touch.felt[:, 3:]).max() < 1e-12
+
+
+def test_taken_at_the_flange_the_same_force_turns_the_tool(simulated, checked_config):
+    trace = simulated(*PUSH, "environment.force=[3,-2,4]", "controller.at=flange")
+    assert np.abs(turned(checked_config(*PUSH).arm.model, trace.q)).max() > 0.01
+
+
+def test_a_moving_tool_is_felt_as_nothing_when_it_is_compensated_and_as_itself_when_not(simulated):
+    moving = ("robot=meca500", "trajectory=circle", "trajectory.duration=2", "duration=2")
+    stiff = (*moving, "controller.stiffness=[1e5,1e5,1e5,1e3,1e3,1e3]", "controller.damping=[900,900,900,9,9,9]")
+    assert np.abs(simulated(*stiff).touch.felt).max() < 1e-9
+    weight = simulated(*stiff, "controller.compensation=none").touch.felt
+    assert weight[1, 2] == pytest.approx(-0.25 * 9.81)  # of the first tick, before the arm gives way to it
+    gravity_only = simulated(*stiff, "controller.compensation=gravity")
+    inertial = 0.25 * np.linalg.norm(gravity_only.desired[:, 2], axis=1).max()  # m a of the desired motion
+    felt = np.linalg.norm(gravity_only.touch.felt[:, :3], axis=1).max()
+    assert 0.5 * inertial < felt < 2.0 * inertial
+
+
+@pytest.mark.parametrize(("plant", "tolerance"), [("kinematic", 1e-6), ("bullet", 0.01)])
+@pytest.mark.parametrize("stiffness", [1e3, 1e4, 1e5])
+def test_at_a_wall_it_reads_the_force_of_the_springs_in_series(simulated, plant, stiffness, tolerance):
+    damping = 20.0 if stiffness < 1e5 else 200.0
+    wall = ("environment=wall", f"environment.stiffness={stiffness}", f"environment.damping={damping}")
+    step = () if plant == "kinematic" else ("plant.step=0.001",)
+    trace = simulated(
+        "robot=meca500",
+        "trajectory.start=[0.18,0.01,0.06]",
+        "trajectory.goal=[0.19,0.01,0.06]",
+        "controller.damping=[160,160,160,0.8,0.8,0.8]",
+        f"plant={plant}",
+        *wall,
+        *step,
+        "duration=3",
+    )
+    depth = trace.tip[-1, 0] - 0.185
+    assert -trace.touch.external[-1, 0] == pytest.approx(stiffness * depth, rel=1e-3)
+    assert -trace.touch.felt[-1, 0] == pytest.approx(stiffness * depth, rel=0.01)
+    if plant == "kinematic":
+        series = 800.0 * stiffness / (800.0 + stiffness)
+        assert -trace.touch.felt[-1, 0] == pytest.approx(series * 0.005, rel=tolerance)
+
+
+def test_guided_by_hand_it_comes_along_and_stays(simulated):
+    free = ("controller.stiffness=[0,0,0,8,8,8]", "controller.damping=[20,20,20,0.8,0.8,0.8]")
+    trace = simulated(*STILL, *free, "environment=hand", "duration=6")
+    np.testing.assert_allclose(trace.tip[-1] - trace.tip[0], [0.0, 0.05, 0.03], atol=5e-4)
+
+
+def test_a_push_against_a_joint_limit_stops_the_joint_smoothly_and_is_told(cli, simulated, checked_config):
+    hard = (
+        *STILL,
+        "controller.stiffness=[0,0,0,8,8,8]",
+        "environment=push",
+        "environment.force=[0,0,30]",
+        "duration=4",
+    )
+    trace, model = simulated(*hard), checked_config(*hard).arm.model
+    lower, upper = model.position_limits
+    assert (trace.q >= lower).all()
+    assert (trace.q <= upper).all()
+    assert (np.abs(trace.dq) <= model.velocity_limits * (1.0 + 1e-9)).all()
+    ending = cli(*hard)
+    assert ending.code == 0
+    assert "has held the tool back, first at t =" in ending.err
+
+
+def test_a_goal_that_jumps_is_approached_without_a_jump(simulated):
+    trace = simulated("robot=meca500")
+    speed = np.linalg.norm(np.diff(trace.tip, axis=0), axis=1) / 0.001
+    assert speed.max() < 0.1 * 1.01
+    assert np.abs(np.diff(speed)).max() < 0.002
+    np.testing.assert_allclose(trace.tip[-1], [0.19, 0.05, 0.08], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "text"),
+    [
+        (("robot=macro", "controller=admittance"), "admittance leads the tool's pose, 6 dimensions, and the arm has 3"),
+        (("robot=meca500", "controller.mass=[0,1,1,1,1,1]"), "controller.mass: M must be positive definite"),
+        (("robot=meca500", "environment=wall", "environment.stiffness=1e7"), "predicted bound:"),
+        (("robot=meca500", "environment=wall", "robot.tool=null"), "touched by the tip of a tool"),
+        (("robot=meca500", "wrist_sensor.range=[1,1]"), "wrist_sensor.range"),
+    ],
+)
+def test_bad_input_names_what_is_wrong(cli, overrides, text):
+    ending = cli(*overrides)
+    assert ending.code == 2
+    assert text in ending.err
+
+
+def test_a_tool_beyond_the_rating_and_an_overloaded_sensor_are_warned_of(cli):
+    ending = cli(*STILL, "robot.tool.mass=0.7", "wrist_sensor=mini40", "environment=push", "environment.force=[30,0,0]")
+    assert ending.code == 0
+    assert "more than the 0.5 kg that meca500 is rated for" in ending.err
+    assert "beyond the sensor's range of 20 N" in ending.err

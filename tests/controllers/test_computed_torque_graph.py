@@ -1,0 +1,91 @@
+import itertools
+
+import numpy as np
+import pytest
+from graph_layout import check_structure, check_texts, check_ways
+
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.controllers.computed_torque import ComputedTorque, ComputedTorqueConfig
+from runner.controllers.computed_torque_graph import computed_torque_graph
+
+FLAGS = list(itertools.product([False, True], repeat=5))
+NAMES = ("gravity_compensation", "feedforward", "torque_limited", "goal", "posture_task")
+OMEGA, XI, LIMIT = 30.0, 0.8, 20.0
+
+
+def graph_of(flags):
+    return computed_torque_graph(**dict(zip(NAMES, flags, strict=True)))
+
+
+def evaluate(graph, model, q, dq, resolved):
+    """Follow the signals from the resolved joint motion and the measured state to the torque at the arm's input."""
+    labels = {node.name: node.label for node in graph.nodes}
+    V = model.coriolis_torque(q, dq)
+    gains = {"k_p": OMEGA**2 * np.eye(model.nq), "k_v": 2.0 * XI * OMEGA * np.eye(model.nq), "M": model.mass_matrix(q)}
+
+    def signal(edge):
+        if edge.source == "resolved":
+            return resolved["dot" in edge.label and (2 if "ddot" in edge.label else 1)]
+        if edge.source == "encoders":
+            return dq if edge.target == "velocity_error" else q
+        return value(edge.source)
+
+    def value(name):
+        if name == "h":
+            return V + model.gravity_torque(q) if "G" in labels["h"] else V
+        inputs = [e for e in graph.edges if e.target == name and not (e.source == "encoders" and name == "M")]
+        total = sum((-1.0 if edge.sign == "-" else 1.0) * signal(edge) for edge in inputs)
+        if name in gains:
+            return gains[name] @ total
+        return np.clip(total, -LIMIT, LIMIT) if name == "limit" else total
+
+    return value("arm")
+
+
+@pytest.mark.parametrize("flags", FLAGS)
+def test_the_graph_is_the_law_that_is_executed(flags):
+    gravity_compensation, feedforward, torque_limited, goal, posture_task = flags
+    arm = validate(compose(["robot=xarm7", "controller=computed_torque"]).resolved).arm
+    config = ComputedTorqueConfig(
+        kind="computed_torque", task="position", natural_frequency=OMEGA, damping_ratio=XI, period=1e-2,
+        gravity_compensation=gravity_compensation, feedforward=feedforward, singularity_damping=0.0,
+        null_space_frequency=10.0 if posture_task else 0.0,
+    )  # fmt: skip
+    law, generator = ComputedTorque(arm.model, config, arm.home), np.random.default_rng(0)
+    for _ in range(5):
+        q_d, dq_d = law._q_d.copy(), law._dq_d.copy()
+        q, dq = arm.home + generator.uniform(-0.3, 0.3, 7), generator.uniform(-1.0, 1.0, 7)
+        reference = generator.uniform(-1.0, 1.0, (3, 3))
+        if goal:
+            reference[1:] = 0.0
+        first = not law._started
+        tau = law.torque(0.0, q, dq, reference)
+        ddq_d = (law._dq_d - (0.0 if first else dq_d)) / 1e-2
+        resolved = (q, np.zeros(7), ddq_d) if first else (q_d, dq_d, ddq_d)
+        if torque_limited:
+            tau = np.clip(tau, -LIMIT, LIMIT)
+        drawn = evaluate(graph_of(flags), arm.model, q, dq, resolved)
+        np.testing.assert_allclose(drawn, tau, atol=1e-9 * max(1.0, np.abs(tau).max()))
+
+
+@pytest.mark.parametrize("flags", FLAGS)
+def test_what_the_config_leaves_out_is_absent(flags):
+    gravity_compensation, feedforward, torque_limited, goal, posture_task = flags
+    graph = graph_of(flags)
+    labels = {node.name: node.label for node in graph.nodes}
+    assert ("G(q)" in labels["h"]) == gravity_compensation
+    assert ("limit" in labels) == torque_limited
+    assert ("posture" in labels) == posture_task
+    (given,) = [edge.label for edge in graph.edges if edge.source == "reference"]
+    assert ("x_g" in given) == goal
+    assert ("dot" in given) == (feedforward and not goal)
+
+
+@pytest.mark.parametrize("flags", FLAGS)
+def test_the_picture_keeps_the_rules(flags):
+    graph = graph_of(flags)
+    check_structure(graph)
+    check_ways(graph)
+    if flags[2]:  # the widest ones; drawing takes time
+        check_texts(graph)

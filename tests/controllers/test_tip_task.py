@@ -1,0 +1,124 @@
+"""The tip's task: its rows, what a pose adds, and what it refuses."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.controllers.tip_task import TipTask, held_orientation, task_start
+from runner.errors import ConfigError
+from runner.robots import RobotModel
+
+ROBOT = validate(compose(["robot=xarm7", "controller=operational_space"]).resolved).arm
+XARM7, HOME = ROBOT.model, ROBOT.home
+
+
+def task(orientation=None, **changes):
+    values = {
+        "natural_frequency": 20.0,
+        "damping_ratio": 0.7,
+        "feedforward": True,
+        "max_speed": None,
+        "singularity_damping": 0.3,
+    } | changes
+    data = XARM7.pin_model.createData()
+    return TipTask(XARM7, XARM7.pin_model, data, orientation, **values)
+
+
+@pytest.mark.parametrize("rows", [3, 6])
+def test_the_jacobian_and_its_rate_are_those_of_differences(rows):
+    ours, generator, h = task(None if rows == 3 else np.eye(3)), np.random.default_rng(2), 1e-6
+    assert ours.rows == rows
+    for _ in range(20):
+        q, dq = generator.uniform(-2.0, 2.0, (2, 7))
+        J, dJ_dq = ours.update(q, dq)
+        before, after = (XARM7.tip_pose(q + sign * h * dq) for sign in (-1.0, 1.0))
+        velocity = np.concatenate([after[:3, 3] - before[:3, 3], pin.log3(after[:3, :3] @ before[:3, :3].T)])[:rows]
+        np.testing.assert_allclose(J @ dq, velocity / (2.0 * h), atol=1e-8)
+        rate = (XARM7.tip_jacobian(q + h * dq) - XARM7.tip_jacobian(q - h * dq))[:rows] @ dq / (2.0 * h)
+        np.testing.assert_allclose(dJ_dq, rate, atol=1e-7)
+
+
+def test_a_turn_about_an_axis_is_its_angle_along_it():
+    generator = np.random.default_rng(3)
+    for _ in range(20):
+        q, axis = generator.uniform(-2.0, 2.0, 7), generator.normal(size=3)
+        axis, angle = axis / np.linalg.norm(axis), generator.uniform(0.01, 3.1)
+        pose = XARM7.tip_pose(q)
+        ours = task(pin.exp3(angle * axis) @ pose[:3, :3])
+        ours.update(q, np.zeros(7))
+        reference = np.array([pose[:3, 3] + [0.1, 0.2, 0.3], np.ones(3), np.ones(3)])
+        np.testing.assert_allclose(ours.error(reference), [0.1, 0.2, 0.3, *(angle * axis)], atol=1e-9)
+
+
+def test_a_pose_asks_for_the_position_what_the_position_asks():
+    error, velocity, reference = np.arange(1.0, 7.0), np.arange(6.0, 0.0, -1.0), np.arange(9.0).reshape(3, 3)
+    pose, position = task(np.eye(3)), task()
+    asked = pose.acceleration(error, velocity, reference)
+    np.testing.assert_array_equal(asked[:3], position.acceleration(error[:3], velocity[:3], reference))
+    np.testing.assert_allclose(asked[3:], 400.0 * error[3:] - 28.0 * velocity[3:])  # the orientation rests
+
+
+def test_the_largest_speed_bounds_the_way_and_not_the_turn():
+    error = np.array([3.0, 0.0, 4.0, 1.0, 2.0, 3.0])
+    asked = task(np.eye(3), max_speed=0.5).acceleration(error, np.zeros(6), np.zeros((3, 3)))
+    np.testing.assert_allclose(asked[:3], 28.0 * 0.5 * np.array([0.6, 0.0, 0.8]))
+    np.testing.assert_allclose(asked[3:], 400.0 * error[3:])
+
+
+def test_damping_is_a_share_of_the_error_in_lengths():
+    J = np.zeros((6, 7))
+    J[:, :6] = np.diag([1.0, 1.0, 1.0, 1.0, 1.0, 0.0])  # the last turn is lost
+    error, reach = np.array([0.01, 0.0, 0.0, 0.0, 0.02, 0.0]), XARM7.reach
+    amount = 0.3**2 * (0.01**2 + (0.02 * reach) ** 2)
+    expected = amount / np.array([1.0, 1.0, 1.0, reach**2, reach**2, reach**2])
+    np.testing.assert_allclose(task(np.eye(3)).damping(J, error, J @ J.T), expected)
+    np.testing.assert_allclose(task(np.eye(3)).damping(J, 2.0 * error, 5.0 * J @ J.T), 20.0 * expected)
+    np.testing.assert_array_equal(task(np.eye(3)).damping(J, 0.0 * error, J @ J.T), np.zeros(6))
+    J[5, 5] = 1.0
+    assert task(np.eye(3)).damping(J, error, J @ J.T) is None
+    assert task(np.eye(3), singularity_damping=0.0).damping(0.0 * J, error, 0.0 * J @ J.T) is None
+
+
+def test_a_pose_starts_with_home_s_orientation():
+    start = np.array([0.643, -0.2, 0.1508])
+    assert task_start("position", ROBOT, start) is None
+    pose = XARM7.tip_pose(task_start("pose", ROBOT, start))
+    np.testing.assert_allclose(pose[:3, 3], start, atol=1e-9)
+    np.testing.assert_allclose(pose[:3, :3], XARM7.tip_pose(HOME)[:3, :3], atol=1e-9)
+    np.testing.assert_array_equal(held_orientation("pose", XARM7, HOME), XARM7.tip_pose(HOME)[:3, :3])
+    assert held_orientation("position", XARM7, HOME) is None
+
+
+def chain(count):
+    inertial = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+    links = "".join(f'<link name="l{i}">{inertial}</link>' for i in range(count + 1))
+    joints = "".join(
+        f'<joint name="j{i}" type="revolute"><parent link="l{i}"/><child link="l{i + 1}"/><origin xyz="0 0 1"/>'
+        '<axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="9" velocity="9"/></joint>'
+        for i in range(count)
+    )
+    return RobotModel(f'<robot name="chain">{links}{joints}</robot>', f"l{count}")
+
+
+@pytest.mark.parametrize(
+    ("name", "joints", "problem"),
+    [
+        (
+            "pose",
+            3,
+            "controller.task: pose has 6 dimensions, and the arm 3 joints (j0, j1, j2); take controller.task=position",
+        ),
+        ("pose", 2, "controller.task: pose has 6 dimensions, and the arm 2 joints (j0, j1); it needs 3 joints or more"),
+        (
+            "position",
+            2,
+            "controller.task: position has 3 dimensions, and the arm 2 joints (j0, j1); it needs 3 joints or more",
+        ),
+    ],
+)
+def test_a_task_of_more_dimensions_than_joints_is_refused(name, joints, problem):
+    with pytest.raises(ConfigError) as caught:
+        held_orientation(name, chain(joints), np.zeros(joints))
+    assert caught.value.problems == (problem,)

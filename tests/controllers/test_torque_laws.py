@@ -1,0 +1,334 @@
+"""What every law that leads a tip by torques keeps to, on every robot of the zoo."""
+
+import functools
+import itertools
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from scipy.optimize import minimize
+
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.controllers.computed_torque import ComputedTorqueConfig
+from runner.controllers.computed_torque import build as build_computed_torque
+from runner.controllers.operational_space import OperationalSpaceConfig
+from runner.controllers.operational_space import build as build_operational_space
+from runner.controllers.whole_body import WholeBody, WholeBodyConfig
+from runner.controllers.whole_body import build as build_whole_body
+from runner.plants.rk4 import Rk4
+
+ROBOTS = ["macro", "mini", "combined", "xarm7", "meca500"]
+REDUNDANT = [
+    ("whole_body", "combined", "position"),
+    ("operational_space", "xarm7", "position"),
+    ("operational_space", "xarm7", "pose"),
+    ("operational_space", "meca500", "position"),
+]
+TIP_LAWS = [
+    *REDUNDANT,
+    ("operational_space", "macro", "position"),
+    ("operational_space", "mini", "position"),
+    ("operational_space", "meca500", "pose"),
+]
+JOINT_LAWS = [
+    ("computed_torque", name, task)
+    for name, task in itertools.product(ROBOTS, ("position", "pose"))
+    if task == "position" or name in ("xarm7", "meca500")  # the combined arm's pose is singular at home
+]
+LAWS = TIP_LAWS + JOINT_LAWS
+XI, OMEGA_N = 0.8, 12.0
+
+
+@functools.cache
+def arm_of(name):
+    controller = "whole_body" if name == "combined" else "operational_space"
+    return validate(compose([f"robot={name}", f"controller={controller}", "trajectory=goal"]).resolved).arm
+
+
+def scale_of(name):
+    """Length of the arm against the Macro's; its speeds are as much higher."""
+    return arm_of(name).model.reach / 2.0
+
+
+def omega_of(name):
+    return 25.0 / scale_of(name)
+
+
+def law(kind, name, task, **changes):
+    values = {
+        "natural_frequency": omega_of(name),
+        "damping_ratio": XI,
+        "period": 1e-3,
+        "gravity_compensation": True,
+        "feedforward": True,
+        "singularity_damping": 0.0,
+        "null_space_frequency": OMEGA_N,
+    } | changes
+    if kind == "whole_body":
+        (loop,) = build_whole_body(WholeBodyConfig(kind=kind, max_tip_speed=None, **values), arm_of(name))
+    elif kind == "operational_space":
+        (loop,) = build_operational_space(OperationalSpaceConfig(kind=kind, task=task, **values), arm_of(name))
+    else:
+        (loop,) = build_computed_torque(ComputedTorqueConfig(kind=kind, task=task, **values), arm_of(name))
+    assert loop.joints == slice(0, arm_of(name).model.nq)
+    return loop.controller
+
+
+def jacobian(name, task, q):
+    return arm_of(name).model.tip_jacobian(q)[: 3 if task == "position" else 6]
+
+
+def in_lengths(name, J):
+    return np.array([1.0, 1.0, 1.0, *(len(J) - 3) * [arm_of(name).model.reach]])[:, None] * J
+
+
+def bias(name, task, q, dq):
+    """dJ/dt dq by differences of J along dq."""
+    h = 1e-6
+    return (jacobian(name, task, q + h * dq) - jacobian(name, task, q - h * dq)) @ dq / (2.0 * h)
+
+
+def states(name, task, count=12):
+    """States around home, away from the singular postures, with references, in the arm's own units."""
+    arm, s = arm_of(name), scale_of(name)
+    generator, found = np.random.default_rng(4), []
+    while len(found) < count:
+        q = arm.home + generator.uniform(-0.7, 0.7, arm.model.nq)
+        if np.linalg.svd(in_lengths(name, jacobian(name, task, q)), compute_uv=False)[-1] < 0.15 * arm.model.reach:
+            continue
+        dq = generator.uniform(-1.0, 1.0, arm.model.nq) / s
+        reference = generator.uniform(-1.0, 1.0, (3, 3)) * np.array([[s], [1.0], [5.0 / s]])
+        found.append((q, dq, reference + np.array([arm.model.tip_position(q), np.zeros(3), np.zeros(3)])))
+    return found
+
+
+def asked_acceleration(name, task, q, dq, reference, feedforward=True):
+    """F*, from the reference and the state alone."""
+    arm, wn = arm_of(name), omega_of(name)
+    pose, velocity = arm.model.tip_pose(q), jacobian(name, task, q) @ dq
+    desired = reference * np.array([[1.0], [feedforward], [feedforward]])
+    F = desired[2] + 2.0 * XI * wn * (desired[1] - velocity[:3]) + wn**2 * (desired[0] - pose[:3, 3])
+    if task == "position":
+        return F
+    turn = pin.log3(arm.model.tip_pose(arm.home)[:3, :3] @ pose[:3, :3].T)
+    return np.concatenate([F, wn**2 * turn - 2.0 * XI * wn * velocity[3:]])
+
+
+def ask(controller, q, dq, reference):
+    controller.reset()
+    return controller.torque(0.0, q, dq, reference).copy()
+
+
+def agree(actual, expected, tolerance=1e-9):
+    np.testing.assert_allclose(actual, expected, atol=tolerance * np.abs(expected).max(), rtol=0.0)
+
+
+# The error's dynamics
+
+
+@pytest.mark.parametrize("feedforward", [True, False])
+@pytest.mark.parametrize(("kind", "name", "task"), TIP_LAWS)
+def test_the_tip_s_error_obeys_the_linear_design(kind, name, task, feedforward):
+    controller = law(kind, name, task, feedforward=feedforward)
+    for q, dq, reference in states(name, task):
+        ddq = arm_of(name).model.forward_dynamics(q, dq, ask(controller, q, dq, reference))
+        found = jacobian(name, task, q) @ ddq + bias(name, task, q, dq)
+        agree(found, asked_acceleration(name, task, q, dq, reference, feedforward), 1e-6)  # of the differences
+
+
+@pytest.mark.parametrize(("kind", "name", "task"), JOINT_LAWS)
+def test_each_joint_s_error_obeys_the_linear_design(kind, name, task):
+    # What is left of the joints' acceleration without their feedback is the joint motion's, whatever is measured.
+    k_v, k_p = 2.0 * XI * omega_of(name), omega_of(name) ** 2
+    controller, start = law(kind, name, task), states(name, task, 1)[0]
+
+    def driven(q, dq):
+        ask(controller, *start)  # the joint motion starts alike each time
+        ddq = arm_of(name).model.forward_dynamics(q, dq, controller.torque(1e-3, q, dq, start[2]))
+        return ddq + k_v * dq + k_p * q
+
+    expected = driven(start[0], np.zeros(len(start[0])))
+    for q, dq, _ in states(name, task):
+        agree(driven(q, dq), expected)
+
+
+@pytest.mark.parametrize("feedforward", [True, False])
+@pytest.mark.parametrize(("kind", "name", "task"), JOINT_LAWS)
+def test_the_joint_motion_starts_with_the_tip_s_linear_design(kind, name, task, feedforward):
+    controller = law(kind, name, task, feedforward=feedforward)
+    for q, _, reference in states(name, task):
+        rest = np.zeros(len(q))
+        ddq = arm_of(name).model.forward_dynamics(q, rest, ask(controller, q, rest, reference))
+        agree(jacobian(name, task, q) @ ddq, asked_acceleration(name, task, q, rest, reference, feedforward))
+
+
+# The null space
+
+
+@pytest.mark.parametrize(("kind", "name", "task"), [*REDUNDANT, *(law for law in JOINT_LAWS if law[1] == "xarm7")])
+def test_null_space_torques_do_not_move_the_tip(kind, name, task):
+    model = arm_of(name).model
+    for q, dq, reference in states(name, task):
+        with_posture, without = (
+            ask(law(kind, name, task, null_space_frequency=frequency), q, dq, reference) for frequency in (50.0, 0.0)
+        )
+        null, J = with_posture - without, jacobian(name, task, q)
+        M_inverse = np.linalg.inv(model.mass_matrix(q))
+        felt = np.linalg.norm(J, 2) * np.linalg.norm(M_inverse, 2)
+        assert np.linalg.norm(null) > 1e-3 * np.linalg.norm(with_posture)
+        np.testing.assert_allclose(J @ M_inverse @ null, 0.0, atol=1e-12 * felt * np.linalg.norm(with_posture))
+
+
+@pytest.mark.parametrize(("kind", "name", "task"), REDUNDANT)
+def test_the_projector_is_dynamically_consistent(kind, name, task):
+    for q, _, _ in states(name, task):
+        J, M_inverse = jacobian(name, task, q), np.linalg.inv(arm_of(name).model.mass_matrix(q))
+        mobility = J @ M_inverse @ J.T
+        N_T = np.eye(len(q)) - J.T @ np.linalg.solve(mobility, J @ M_inverse)
+        size = np.linalg.norm(J) * np.linalg.norm(M_inverse) * np.linalg.cond(mobility)
+        np.testing.assert_allclose(J @ M_inverse @ N_T, 0.0, atol=1e-12 * size)
+        # What the law adds to h and J^T Lambda (F* - dJ/dt dq) lies in the range of N^T.
+        dq, reference = (
+            np.zeros(len(q)),
+            np.array([arm_of(name).model.tip_position(q) + 0.01, np.zeros(3), np.zeros(3)]),
+        )
+        F = asked_acceleration(name, task, q, dq, reference)
+        task_torque = J.T @ np.linalg.solve(mobility, F) + arm_of(name).model.gravity_torque(q)
+        null = ask(law(kind, name, task), q, dq, reference) - task_torque
+        agree(N_T @ null, null, 1e-8)
+
+
+# The model's terms
+
+
+@pytest.mark.parametrize(("kind", "name", "task"), LAWS)
+def test_the_torque_is_the_inverse_dynamics_of_the_acceleration_it_causes(kind, name, task):
+    model = arm_of(name).model
+    for q, dq, reference in states(name, task, 4):
+        tau = ask(law(kind, name, task), q, dq, reference)
+        ddq = model.forward_dynamics(q, dq, tau)
+        agree(model.mass_matrix(q) @ ddq + model.coriolis_torque(q, dq) + model.gravity_torque(q), tau, 1e-7)
+
+
+@pytest.mark.parametrize(("kind", "name", "task"), LAWS)
+def test_without_gravity_compensation_exactly_the_gravity_term_is_missing(kind, name, task):
+    for q, dq, reference in states(name, task, 4):
+        full, bare = (ask(law(kind, name, task, gravity_compensation=on), q, dq, reference) for on in (True, False))
+        np.testing.assert_allclose(full - bare, arm_of(name).model.gravity_torque(q), atol=1e-11 * np.abs(full).max())
+
+
+@pytest.mark.parametrize(("kind", "name", "task"), LAWS)
+def test_without_feedforward_the_desired_derivatives_are_zero(kind, name, task):
+    for q, dq, reference in states(name, task, 4):
+        goal = reference * np.array([[1.0], [0.0], [0.0]])
+        bare = ask(law(kind, name, task, feedforward=False), q, dq, reference)
+        agree(bare, ask(law(kind, name, task), q, dq, goal), 1e-12)
+
+
+@pytest.mark.parametrize(("kind", "name", "task"), LAWS)
+def test_gravity_off_leaves_the_model_of_others_alone(kind, name, task):
+    before = arm_of(name).model.gravity_torque(arm_of(name).home)
+    law(kind, name, task, gravity_compensation=False)
+    np.testing.assert_array_equal(arm_of(name).model.gravity_torque(arm_of(name).home), before)
+
+
+# Singular postures
+
+
+@functools.cache
+def singular_posture(name, task):
+    """The nearest posture to home's neighbourhood where the task's Jacobian loses its rank, to 1e-6 of the reach."""
+
+    def smallest(q):
+        return np.linalg.svd(in_lengths(name, jacobian(name, task, q)), compute_uv=False)[-1]
+
+    start = arm_of(name).home + np.linspace(0.05, 0.25, arm_of(name).model.nq)
+    found = minimize(smallest, start, method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-12, "maxiter": 20000})
+    assert found.fun < 1e-6 * arm_of(name).model.reach
+    return found.x
+
+
+# The stretched combined arm, whose mass matrix is singular, too, stands in test_whole_body.
+@pytest.mark.parametrize(("kind", "name", "task"), LAWS[1:])
+def test_torques_at_a_singular_posture_are_bounded_by_the_damping_alone(kind, name, task):
+    model, q = arm_of(name).model, singular_posture(name, task)
+    lost = np.linalg.svd(in_lengths(name, jacobian(name, task, q)))[0][:3, -1]  # the direction that is lost
+    reference = np.array([model.tip_position(q) + 0.05 * model.reach * lost, np.zeros(3), np.zeros(3)])
+    if np.linalg.norm(lost) < 0.1:  # a turn that is lost; home's orientation is away by one
+        reference[0] = model.tip_position(q) + 0.05 * model.reach
+    laws = [law(kind, name, task, singularity_damping=damping) for damping in (0.3, 0.0)]
+    undamped = 0.0
+    for offset in (1e-9, 1e-7, 1e-5):
+        beside, rest = q + offset, np.zeros(model.nq)
+        M, G = model.mass_matrix(beside), model.gravity_torque(beside)
+        # |J^#| <= 1 / (2 lambda), lambda = 0.3 |e| but for the fading, and |F*| = wn^2 |e|: an acceleration.
+        posture = OMEGA_N**2 * np.linalg.norm(beside - arm_of(name).home)
+        bound = np.linalg.norm(M, 2) * (1.2 * omega_of(name) ** 2 / 0.6 + posture)
+        assert np.linalg.norm(ask(laws[0], beside, rest, reference) - G) < bound
+        try:
+            undamped = max(undamped, np.linalg.norm(ask(laws[1], beside, rest, reference) - G) / bound)
+        except np.linalg.LinAlgError:
+            undamped = np.inf
+    assert undamped > 10.0
+
+
+# Convergence
+
+
+@pytest.mark.parametrize(("kind", "name", "task"), LAWS)
+def test_a_small_step_follows_the_critically_damped_closed_form(kind, name, task):
+    arm, wn = arm_of(name), omega_of(name)
+    step = 0.01 * arm.model.reach * np.array([1.0, -1.0, -1.0])
+    reference = np.array([arm.model.tip_position(arm.home) + step, np.zeros(3), np.zeros(3)])
+
+    def deviation(period):
+        controller = law(kind, name, task, damping_ratio=1.0, period=period)
+        plant, count = Rk4(arm.model, period, 1), round(4.0 / wn / period)
+        plant.reset(arm.home, np.zeros(arm.model.nq))
+        controller.reset()
+        tips = []
+        for tick in range(count):
+            tips.append(arm.model.tip_position(plant.q))
+            plant.advance(controller.torque(tick * period, plant.q, plant.dq, reference))
+        t = np.arange(count) * period
+        return np.abs(reference[0] - tips - np.outer((1.0 + wn * t) * np.exp(-wn * t), step)).max()
+
+    deviations = [deviation(period / wn) for period in (0.02, 0.01, 0.005)]
+    assert deviations[2] < 0.01 * np.abs(step).max()
+    assert np.divide(deviations[1:], deviations[:-1]) == pytest.approx([0.5, 0.5], abs=0.03)
+
+
+@pytest.mark.parametrize("kind", ["operational_space", "computed_torque"])
+@pytest.mark.parametrize("name", ["xarm7", "meca500"])
+def test_a_turned_tip_returns_about_its_axis_critically_damped(kind, name):
+    arm, wn, period, angle = arm_of(name), omega_of(name), 0.004 / omega_of(name), 0.3
+    q = arm.home.copy()
+    q[-1] += angle  # about the tip's own axis, where the tip stays
+    reference = np.array([arm.model.tip_position(arm.home), np.zeros(3), np.zeros(3)])
+    controller, plant = law(kind, name, "pose", damping_ratio=1.0, period=period), Rk4(arm.model, period, 1)
+    plant.reset(q, np.zeros(arm.model.nq))
+    controller.reset()
+    home, axis = arm.model.tip_pose(arm.home)[:3, :3], arm.model.tip_jacobian(arm.home)[3:, -1]
+    for tick in range(round(4.0 / wn / period)):
+        turn = pin.log3(arm.model.tip_pose(plant.q)[:3, :3] @ home.T)
+        expected = angle * (1.0 + wn * tick * period) * np.exp(-wn * tick * period)
+        np.testing.assert_allclose(turn, expected * axis, atol=0.01 * angle)
+        plant.advance(controller.torque(tick * period, plant.q, plant.dq, reference))
+    np.testing.assert_allclose(arm.model.tip_position(plant.q), reference[0], atol=1e-4 * arm.model.reach)
+
+
+@pytest.mark.parametrize(("kind", "name", "task"), [law for law in LAWS if law[1] in ("xarm7", "meca500")])
+def test_runs_are_alike_after_a_reset(kind, name, task):
+    controller, (q, dq, reference) = law(kind, name, task), states(name, task, 1)[0]
+
+    def run():
+        controller.reset()
+        return np.array([controller.torque(k * 1e-3, q + 1e-3 * k, dq, reference).copy() for k in range(5)])
+
+    np.testing.assert_array_equal(run(), run())
+
+
+def test_three_joints_take_the_square_law_and_more_the_whole_body_s():
+    assert not isinstance(law("operational_space", "macro", "position"), WholeBody)
+    assert isinstance(law("operational_space", "xarm7", "position"), WholeBody)

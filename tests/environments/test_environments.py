@@ -1,0 +1,88 @@
+"""What the world does to the tip."""
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from runner.environments import ENVIRONMENTS
+from runner.environments.hand import HandConfig
+from runner.environments.push import PushConfig
+from runner.environments.wall import WallConfig
+
+TIP, REST = np.array([0.3, 0.1, 0.2]), np.zeros(3)
+
+
+def make(config):
+    environment = ENVIRONMENTS.build(config)
+    environment.reset(TIP)
+    return environment
+
+
+def push(**changes):
+    values = {"force": [1.0, 0.0, -2.0], "moment": [0.0, 0.1, 0.0], "begin": 0.5, "lasts": None, "frequency": 0.0}
+    return make(PushConfig(kind="push", **(values | changes)))
+
+
+def test_a_push_sets_in_at_its_time_and_stays():
+    steady = push()
+    np.testing.assert_array_equal(steady.wrench(0.499, TIP, REST), np.zeros(6))
+    for time in (0.5, 0.7, 99.0):
+        np.testing.assert_array_equal(steady.wrench(time, TIP, REST), [1.0, 0.0, -2.0, 0.0, 0.1, 0.0])
+
+
+def test_a_push_that_lasts_ends():
+    short = push(lasts=0.2)
+    assert np.abs(short.wrench(0.69, TIP, REST)).max() == 2.0
+    np.testing.assert_array_equal(short.wrench(0.7, TIP, REST), np.zeros(6))
+
+
+def test_a_sine_starts_from_zero_with_its_frequency():
+    sine = push(frequency=2.0)
+    times = 0.5 + np.linspace(0.0, 1.0, 50)
+    forces = [sine.wrench(time, TIP, REST)[2] for time in times]
+    np.testing.assert_allclose(forces, -2.0 * np.sin(2.0 * np.pi * 2.0 * (times - 0.5)), atol=1e-12)
+
+
+def wall(**changes):
+    values = {"distance": 0.01, "normal": [-3.0, 0.0, 0.0], "stiffness": 1e4, "damping": 20.0}
+    return make(WallConfig(kind="wall", **(values | changes)))
+
+
+def test_a_wall_is_felt_behind_its_face_alone():
+    face = wall()
+    np.testing.assert_array_equal(face.wrench(0.0, TIP + np.array([0.0099, 0.0, 0.0]), REST), np.zeros(6))
+    inside = face.wrench(0.0, TIP + np.array([0.011, 5.0, -5.0]), REST)
+    np.testing.assert_allclose(inside, [-1e4 * 0.001, 0.0, 0.0, 0.0, 0.0, 0.0], atol=1e-9)
+
+
+def test_a_wall_resists_being_entered_and_never_pulls():
+    face, inside = wall(), TIP + np.array([0.0101, 0.0, 0.0])
+    assert face.wrench(0.0, inside, np.array([0.1, 0.0, 0.0]))[0] == pytest.approx(-1.0 - 2.0)
+    np.testing.assert_array_equal(face.wrench(0.0, inside, np.array([-1.0, 0.0, 0.0])), np.zeros(6))
+
+
+def test_a_wall_without_direction_is_refused():
+    with pytest.raises(ValidationError, match="must not be zero"):
+        wall(normal=[0.0, 0.0, 0.0])
+
+
+def hand(**changes):
+    values = {"travel": [0.0, 0.05, 0.0], "begin": 0.5, "duration": 2.0, "stiffness": 500.0, "damping": 20.0}
+    return make(HandConfig(kind="hand", **(values | changes)))
+
+
+def test_a_hand_holds_the_tip_where_it_took_it():
+    np.testing.assert_allclose(hand().wrench(0.2, TIP, REST), np.zeros(6), atol=1e-12)
+    np.testing.assert_allclose(
+        hand().wrench(0.2, TIP + np.array([0.01, 0.0, 0.0]), REST)[:3], [-5.0, 0.0, 0.0], atol=1e-12
+    )
+
+
+def test_a_hand_ends_at_its_travel_and_damps_against_its_own_motion():
+    np.testing.assert_allclose(hand().wrench(9.0, TIP, REST)[:3], [0.0, 25.0, 0.0], atol=1e-12)
+    middle, speed = np.array([0.0, 0.025, 0.0]), np.array([0.0, 1.875 * 0.05 / 2.0, 0.0])
+    np.testing.assert_allclose(hand().wrench(1.5, TIP + middle, speed), np.zeros(6), atol=1e-12)
+
+
+def test_free_space_has_nothing_to_feel(checked_config):
+    assert ENVIRONMENTS.build(checked_config("robot=macro").environment) is None

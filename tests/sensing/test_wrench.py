@@ -1,0 +1,92 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from runner.errors import ConfigError
+from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.sensing.wrench import cross_matrix, wrench_seen_from, wrench_transform
+
+vectors = st.lists(st.floats(-2.0, 2.0), min_size=3, max_size=3).map(np.array)
+wrenches = st.lists(st.floats(-10.0, 10.0), min_size=6, max_size=6).map(np.array)
+
+
+def make_pose(turn, origin):
+    pose = np.eye(4)
+    pose[:3, :3] = Rotation.from_rotvec(turn).as_matrix()
+    pose[:3, 3] = origin
+    return pose
+
+
+poses = st.builds(make_pose, vectors, vectors)
+
+
+@given(vectors, vectors)
+def test_the_cross_matrix_is_the_cross_product(v, w):
+    np.testing.assert_allclose(cross_matrix(v) @ w, np.cross(v, w), rtol=0, atol=1e-14)
+
+
+@given(poses, poses)
+def test_one_change_after_another_is_the_change_of_the_product(first, second):
+    np.testing.assert_allclose(
+        wrench_transform(second @ first), wrench_transform(second) @ wrench_transform(first), atol=1e-13
+    )
+
+
+@given(poses)
+def test_the_way_back_is_the_inverse_and_no_way_changes_nothing(pose):
+    back = wrench_transform(np.linalg.inv(pose))
+    np.testing.assert_allclose(back @ wrench_transform(pose), np.eye(6), atol=1e-13)
+    np.testing.assert_array_equal(wrench_transform(np.eye(4)), np.eye(6))
+
+
+@given(poses, wrenches, vectors, vectors)
+def test_the_power_is_the_same_in_both_frames(pose, wrench, velocity, omega):
+    # Of a body that carries both frames; the velocity of S2's origin is that of a body-fixed point.
+    R, p = pose[:3, :3], pose[:3, 3]
+    at_second_origin = velocity + np.cross(omega, -R.T @ p)
+    power = wrench[:3] @ velocity + wrench[3:] @ omega
+    seen = wrench_transform(pose) @ wrench
+    assert seen[:3] @ (R @ at_second_origin) + seen[3:] @ (R @ omega) == pytest.approx(power, abs=1e-11)
+
+
+@given(vectors, vectors, poses)
+def test_a_force_is_seen_with_the_moment_of_its_lever(point, force, pose):
+    # A force at a point: its moment is lever times force in each frame, whichever way the frames lie.
+    wrench = np.concatenate([force, np.cross(point, force)])
+    turned, moved = pose[:3, :3] @ force, pose[:3, :3] @ point + pose[:3, 3]
+    np.testing.assert_allclose(
+        wrench_transform(pose) @ wrench, np.concatenate([turned, np.cross(moved, turned)]), atol=1e-13
+    )
+
+
+@pytest.fixture(scope="module")
+def meca500():
+    return RobotModel(read_urdf(find_urdf("meca500.urdf"), {}), "flange")
+
+
+Q = np.array([0.3, 0.2, -0.4, 0.7, 0.9, -1.1])
+
+
+def test_joint_torques_are_the_same_from_every_frame(meca500):
+    # J' w of a frame on the last link, by its own Jacobian: the virtual work of a wrench has no frame.
+    wrench = np.array([1.0, -2.0, 3.0, 0.1, 0.2, -0.3])
+    in_base = wrench_seen_from(meca500, Q, wrench, "flange", "base_link")
+    at_flange = in_base[3:] - np.cross(meca500.tip_position(Q), in_base[:3])  # base axes, about the flange's origin
+    expected = meca500.tip_jacobian(Q).T @ np.concatenate([in_base[:3], at_flange])
+    turned = np.kron(np.eye(2), meca500.tip_pose(Q)[:3, :3]) @ wrench
+    np.testing.assert_allclose(meca500.tip_jacobian(Q).T @ turned, expected, atol=1e-14)
+
+
+def test_there_and_back_again(meca500):
+    wrench = np.array([1.0, -2.0, 3.0, 0.1, 0.2, -0.3])
+    there = wrench_seen_from(meca500, Q, wrench, "link3", "flange")
+    np.testing.assert_allclose(wrench_seen_from(meca500, Q, there, "flange", "link3"), wrench, atol=1e-14)
+
+
+def test_frames_that_do_not_exist_are_named(meca500):
+    with pytest.raises(ConfigError) as refusal:
+        wrench_seen_from(meca500, Q, np.zeros(6), "flang", "tool")
+    assert "'flang' does not exist (did you mean flange?); frames: " in refusal.value.problems[0]
+    assert "'tool' does not exist" in refusal.value.problems[1]
