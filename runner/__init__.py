@@ -3,10 +3,11 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from runner.calibration_job import calibrate
     from runner.execution import run
-    from runner.store import Run, open_run
+    from runner.store import Calibration, Run, open_run
 
-__all__ = ["Run", "open_run", "run"]
+__all__ = ["Calibration", "Run", "calibrate", "open_run", "run"]
 
 
 def __getattr__(name: str) -> Any:
@@ -15,7 +16,11 @@ def __getattr__(name: str) -> Any:
         from runner.execution import run
 
         return run
-    if name in ("Run", "open_run"):
+    if name == "calibrate":
+        from runner.calibration_job import calibrate
+
+        return calibrate
+    if name in ("Calibration", "Run", "open_run"):
         from runner import store
 
         return getattr(store, name)

@@ -4,16 +4,18 @@ import shlex
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from runner import provenance, store
-from runner.assembly import assemble, make_encoders, metric_context
+from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
 from runner.config.compose import Composed, compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.metrics import evaluate, summarize
-from runner.simulation import simulate
+from runner.sensing import ForceTorqueSensor
+from runner.simulation import ClosedLoop, simulate
 from runner.store.writing import timing
 from runner.trace import Failure, Trace
 
@@ -54,9 +56,12 @@ def _simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
     first: Trace | None = None
     failure: tuple[int, Failure] | None = None
     metrics, ticks = [], []
+    notices: list[str] = []
     try:
         for repetition in range(config.settings.repetitions):
-            trace = simulate(loop, make_encoders(config, loop, repetition))
+            wrist = make_wrist_sensor(config, loop, repetition)
+            trace = simulate(loop, make_encoders(config, loop, repetition), wrist)
+            notices = notices or _notices(loop, wrist)
             first = trace if first is None else first
             if trace.failure is not None and failure is None:
                 failure = (repetition, trace.failure)
@@ -73,11 +78,18 @@ def _simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
         repetitions=config.settings.repetitions,
         failure=failure,
         timing=timing(np.concatenate(ticks), time.perf_counter() - wall, time.process_time() - cpu),
-        provenance=_provenance(config, composed),
+        provenance=_provenance(config, composed, notices),
     )
 
 
-def _provenance(config: RunConfig, composed: Composed) -> dict[str, object]:
+def _notices(closed: ClosedLoop, wrist: ForceTorqueSensor | None) -> list[str]:
+    """Return what the controllers and the sensor tell of the repetition just run."""
+    feeling: Any = [loop.controller for loop in closed.loops if loop.feels]
+    told = [notice for controller in feeling for notice in controller.notices()]
+    return told + ([] if wrist is None else wrist.overloads())
+
+
+def _provenance(config: RunConfig, composed: Composed, notices: Sequence[str]) -> dict[str, object]:
     return {
         "date": time.strftime("%Y-%m-%d", time.gmtime()),
         "command": shlex.join(["runner", *(o for o in composed.overrides if not o.startswith("outputs="))]),
@@ -88,6 +100,7 @@ def _provenance(config: RunConfig, composed: Composed) -> dict[str, object]:
         "stages": {stage.name: stage.base_frame for stage in config.arm.stages},
         "joints": list(config.arm.model.joint_names),
         "seed": config.settings.seed,
+        "warnings": [*config.robot.warnings, *notices],
         "commit": provenance.commit(),
         "versions": provenance.versions(),
         "machine": provenance.machine(),

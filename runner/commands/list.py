@@ -24,6 +24,7 @@ _GROUPS = {
     "noise": "noise",
     "presets": "preset",
     "torque_limits": "torque_limits",
+    "calibrations": "calibration",
 }
 
 

@@ -5,6 +5,7 @@ import shlex
 import sys
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from runner.reporting.thesis.plan import Job
     from runner.store import Run
 
-WORKS = ("thesis",)
+WORKS = ("thesis", "xarm7")
 _PROCESSES = 2
 
 
@@ -38,15 +39,16 @@ def _reproduce(work: str, outputs: Path) -> int:
     from runner import store
     from runner.reporting.render import write_report
     from runner.reporting.thesis.dynamics_benchmark import FILE, measure
-    from runner.reporting.thesis.plan import plan
-    from runner.reporting.thesis.report import thesis_document
 
+    plan = import_module(f"runner.reporting.{work}.plan").plan
+    document = getattr(import_module(f"runner.reporting.{work}.report"), f"{work}_document")
     store.prepare(outputs)
     runs = run_all(plan(), outputs)
-    measure(outputs / FILE)
+    if work == "thesis":
+        measure(outputs / FILE)
     folder = outputs / "reports" / work
     print("writing the report ...", file=sys.stderr)
-    write_report(thesis_document(runs), folder)
+    write_report(document(runs), folder)
     print(folder)
     return 0
 

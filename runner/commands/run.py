@@ -79,6 +79,8 @@ def _tell(jobs: _Jobs, multirun: bool) -> int:
 
     failed = 0
     for overrides, run in jobs.stored:
+        for warning in run.provenance["warnings"]:
+            print(f"runner: warning: {warning}", file=sys.stderr)
         if run.status == "failed":
             failed += 1
             print(f"runner: [{' '.join(overrides)}] {run.failure_text}", file=sys.stderr)

@@ -34,12 +34,13 @@ class Composed:
     config_dirs: tuple[Path, ...]
 
 
-def compose(overrides: Sequence[str], config_dirs: Sequence[Path] = ()) -> Composed:
+def compose(overrides: Sequence[str], config_dirs: Sequence[Path] = (), root: str = "config") -> Composed:
     """Compose a config as `runner OVERRIDES` does.
 
     Args:
         overrides: Hydra overrides, such as "robot=macro" and "noise.position=1e-3".
         config_dirs: Config folders of the user's, searched before ours.
+        root: Name of the file in conf/ that the groups hang on.
 
     Raises:
         ConfigError: for an option or key that does not exist, a value that cannot be parsed, a file that is no YAML.
@@ -48,7 +49,7 @@ def compose(overrides: Sequence[str], config_dirs: Sequence[Path] = ()) -> Compo
     try:
         with initialize_config_dir(str(conf_dir()), version_base="1.3", job_name="runner"):
             config = hydra_compose(
-                "config", [*force(overrides), *(search if config_dirs else [])], return_hydra_config=True
+                root, [*force(overrides), *(search if config_dirs else [])], return_hydra_config=True
             )
         return from_hydra(config, config.hydra.runtime.choices, overrides, config_dirs)
     except COMPOSITION_ERRORS as error:

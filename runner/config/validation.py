@@ -6,33 +6,41 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pydantic import ValidationError
 
 from runner.config.arms import build_robot
-from runner.config.messages import describe
 from runner.config.noise import NoiseConfig
+from runner.config.parsing import parse, parse_group
 from runner.config.per_joint import expand
 from runner.config.per_stage import by_stage
 from runner.config.preset import PresetConfig
-from runner.config.robot import OneArmConfig, StagedRobotConfig
+from runner.config.robot import OneArmConfig
 from runner.config.run import RunConfig, RunSettings
 from runner.config.timing import check_duration, count_steps
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS
+from runner.environments import ENVIRONMENTS
 from runner.errors import ConfigError, nearest
 from runner.plants import PLANTS
 from runner.registry import Registry, StrictModel
 from runner.robots.model import STANDARD_GRAVITY
 from runner.robots.robot import Robot
+from runner.sensing import ForceTorqueConfig
 from runner.trajectories import TRAJECTORIES
 
-_KINDS: dict[str, Registry] = {"plant": PLANTS, "controller": CONTROLLERS, "trajectory": TRAJECTORIES}
+_KINDS: dict[str, Registry] = {
+    "plant": PLANTS,
+    "controller": CONTROLLERS,
+    "trajectory": TRAJECTORIES,
+    "environment": ENVIRONMENTS,
+}
 _PLAIN: dict[str, type[StrictModel]] = {
     "noise": NoiseConfig,
     "torque_limits": TorqueLimitsConfig,
+    "wrist_sensor": ForceTorqueConfig,
     "robot": OneArmConfig,
     "preset": PresetConfig,
 }
+_GROUPS: dict[str, Registry | type[StrictModel]] = {**_KINDS, **_PLAIN}
 _SETTINGS = tuple(RunSettings.model_fields)
 
 
@@ -56,18 +64,19 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
             return None
 
     collect(lambda: _check_groups(resolved))
-    settings = collect(lambda: _parse("", RunSettings, {key: resolved.get(key) for key in _SETTINGS}))
-    parts = {group: collect(partial(_parse_group, group, resolved)) for group in (*_KINDS, *_PLAIN)}
+    settings = collect(lambda: parse("", RunSettings, {key: resolved.get(key) for key in _SETTINGS}))
+    parts = {group: collect(partial(parse_group, group, kind, resolved)) for group, kind in _GROUPS.items()}
     robot, plant, controller, trajectory = (parts[g] for g in ("robot", "plant", "controller", "trajectory"))
     arm, timing = None, None
     if robot is not None:
         gravity = STANDARD_GRAVITY if settings is None else settings.gravity
-        arm = collect(lambda: build_robot(robot, gravity, config_dirs))
+        arm = collect(lambda: build_robot(robot, gravity, config_dirs, parts["wrist_sensor"]))
     if arm is not None:
         collect(lambda: _check_stage_values(arm, parts["noise"], parts["torque_limits"]))
         if trajectory is not None:
             collect(lambda: _check_reach(arm, trajectory))
         if plant is not None and controller is not None:
+            collect(lambda: _check_commands(plant.kind, controller.kind))
             timing = collect(lambda: count_steps(arm, plant, controller))
         if controller is not None and not problems:
             collect(lambda: CONTROLLERS.build(controller, arm))
@@ -82,6 +91,7 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
         **parts,
         arm=arm,
         tick=tick,
+        commands=CONTROLLERS.commands(controller.kind),
         step=step,
         steps_per_tick=steps_per_tick,
         resolved=resolved,
@@ -93,26 +103,6 @@ def _check_groups(resolved: Mapping[str, Any]) -> None:
     unknown = [key for key in resolved if key not in known]
     if unknown:
         raise ConfigError(f"{key}: unknown key{nearest(key, known)}; keys: {', '.join(known)}" for key in unknown)
-
-
-def _parse_group(group: str, resolved: Mapping[str, Any]) -> StrictModel:
-    value = resolved.get(group)
-    if not isinstance(value, Mapping):
-        raise ConfigError([f"{group}: must be a group of keys; found {value!r}"])
-    if group in _PLAIN:
-        staged = group == "robot" and "stages" in value
-        return _parse(group, StagedRobotConfig if staged else _PLAIN[group], value)
-    registry = _KINDS[group]
-    if "kind" not in value:
-        raise ConfigError([f"{group}.kind: missing; known: {', '.join(registry.names())}"])
-    return _parse(group, registry.config_model(str(value["kind"])), value)
-
-
-def _parse(group: str, model: type[StrictModel], value: Mapping[str, Any]) -> StrictModel:
-    try:
-        return model.model_validate(dict(value))
-    except ValidationError as error:
-        raise ConfigError(describe(group, model, error)) from None
 
 
 def _check_stage_values(arm: Robot, noise: NoiseConfig | None, torque_limits: TorqueLimitsConfig | None) -> None:
@@ -132,6 +122,17 @@ def _check_stage_values(arm: Robot, noise: NoiseConfig | None, torque_limits: To
             problems += error.problems
     if problems:
         raise ConfigError(problems)
+
+
+def _check_commands(plant: str, controller: str) -> None:
+    if CONTROLLERS.commands(controller) == "torque" and PLANTS.commands(plant) == "position":
+        fit = [kind for kind in PLANTS.names() if PLANTS.commands(kind) == "torque"]
+        raise ConfigError(
+            [
+                f"plant.kind: {plant} follows joint positions, and {controller} gives torques; take plant="
+                f"{' or plant='.join(fit)}, or a controller that commands joint positions"
+            ]
+        )
 
 
 def _check_reach(arm: Robot, trajectory: Any) -> None:

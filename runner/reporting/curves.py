@@ -88,8 +88,9 @@ def _axis(label: str, log: bool, limits: tuple[float, float] | None, values: lis
     shown = limits if limits is not None and usable(limits, log) else None
     if shown is not None:
         axis["range"] = [math.log10(limit) if log else float(limit) for limit in shown]
-    if log and _decades(shown, values) > 1:
-        axis["dtick"] = 1
+    decades = _decades(shown, values)
+    if log and decades > 1:
+        axis["dtick"] = math.ceil(decades / 10)
     return axis
 
 

@@ -1,23 +1,28 @@
 """Stored runs: content-addressed folders, written atomically, readable without the simulator."""
 
+from runner.store.calibration import Calibration, find_calibration, open_calibration, write_calibration
 from runner.store.identity import run_hash, simulated_part
 from runner.store.run import Run, is_run, open_run
 from runner.store.sweep import Sweep, is_sweep, open_runs, open_sweep, write_sweep
 from runner.store.writing import RunResult, find_run, prepare, write_run
 
 __all__ = [
+    "Calibration",
     "Run",
     "RunResult",
     "Sweep",
+    "find_calibration",
     "find_run",
     "is_run",
     "is_sweep",
+    "open_calibration",
     "open_run",
     "open_runs",
     "open_sweep",
     "prepare",
     "run_hash",
     "simulated_part",
+    "write_calibration",
     "write_run",
     "write_sweep",
 ]

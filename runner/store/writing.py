@@ -100,6 +100,13 @@ def _parquet(trace: Trace) -> bytes:
     columns: list[tuple[str, str, np.ndarray]] = [("t", "s", trace.t)]
     for name, unit, values in (("q", "rad", trace.q), ("dq", "rad/s", trace.dq), ("tau", "N m", trace.tau)):
         columns += [(f"{name}{joint + 1}", unit, values[:, joint]) for joint in joints]
+    if trace.q_command is not None:
+        columns += [(f"q{joint + 1}_command", "rad", trace.q_command[:, joint]) for joint in joints]
+    if trace.touch is not None:
+        for name in ("external", "felt", "reading", "load", "reaction"):
+            values = getattr(trace.touch, name)
+            columns += [(f"{name}_force_{axis}", "N", values[:, index]) for index, axis in enumerate("xyz")]
+            columns += [(f"{name}_moment_{axis}", "N m", values[:, 3 + index]) for index, axis in enumerate("xyz")]
     tip_signals = (
         ("tip", "m", trace.tip),
         ("error", "m", trace.error),

@@ -35,7 +35,9 @@ def test_metrics_carry_unit_and_meaning(cli):
 def test_claims_carry_printed_value_and_place(cli):
     lines = cli("list", "claims").out.splitlines()
     assert "thesis 1   Macro, goal position, settles: 1.4 s (section 3.3.1, conclusion)" in lines
-    assert lines[-1].endswith("as the Mini stretches to its limit (section 5.3.4, conclusion)")  # in words, no number
+    thesis = [line for line in lines if line.startswith("thesis ")]
+    assert thesis[-1].endswith("as the Mini stretches to its limit (section 5.3.4, conclusion)")  # in words, no number
+    assert any(line.startswith("xarm7 1    Three joints, X stays constant: 0.643 m (section") for line in lines)
 
 
 def test_own_options_are_listed(cli, tmp_path):

@@ -1,27 +1,29 @@
 import pytest
 
+from runner.commands.reproduce import WORKS
 from runner.reporting.run_report import run_document
 from runner.reporting.thesis.plan import Job
 
 
 @pytest.fixture
 def small_work(monkeypatch):
-    """A thesis of three short runs, one of which fails."""
+    """Works of three short runs, one of which fails."""
     jobs = {
         "goal": Job(("robot=macro", "duration=0.1"), 10),
         "quintic": Job(("robot=mini", "trajectory=quintic", "duration=0.01"), 10),
         "singular": Job(("experiment=thesis/singular",), 400),
     }
-    monkeypatch.setattr("runner.reporting.thesis.plan.plan", lambda: jobs)
-    monkeypatch.setattr(
-        "runner.reporting.thesis.report.thesis_document", lambda runs: run_document(list(runs.values()))
-    )
+    for work in WORKS:
+        monkeypatch.setattr(f"runner.reporting.{work}.plan.plan", lambda: jobs)
+        monkeypatch.setattr(
+            f"runner.reporting.{work}.report.{work}_document", lambda runs: run_document(list(runs.values()))
+        )
 
 
 def test_an_unknown_work_names_the_nearest(cli, tmp_path):
     ending = cli("reproduce", "thesys")
     assert ending.code == 2
-    assert ending.err == "runner: no work 'thesys' (did you mean thesis?); works: thesis, all\n"
+    assert ending.err == "runner: no work 'thesys' (did you mean thesis?); works: thesis, xarm7, all\n"
     assert list(tmp_path.iterdir()) == []
 
 
@@ -42,10 +44,12 @@ def test_a_second_time_nothing_is_simulated(cli, small_work, tmp_path):
     report = first.folder.joinpath("report.html").read_bytes()
 
     second = cli("reproduce", "all")
-    assert (second.code, second.folder) == (0, first.folder)
+    assert (second.code, second.folder) == (0, first.folder.with_name(WORKS[-1]))
+    assert sorted(path.name for path in first.folder.parent.iterdir()) == sorted(WORKS)
     assert [path.stat().st_mtime_ns for path in records] == written
-    assert second.folder.joinpath("report.html").read_bytes() == report
-    assert second.folder.joinpath("report.pdf").read_bytes().startswith(b"%PDF")
+    assert first.folder.joinpath("report.html").read_bytes() == report
+    for work in WORKS:
+        assert first.folder.with_name(work).joinpath("report.pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_outputs_that_cannot_be_written_are_told_before_anything_is_simulated(cli, small_work, tmp_path):

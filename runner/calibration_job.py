@@ -1,0 +1,104 @@
+"""One calibration job: check a composed config, repeat the calibration, store what it found; or find it stored."""
+
+import shlex
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from runner import provenance, store
+from runner.calibration import consistency
+from runner.calibration.procedures import Outcome
+from runner.config.calibration import CalibrationConfig, validate_calibration
+from runner.config.compose import Composed, compose
+from runner.metrics.summary import Summary
+from runner.robots.model import FloatArray
+
+LEVEL = 0.99
+"""Probability of the band in which the mean normalised error squared must lie."""
+
+
+def calibrate(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Calibration:
+    """Do what `runner calibrate OVERRIDES` does, from Python.
+
+    Args:
+        overrides: Hydra overrides, such as "calibration=gravity" and "calibration.orientations=8".
+        config_dirs: Config folders of the user's, searched before ours.
+
+    Returns:
+        The stored calibration; found stored, it is not carried out again.
+
+    Raises:
+        ConfigError: for a config that cannot be carried out; lists all its problems.
+        StoreError: if the outputs folder cannot be written.
+    """
+    composed = compose(overrides, config_dirs, root="calibrate")
+    config = validate_calibration(composed)
+    outputs = Path(config.settings.outputs)
+    name = store.run_hash(config.resolved, config.arm.urdf)
+    stored = store.find_calibration(outputs, name)
+    if stored is not None:
+        return stored
+    return store.write_calibration(outputs, name, config.resolved, config.arm.urdf, _carry_out(config, composed))
+
+
+def _carry_out(config: CalibrationConfig, composed: Composed) -> dict[str, Any]:
+    wall = time.perf_counter()
+    procedure, settings = config.procedure, config.settings
+    outcomes = [
+        procedure.repeat(np.random.default_rng([settings.seed, repetition]))
+        for repetition in range(settings.repetitions)
+    ]
+    deviations = [np.sqrt(np.diagonal(outcome.covariance)) for outcome in outcomes]
+    return {
+        "repetitions": settings.repetitions,
+        "truth": dict(zip(procedure.estimates, procedure.truth.tolist(), strict=True)),
+        "estimates": _table(procedure.estimates, (outcome.estimates for outcome in outcomes)),
+        "errors": _table(procedure.errors, (outcome.errors for outcome in outcomes)),
+        "deviations": _table(procedure.errors, deviations),
+        "measures": _table(procedure.measures, ([o.measures[name] for name in procedure.measures] for o in outcomes)),
+        "consistency": _judge(outcomes),
+        "postures": procedure.postures.tolist(),
+        "timing": {"wall_s": time.perf_counter() - wall},
+        "provenance": _provenance(config, composed, outcomes),
+    }
+
+
+def _table(units: Mapping[str, str], rows: Iterable[FloatArray | Sequence[float]]) -> dict[str, dict[str, Any]]:
+    """Return a summary of each column by name."""
+    columns = np.array(list(rows)).T
+    return {
+        name: asdict(Summary(unit, column.tolist(), float(np.median(column)), float(column.min()), float(column.max())))
+        for (name, unit), column in zip(units.items(), columns, strict=True)
+    }
+
+
+def _judge(outcomes: Sequence[Outcome]) -> dict[str, Any] | None:
+    """Return whether the errors are as large as the covariances say; None where some error is taken to be zero."""
+    covariances = np.array([outcome.covariance for outcome in outcomes])
+    if not (np.diagonal(covariances, axis1=1, axis2=2) > 0.0).all():
+        return None
+    errors = np.array([outcome.errors for outcome in outcomes])
+    judged = consistency(errors, covariances, LEVEL)
+    single = [consistency(errors[[k]], covariances[[k]], LEVEL).mean for k in range(len(outcomes))]
+    return {**asdict(judged), "level": LEVEL, "holds": judged.holds, "values": single}
+
+
+def _provenance(config: CalibrationConfig, composed: Composed, outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    notices = next((outcome.notices for outcome in outcomes if outcome.notices), ())
+    kept = [override for override in composed.overrides if not override.startswith("outputs=")]
+    return {
+        "date": time.strftime("%Y-%m-%d", time.gmtime()),
+        "command": shlex.join(["runner", "calibrate", *kept]),
+        "choices": {group: choice for group, choice in composed.choices.items() if group in config.resolved},
+        "flange": config.arm.flange,
+        "joints": list(config.arm.model.joint_names),
+        "seed": config.settings.seed,
+        "warnings": [*config.robot.warnings, *notices],
+        "commit": provenance.commit(),
+        "versions": provenance.versions(),
+        "machine": provenance.machine(),
+    }

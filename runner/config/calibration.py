@@ -1,0 +1,124 @@
+"""Config of a calibration: what is checked, and what is read of the composed whole."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveInt
+
+from runner.calibration import Tool
+from runner.calibration.procedures import CALIBRATIONS, Bench, Procedure
+from runner.config.arms import build_robot
+from runner.config.compose import Composed
+from runner.config.parsing import parse, parse_group
+from runner.config.robot import OneArmConfig, RobotConfig
+from runner.errors import ConfigError, nearest
+from runner.registry import Registry, StrictModel
+from runner.robots import RobotModel
+from runner.robots.robot import Robot
+from runner.sensing import ForceTorqueConfig
+
+
+class CalibrationSettings(StrictModel):
+    """The keys at the root of a calibration's config.
+
+    Attributes:
+        seed: Seed from which, with the repetition, every random number follows.
+        repetitions: Number of calibrations in the job.
+        gravity: Magnitude of gravity along -z of the base, in m/s^2.
+        outputs: Folder in which calibrations are stored.
+    """
+
+    seed: NonNegativeInt
+    repetitions: PositiveInt
+    gravity: NonNegativeFloat
+    outputs: Annotated[str, Field(min_length=1)]
+
+
+_GROUPS: Mapping[str, Registry | type[StrictModel]] = {
+    "robot": OneArmConfig,
+    "wrist_sensor": ForceTorqueConfig,
+    "calibration": CALIBRATIONS,
+}
+_KEYS = (*CalibrationSettings.model_fields, *_GROUPS)
+
+
+@dataclass(frozen=True)
+class CalibrationConfig:
+    """A calibration's config in which every check has passed.
+
+    Attributes:
+        settings: The keys at the root.
+        robot: Config of the robot.
+        arm: The robot.
+        procedure: What is carried out.
+        resolved: The part of the composed config that a calibration reads, as plain data.
+    """
+
+    settings: CalibrationSettings
+    robot: RobotConfig
+    arm: Robot
+    procedure: Procedure
+    resolved: Mapping[str, Any]
+
+
+def validate_calibration(composed: Composed) -> CalibrationConfig:
+    """Check a composed calibration, and make its procedure.
+
+    Raises:
+        ConfigError: with every problem found: dotted key, value found, values allowed, nearest valid name.
+    """
+    problems: list[str] = []
+
+    def collect(check: Callable[[], Any]) -> Any:
+        try:
+            return check()
+        except ConfigError as error:
+            problems.extend(error.problems)
+            return None
+
+    collect(lambda: _check_keys(composed))
+    resolved = {key: value for key, value in composed.resolved.items() if key in _KEYS}
+    settings = collect(
+        lambda: parse("", CalibrationSettings, {key: resolved.get(key) for key in CalibrationSettings.model_fields})
+    )
+    robot, sensor, calibration = (
+        collect(partial(parse_group, group, kinds, resolved)) for group, kinds in _GROUPS.items()
+    )
+    arm, procedure = None, None
+    if settings is not None and robot is not None:
+        arm = collect(lambda: build_robot(robot, settings.gravity, composed.config_dirs, sensor))
+    if arm is not None and sensor is not None and calibration is not None:
+        bench = collect(lambda: _make_bench(robot, arm, sensor))
+        procedure = None if bench is None else collect(lambda: CALIBRATIONS.build(calibration, bench))
+    if problems or arm is None or procedure is None:
+        raise ConfigError(problems)
+    return CalibrationConfig(settings, robot, arm, procedure, resolved)
+
+
+def _check_keys(composed: Composed) -> None:
+    """Refuse overrides that nothing would read, of keys that do not exist, or that only runs have."""
+    given = [override.lstrip("+~").partition("=")[0] for override in composed.overrides]
+    unread = [key for key in given if key.partition(".")[0] not in _KEYS]
+    if unread:
+        raise ConfigError(
+            f"{key}: a calibration reads no such key{nearest(key, _KEYS)}; keys: {', '.join(_KEYS)}" for key in unread
+        )
+
+
+def _make_bench(robot: RobotConfig, arm: Robot, sensor: ForceTorqueConfig) -> Bench:
+    tool = robot.tool
+    if tool is None:
+        raise ConfigError(
+            ["robot.tool: found null; a calibration needs a tool: mass, centre_of_mass, inertia, tip, ..."]
+        )
+    return Bench(
+        flange=RobotModel(arm.urdf, arm.flange, -float(arm.model.gravity[2])),
+        home=arm.home,
+        tip=np.array(tool.tip),
+        tool=Tool(tool.mass, np.array(tool.centre_of_mass), np.diag(tool.inertia)),
+        sensor=sensor,
+        period=min(robot.period.values()) if isinstance(robot.period, dict) else robot.period,
+    )

@@ -1,0 +1,1 @@
+"""The report on the Meca500's kinematics and force control."""

@@ -1,0 +1,112 @@
+"""Contact with walls of known stiffness: the force that is read against the true one."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from runner.reporting.document import Curves, Formula, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.figures import columns, origin
+from runner.reporting.meca500.plan import PLANTS, WALLS
+from runner.reporting.meca500.servo_compliance import servo_compliance
+from runner.reporting.meca500.signals import wrenches
+from runner.reporting.meca500.step_response import law_of
+from runner.reporting.quantities import number, quantity
+from runner.reporting.thesis.studies import clock
+from runner.store import Run
+
+
+def contact_section(runs: Mapping[str, Run]) -> Section:
+    """Return the forces at walls, felt and true, and against springs in series."""
+    walls = {(plant, k): runs[f"wall/{plant}/{k:g}"] for plant in PLANTS for k in WALLS}
+    rows = [
+        [
+            plant,
+            number(stiffness),
+            number(force(run, "felt"), 5),
+            number(abs(force(run, "felt") / _by_depth(run) - 1.0)),
+            number(_in_series(run), 5),
+            f"{100.0 * (force(run, 'felt') / _in_series(run) - 1.0):+.2g} %",
+            number(float(-wrenches(run, "external")[:, 0].min())),
+        ]
+        for (plant, stiffness), run in walls.items()
+    ]
+    worst = max(abs(force(run, "felt") / _by_depth(run) - 1.0) for run in walls.values())
+    series = max(abs(force(run, "felt") / _in_series(run) - 1.0) for run in walls.values())
+    first = walls["kinematic", 1e3]
+    law, way = law_of(first), _way(first)
+    return Section(
+        "Contact with a wall",
+        (
+            Text(
+                f"The spring's rest is led {1e3 * way:g} mm into a wall at the tip. On the kinematic plant the wall is "
+                "a spring and a damper at the tip; in PyBullet it is a body that gives way, and its contact solver "
+                "makes the force. The true force is the wall's stiffness $k$ times the depth of the true tip; at rest "
+                "it is that of springs in series, the law's, the wall's, and, where the joints have servos, theirs "
+                "with compliance $C$:"
+            ),
+            Formula(
+                "F = delta / (1 / K + 1 / k + C_(x x)) quad (C_(x x) = 0 \"on the kinematic plant\")",
+                "F equals delta over one over K plus one over k plus C x x",
+            ),
+            _curves(runs),
+            Table(
+                f"Force at rest on the wall, with $K = {law.stiffness[0]:g}$ N/m and $B = {law.damping[0]:g}$ N s/m.",
+                [
+                    "plant",
+                    "wall (N/m)",
+                    "force felt (N)",
+                    "off the true force (share)",
+                    "springs in series (N)",
+                    "off that",
+                    "peak (N)",
+                ],
+                rows,
+                tuple(range(1, 7)),
+                origin(first),
+            ),
+            Notice(
+                "finding",
+                "The force that is felt is the true one",
+                f"From {number(min(WALLS))} to {number(max(WALLS))} N/m the force felt is within {number(worst)} of "
+                "stiffness times depth, on both plants, and within "
+                f"{quantity(100.0 * series, '%', 2)} of the springs in series. The first touch is harder than what "
+                "stays: the law's mass arrives with the speed at which the goal is approached, and on servos softer, "
+                "as the joints give way.",
+            ),
+        ),
+    )
+
+
+def force(run: Run, signal: str) -> float:
+    """Return the wall's push against the way in at the end of a run, "felt" or "external", in N."""
+    return float(-wrenches(run, signal)[-1, 0])
+
+
+def _way(run: Run) -> float:
+    trajectory = run.config["trajectory"]
+    return float(trajectory["goal"][0] - trajectory["start"][0] - run.config["environment"]["distance"])
+
+
+def _by_depth(run: Run) -> float:
+    wall = float(run.config["trajectory"]["start"][0] + run.config["environment"]["distance"])
+    return float(run.config["environment"]["stiffness"]) * (float(columns(run.trace, "tip")[-1, 0]) - wall)
+
+
+def _in_series(run: Run) -> float:
+    soft = servo_compliance(run)[0, 0] if run.config["plant"]["kind"] == "bullet" else 0.0
+    springs = 1.0 / law_of(run).stiffness[0] + 1.0 / float(run.config["environment"]["stiffness"])
+    return float(_way(run) / (springs + soft))
+
+
+def _curves(runs: Mapping[str, Run]) -> Curves:
+    panels = []
+    for plant in PLANTS:
+        series = []
+        for color, stiffness in enumerate(WALLS):
+            run = runs[f"wall/{plant}/{stiffness:g}"]
+            felt = np.append(-wrenches(run, "felt")[1:, 0], np.nan)  # felt of the reading a tick before
+            true = -wrenches(run, "external")[:, 0]
+            series.append(Series(f"{number(stiffness)} N/m, true", clock(run), true, "line", color=color))
+            series.append(Series("felt", clock(run), felt, "dotted", color=color))
+        panels.append(Panel(plant, "time (s)", "force (N)", series, x_range=(0.0, 0.6)))
+    return Curves("Force of the wall, true and felt.", panels, 2, origin(runs["wall/kinematic/1000"]))

@@ -1,0 +1,137 @@
+"""Which runs the Meca500 report needs: a name for each, and the overrides that make it."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from runner.controllers.admittance_filter import AXES, Admittance
+from runner.controllers.admittance_stability import stiffest_wall
+from runner.reporting.thesis.plan import Job
+from runner.robots import RobotModel, find_urdf, read_urdf
+
+REPORTED = 0.0167  # s, between two reports of the real controller
+_SERVO = ("plant=bullet", "plant.step=0.001")
+_SLOW = (f"controller.period={REPORTED}",)
+# A servo period that the controller's is a multiple of.
+_SLOW_SERVO = (*_SLOW, "plant=bullet", "plant.servo.period=0.000835", "plant.step=0.000835")
+FORCE, MOMENT = 2.0, 0.05  # N and N m, of a push
+STEP_CASES: Mapping[str, tuple[str, ...]] = {
+    "kinematic, 1 ms": (),
+    "kinematic, 16.7 ms": (*_SLOW, f"environment.begin={3 * REPORTED}"),
+    "kinematic, 16.7 ms, felt late": (*_SLOW, f"environment.begin={3 * REPORTED + 1e-4}"),
+    "servo, 1 ms": _SERVO,
+    "servo, 16.7 ms": (*_SLOW_SERVO, f"environment.begin={3 * REPORTED}"),
+}
+FREQUENCIES = (0.5, 1.0, 2.0, 4.0, 8.0, 12.0, 16.0, 24.0)  # Hz
+SINE_CASES: Mapping[str, tuple[str, ...]] = {
+    "kinematic, 1 ms": (),
+    "kinematic, 16.7 ms": _SLOW,
+    "servo, 1 ms": _SERVO,
+}
+TIP_CASES: Mapping[str, tuple[str, ...]] = {
+    "at the tip": (),
+    "at the flange": ("controller.at=flange",),
+    "at the tip, joint servos": _SERVO,
+    "at the tip, Mini40": ("wrist_sensor=mini40",),
+}
+WALLS = {1e3: 20.0, 1e4: 20.0, 1e5: 200.0}  # N/m: N s/m
+PLANTS: Mapping[str, tuple[str, ...]] = {"kinematic": (), "bullet": _SERVO}
+# The law that is held against walls: M, B and K along every axis, in kg, N s/m and N/m.
+MASS, DAMPING, STIFFNESS = 2.0, 80.0, 800.0
+MAP_PERIODS = {"kinematic": (0.001, 0.005, 0.01, REPORTED), "bullet": (0.005, REPORTED)}  # s
+MAP_SHARES = {"kinematic": (0.5, 0.8, 0.9, 1.1, 1.25, 2.0), "bullet": (2.0, 8.0, 32.0)}  # of the bound
+LIMITS = ("speed_limit", "joint_limit", "out_of_reach")
+ORIENTATIONS = 100
+SWINGS = (4.0, 2.0, 1.0, 0.5)  # s, around the circle
+STEPS = (1e-3, 5e-4, 2.5e-4)  # s, of PyBullet
+INERTIALS = ("cad_closed", "uniform_density")
+
+
+def law() -> Admittance:
+    """Return the law of the stability map."""
+    mass, damping, stiffness = (np.full(6, value) for value in (MASS, DAMPING, STIFFNESS))
+    return Admittance(mass, damping, stiffness)
+
+
+def plan() -> dict[str, Job]:
+    """Return every run by name, the longest first."""
+    jobs = {**_free_space(), **_contact(), **_guiding(), **_arm()}
+    return dict(sorted(jobs.items(), key=lambda item: -item[1].ticks))
+
+
+def _job(experiment: str, overrides: tuple[str, ...], ticks: int) -> Job:
+    return Job((f"experiment=meca500/{experiment}", *overrides), ticks + 500)
+
+
+def _free_space() -> dict[str, Job]:
+    jobs = {}
+    for case, overrides in STEP_CASES.items():
+        for index, axis in enumerate(AXES):
+            load = [0.0] * 6
+            load[index] = FORCE if index < 3 else MOMENT
+            wrench = (f"environment.force={load[:3]}", f"environment.moment={load[3:]}")
+            jobs[f"step/{case}/{axis}"] = _job("push", (*overrides, *wrench), 600)
+    for case, overrides in SINE_CASES.items():
+        for frequency in FREQUENCIES:
+            own = (*overrides, f"environment.frequency={frequency}")
+            jobs[f"sine/{case}/{frequency}"] = _job("sine", own, 1200)
+    for case, overrides in TIP_CASES.items():
+        jobs[f"tip/{case}"] = _job("push", (*overrides, "environment.force=[3,-2,4]"), 600)
+    return jobs
+
+
+def _contact() -> dict[str, Job]:
+    jobs = {}
+    for plant, overrides in PLANTS.items():
+        for stiffness, damping in WALLS.items():
+            wall = (f"environment.stiffness={stiffness:g}", f"environment.damping={damping:g}")
+            jobs[f"wall/{plant}/{stiffness:g}"] = _job("wall", (*overrides, *wall), 2000)
+    values = (f"controller.{key}={3 * [value] + 3 * [turning]}".replace(" ", "") for key, value, turning in
+              (("mass", MASS, 0.02), ("damping", DAMPING, 0.8), ("stiffness", STIFFNESS, 8.0)))  # fmt: skip
+    base = (*values, "environment.distance=0", "environment.damping=0", "controller.check_stability=false",
+            "duration=1.2")  # fmt: skip
+    for plant, periods in MAP_PERIODS.items():
+        for period in periods:
+            bound = stiffest_wall(law(), period, 0, 0.0, 0)
+            step = 0.000835 if period == REPORTED else 0.001
+            servo = ("plant=bullet", f"plant.servo.period={step}", f"plant.step={step}") if plant == "bullet" else ()
+            for share in MAP_SHARES[plant]:
+                own = (f"controller.period={period}", f"environment.stiffness={share * bound:.5g}")
+                ticks = 1200 if servo else round(1.2 / period)
+                jobs[f"map/{plant}/{period}/{share}"] = _job("wall", (*base, *servo, *own), ticks)
+    return jobs
+
+
+def _guiding() -> dict[str, Job]:
+    jobs = {
+        "hand/ideal": _job("hand", (), 3500),
+        "hand/lab": _job("hand", (*_SERVO, "wrist_sensor=mini40"), 5000),
+    }
+    return jobs | {f"limit/{name}": _job(name, (), 2500) for name in LIMITS}
+
+
+def _arm() -> dict[str, Job]:
+    jobs = {}
+    for number, home in enumerate(_homes(ORIENTATIONS)):
+        posture = f"robot.home={home.round(6).tolist()}".replace(" ", "")
+        jobs[f"rest/{number}"] = _job("weighing", (posture, "wrist_sensor=mini40"), 3)
+    for duration in SWINGS:
+        own = (f"trajectory.duration={duration:g}", f"duration={duration:g}")
+        jobs[f"swing/{duration}"] = _job("tool_in_motion", own, round(400 * duration))
+    stiff = ("controller.stiffness=[1e5,1e5,1e5,1e3,1e3,1e3]", "controller.damping=[900,900,900,9,9,9]")
+    jobs["noise/held"] = _job("push", ("wrist_sensor=mini40", "environment.force=[0,0,0]", *stiff), 600)
+    jobs["noise/soft"] = _job("push", ("wrist_sensor=mini40", "environment.force=[0,0,0]", "duration=3"), 3000)
+    for inertials in INERTIALS:
+        jobs[f"inertials/{inertials}"] = _job("circle", (f"robot.inertials={inertials}", "plant.step=0.001"), 1500)
+    for name, overrides in (("kinematic", ("plant=kinematic",)), ("rk4", ("plant=rk4",))):
+        jobs[f"plants/{name}"] = _job("circle", overrides, 1500)
+    for step in STEPS:
+        jobs[f"plants/{step}"] = _job("circle", (f"plant.step={step}",), 1500)
+    return jobs
+
+
+def _homes(count: int) -> np.ndarray:
+    """Return postures inside the joint limits, turned by half a turn at most, shape (count, 6), in rad."""
+    lower, upper = np.clip(RobotModel(read_urdf(find_urdf("meca500.urdf"), {}), "flange").position_limits, -np.pi, np.pi)
+    homes: np.ndarray = np.random.default_rng(0).uniform(lower, upper, (count, 6))
+    return homes
