@@ -202,6 +202,29 @@
     figure.querySelector("button.play").addEventListener("click", () => play(figure), { once: true });
   }
 
+  /* ---- audited equations ---- */
+
+  for (const figure of document.querySelectorAll("figure.equations")) {
+    const filter = figure.querySelector(".filter");
+    const rows = [...figure.querySelectorAll("tbody tr")];
+    // Subscripts are separate elements: without their white space "l4 cos" is found as it is read.
+    const squeezed = (text) => text.toLowerCase().replace(/[\s·]+/g, "");
+    const texts = new Map();
+    const apply = () => {
+      const wanted = squeezed(filter.querySelector("input").value);
+      const verdict = filter.querySelector("select").value;
+      let shown = 0;
+      for (const row of rows) {
+        if (wanted && !texts.has(row)) texts.set(row, squeezed(row.textContent));
+        row.hidden = (verdict && row.dataset.verdict !== verdict) || (wanted && !texts.get(row).includes(wanted));
+        shown += !row.hidden;
+      }
+      filter.querySelector("output").textContent = `${shown} of ${rows.length} equations`;
+    };
+    filter.addEventListener("input", apply);
+    filter.addEventListener("submit", (event) => event.preventDefault());
+  }
+
   /* ---- commands, contents ---- */
 
   for (const button of document.querySelectorAll("button.copy")) {

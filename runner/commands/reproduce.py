@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from runner.reporting.thesis.plan import Job
     from runner.store import Run
 
-WORKS = ("thesis", "xarm7")
 _PROCESSES = 2
 
 
@@ -37,20 +36,48 @@ def main(arguments: Sequence[str]) -> int:
 
 def _reproduce(work: str, outputs: Path) -> int:
     from runner import store
+
+    folder = outputs / "reports" / work
+    store.prepare(outputs)
+    _WORKS[work](work, outputs, folder)
+    print(folder)
+    return 0
+
+
+def _reproduce_runs(work: str, outputs: Path, folder: Path) -> None:
+    """Reproduce a work by its package in reporting: `plan` says which jobs to run, `report` what to write of them."""
     from runner.reporting.render import write_report
-    from runner.reporting.thesis.dynamics_benchmark import FILE, measure
 
     plan = import_module(f"runner.reporting.{work}.plan").plan
     document = getattr(import_module(f"runner.reporting.{work}.report"), f"{work}_document")
-    store.prepare(outputs)
     runs = run_all(plan(), outputs)
-    if work == "thesis":
-        measure(outputs / FILE)
-    folder = outputs / "reports" / work
     print("writing the report ...", file=sys.stderr)
     write_report(document(runs), folder)
-    print(folder)
-    return 0
+
+
+def _reproduce_thesis(work: str, outputs: Path, folder: Path) -> None:
+    from runner.reporting.thesis.dynamics_benchmark import FILE, measure
+
+    measure(outputs / FILE)
+    _reproduce_runs(work, outputs, folder)
+
+
+def _audit(work: str, outputs: Path, folder: Path) -> None:
+    from runner.audit.audit import as_csv, audit_all
+    from runner.reporting.audit.report import audit_document
+    from runner.reporting.render import write_report
+
+    print("auditing the equations ...", file=sys.stderr)
+    judged = audit_all()
+    print("writing the report ...", file=sys.stderr)
+    write_report(audit_document(judged), folder)
+    folder.joinpath("equations.csv").write_text(
+        as_csv([each for source in judged.values() for each in source]), encoding="utf-8"
+    )
+
+
+_WORKS = {"thesis": _reproduce_thesis, "xarm7": _reproduce_runs, "audit": _audit}
+WORKS = tuple(_WORKS)
 
 
 def run_all(jobs: Mapping[str, "Job"], outputs: Path) -> dict[str, "Run"]:

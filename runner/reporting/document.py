@@ -12,8 +12,11 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.audit.expressions import Node
+
 FloatArray = NDArray[np.float64]
 Verdict = Literal["holds", "better", "worse", "cannot", "not run"]
+EquationVerdict = Literal["correct", "correct after repair", "wrong as printed", "unreadable", "definition"]
 
 
 @dataclass(frozen=True)
@@ -194,6 +197,64 @@ class Claim:
 
 
 @dataclass(frozen=True)
+class EquationForm:
+    """One form of an equation: as printed, after repair, corrected. It has expressions, or mathematics, or neither.
+
+    Attributes:
+        label: Which form it is.
+        expressions: Left side and expression of each element.
+        math: The equation in Typst mathematics.
+        raw: The text as it stands, where it cannot be read.
+        note: Why it was mended; inline mathematics as in Text.
+    """
+
+    label: str
+    expressions: Sequence[tuple[Node, Node]] = ()
+    math: str = ""
+    raw: str = ""
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Equation:
+    """A printed equation with its verdict.
+
+    Attributes:
+        number: Its number or name in the source.
+        title: What it is.
+        place: Section or page.
+        verdict: What the samples say.
+        error: Largest and typical error, formatted with unit, or "".
+        forms: As printed first, then repaired and corrected.
+        finding: What is wrong, in words; inline mathematics as in Text.
+    """
+
+    number: str
+    title: str
+    place: str
+    verdict: EquationVerdict
+    error: str
+    forms: Sequence[EquationForm]
+    finding: str = ""
+
+
+@dataclass(frozen=True)
+class Equations:
+    """A table of audited equations, which the HTML page can be searched by.
+
+    Attributes:
+        caption: What it lists.
+        rows: The equations, in the order of the text.
+        origin: Its number in the source, command and commit.
+    """
+
+    block: ClassVar[str] = "equations"
+    caption: str
+    rows: Sequence[Equation]
+    origin: Origin = field(default_factory=Origin)
+
+
+@dataclass(frozen=True)
 class Body:
     """One rigid body of a playback: a polyline of the arm, drawn as cylinders and balls in its own frame.
 
@@ -246,7 +307,7 @@ class Provenance:
     rows: Sequence[tuple[str, str]]
 
 
-Block = Text | Notice | Formula | Curves | Picture | Table | Claim | Playback | Provenance
+Block = Text | Notice | Formula | Curves | Picture | Table | Claim | Equations | Playback | Provenance
 
 
 @dataclass(frozen=True)

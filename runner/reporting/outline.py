@@ -8,6 +8,7 @@ from runner.reporting.document import (
     Claim,
     Curves,
     Document,
+    Equations,
     Formula,
     Notice,
     Picture,
@@ -57,6 +58,8 @@ def formulas(document: Document) -> tuple[list[str], list[str]]:
     for block in blocks(document):
         if isinstance(block, Formula):
             displayed[block.typst] = None
+        if isinstance(block, Equations):
+            inline.update(dict.fromkeys(form.math for row in block.rows for form in row.forms if form.math))
         for text in _texts(block):
             inline.update(dict.fromkeys(_math(text)))
     return list(displayed), list(inline)
@@ -87,5 +90,10 @@ def _texts(block: Block) -> Iterator[str]:
                 yield from row
         case Claim():
             yield block.reason
+        case Equations():
+            yield block.caption
+            for equation in block.rows:
+                yield equation.finding
+                yield from (form.note for form in equation.forms)
         case _:
             pass

@@ -5,11 +5,23 @@ from functools import cache
 
 import jinja2
 
+from runner.audit.typesetting import symbol, typeset
 from runner.paths import templates_dir
 from runner.reporting.document import Origin
 from runner.reporting.markup import plain, spans
 
-VERDICT_SIGNS = {"holds": "✓", "better": "▲", "worse": "▼", "cannot": "✕", "not run": "–"}
+VERDICT_SIGNS = {
+    "holds": "✓",
+    "better": "▲",
+    "worse": "▼",
+    "cannot": "✕",
+    "not run": "–",
+    "correct": "✓",
+    "correct after repair": "✓",
+    "wrong as printed": "✕",
+    "unreadable": "?",
+    "definition": "–",
+}
 """A sign beside each verdict, for readers who see no colours."""
 
 
@@ -103,6 +115,13 @@ def short_commit(commit: str) -> str:
 
 
 def _equip(environment: jinja2.Environment) -> jinja2.Environment:
-    environment.filters |= {"spans": spans, "origin_label": origin_label, "short_commit": short_commit}
+    environment.filters |= {
+        "spans": spans,
+        "origin_label": origin_label,
+        "short_commit": short_commit,
+        "kind": lambda node: type(node).__name__,
+        "symbol": symbol,
+        "typeset": typeset,
+    }
     environment.globals |= {"verdict_signs": VERDICT_SIGNS}
     return environment

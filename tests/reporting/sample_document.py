@@ -2,11 +2,15 @@
 
 import numpy as np
 
+from runner.audit.expressions import parse
 from runner.reporting.document import (
     Body,
     Claim,
     Curves,
     Document,
+    Equation,
+    EquationForm,
+    Equations,
     Finding,
     Formula,
     Notice,
@@ -57,6 +61,17 @@ def curves(text: str = "error", **changes: object) -> Curves:
     return Curves(**({"caption": text, "panels": [Panel(text, text, text, series)]} | changes))
 
 
+def equations(text: str = "words", **changes: object) -> Equations:
+    forms = [
+        EquationForm(text, raw=text, note=text),
+        EquationForm(text, expressions=[(parse("J_11").root, parse("-l2*cos(q1)^2/3").root)]),
+        EquationForm(text, math="J^+ = J^T (J J^T)^(-1)"),
+        EquationForm(text, math=text),
+    ]
+    rows = [Equation(text, text, text, "wrong as printed", text, forms, text), Equation("n", "", "", "correct", "", ())]
+    return Equations(**({"caption": text, "rows": rows} | changes))
+
+
 def document(text: str = "words") -> Document:
     origin = Origin(text, text, text)
     blocks = [
@@ -67,6 +82,7 @@ def document(text: str = "words") -> Document:
         Picture(text, SVG, text, origin=origin),
         Table(text, [text, text], [[text, text]] * 2, [1], origin),
         Claim(text, text, text, text, [Finding(text, text, "holds"), Finding(text, text, "cannot")], text, text),
+        equations(text, origin=origin),
         playback(caption=text, origin=origin),
         Provenance([(text, text)]),
     ]

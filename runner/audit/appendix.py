@@ -1,0 +1,213 @@
+"""The equations of motion of the six-joint arm in the thesis' appendix: read term by term, and counted.
+
+The appendix writes each torque as a sum of groups, "(sum of terms) * product of velocities" or "... * acceleration",
+and of gravity terms. A term is a fraction times the sine or cosine of a sum of joint positions. The text is damaged
+here and there; it is read as it stands, and what is mended on the way is recorded.
+"""
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from importlib.resources import files
+
+import numpy as np
+
+from runner.robots.model import FloatArray
+
+JOINTS = 6
+
+_TERM = re.compile(r"([+-]?)(?:(\d+(?:/\d+)?)(?:\*(?=[sc]))?)?(?:(sin|cos)\(([-+*\dq]*)\))?")
+_OPENING = re.compile(r"[+-]?\(")
+_FACTOR = re.compile(r"(\)?)\*(q[va]?\^?\d)(\^2)?(?:\*(q[va]?\^?\d))?(?![\d^])")
+_POSITION = re.compile(r"([+-]?)(\d?)(\*?)q(\d)")
+
+
+@dataclass(frozen=True)
+class Harmonic:
+    """A sine or cosine of a sum of joint positions, in a form that is the same for equal functions.
+
+    Attributes:
+        function: "sin" or "cos"; a constant is the cosine of nothing.
+        multiples: How often each joint position stands in the sum; the first that is not 0 is positive.
+    """
+
+    function: str
+    multiples: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Term:
+    """One term as it has been read.
+
+    Attributes:
+        torque: The row it stands in, 1 to 6.
+        factor: The product of velocities, or the acceleration, that its group is multiplied with: "qv1*qv2", "qv3^2"
+            or "qa1"; "gravity" where there is none.
+        harmonic: Its function of the joint positions.
+        coefficient: What that is multiplied with, in N m, kg m^2 or N m s^2.
+        text: As it stands.
+    """
+
+    torque: int
+    factor: str
+    harmonic: Harmonic
+    coefficient: Fraction
+    text: str
+
+
+@dataclass(frozen=True)
+class Repair:
+    """A place at which the text is damaged so that it cannot be read as it stands.
+
+    Attributes:
+        torque: The row.
+        kind: What was done.
+        text: The place as it stands.
+    """
+
+    torque: int
+    kind: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Appendix:
+    """The appendix as read.
+
+    Attributes:
+        terms: Its terms in order.
+        repairs: What was mended to read them.
+    """
+
+    terms: tuple[Term, ...]
+    repairs: tuple[Repair, ...]
+
+
+def evaluate(
+    terms: Iterable[tuple[int, str, Harmonic, float]], q: FloatArray, dq: FloatArray, ddq: FloatArray
+) -> FloatArray:
+    """Return the torques that terms add up to.
+
+    Args:
+        terms: Torque (1 to 6), factor of the group, harmonic and coefficient of each.
+        q: Joint positions, shape (T, 6), in rad.
+        dq: Joint velocities, shape (T, 6), in rad/s.
+        ddq: Joint accelerations, shape (T, 6), in rad/s^2.
+
+    Returns:
+        Torques, shape (T, 6), in N m.
+    """
+    torques = np.zeros_like(q)
+    for torque, factor, harmonic, coefficient in terms:
+        phase = q @ np.array(harmonic.multiples, dtype=float)
+        value = coefficient * (np.sin(phase) if harmonic.function == "sin" else np.cos(phase))
+        torques[:, torque - 1] += value * motion(factor, dq, ddq)
+    return torques
+
+
+def motion(factor: str, dq: FloatArray, ddq: FloatArray) -> FloatArray:
+    """Return the value of a group's factor, such as "qv1*qv2", shape (T,)."""
+    value = np.ones(len(dq))
+    for name in re.findall(r"q[va]\d(?:\^2)?", factor):
+        joint = int(name[2]) - 1
+        value = value * (dq[:, joint] if name[1] == "v" else ddq[:, joint]) ** (2 if name.endswith("^2") else 1)
+    return value
+
+
+@cache
+def read_appendix() -> Appendix:
+    """Return the appendix of the thesis as its text stands."""
+    rows: list[str] = []
+    for line in (files("runner.audit") / "data" / "thesis" / "appendix.txt").read_text().splitlines():
+        if line.startswith("["):
+            rows.append("")
+        elif rows:
+            rows[-1] += line.strip()
+    return parse(rows)
+
+
+def parse(rows: list[str]) -> Appendix:
+    """Return the terms of the rows' texts, one row a torque.
+
+    Four kinds of damage are mended, and recorded: a lost bracket of a group (it is taken to begin after the group
+    before it, or to end before its factor), a factor without the letter v or a ("q3^2" in the place of a factor is a
+    velocity, a lone "q1" an acceleration), a number raised ("qv^2" for qv2, which is no power), and a missing product
+    sign. Anything else that cannot be read is left out, and recorded as "unreadable".
+    """
+    terms: list[Term] = []
+    repairs: list[Repair] = []
+    for torque, text in enumerate(rows, start=1):
+        _Row(torque, text, terms, repairs).read()
+    return Appendix(tuple(terms), tuple(repairs))
+
+
+class _Row:
+    def __init__(self, torque: int, text: str, terms: list[Term], repairs: list[Repair]) -> None:
+        self._torque, self._text, self._terms, self._repairs = torque, text, terms, repairs
+        self._pending: list[tuple[Harmonic, Fraction, str]] = []
+        self._open = False
+
+    def read(self) -> None:
+        place = 0
+        while place < len(self._text):
+            if factor := _FACTOR.match(self._text, place):
+                self._close(factor)
+                place = factor.end()
+            elif opening := _OPENING.match(self._text, place):
+                self._flush(self._pending, "gravity")
+                self._open = True
+                place = opening.end()
+            elif (term := _TERM.match(self._text, place)) and (term[2] or term[3]) and (term[1] or not self._pending):
+                self._pending.append(self._term(term))
+                place = term.end()
+            else:
+                if self._text[place] != "+":  # the sign before a bracket that is lost
+                    self._mend("unreadable", place)
+                place += 1
+        self._flush(self._pending, "gravity")
+
+    def _term(self, match: re.Match[str]) -> tuple[Harmonic, Fraction, str]:
+        sign, coefficient, function, argument = match.groups()
+        value = Fraction(coefficient or 1) * (-1 if sign == "-" else 1)
+        multiples = [0] * JOINTS
+        for minus, count, product, joint in _POSITION.findall(argument or ""):
+            multiples[int(joint) - 1] += int(count or 1) * (-1 if minus == "-" else 1)
+            if count and not product:
+                self._mend("product sign put in", match.start())
+        return *canonical(function or "cos", tuple(multiples), value), match[0]
+
+    def _close(self, match: re.Match[str]) -> None:
+        bracket, first, square, second = match.groups()
+        names = [name for name in (first, second) if name]
+        if any("^" in name for name in names):
+            self._mend("raised number put down", match.start())
+        if any(name[1].isdigit() for name in names):
+            self._mend("v or a put in", match.start())
+            letter = "qv" if square or second else "qa"
+            names = [letter + name[1:] if name[1].isdigit() else name for name in names]
+        factor = "*".join(name.replace("^", "") for name in names) + (square or "")
+        if not bracket and not self._open:  # it belongs to the last term alone
+            self._flush([self._pending.pop()], factor)
+            return
+        if not (bracket and self._open):
+            self._mend("bracket put in", match.start())
+        self._flush(self._pending, factor)
+        self._open = False
+
+    def _flush(self, pending: list[tuple[Harmonic, Fraction, str]], factor: str) -> None:
+        self._terms += [Term(self._torque, factor, *term) for term in pending]
+        pending.clear()
+
+    def _mend(self, kind: str, place: int) -> None:
+        self._repairs.append(Repair(self._torque, kind, self._text[max(0, place - 20) : place + 20]))
+
+
+def canonical(function: str, multiples: tuple[int, ...], value: Fraction) -> tuple[Harmonic, Fraction]:
+    """Return a harmonic and its coefficient such that equal functions are equal: sin(-x) is -sin(x)."""
+    first = next((multiple for multiple in multiples if multiple), 0)
+    if first < 0:
+        multiples = tuple(-multiple for multiple in multiples)
+        value = -value if function == "sin" else value
+    return Harmonic(function, multiples), value

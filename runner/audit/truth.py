@@ -1,0 +1,39 @@
+"""Functions of runner/audit/truths by name: what an equation claims to equal, in two independent ways."""
+
+import importlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+Symbols = Mapping[str, FloatArray]
+"""Values of each symbol at the samples, by name; the first axis counts the samples."""
+
+Elements = Mapping[str, FloatArray]
+"""Values of each element of an equation at the samples: shape (T,), or (T, ...) where an element is a matrix."""
+
+Way = Callable[[Symbols], Elements]
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What an equation claims to equal.
+
+    Attributes:
+        first: One way to work it out, from the model: a chain of transforms, Pinocchio.
+        second: Another that shares nothing with it but the arm's measures, such as finite differences.
+        ways: The two in a few words, for the report.
+    """
+
+    first: Way
+    second: Way
+    ways: tuple[str, str]
+
+
+def resolve(name: str) -> Any:
+    """Return the function or Truth that "module.name" stands for, of a module of runner/audit/truths."""
+    module, attribute = name.split(".")
+    return getattr(importlib.import_module(f"runner.audit.truths.{module}"), attribute)

@@ -1,0 +1,98 @@
+"""What the names in the thesis' formulas stand for, and how their elements are named here."""
+
+from itertools import product
+
+import numpy as np
+
+from runner.audit.truth import FloatArray, Symbols
+
+JOINTS = 6
+_SUMS = ("1", "2", "3", "4", "5", "6", "12", "23", "123", "45", "56", "456", "1_2", "1_2_3", "4_5", "4_5_6")
+_REGULAR = 0.05  # share of the largest determinant below which a posture counts as singular
+
+
+def symbols(count: int, generator: np.random.Generator) -> dict[str, FloatArray]:
+    """Return random states of the six joints, with the abbreviations of sections 3.1 and 4.1.
+
+    c12 is cos(q1 + q2); c1_2_3 is what the thesis prints as c(1-2-3), cos(q1 - q2 - q3). theta, alpha, a and d are
+    the parameters of any one link, xi and omega_n those of any second-order loop, n any number of joints, c_0 to c_5
+    the coefficients of the quintic from x_0 to x_t in t_f.
+
+    Args:
+        count: How many states.
+        generator: Source of the draw.
+    """
+    q = generator.uniform(-np.pi, np.pi, (count, JOINTS))
+    return _named(q, generator)
+
+
+def regular_symbols(count: int, generator: np.random.Generator) -> dict[str, FloatArray]:
+    """Return random states as `symbols` does, without those beside a singular posture of either arm.
+
+    The determinant of the linear Jacobian is -c3 (c2 - s23) for the Macro, and alike for the Mini.
+    """
+    q = generator.uniform(-np.pi, np.pi, (8 * count, JOINTS))
+    _, q2, q3, _, q5, q6 = q.T
+    macro = np.abs(np.cos(q3) * (np.cos(q2) - np.sin(q2 + q3)))
+    mini = np.abs(np.cos(q6) * (np.cos(q5) - np.sin(q5 + q6)))
+    return _named(q[(macro > _REGULAR) & (mini > _REGULAR)][:count], generator)
+
+
+def abbreviations(q: FloatArray) -> dict[str, FloatArray]:
+    """Return the names of sections 3.1 and 4.1 at joint positions, shape (T, 6), in rad."""
+    values = {f"q{i + 1}": q[:, i] for i in range(JOINTS)}
+    for digits in _SUMS:
+        angle = _angle(digits, q)
+        values |= {f"c{digits}": np.cos(angle), f"s{digits}": np.sin(angle)}
+    return values
+
+
+def _named(q: FloatArray, generator: np.random.Generator) -> dict[str, FloatArray]:
+    count = len(q)
+    values = abbreviations(q)
+    values |= {f"dq{i + 1}": generator.uniform(-1.0, 1.0, count) for i in range(JOINTS)}
+    values |= {f"ddq{i + 1}": generator.uniform(-1.0, 1.0, count) for i in range(JOINTS)}
+    values |= {"theta": generator.uniform(-np.pi, np.pi, count), "alpha": generator.uniform(-np.pi, np.pi, count)}
+    values |= {name: generator.uniform(-1.0, 1.0, count) for name in ("a", "d", "x_0", "x_t")}
+    values |= {"xi": generator.uniform(0.2, 2.0, count), "omega_n": generator.uniform(1.0, 300.0, count)}
+    values |= {"t_f": generator.uniform(0.5, 5.0, count), "pi": np.full(count, np.pi)}
+    values |= {"n": generator.integers(2, 9, count).astype(float)}
+    D, t_f = values["x_t"] - values["x_0"], values["t_f"]
+    values |= {"c_0": values["x_0"], "c_1": 0.0 * D, "c_2": 0.0 * D}
+    return values | {"c_3": 10.0 * D / t_f**3, "c_4": -15.0 * D / t_f**4, "c_5": 6.0 * D / t_f**5}
+
+
+def _angle(digits: str, q: FloatArray) -> FloatArray:
+    if "_" in digits:
+        first, *rest = (int(digit) - 1 for digit in digits.split("_"))
+        difference: FloatArray = q[:, first] - q[:, rest].sum(axis=1)
+        return difference
+    total: FloatArray = q[:, [int(digit) - 1 for digit in digits]].sum(axis=1)
+    return total
+
+
+def symbols_at(q: FloatArray) -> dict[str, FloatArray]:
+    """Return the names of sections 3.1 and 4.1 at joint positions (T, 6), or the Macro's (T, 3), the Mini home."""
+    return abbreviations(np.column_stack([q, np.zeros((len(q), JOINTS - q.shape[1]))]))
+
+
+def vector_of(name: str, values: Symbols, joints: slice = slice(0, JOINTS)) -> FloatArray:
+    """Return the joint positions ("q"), velocities ("dq") or accelerations ("ddq") of a sample, shape (T, n)."""
+    return np.column_stack([values[f"{name}{joint + 1}"] for joint in range(JOINTS)[joints]])
+
+
+def elements(name: str, array: FloatArray) -> dict[str, FloatArray]:
+    """Return the elements of vectors (T, n) or matrices (T, m, n) under their names: P_1, or M_23."""
+    places = product(*(range(size) for size in array.shape[1:]))
+    moved = np.moveaxis(array, 0, -1)
+    return {f"{name}_{''.join(str(i + 1) for i in place)}": moved[place] for place in places}
+
+
+def whole_and_elements(name: str, array: FloatArray) -> dict[str, FloatArray]:
+    """Return a vector or matrix under its name, and its elements under theirs."""
+    return {name: array} | elements(name, array)
+
+
+def coordinates(name: str, array: FloatArray) -> dict[str, FloatArray]:
+    """Return the coordinates of vectors (T, 3) under their names: P_x, P_y, P_z."""
+    return {f"{name}_{axis}": array[:, place] for place, axis in enumerate("xyz")}

@@ -1,0 +1,73 @@
+"""Truths of the thesis' second-order loop and of its quintic trajectory, sections 3.3.1 and 3.3.2."""
+
+import numpy as np
+from scipy.interpolate import BPoly, PPoly
+
+from runner.audit.truth import Elements, Symbols, Truth
+from runner.trajectories.quintic import Quintic
+
+# The loop eps'' + k_v eps' + k_p eps = 0 with natural frequency omega_n and damping ratio xi.
+
+
+def _by_poles(s: Symbols) -> Elements:
+    """Return the loop's gains from its two poles, at the distance omega_n from 0 when they are complex."""
+    root = np.emath.sqrt(s["xi"] ** 2 - 1.0)
+    first, second = (s["omega_n"] * (-s["xi"] + sign * root) for sign in (1.0, -1.0))
+    return {"k_p": (first * second).real, "k_v": -(first + second).real}
+
+
+def _by_companion(s: Symbols) -> Elements:
+    """Return them from an oscillator that loses the share xi of its critical damping: its companion matrix."""
+    damper = 2.0 * np.sqrt(s["omega_n"] ** 2) * s["xi"]  # critical damping of a unit mass on a spring omega_n^2
+    matrices = np.zeros((len(damper), 2, 2))
+    matrices[:, 0, 1], matrices[:, 1, 0], matrices[:, 1, 1] = 1.0, -(s["omega_n"] ** 2), -damper
+    return {"k_p": np.linalg.det(matrices), "k_v": -np.trace(matrices, axis1=1, axis2=2)}
+
+
+gains = Truth(_by_poles, _by_companion, ("poles of the loop", "a unit mass with spring and damper"))
+
+
+# The quintic, rest to rest.
+
+
+def conditions(s: Symbols) -> Elements:
+    """Return the coefficients that the six conditions below (3.39) leave, solved as a linear system."""
+    t = s["t_f"]
+    A = np.zeros((len(t), 6, 6))
+    A[:, 0, 0], A[:, 1, 1], A[:, 2, 2] = 1.0, 1.0, 1.0
+    for k in range(6):
+        A[:, 3, k], A[:, 4, k], A[:, 5, k] = t**k, k * t ** max(k - 1, 0), k * (k - 1) * t ** max(k - 2, 0)
+    right = np.zeros((len(t), 6))
+    right[:, 0], right[:, 3] = s["x_0"], s["x_t"]
+    found = np.asarray(np.linalg.solve(A, right[..., None])[..., 0], dtype=float)
+    return {f"c_{k}": found[:, k] for k in range(6)}
+
+
+def _by_bernstein(s: Symbols) -> Elements:
+    """Return them from the Bernstein form of the curve that is at rest at both ends."""
+    found = []
+    for start, goal, t_f in zip(s["x_0"], s["x_t"], s["t_f"], strict=True):
+        curve = BPoly.from_derivatives([0.0, t_f], [[start, 0.0, 0.0], [goal, 0.0, 0.0]])
+        found.append(PPoly.from_bernstein_basis(curve).c[::-1, 0])
+    return {f"c_{k}": values for k, values in enumerate(np.array(found).T)}
+
+
+def _by_runner(s: Symbols) -> Elements:
+    """Return them from the curve that the runner's arms follow, through six of its points."""
+    points = np.linspace(0.0, 1.0, 6)
+    fit = np.linalg.inv(np.vander(points, 6, increasing=True))
+    found = []
+    for start, goal, t_f in zip(s["x_0"], s["x_t"], s["t_f"], strict=True):
+        curve = Quintic(np.array([start]), np.array([goal]), float(t_f))
+        found.append(fit @ curve.sample(points * t_f)[:, 0, 0] / t_f ** np.arange(6))
+    return {f"c_{k}": values for k, values in enumerate(np.array(found).T)}
+
+
+def _left_over(s: Symbols) -> Elements:
+    none = 0.0 * s["x_0"]
+    return {"start": none, "start_rate": none, "start_bend": none, "end": none, "end_rate": none, "end_bend": none}
+
+
+quintic = Truth(_by_bernstein, _by_runner, ("Bernstein form of the curve at rest at both ends", "the runner's quintic"))
+quintic_left_over = Truth(_left_over, _left_over, ("the conditions leave nothing over", "the same"))
+"""The six equations below (3.39), each with its right side brought over, at the coefficients of the true quintic."""

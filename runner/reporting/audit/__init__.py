@@ -1,0 +1,1 @@
+"""The report on the equations of the three sources."""

@@ -1,0 +1,45 @@
+import pytest
+
+from runner.audit import entry as module
+from runner.audit.entry import SOURCES, Entry, entries, parts
+from runner.errors import RunnerError
+from runner.reporting.markup import spans
+
+GOOD = {"id": "a", "number": "1", "place": "p", "title": "t", "printed": {"math": "x"}}
+
+
+@pytest.mark.parametrize(
+    ("form", "message"),
+    [
+        ({}, "neither elements nor math"),
+        ({"code": "xarm7.right_inverse"}, "neither elements nor math"),
+        ({"elements": {"a": "1"}, "code": "xarm7.right_inverse"}, "has elements and code"),
+    ],
+)
+def test_a_form_is_evaluated_in_one_way(form, message):
+    with pytest.raises(ValueError, match=message):
+        Entry.model_validate(GOOD | {"printed": form})
+
+
+def test_a_file_that_does_not_fit_names_the_keys():
+    with pytest.raises(RunnerError, match=r"bad.yaml: .*entries.0.verdict: Extra inputs"):
+        module._read("bad.yaml", "source: a\nsymbols: b\nentries: [{id: a, verdict: correct}]")
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_ids_are_unique_and_name_the_source(source):
+    ids = [entry.id for _, entry in entries(source)]
+    assert len(set(ids)) == len(ids) > 0
+    assert all(part.source == source for part in parts(source))
+    assert all(name.startswith(f"{source}-") for name in ids)
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_the_mathematics_of_every_finding_is_valid(source):
+    from runner.reporting import formulas
+
+    texts = [text for _, entry in entries(source) for text in (entry.finding, entry.repair.why if entry.repair else "")]
+    inline = [span.text for text in texts for span in spans(text) if span.math]
+    forms = [form for _, entry in entries(source) for form in (entry.printed, entry.repair, entry.corrected) if form]
+    images = formulas.draw(inline + [form.math for form in forms if form.math], displayed=False)
+    assert [text for text, image in images.items() if image is None] == []

@@ -1,0 +1,25 @@
+import pytest
+
+from runner.audit import inventory as module
+from runner.audit.entry import SOURCES, entries
+from runner.audit.inventory import differences, inventory
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_every_equation_listed_is_audited_and_the_other_way_round(source):
+    assert differences(source) == []
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_the_places_stand_in_one_order(source):
+    listed = [place.place for place in inventory(source).places]
+    assert len(set(listed)) == len(listed)
+    assert {entry.place for _, entry in entries(source)} == set(listed)
+
+
+def test_what_is_missing_is_named(monkeypatch):
+    places = list(inventory("xarm7").places)
+    places[1] = places[1].model_copy(update={"equations": [*places[1].equations, "q8"]})
+    changed = inventory("xarm7").model_copy(update={"places": places})
+    monkeypatch.setattr(module, "inventory", lambda source: changed)
+    assert differences("xarm7") == ["Inverse kinematics, page 8: q8 is not audited"]

@@ -1,0 +1,26 @@
+import numpy as np
+import pytest
+
+from runner.audit.entry import SOURCES, entries
+from runner.audit.rollout import run_rollout
+
+NAMES = sorted({entry.rollout for source in SOURCES for _, entry in entries(source) if entry.rollout})
+
+
+@pytest.fixture(scope="module", params=NAMES)
+def rollout(request):
+    return run_rollout(request.param)
+
+
+def test_the_right_formula_does_much_better_than_the_wrong_one(rollout):
+    right = np.nanmax(rollout.curves["corrected"])
+    for name, values in rollout.curves.items():
+        assert values.shape == rollout.x.shape
+        if name != "corrected":
+            assert np.nanmax(values) > 10 * max(right, 1e-6), name
+
+
+def test_titles_and_axes_say_what_is_seen(rollout):
+    assert rollout.title
+    assert "(" in rollout.y_label
+    assert rollout.text.endswith(".")

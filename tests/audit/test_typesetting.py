@@ -1,0 +1,46 @@
+import pytest
+
+from runner.audit.expressions import parse
+from runner.audit.typesetting import symbol, typeset
+from runner.reporting import formulas
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("s12", ("s", "12")),
+        ("theta1", ("θ", "1")),
+        ("J_11", ("J", "11")),
+        ("S_beta", ("S", "β")),
+        ("P_ex", ("P", "ex")),
+        ("s2'", ("s′", "2")),
+        ("Gcos", ("Gcos", "")),
+        ("J_g0_32", ("J", "g0,32")),
+    ],
+)
+def test_digits_and_what_follows_an_underscore_are_subscripts(name, expected):
+    assert symbol(name) == expected
+
+
+def test_products_lose_their_sign_but_not_between_numbers():
+    assert typeset(parse("2*l4*cos(q1)").root) == '2 italic("l")_"4" cos \\(italic("q")_"1"\\)'
+    assert " dot " in typeset(parse("2*3").root)
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [("(a + b)*c", "a + b*c"), ("a - (b - c)", "a - b - c"), ("(a*b)^2", "a*b^2"), ("a/(b*c)", "a/b*c"),
+     ("-(a + b)", "-a + b"), ("(a^b)^c", "a^b^c"), ("sin(x)^2", "sin(x^2)")],
+)  # fmt: skip
+def test_brackets_that_matter_are_seen(one, other):
+    assert typeset(parse(one).root) != typeset(parse(other).root)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["-a^2/3 + sqrt(x^2 + y^2)/(1 - sin(q1)^2)", "atan2(y, x) - asin(x)*acos(x)*arctan(abs(x))", "theta1*s2'/J_g0_32",
+     "x_y_z + Lambda", "(1 + 2)*3*4/5/6", "a/(b + c + d + e + f + g + h + i + j + k + l + m + n + o)"],
+)  # fmt: skip
+def test_what_is_typeset_is_valid(text):
+    source = typeset(parse(text).root)
+    assert formulas.draw([source], displayed=False)[source] is not None
