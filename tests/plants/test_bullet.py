@@ -224,9 +224,9 @@ def test_torques_are_only_read(make, macro_urdf):
 
 @pytest.mark.parametrize("dynamics", ["coupled", "decoupled"])
 @pytest.mark.parametrize("wrist_rotation", ["real", "parallel"])
-def test_build_and_default_step(macro_urdf, one_stage, dynamics, wrist_rotation):
+def test_build_and_default_step(servo, macro_urdf, one_stage, dynamics, wrist_rotation):
     # One stage has nothing to couple: neither key has an effect.
-    config = BulletConfig(kind="bullet", step=None, dynamics=dynamics, wrist_rotation=wrist_rotation)
+    config = BulletConfig(kind="bullet", step=None, dynamics=dynamics, wrist_rotation=wrist_rotation, servo=servo)
     plant = build(config, one_stage(macro_urdf, RobotModel(macro_urdf, "tip")), 1e-3, 10)
     assert isinstance(plant, Bullet)
     plant.close()

@@ -94,9 +94,9 @@ def test_reset_copies_its_arguments():
 
 @pytest.mark.parametrize("dynamics", ["coupled", "decoupled"])
 @pytest.mark.parametrize("wrist_rotation", ["real", "parallel"])
-def test_build_and_default_step(macro_urdf, one_stage, dynamics, wrist_rotation):
+def test_build_and_default_step(servo, macro_urdf, one_stage, dynamics, wrist_rotation):
     # One stage has nothing to couple: neither key has an effect.
-    config = Rk4Config(kind="rk4", step=None, dynamics=dynamics, wrist_rotation=wrist_rotation)
+    config = Rk4Config(kind="rk4", step=None, dynamics=dynamics, wrist_rotation=wrist_rotation, servo=servo)
     plant = build(config, one_stage(macro_urdf, RobotModel(macro_urdf, "tip")), 0.01, 1)
     assert isinstance(plant, Rk4)
     plant.close()

@@ -30,13 +30,13 @@ def free(checked_config):
 
 
 @pytest.fixture
-def make(combined):
+def make(servo, combined):
     """Make staged plants, released at the end of the test."""
     plants = []
 
     def make(kind="rk4", dynamics="decoupled", wrist_rotation="real", step=1e-3, steps_per_tick=1, robot=combined):
         config, build = KINDS[kind]
-        fields = config(kind=kind, step=None, dynamics=dynamics, wrist_rotation=wrist_rotation)
+        fields = config(kind=kind, step=None, dynamics=dynamics, wrist_rotation=wrist_rotation, servo=servo)
         plants.append(build(fields, robot, step, steps_per_tick))
         return plants[-1]
 

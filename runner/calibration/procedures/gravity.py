@@ -20,7 +20,7 @@ from runner.sensing.force_torque import ForceTorqueSensor
 from runner.sensing.wrench import wrench_transform
 
 _SETTLED = 1e-9  # of a change of load, which the sensor's low-pass leaves unseen when a reading is taken
-_TRIED = 200  # orientations in which the compensation is tried
+_TRIED = 50  # orientations in which the compensation is tried
 
 
 class WeighingConfig(StrictModel):

@@ -1,4 +1,4 @@
-"""Which calibrations the Meca500 report needs: a name for each, and the overrides of `runner calibrate` that make it."""
+"""Which calibrations the Meca500 report needs: a name for each, and the overrides of `runner calibrate`."""
 
 from collections.abc import Mapping
 

@@ -45,7 +45,7 @@ def contact_section(runs: Mapping[str, Run]) -> Section:
                 "with compliance $C$:"
             ),
             Formula(
-                "F = delta / (1 / K + 1 / k + C_(x x)) quad (C_(x x) = 0 \"on the kinematic plant\")",
+                'F = delta / (1 / K + 1 / k + C_(x x)) quad (C_(x x) = 0 "on the kinematic plant")',
                 "F equals delta over one over K plus one over k plus C x x",
             ),
             _curves(runs),

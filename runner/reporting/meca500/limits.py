@@ -25,18 +25,18 @@ def limits_section(runs: Mapping[str, Run]) -> Section:
     for name, run in found.items():
         model = model_of(run)
         speeds = np.abs(joint_columns(run.trace, "dq")) / model.velocity_limits
-        change = np.abs(np.diff(joint_columns(run.trace, "dq"), axis=0)) / model.velocity_limits
         rows.append(
             [
                 _TITLES[name],
                 number(smallest_margin(run)),
                 f"{100.0 * float(speeds.max()):.4g} %",
-                f"{100.0 * float(change.max()):.3g} %",
+                f"{100.0 * hardest_change(run):.3g} %",
                 f"{100.0 * nearest_singular(run):.3g} %",
                 "; ".join(str(text) for text in run.provenance["warnings"]),
             ]
         )
     margin = min(smallest_margin(run) for run in found.values())
+    hardest = max(hardest_change(run) for run in found.values())
     return Section(
         "At the limits",
         (
@@ -60,7 +60,9 @@ def limits_section(runs: Mapping[str, Run]) -> Section:
                 "finding",
                 "Never outside, and it says so",
                 f"No joint passes its position limit: the smallest margin is {number(margin)} rad. None is faster than "
-                "its speed limit. Each run names what has held the tool back, and when it first did.",
+                "its speed limit, and none changes its speed by more than "
+                f"{100.0 * hardest:.3g} % of that from one tick to the next. Each run names what has held the tool "
+                "back, and when it first did.",
             ),
         ),
     )
@@ -69,6 +71,12 @@ def limits_section(runs: Mapping[str, Run]) -> Section:
 def smallest_margin(run: Run) -> float:
     """Return how close a joint comes to a position limit, in rad; below zero is beyond it."""
     return float(model_of(run).limit_margins(joint_columns(run.trace, "q")).min())
+
+
+def hardest_change(run: Run) -> float:
+    """Return the largest change of a joint's speed from tick to tick, as a share of its speed limit."""
+    changes = np.abs(np.diff(joint_columns(run.trace, "dq"), axis=0)) / model_of(run).velocity_limits
+    return float(changes.max())
 
 
 def nearest_singular(run: Run) -> float:

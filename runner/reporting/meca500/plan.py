@@ -114,13 +114,13 @@ def _arm() -> dict[str, Job]:
     jobs = {}
     for number, home in enumerate(_homes(ORIENTATIONS)):
         posture = f"robot.home={home.round(6).tolist()}".replace(" ", "")
-        jobs[f"rest/{number}"] = _job("weighing", (posture, "wrist_sensor=mini40"), 3)
+        jobs[f"rest/{number}"] = _job("weighing", (posture, "wrist_sensor=mini40", f"seed={number}"), 3)
     for duration in SWINGS:
         own = (f"trajectory.duration={duration:g}", f"duration={duration:g}")
         jobs[f"swing/{duration}"] = _job("tool_in_motion", own, round(400 * duration))
-    stiff = ("controller.stiffness=[1e5,1e5,1e5,1e3,1e3,1e3]", "controller.damping=[900,900,900,9,9,9]")
-    jobs["noise/held"] = _job("push", ("wrist_sensor=mini40", "environment.force=[0,0,0]", *stiff), 600)
-    jobs["noise/soft"] = _job("push", ("wrist_sensor=mini40", "environment.force=[0,0,0]", "duration=3"), 3000)
+    fine = (f"trajectory.duration={SWINGS[-1]:g}", f"duration={SWINGS[-1]:g}", "controller.period=0.0005")
+    jobs["swing/fine"] = _job("tool_in_motion", (*fine, "plant.step=0.0005"), 500)
+    jobs["noise"] = _job("push", ("wrist_sensor=mini40", "environment.force=[0,0,0]", "duration=3"), 3000)
     for inertials in INERTIALS:
         jobs[f"inertials/{inertials}"] = _job("circle", (f"robot.inertials={inertials}", "plant.step=0.001"), 1500)
     for name, overrides in (("kinematic", ("plant=kinematic",)), ("rk4", ("plant=rk4",))):
@@ -132,6 +132,8 @@ def _arm() -> dict[str, Job]:
 
 def _homes(count: int) -> np.ndarray:
     """Return postures inside the joint limits, turned by half a turn at most, shape (count, 6), in rad."""
-    lower, upper = np.clip(RobotModel(read_urdf(find_urdf("meca500.urdf"), {}), "flange").position_limits, -np.pi, np.pi)
+    lower, upper = np.clip(
+        RobotModel(read_urdf(find_urdf("meca500.urdf"), {}), "flange").position_limits, -np.pi, np.pi
+    )
     homes: np.ndarray = np.random.default_rng(0).uniform(lower, upper, (count, 6))
     return homes

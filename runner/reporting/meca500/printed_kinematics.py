@@ -25,21 +25,26 @@ def printed_transform(q: FloatArray, factor: bool) -> dict[tuple[int, int], floa
     """
     (S1, S2, S3, S4, S5, S6), (C1, C2, C3, C4, C5, C6) = np.sin(q), np.cos(q)
 
-    def with_C2(value: float, sign: float = 1.0) -> float:
+    def with_c2(value: float, sign: float = 1.0) -> float:
         """Return "sign value -C_2"."""
-        return sign * value * -C2 if factor else sign * value - C2
+        return float(sign * value * -C2 if factor else sign * value - C2)
 
-    u = with_C2(C1 * S3) - C1 * C3 * S2
-    v = with_C2(C1 * C3) + C1 * S2 * S3
-    w, b = with_C2(C3) + S2 * S3, C3 * S2 + with_C2(S3, -1.0)
+    u = with_c2(C1 * S3) - C1 * C3 * S2
+    v = with_c2(C1 * C3) + C1 * S2 * S3
+    w, b = with_c2(C3) + S2 * S3, C3 * S2 + with_c2(S3, -1.0)
     a = C5 * (S1 * S4 - C4 * u) - S5 * v
     return {
         (0, 0): -S6 * (C4 * S1 + S4 * u) - C6 * a,
         (0, 1): S6 * a - C6 * (C4 * S1 + S4 * u),
         (0, 2): -S5 * (S1 * S4 - C4 * u) - C5 * v,
-        (0, 3): 135 * C1 * S2 - 70 * S5 * (S1 * S4 - C4 * u) - 70 * C5 * v
-        + with_C2(120 * C1 * C3, -1.0) - 120 * C1 * S2 * S3 + with_C2(38 * C1 * S3, -1.0) + 38 * C1 * C3 * S2,
-        (1, 2): S5 * (C1 * S4 - C4 * (C3 * S2 * S1 + with_C2(S1 * S3, -1.0))) - C5 * (with_C2(C3 * S1) + S2 * S1 * S3),
+        (0, 3): 135 * C1 * S2
+        - 70 * S5 * (S1 * S4 - C4 * u)
+        - 70 * C5 * v
+        + with_c2(120 * C1 * C3, -1.0)
+        - 120 * C1 * S2 * S3
+        + with_c2(38 * C1 * S3, -1.0)
+        + 38 * C1 * C3 * S2,
+        (1, 2): S5 * (C1 * S4 - C4 * (C3 * S2 * S1 + with_c2(S1 * S3, -1.0))) - C5 * (with_c2(C3 * S1) + S2 * S1 * S3),
         (2, 0): C6 * (S5 * b + C4 * C5 * w) - S4 * S6 * w,
         (2, 1): -S6 * (S5 * b + C4 * C5 * w) - C6 * S4 * w,
         (2, 2): C4 * S5 * w - C5 * b,
@@ -60,8 +65,12 @@ def printed_jacobian(q: FloatArray, angles: bool, root: float = 23961.0) -> dict
     bend = 135 * S2 + math.sqrt(root) * math.cos(t2 + t3 - math.atan(19 / 60))
     if not angles:
         t4 = t5 = t6 = 0.0
-    row_x = C4 * S6 + t6 * C4 * C6 - t4 * S4 * S6 + C5 * C6 * S4 + t4 * C4 * C5 * C6 - t5 * C6 * S4 * S5 - t6 * C5 * S4 * S6
-    row_y = C4 * C6 - C5 * S4 * S6 - t4 * C6 * S4 - t6 * C4 * S6 - t4 * C4 * C5 * S6 - t6 * C5 * C6 * S4 + t5 * S4 * S5 * S6
+    row_x = (
+        C4 * S6 + t6 * C4 * C6 - t4 * S4 * S6 + C5 * C6 * S4 + t4 * C4 * C5 * C6 - t5 * C6 * S4 * S5 - t6 * C5 * S4 * S6
+    )
+    row_y = (
+        C4 * C6 - C5 * S4 * S6 - t4 * C6 * S4 - t6 * C4 * S6 - t4 * C4 * C5 * S6 - t6 * C5 * C6 * S4 + t5 * S4 * S5 * S6
+    )
     row_z = S4 * S5 + t4 * C4 * S5 + t5 * C5 * S4
     return {
         (2, 0): S4 * S5 * bend,
@@ -85,7 +94,7 @@ def printed_jacobian(q: FloatArray, angles: bool, root: float = 23961.0) -> dict
 
 def true_transform(q: FloatArray) -> FloatArray:
     """Return 0T6 from the modified D-H table, shape (4, 4), lengths in mm."""
-    transform = modified_frames(TABLE, q)[-1]
+    transform: FloatArray = modified_frames(TABLE, q)[-1]
     transform[:3, 3] *= MILLIMETRES
     return transform
 

@@ -17,8 +17,11 @@ _STILL = 1e-4  # N, below which a force that swings is rounding
 
 
 def bounces(run: Run) -> bool:
-    """Tell whether contact is unstable as observed: in the last third of a run the tip leaves the wall, or the force
-    swings more widely than in the third before."""
+    """Tell whether contact is unstable as observed.
+
+    It is where in the last third of a run the tip leaves the wall, or the force swings more widely than in the third
+    before.
+    """
     force = -wrenches(run, "external")[:, 0]
     third = len(force) // 3
     before, last = force[third : 2 * third], force[-third:]
@@ -57,7 +60,7 @@ def stability_map_section(runs: Mapping[str, Run]) -> Section:
                 "(delay 1), which is what a wall is refused by before a run on servos:"
             ),
             Formula(
-                'vec(dot(x)_(k+1), x_(k+1)) = Phi vec(dot(x)_k, x_k) - Gamma k_w x_(k-d), quad '
+                "vec(dot(x)_(k+1), x_(k+1)) = Phi vec(dot(x)_k, x_k) - Gamma k_w x_(k-d), quad "
                 'max abs(lambda) < 1, quad d = 0 "or" 1',
                 "the next velocity and position are Phi times the last ones minus Gamma times k w times the position d "
                 "ticks before; stable where the largest modulus of an eigenvalue is below one; d is zero or one",
@@ -134,9 +137,7 @@ def _map(runs: Mapping[str, Run]) -> Curves:
             if points[unstable]:
                 x, y = np.array(points[unstable]).T
                 series.append(Series(name, x, y, "points"))
-        panels.append(
-            Panel(plant, "sample time (ms)", "stiffness of the wall (N/m)", series, x_log=True, y_log=True)
-        )
+        panels.append(Panel(plant, "sample time (ms)", "stiffness of the wall (N/m)", series, x_log=True, y_log=True))
     return Curves(
         "Stability of contact over sample time and stiffness of the wall.",
         panels,

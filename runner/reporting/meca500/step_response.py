@@ -9,6 +9,7 @@ from runner.controllers.admittance_response import step_response
 from runner.reporting.document import Curves, FloatArray, Formula, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import origin
 from runner.reporting.meca500.plan import FORCE, MOMENT, REPORTED, STEP_CASES
+from runner.reporting.meca500.servo_compliance import servo_compliance
 from runner.reporting.meca500.signals import displacement
 from runner.reporting.quantities import number, quantity
 from runner.reporting.thesis.studies import clock
@@ -34,7 +35,7 @@ def step_response_section(runs: Mapping[str, Run]) -> Section:
             number(errors[case, axis]) if case == "kinematic, 1 ms" else _percent(errors[case, axis])
             for case in STEP_CASES
         ]
-        rows.append([axis, quantity(1e3 * float(np.abs(answer).max()), unit), *cells])
+        rows.append([axis, quantity(1e3 * float(np.abs(answer).max()), unit), *cells, _percent(_give(runs, axis))])
     law = law_of(runs["step/kinematic, 1 ms/x"])
     worst = {case: max(errors[case, axis] for axis in AXES) for case in STEP_CASES}
     return Section(
@@ -56,9 +57,9 @@ def step_response_section(runs: Mapping[str, Run]) -> Section:
             Table(
                 "Largest distance from the analytic answer, in its peak: as a share, and then in per cent. Answers are "
                 "joined by straight lines between ticks.",
-                ["axis", "peak", *STEP_CASES],
+                ["axis", "peak", *STEP_CASES, "give of the servos at 1 ms"],
                 rows,
-                tuple(range(1, 7)),
+                tuple(range(1, 8)),
                 origin(runs["step/kinematic, 1 ms/x"]),
             ),
             Notice(
@@ -68,9 +69,26 @@ def step_response_section(runs: Mapping[str, Run]) -> Section:
                 f"At the real controller's {1e3 * REPORTED:g} ms the sampled law is exact where it is sampled; the "
                 f"straight lines between are off by {_percent(worst['kinematic, 16.7 ms'])} of the peak, and a load "
                 "that sets in just after a tick is felt a period late, which makes it "
-                f"{_percent(worst['kinematic, 16.7 ms, felt late'])}. Servos at joints with mass bring "
-                f"{_percent(worst['servo, 1 ms'])} at 1 ms on the worst axis and {_percent(worst['servo, 16.7 ms'])} at "
-                "16.7 ms: they lag, and what the lag does to the tool comes back through the sensor.",
+                f"{_percent(worst['kinematic, 16.7 ms, felt late'])}.",
+            ),
+            Text(
+                "Servos at joints with mass give way to the load, by their springs. They evaluate spring and damper at "
+                "the end of their period $h$, which no stiffness makes unstable, and which leaves of the springs' "
+                "stiffness $K_s$ against a load that they do not know of only $K_e$. So much the tool moves:"
+            ),
+            Formula(
+                "C f = J K_e^(-1) J^T f, quad K_e = M (M + h D + h^2 K_s)^(-1) K_s",
+                "C f equals J times the inverse of K e times J transposed times f, with K e equal M times the inverse "
+                "of M plus h D plus h squared K s, times K s",
+            ),
+            Notice(
+                "finding",
+                "What the servos add is their springs' give",
+                f"At 1 ms they are off by {_percent(worst['servo, 1 ms'])} of the peak on the worst axis, "
+                f"{max(AXES, key=lambda axis: errors['servo, 1 ms', axis])}, where the closed form of their give has "
+                f"{_percent(max(_give(runs, axis) for axis in AXES))}, and at 16.7 ms by "
+                f"{_percent(worst['servo, 16.7 ms'])}. The last joint bears so little inertia that it keeps little of "
+                "its stiffness; a shorter plant.servo.period gives it back.",
             ),
         ),
     )
@@ -84,6 +102,12 @@ def _answers(run: Run, axis: str) -> tuple[FloatArray, FloatArray, FloatArray]:
     answer = np.interp(times, clock(run), displacement(run)[:, index])
     since = np.maximum(times - float(run.config["environment"]["begin"]), 0.0)
     return times, answer, step_response(law_of(run), loads, since)[:, index]
+
+
+def _give(runs: Mapping[str, Run], axis: str) -> float:
+    """Return how far servos at 1 ms give way to the push at rest, as a share of the law's own answer."""
+    run, index = runs[f"step/servo, 1 ms/{axis}"], AXES.index(axis)
+    return float(servo_compliance(run)[index, index] * law_of(run).stiffness[index])
 
 
 def _error(run: Run, axis: str) -> float:
@@ -105,8 +129,8 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
         for case in _CHOSEN:
             run = runs[f"step/{case}/{axis}"]
             since = clock(run) - float(run.config["environment"]["begin"])
-            style = "points" if case == "kinematic, 16.7 ms" else "line"
-            series.append(Series(case, since, 1e3 * displacement(run)[:, AXES.index(axis)], style))
+            answer = 1e3 * displacement(run)[:, AXES.index(axis)]
+            series.append(Series(case, since, answer, "points" if case == "kinematic, 16.7 ms" else "line"))
         panels.append(Panel(axis, "time since the push (s)", f"displacement ({unit})", series, x_range=(-0.02, 0.4)))
     return Curves(
         "Answers of the six axes to a steady push.", panels, 2, origin(runs["step/kinematic, 1 ms/x"], "(8), steps")

@@ -1,0 +1,112 @@
+"""What the sections on calibrations share: errors over the repetitions beside what the covariances predict."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from runner.errors import ConfigError
+from runner.reporting.document import FloatArray, Notice, Origin, Panel, Series
+from runner.reporting.meca500.calibration_plan import name_of
+from runner.reporting.quantities import number, quantity
+from runner.robots import RobotModel
+from runner.store import Calibration
+
+Calibrations = Mapping[str, Calibration]
+
+
+def calibration_origin(calibration: Calibration, place: str = "") -> Origin:
+    """Return where a figure comes from: the command that made the calibration, and its commit."""
+    commit = str(calibration.provenance["commit"] or "")
+    return Origin(place, str(calibration.provenance["command"]), commit[:12] + commit[40:])
+
+
+def flange_of(calibration: Calibration) -> RobotModel:
+    """Return the arm that was calibrated, with its flange as tip."""
+    return RobotModel(calibration.urdf, calibration.provenance["flange"], calibration.config["gravity"])
+
+
+def found_error(calibration: Calibration, *names: str) -> float:
+    """Return the root mean square over the repetitions of the length of an error, of its named components or of all."""
+    return float(np.sqrt(np.mean(np.sum(calibration.values("errors", *names) ** 2, axis=1))))
+
+
+def predicted_error(calibration: Calibration, *names: str) -> float:
+    """Return what the covariances say of `found_error`."""
+    return float(np.sqrt(np.mean(np.sum(calibration.values("deviations", *names) ** 2, axis=1))))
+
+
+def consistency_cells(calibration: Calibration) -> list[str]:
+    """Return the mean normalised error squared, its band, and whether it lies there, for a table."""
+    judged = calibration.consistency
+    if judged is None:
+        return ["–", "–", "–"]
+    band = f"{number(judged['lower'])} to {number(judged['upper'])}"
+    return [number(judged["mean"]), band, "yes" if judged["holds"] else "no"]
+
+
+CONSISTENCY_HEADER = ("NEES", "99 % band", "inside")
+
+
+def error_curves(
+    calibrations: Calibrations, variations: Mapping[str, Sequence[float]], x_label: str, y_label: str, *names: str
+) -> Panel:
+    """Return errors over what was varied: found as points, predicted as lines.
+
+    Args:
+        calibrations: The calibrations by name.
+        variations: Values of what was varied, by the first part of the calibrations' names; 0 is left out.
+        x_label: Label of the values.
+        y_label: Label of the errors.
+        names: The components that make the error; none for all.
+    """
+    series = []
+    for color, (variation, all_values) in enumerate(variations.items()):
+        values = [value for value in all_values if value > 0.0]
+        done = [calibrations[name_of(variation, value)] for value in values]
+        label = f"{variation.rpartition('/')[2]}, " if len(variations) > 1 else ""
+        x = np.array(values, dtype=float)
+        found, predicted = (
+            np.array([error(calibration, *names) for calibration in done]) for error in (found_error, predicted_error)
+        )
+        series += [
+            Series(f"{label}found", x, found, "points", color=color),
+            Series(f"{label}predicted", x, predicted, "line", color=color),
+        ]
+    return Panel("", x_label, y_label, series, x_log=True, y_log=True)
+
+
+def consistency_notice(calibrations: Calibrations) -> Notice:
+    """Return in how many calibrations the errors are as large as predicted."""
+    judged = {name: c.consistency for name, c in calibrations.items() if c.consistency is not None}
+    outside = [name for name, consistency in judged.items() if not consistency["holds"]]
+    text = (
+        f"The mean normalised estimation error squared $e^T P^(-1) e$ lies in its 99 % chi-square band in "
+        f"{len(judged) - len(outside)} of {len(judged)} calibrations"
+        + (f", and not in {', '.join(outside)}" if outside else "")
+        + ". Chance alone puts one of a hundred outside."
+    )
+    title = "Errors are as large as predicted" if not outside else "Some errors are not as large as predicted"
+    return Notice("warning" if outside else "finding", title, text)
+
+
+def refusal(attempt: Callable[[], object]) -> str:
+    """Return why something is refused, the config's key left out.
+
+    Args:
+        attempt: A function without arguments that raises a ConfigError.
+    """
+    try:
+        attempt()
+    except ConfigError as error:
+        return error.problems[0].partition(": ")[2]
+    return "not refused"
+
+
+def fit(values: FloatArray, errors: FloatArray) -> float:
+    """Return the power of the values with which errors grow, by least squares of the logarithms."""
+    return float(np.polyfit(np.log(values), np.log(errors), 1)[0])
+
+
+def metres(value: float) -> str:
+    """Return a short length in micrometres."""
+    return quantity(1e6 * value, "µm")

@@ -1,0 +1,115 @@
+"""Tool direction and alignment (section 3 of the report), judged by the true direction."""
+
+import numpy as np
+
+from runner.calibration.tool_direction import alignment, alignment_angles
+from runner.reporting.document import Block, Curves, Formula, Notice, Section, Table, Text
+from runner.reporting.meca500.calibration_plan import DIRECTION_POSES, DIRECTION_REPEATABILITIES, SHORTER, name_of
+from runner.reporting.meca500.calibration_studies import (
+    CONSISTENCY_HEADER,
+    Calibrations,
+    calibration_origin,
+    consistency_cells,
+    error_curves,
+    found_error,
+    predicted_error,
+)
+from runner.reporting.quantities import number, quantity
+
+_KIND = "tool_direction"
+
+
+def tool_direction_section(calibrations: Calibrations) -> Section:
+    """Return the alignment, errors over the tools' difference, repeatability and number of poses, and the misprint."""
+    base = calibrations[f"{_KIND}/base"]
+    config = base.config["calibration"]
+    along = ", ".join(f"{value:g}" for value in config["direction"])
+    alpha, beta = (float(np.degrees(base.truth[name])) for name in ("alpha", "beta"))
+    blocks: list[Block] = [
+        Text(
+            "Two tools of different length, calibrated apart, give the direction in which the tool is inserted. The "
+            f"report's example is taken as the truth, $t$ along ({along}) of the flange's frame, with a short tool "
+            f"whose tip stands back by {1e3 * config['shorter']:g} mm. The flange's z axis is brought onto $t$ by a "
+            "turn about x and one about the new y:"
+        ),
+        Formula(
+            'R_x (alpha) R_y (beta) e_z = t, quad alpha = "atan2"(-t_y, t_z), '
+            'quad beta = "atan2"(t_x, sqrt(t_y^2 + t_z^2))',
+            "R x of alpha R y of beta times e z equals t, alpha is the arc tangent of minus t y and t z, beta that of "
+            "t x and the root of t y squared plus t z squared",
+            "6, 7",
+        ),
+        Text(
+            f"For the example $alpha = {alpha:.2f}°$ and $beta = {beta:.2f}°$. Along x, where any $alpha$ does, it is "
+            "taken as zero. As the angles then say little, the direction is judged by its tilt about the aligned "
+            "frame's axes."
+        ),
+        Table(
+            "Found and predicted angle between the found and the true direction (root mean square over "
+            f"{base.record['repetitions']} repetitions). The expectation of NEES is 2.",
+            ["varied", "value", "error (mrad)", "predicted (mrad)", *CONSISTENCY_HEADER],
+            _rows(calibrations),
+            (1, 2, 3, 4, 5),
+            calibration_origin(base),
+        ),
+        Curves(
+            "Error of the tool's direction over what the tools differ by, and over the arm's repeatability.",
+            (
+                error_curves(calibrations, {f"{_KIND}/shorter": SHORTER}, "difference of the tools (m)", "error (rad)"),
+                error_curves(
+                    calibrations,
+                    {f"{_KIND}/repeatability": DIRECTION_REPEATABILITIES},
+                    "repeatability (m)",
+                    "error (rad)",
+                ),
+            ),
+            2,
+            calibration_origin(base),
+        ),
+        _finding(calibrations),
+        _misprint(np.array(config["direction"])),
+    ]
+    return Section("Tool direction and alignment", blocks)
+
+
+def _rows(calibrations: Calibrations) -> list[list[str]]:
+    variations = (
+        ("shorter", "difference of the tools (mm)", SHORTER, 1e3),
+        ("repeatability", "repeatability (µm)", DIRECTION_REPEATABILITIES, 1e6),
+        ("poses", "number of poses with each", DIRECTION_POSES, 1.0),
+    )
+    rows = []
+    for key, title, values, factor in variations:
+        for value in values:
+            done = calibrations[name_of(f"{_KIND}/{key}", value)]
+            errors = (number(1e3 * error(done)) for error in (found_error, predicted_error))
+            rows.append([title, number(factor * value), *errors, *consistency_cells(done)])
+    return rows
+
+
+def _finding(calibrations: Calibrations) -> Notice:
+    exact = calibrations[name_of(f"{_KIND}/repeatability", 0.0)]
+    short, long = (calibrations[name_of(f"{_KIND}/shorter", value)] for value in (SHORTER[0], SHORTER[-1]))
+    over = 0.02  # m, about the length of a root canal file
+    return Notice(
+        "finding",
+        "The direction is as good as the tools differ in length",
+        f"Without noise the direction is found within {number(float(np.abs(exact.values('errors')).max()))} rad. Tools "
+        f"that differ by {1e3 * SHORTER[0]:g} mm leave {quantity(1e3 * found_error(short), 'mrad')}, by "
+        f"{1e3 * SHORTER[-1]:g} mm {quantity(1e3 * found_error(long), 'mrad')}: the tips' error over their "
+        f"distance. Over {1e3 * over:g} mm of insertion the first is "
+        f"{quantity(1e6 * over * found_error(short), 'µm')} aside.",
+    )
+
+
+def _misprint(direction: np.ndarray) -> Notice:
+    t = direction / np.linalg.norm(direction)
+    R = alignment(*alignment_angles(t))
+    off = float(np.degrees(np.arccos(np.clip(R.T[:, 2] @ t, -1.0, 1.0))))
+    return Notice(
+        "warning",
+        "Which frame stands in which",
+        'Equation 7 calls the product the rotation of frame 6 in the tool\'s, $""_6^T R$. The turns that the text '
+        'describes, z onto the projection and then onto $t$, make it the tool\'s frame in frame 6, $""_T^6 R$. Read as '
+        f"printed, the tool of the example would be sent {off:.1f}° away from $t$.",
+    )
