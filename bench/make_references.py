@@ -46,6 +46,10 @@ METRICS = {
     "xarm7/round_posture": _LINE,
     "xarm7/seven_joints": (*_LINE, "cross_track_error"),
     "xarm7/seven_joints_pose": (*_LINE, "cross_track_error"),
+    "meca500/push": ("peak_force", "peak_joint_speed"),
+    "meca500/wall": ("peak_force", "steady_force", "peak_joint_speed"),
+    "meca500/hand": ("peak_force", "peak_joint_speed"),
+    "meca500/circle": ("max_tracking_error", "rms_tracking_error", "peak_joint_speed", "peak_torque"),
 }
 # Wider than the seeds tell, in the metric's unit: plant, velocity estimate and rounding change the branch of the
 # saturated transient, and move its median by 0.3 s of the run's 4 s. The Mini is the Macro scaled, times by a tenth.
@@ -106,10 +110,29 @@ def explain_line(experiment: str, preset: str, metric: str) -> str:
     return reasons.get(metric, _LINE_ERRORS[joints, preset])
 
 
+# Reasons of what a Meca500 that gives way feels and does.
+_TOUCH = {
+    ("push", "peak_force"): "the push itself",
+    ("wall", "peak_force"): "the law's mass and damping arrive at the wall with the speed of the approach",
+    ("wall", "steady_force"): "the springs of law and wall in series",
+    ("hand", "peak_force"): "damping at the hand's peak speed, and the law's mass",
+    ("circle", "max_tracking_error"): "what the law gives way to the push, and its servos",
+    ("circle", "rms_tracking_error"): "what the law gives way to the push, and its servos",
+    ("circle", "peak_torque"): "the arm's weight and inertia on servos",
+}
+
+
+def explain_touch(experiment: str, metric: str) -> str:
+    """Return why a metric of the Meca500's admittance control is where it is."""
+    return _TOUCH.get((experiment.rpartition("/")[2], metric), "the law's answer, through the arm's Jacobian")
+
+
 def explain(experiment: str, preset: str, metric: str, zero: bool) -> str:
     """Return why a metric is where it is."""
     if experiment.startswith("xarm7/"):
         return explain_line(experiment, preset, metric)
+    if experiment.startswith("meca500/"):
+        return explain_touch(experiment, metric)
     sound, limited = preset == "sound", experiment == "thesis/figure_3_9"
     if zero:
         return "no error beyond the settling band" if metric == "settling_time" else "no joint at a limit"

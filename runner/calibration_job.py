@@ -60,7 +60,7 @@ def _carry_out(config: CalibrationConfig, composed: Composed) -> dict[str, Any]:
         "errors": _table(procedure.errors, (outcome.errors for outcome in outcomes)),
         "deviations": _table(procedure.errors, deviations),
         "measures": _table(procedure.measures, ([o.measures[name] for name in procedure.measures] for o in outcomes)),
-        "consistency": _judge(outcomes),
+        "consistency": judge(outcomes),
         "postures": procedure.postures.tolist(),
         "timing": {"wall_s": time.perf_counter() - wall},
         "provenance": _provenance(config, composed, outcomes),
@@ -76,7 +76,7 @@ def _table(units: Mapping[str, str], rows: Iterable[FloatArray | Sequence[float]
     }
 
 
-def _judge(outcomes: Sequence[Outcome]) -> dict[str, Any] | None:
+def judge(outcomes: Sequence[Outcome]) -> dict[str, Any] | None:
     """Return whether the errors are as large as the covariances say; None where some error is taken to be zero."""
     covariances = np.array([outcome.covariance for outcome in outcomes])
     if not (np.diagonal(covariances, axis1=1, axis2=2) > 0.0).all():

@@ -16,15 +16,20 @@ runner: config-driven experiments for robot-arm control, with reports
 
   runner robot=macro trajectory=goal             one run; the last line printed is its folder
   runner -m robot=macro,mini noise.position=1e-4,1e-3
-                                                 a sweep over every combination
-  runner reproduce [thesis|audit|all]            run what is missing and write the report of a published work
+                                                 a sweep over every combination; again, it makes what is missing
+  runner status DIR                              how far a sweep is
+  runner tune OVERRIDES --minimize METRIC        choose numbers, as in controller.period="interval(0.005,0.05)"
+  runner reproduce [thesis|xarm7|meca500|audit|all]
+                                                 run what is missing and write the report of a published work
   runner report DIR... [--html] [--pdf]          a report from stored runs or sweeps
-  runner check DIR [--reference FILE]            is every metric inside its reference band?
+  runner table DIR                               a sweep as one table, Parquet and CSV
+  runner check DIR [--reference FILE]            is every metric inside its reference band? --learn a sweep's
   runner diff A B                                two runs side by side: config and metrics
   runner calibrate [OVERRIDES]                   calibrate tool or sensor against the truth: calibration=gravity
   runner audit URDF --tip FRAME --jacobian FILE  your own formulas against a robot; also --position, --mass-matrix,
                                                  --gravity
-  runner list [robots|controllers|trajectories|experiments|plants|noise|presets|torque_limits|metrics|claims|references]
+  runner list [robots|controllers|trajectories|experiments|plants|noise|presets|torque_limits|calibrations|metrics|
+               claims|references]
 
   runner --cfg job [OVERRIDES]                   show the composed config without running it
   runner --config-dir DIR OVERRIDES              take YAML and URDFs from your own folder, too
@@ -35,7 +40,9 @@ Groups: robot, controller, trajectory, plant, noise, torque_limits, preset, expe
 key, as in controller.period=0.005; `runner --cfg job` shows all keys. Exit codes: 0 good, 1 a run failed or a
 check fell short, 2 bad input.
 """
-COMMANDS = ("reproduce", "report", "check", "diff", "calibrate", "audit", "list")
+COMMANDS = (
+    "reproduce", "report", "table", "status", "tune", "check", "diff", "calibrate", "audit", "list",
+)  # fmt: skip
 
 
 def main() -> None:

@@ -14,10 +14,10 @@ from runner.config.compose import Composed, compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.metrics import evaluate, summarize
-from runner.sensing import ForceTorqueSensor
+from runner.sensing import ForceTorqueSensor, JointEncoders
 from runner.simulation import ClosedLoop, simulate
 from runner.store.writing import timing
-from runner.trace import Failure, Trace
+from runner.trace import Failure, FloatArray, Trace
 
 
 def run(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Run:
@@ -46,10 +46,25 @@ def execute(composed: Composed) -> store.Run:
     if stored is not None:
         return stored
     store.prepare(outputs)
-    return store.write_run(outputs, name, _simulate_job(config, composed))
+    return store.write_run(outputs, name, simulate_job(config, composed))
 
 
-def _simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
+class TimeLimitError(Exception):
+    """A run that took longer than its time limit."""
+
+
+def simulate_job(config: RunConfig, composed: Composed, time_limit: float | None = None) -> store.RunResult:
+    """Simulate the repetitions of a checked config.
+
+    Args:
+        config: The checked config.
+        composed: What it was checked from, for provenance.
+        time_limit: Longest wall-clock time for all repetitions, in s; None for no limit.
+
+    Raises:
+        ConfigError: where the start of the trajectory cannot be reached, or a part refuses its config.
+        TimeLimitError: if it takes longer.
+    """
     wall, cpu = time.perf_counter(), time.process_time()
     loop = assemble(config)
     context = metric_context(config, loop)
@@ -59,8 +74,10 @@ def _simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
     notices: list[str] = []
     try:
         for repetition in range(config.settings.repetitions):
-            wrist = make_wrist_sensor(config, loop, repetition)
-            trace = simulate(loop, make_encoders(config, loop, repetition), wrist)
+            encoders, wrist = make_encoders(config, loop, repetition), make_wrist_sensor(config, loop, repetition)
+            if time_limit is not None:
+                encoders = [_Timed(sensor, wall + time_limit) for sensor in encoders]
+            trace = simulate(loop, encoders, wrist)
             notices = notices or _notices(loop, wrist)
             first = trace if first is None else first
             if trace.failure is not None and failure is None:
@@ -78,7 +95,7 @@ def _simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
         repetitions=config.settings.repetitions,
         failure=failure,
         timing=timing(np.concatenate(ticks), time.perf_counter() - wall, time.process_time() - cpu),
-        provenance=_provenance(config, composed, notices),
+        provenance=job_provenance(config, composed, notices),
     )
 
 
@@ -89,7 +106,30 @@ def _notices(closed: ClosedLoop, wrist: ForceTorqueSensor | None) -> list[str]:
     return told + ([] if wrist is None else wrist.overloads())
 
 
-def _provenance(config: RunConfig, composed: Composed, notices: Sequence[str]) -> dict[str, object]:
+class _Timed(JointEncoders):
+    """Encoders that look at the clock whenever they are read.
+
+    Args:
+        encoders: The encoders.
+        deadline: When they give up, on the clock of `time.perf_counter`, in s.
+    """
+
+    def __init__(self, encoders: JointEncoders, deadline: float) -> None:
+        self._encoders, self._deadline = encoders, deadline
+
+    def measure(self, tick: int, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Measure as the encoders do.
+
+        Raises:
+            TimeLimitError: after the deadline.
+        """
+        if time.perf_counter() > self._deadline:
+            raise TimeLimitError
+        return self._encoders.measure(tick, q, dq)
+
+
+def job_provenance(config: RunConfig, composed: Composed, notices: Sequence[str] = ()) -> dict[str, object]:
+    """Return where a run comes from: command, choices, time steps, seed, commit, versions, machine."""
     return {
         "date": time.strftime("%Y-%m-%d", time.gmtime()),
         "command": shlex.join(["runner", *(o for o in composed.overrides if not o.startswith("outputs="))]),

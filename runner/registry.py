@@ -7,13 +7,13 @@ packages add kinds through entry points in the group `runner.<registry>`, each p
 
 import importlib
 from collections.abc import Mapping
-from importlib.metadata import entry_points
 from types import ModuleType
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict
 
 from runner.errors import ConfigError, nearest
+from runner.plugins import added
 
 
 class StrictModel(BaseModel):
@@ -78,4 +78,4 @@ class Registry:
         return importlib.import_module(modules[kind])
 
     def _plugins(self) -> dict[str, str]:
-        return {point.name: point.value for point in entry_points(group=f"runner.{self.group}")}
+        return {point.name: point.value for point in added(self.group)}

@@ -15,6 +15,7 @@ from runner.cli import COMMANDS, HELP
 from runner.config.options import group_options
 
 SHORT = ("robot=macro", "duration=0.05")
+IN_PROCESS = ("hydra.sweeper.workers=0",)
 
 
 def start(*arguments, cwd, **options):
@@ -84,8 +85,8 @@ def test_showing_the_config_runs_nothing(cli, tmp_path):
 
 
 def test_a_sweep_stores_every_combination_and_its_table(cli, tmp_path):
-    ending = cli("-m", "robot=macro,mini", "noise.position=0,1e-4", "duration=0.05")
-    assert (ending.code, ending.err) == (0, "")
+    ending = cli("-m", *IN_PROCESS, "robot=macro,mini", "noise.position=0,1e-4", "duration=0.05")
+    assert (ending.code, ending.err) == (0, "runner: 4 runs\nrunner: about 1 s on 1 process\n")
     jobs = json.loads((ending.folder / "sweep.json").read_text())["jobs"]
     assert [job["overrides"][:2] for job in jobs] == [
         ["robot=macro", "noise.position=0"],
@@ -97,18 +98,52 @@ def test_a_sweep_stores_every_combination_and_its_table(cli, tmp_path):
     assert [entry.name for entry in tmp_path.iterdir()] == ["outputs"]
 
 
-def test_a_sweep_with_a_bad_cell_names_it_and_keeps_the_others(cli, tmp_path):
+def test_a_sweep_with_a_bad_cell_names_it_and_starts_nothing(cli, tmp_path):
     ending = cli("-m", *SHORT, "noise.position=1e-4,-1")
     assert (ending.code, ending.out) == (2, "")
     assert "[robot=macro duration=0.05 noise.position=-1] noise.position: must be 0 or more; found -1" in ending.err
-    assert "1 other runs of the sweep are stored already" in ending.err
-    assert len(list((tmp_path / "outputs/runs").iterdir())) == 1
+    assert "nothing was started" in ending.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_sweep_tells_in_a_table_what_failed(cli):
+    overrides = ("plant=rk4", "controller.period=0.01,0.06", "controller.singularity_damping=0", "trajectory=quintic")
+    ending = cli("-m", *IN_PROCESS, "robot=macro", *overrides)
+    assert ending.code == 1
+    *_, count, title, row = ending.err.splitlines()
+    assert count == "runner: 1 run failed"
+    assert title.split() == ["run", "why", "more", "in"]
+    assert "controller.period=0.06" in row
+    assert "failed in repetition 0 at t = 0.6 s (q1): diverged" in row
+    assert (ending.folder.parents[2] / row.split()[-1]).is_file()
+    again = cli("-m", *IN_PROCESS, "robot=macro", *overrides)
+    assert (again.code, again.folder) == (1, ending.folder)
+    assert "runner: 2 runs, 2 of them stored already" in again.err
+
+
+def test_the_command_to_go_on_with_is_kept_with_a_sweep(cli):
+    folder = cli("-m", *IN_PROCESS, *SHORT, "seed=0,1").folder
+    command = "runner -m hydra.sweeper.workers=0 robot=macro duration=0.05 seed=0,1"
+    assert json.loads((folder / "sweep.json").read_text())["command"] == command
+
+
+def test_an_experiment_may_bring_its_axes(cli, tmp_path):
+    own = tmp_path / "own" / "experiment"
+    own.mkdir(parents=True)
+    (own / "axes.yaml").write_text(
+        "# @package _global_\nduration: 0.05\nhydra: {sweeper: {params: {seed: '0,1', noise.position: '0,1e-4'}}}\n"
+    )
+    ending = cli("-m", "--config-dir", tmp_path / "own", *IN_PROCESS, "experiment=axes", "seed=3")
+    jobs = json.loads((ending.folder / "sweep.json").read_text())["jobs"]
+    assert [job["overrides"] for job in jobs] == [
+        ["seed=3", f"noise.position={value}", "experiment=axes"] for value in ("0", "0.0001")
+    ]
 
 
 def test_a_sweep_over_an_unknown_option_starts_nothing(cli, tmp_path):
     ending = cli("-m", "robot=macro,makro", "duration=0.05")
     assert ending.code == 2
-    assert "robot: no 'makro' (did you mean macro?)" in ending.err
+    assert "[robot=makro duration=0.05] robot: no 'makro' (did you mean macro?)" in ending.err
     assert list(tmp_path.iterdir()) == []
 
 

@@ -24,7 +24,7 @@ def parts(monkeypatch):
         module.default_step = lambda tick, stages: tick / 10 / stages
         monkeypatch.setitem(sys.modules, f"some_{name}", module)
     points = [EntryPoint("foreign", "some_foreign", "runner.part")]
-    monkeypatch.setattr(registry, "entry_points", lambda group: points if group == "runner.part" else [])
+    monkeypatch.setattr(registry, "added", lambda kind: points if kind == "part" else [])
     return Registry("part", {"own": "some_own"})
 
 

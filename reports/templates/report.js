@@ -35,6 +35,22 @@
         plots.push({ element, columns, panel: panels[index], drawn: false, near: false, legend: 0, width: 0 });
       });
     }
+    // These come with their data on them, and with new data whenever a reader filters.
+    for (const element of document.querySelectorAll("figure.runlist .plot")) {
+      const plot = { element, columns: 1, panel: element.panel, drawn: false, near: false, legend: 0, width: 0 };
+      plots.push(plot);
+      element.addEventListener("panel", () => {
+        plot.panel = element.panel;
+        if (plot.drawn) draw(plot);
+      });
+    }
+  }
+
+  function leadToRun(event) {
+    const run = event.points.map((point) => point.customdata).find(Boolean);
+    if (!run) return;
+    window.location.hash = `run-${run}`;
+    document.dispatchEvent(new Event("run"));
   }
 
   function baseHeight(plot) {
@@ -50,7 +66,7 @@
       const color = colors[plot.panel.colors[index] % colors.length];
       return {
         ...trace,
-        line: { ...trace.line, color },
+        ...(trace.line ? { line: { color, ...trace.line } } : {}),
         ...(trace.marker ? { marker: { ...trace.marker, color } } : {}),
         ...(trace.fill ? { fillcolor: color + "30" } : {}),
       };
@@ -105,6 +121,7 @@
     if (!plot.drawn) {
       window.Plotly.newPlot(plot.element, ...themed(plot), config);
       plot.element.on("plotly_afterplot", () => fitLegend(plot));
+      plot.element.on("plotly_click", leadToRun);
       plot.element.classList.add("drawn");
       plot.drawn = true;
       fitLegend(plot);

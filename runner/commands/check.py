@@ -1,32 +1,100 @@
-"""`runner check DIR [--reference FILE]`: does every metric of a run or sweep lie in its reference band?"""
+"""`runner check DIR [--reference FILE]`: do the metrics of a run or sweep lie where a reference has them?
+
+With `--learn FILE` a sweep becomes a reference itself; what moved since is told by `--reference FILE [--markdown]`.
+"""
 
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.commands.arguments import Parser
-from runner.commands.table import aligned, number
+from runner.commands.columns import aligned, number
 from runner.config.compose import quiet_environment
 
 if TYPE_CHECKING:
-    from runner.references import Band, Finding, Reference
-    from runner.store import Run
+    from runner.references import Band, Finding, Learned, Move, Reference
+    from runner.store import Run, Sweep
+
+_MOVE_COLUMNS = ("cell", "metric", "was", "is", "moved", "beyond the seeds' spread")
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Check the medians of all runs; print one line if all hold, else a table of those that do not."""
+    """Check a run or sweep against a reference, or learn one."""
     parser = Parser("check", __doc__)
     parser.add_argument("folder", type=Path, metavar="DIR", help="folder of a run or a sweep")
     parser.add_argument(
         "--reference", type=Path, metavar="FILE", help="reference file; default: the one for the run's experiment"
     )
+    parser.add_argument("--learn", type=Path, metavar="FILE", help="write a reference of the whole sweep")
+    parser.add_argument("--markdown", action="store_true", help="tell what moved as a Markdown table")
     options = parser.parse_args(arguments)
     quiet_environment()
     from runner import store
+    from runner.references import learn, load_learned
+
+    if options.learn:
+        count = learn(store.open_sweep(options.folder), options.learn)
+        print(f"learned: {count} metrics of {options.folder} stand in {options.learn}")
+        return 0
+    learned = load_learned(options.reference) if options.reference else None
+    if learned is not None:
+        return _check_sweep(store.open_sweep(options.folder), learned, options.markdown)
+    if options.markdown:
+        parser.error("--markdown needs a reference of a sweep, made by --learn")
+    return _check_bands(options.folder, options.reference)
+
+
+def _check_sweep(sweep: "Sweep", learned: "Learned", markdown: bool) -> int:
+    """Print what moved since a sweep's reference was learned; return 1 where it is more than the seeds' spread."""
+    from runner.references import find_moves
+
+    moves = find_moves(sweep, learned)
+    beyond = sum(move.beyond for move in moves)
+    total = sum(map(len, learned.values()))
+    summary = f"{total} metrics of {len(learned)} cells: {len(moves)} moved, {beyond} beyond the seeds' spread"
+    rows = [list(_MOVE_COLUMNS), *map(_move_row, moves)]
+    if markdown:
+        lines = [f"**{summary}**", "", *_markdown(rows)] if moves else [f"**{summary}**"]
+        print("\n".join(lines))
+    else:
+        print("\n".join([summary, aligned(rows)]) if moves else f"good: {summary}")
+    return 1 if beyond else 0
+
+
+def _move_row(move: "Move") -> list[str]:
+    beyond = "yes" if move.beyond else "no"
+    if not move.metric:
+        return [move.cell, "(all)", "", "", move.remark, beyond]
+    was, unit = "-", ""
+    if move.was is not None:
+        unit = "" if move.was.unit == "1" else f" {move.was.unit}"
+        was = number(move.was.median)
+        if move.was.seeds > 1:
+            was += f" ({number(move.was.min)} to {number(move.was.max)})"
+    return [move.cell, move.metric, was + unit, number(move.value) + unit, _direction(move), beyond]
+
+
+def _direction(move: "Move") -> str:
+    """Return which way a metric moved, and by how much of what it was; no value counts as beyond every number."""
+    old, new = None if move.was is None else move.was.median, move.value
+    if old is None or new is None:
+        return "new" if move.was is None else "up" if new is None else "down"
+    share = f" {100.0 * abs(new - old) / abs(old):.2g} %" if old else ""
+    return ("up" if new > old else "down") + share
+
+
+def _markdown(rows: "Sequence[Sequence[str]]") -> list[str]:
+    head, *others = ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows]
+    return [head, "|" + "---|" * len(rows[0]), *others]
+
+
+def _check_bands(folder: Path, path: Path | None) -> int:
+    """Check the medians of all runs; print one line if all hold, else a table of those that do not."""
+    from runner import store
     from runner.references import check_run, find_shipped, load_reference
 
-    runs = store.open_runs(options.folder)
-    given = load_reference(options.reference) if options.reference else None
+    runs = store.open_runs(folder)
+    given = load_reference(path) if path else None
     pairs = [(run, given or find_shipped(run)) for run in runs]
     results = [(run, reference, check_run(run, reference)) for run, reference in pairs]
     short = [result for result in results if not all(finding.good for finding in result[2])]

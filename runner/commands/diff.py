@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from runner.commands.arguments import Parser
-from runner.commands.table import aligned, number
+from runner.commands.columns import aligned, number
 from runner.config.compose import quiet_environment
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ def main(arguments: Sequence[str]) -> int:
         print("  the text of robot.urdf differs")
     print(_compare("provenance", _provenance(a), _provenance(b)), end="\n\n")
     print(aligned([["metric", "unit", "A", "B", "B - A", "B / A"], *_metric_rows(a, b)], indent=""))
+    print(f"\n{_paired(a, b)}")
     return 0
 
 
@@ -68,3 +69,39 @@ def _metric_rows(a: "Run", b: "Run") -> Iterator[list[str]]:
             ratio = found_b / found_a if found_a else None
         unit = metric_a.get("unit") or metric_b.get("unit", "")
         yield [name, unit, *map(number, (found_a, found_b, difference, ratio))]
+
+
+def _paired(a: "Run", b: "Run") -> str:
+    """Return the comparison of two runs on the same seeds, repetition by repetition, or why there is none."""
+    seeds, counts = (a.config["seed"], b.config["seed"]), (a.record["repetitions"], b.record["repetitions"])
+    if seeds[0] != seeds[1]:
+        return f"not compared in pairs: seed {seeds[0]} and seed {seeds[1]} share no noise"
+    from runner.statistics import SMALLEST_SAMPLE
+
+    if min(counts) < SMALLEST_SAMPLE:
+        return f"not compared in pairs: {min(counts)} repetitions in common, and {SMALLEST_SAMPLE} are needed"
+    rows = [_paired_row(name, a.metrics[name], b.metrics[name]) for name in a.metrics if name in b.metrics]
+    header = ["metric", "unit", "B - A", "95 % interval", "effect", "p", "B is"]
+    head = (
+        f"medians of the differences in {min(counts)} pairs on the same seeds (effect 1: B is larger in all of them):"
+    )
+    return f"{head}\n{aligned([header, *rows])}"
+
+
+def _paired_row(name: str, a: Mapping[str, Any], b: Mapping[str, Any]) -> list[str]:
+    import numpy as np
+
+    from runner.statistics import compare_paired
+
+    pairs = list(zip(a["values"], b["values"], strict=False))
+    of_a, of_b = (np.array([np.inf if value is None else value for value in side]) for side in zip(*pairs, strict=True))
+    comparison = compare_paired(of_a, of_b)
+    difference, p_value = comparison.difference, comparison.p_value
+    interval = f"{number(difference.low)} to {number(difference.high)}"
+    numbers = [
+        number(difference.median),
+        interval,
+        f"{comparison.effect:.2f}",
+        "-" if p_value is None else f"{p_value:.2g}",
+    ]
+    return [name, a["unit"], *numbers, comparison.verdict]

@@ -1,32 +1,60 @@
-"""`runner report DIR... [--html] [--pdf]`: a report from stored runs or sweeps."""
+"""`runner report DIR... [--html] [--pdf] [--metric NAME]`: a report from stored runs or a sweep."""
 
 import hashlib
+import os
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from runner.commands.arguments import Parser
 from runner.config.compose import quiet_environment
+from runner.errors import RunnerError
+
+if TYPE_CHECKING:
+    from runner.reporting.document import Document
 
 
 def main(arguments: Sequence[str]) -> int:
     """Write the report; print its folder as the last line."""
     parser = Parser("report", __doc__)
-    parser.add_argument("folders", nargs="+", type=Path, metavar="DIR", help="run or sweep folders")
+    parser.add_argument("folders", nargs="+", type=Path, metavar="DIR", help="run folders, or the folder of one sweep")
     parser.add_argument("--html", action="store_true", help="only HTML (with --pdf: both)")
     parser.add_argument("--pdf", action="store_true", help="only PDF (with --html: both)")
+    parser.add_argument(
+        "--metric", action="append", default=[], metavar="NAME", help="what a sweep is compared by; the first ranks it"
+    )
     options = parser.parse_args(arguments)
     quiet_environment()
     from runner import store
     from runner.reporting.render import write_report
-    from runner.reporting.run_report import run_document
 
-    runs = [run for folder in options.folders for run in store.open_runs(folder)]
+    one_sweep = len(options.folders) == 1 and store.is_sweep(options.folders[0])
+    if options.metric and not one_sweep:
+        raise RunnerError("--metric is for the report on one sweep")
     formats = [name for name in ("html", "pdf") if getattr(options, name)] or ["html", "pdf"]
-    name = hashlib.sha256("".join(run.hash for run in runs).encode()).hexdigest()[:24]
-    folder = _outputs(options.folders[0]) / "reports" / name
-    write_report(run_document(runs), folder, formats)
+    reports = _outputs(options.folders[0]) / "reports"
+    document, name = (_of_sweep if one_sweep else _of_runs)(options.folders, options.metric, reports)
+    folder = reports / hashlib.sha256(name.encode()).hexdigest()[:24]
+    write_report(document, folder, formats)
     print(folder)
     return 0
+
+
+def _of_runs(folders: Sequence[Path], _: Sequence[str], __: Path) -> "tuple[Document, str]":
+    from runner import store
+    from runner.reporting.run_report import run_document
+
+    runs = [run for folder in folders for run in store.open_runs(folder)]
+    return run_document(runs), "".join(run.hash for run in runs)
+
+
+def _of_sweep(folders: Sequence[Path], metrics: Sequence[str], reports: Path) -> "tuple[Document, str]":
+    from runner import store
+    from runner.reporting.sweep.report import sweep_document
+
+    sweep = store.open_sweep(folders[0])
+    address = os.path.relpath(sweep.outputs / "runs", reports / "any") + "/"
+    return sweep_document(sweep, metrics, address), " ".join([sweep.folder.name, *metrics])
 
 
 def _outputs(folder: Path) -> Path:

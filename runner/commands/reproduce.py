@@ -3,7 +3,7 @@
 import multiprocessing
 import shlex
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from importlib import import_module
 from pathlib import Path
@@ -15,7 +15,7 @@ from runner.errors import RunnerError, nearest
 
 if TYPE_CHECKING:
     from runner.reporting.thesis.plan import Job
-    from runner.store import Run
+    from runner.store import Calibration, Run
 
 _PROCESSES = 2
 
@@ -62,6 +62,18 @@ def _reproduce_thesis(work: str, outputs: Path, folder: Path) -> None:
     _reproduce_runs(work, outputs, folder)
 
 
+def _reproduce_meca500(work: str, outputs: Path, folder: Path) -> None:
+    from runner.reporting.meca500.calibration_plan import calibration_jobs
+    from runner.reporting.meca500.plan import plan
+    from runner.reporting.meca500.report import meca500_document
+    from runner.reporting.render import write_report
+
+    runs = run_all(plan(), outputs)
+    calibrations = calibrate_all(calibration_jobs(), outputs)
+    print("writing the report ...", file=sys.stderr)
+    write_report(meca500_document(runs, calibrations), folder)
+
+
 def _audit(work: str, outputs: Path, folder: Path) -> None:
     from runner.audit.audit import as_csv, audit_all
     from runner.reporting.audit.report import audit_document
@@ -76,32 +88,66 @@ def _audit(work: str, outputs: Path, folder: Path) -> None:
     )
 
 
-_WORKS = {"thesis": _reproduce_thesis, "xarm7": _reproduce_runs, "audit": _audit}
+_WORKS = {
+    "thesis": _reproduce_thesis,
+    "xarm7": _reproduce_runs,
+    "meca500": _reproduce_meca500,
+    "audit": _audit,
+}
 WORKS = tuple(_WORKS)
 
 
 def run_all(jobs: Mapping[str, "Job"], outputs: Path) -> dict[str, "Run"]:
     """Run what is not stored yet on two processes, with progress on standard error; return all runs by name."""
-    from tqdm import tqdm
-
     from runner import store
+
+    ticks = {name: job.ticks for name, job in jobs.items()}
+    folders = _make_all(_run_job, {name: job.overrides for name, job in jobs.items()}, ticks, "tick", outputs)
+    commands = {name: shlex.join(["runner", *job.overrides]) for name, job in jobs.items()}
+    return {name: store.open_run(folders[name]).made_by(commands[name]) for name in jobs}
+
+
+def calibrate_all(jobs: Mapping[str, tuple[str, ...]], outputs: Path) -> dict[str, "Calibration"]:
+    """Carry out the calibrations that are not stored yet, likewise; return all by name."""
+    from runner import store
+
+    folders = _make_all(_calibrate_job, jobs, dict.fromkeys(jobs, 1), "calibration", outputs)
+    return {name: store.open_calibration(folders[name]) for name in jobs}
+
+
+def _make_all(
+    make: Callable[[tuple[str, ...], str], str],
+    jobs: Mapping[str, tuple[str, ...]],
+    costs: Mapping[str, int],
+    unit: str,
+    outputs: Path,
+) -> dict[str, Path]:
+    """Call a function with the overrides of each job, and return the folders that it makes, by name.
+
+    Args:
+        make: The function; in a worker process.
+        jobs: Overrides by name.
+        costs: What each job costs, roughly, for the estimate of what is left.
+        unit: What the costs count.
+        outputs: Folder of runs and calibrations.
+    """
+    from tqdm import tqdm
 
     context = multiprocessing.get_context("spawn")  # a forked PyBullet or thread pool is not safe
     folders: dict[str, Path] = {}
     with ProcessPoolExecutor(_PROCESSES, mp_context=context) as pool:
-        futures = {pool.submit(_run_job, job.overrides, str(outputs)): name for name, job in jobs.items()}
-        progress = tqdm(total=sum(job.ticks for job in jobs.values()), unit="tick", unit_scale=True, desc="running")
+        futures = {pool.submit(make, overrides, str(outputs)): name for name, overrides in jobs.items()}
+        progress = tqdm(total=sum(costs.values()), unit=unit, unit_scale=True, desc="running")
         try:
             with progress:
                 for future in as_completed(futures):
                     name = futures[future]
                     folders[name] = Path(future.result())
-                    progress.update(jobs[name].ticks)
+                    progress.update(costs[name])
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
-    commands = {name: shlex.join(["runner", *job.overrides]) for name, job in jobs.items()}
-    return {name: store.open_run(folders[name]).made_by(commands[name]) for name in jobs}
+    return folders
 
 
 def _run_job(overrides: tuple[str, ...], outputs: str) -> str:
@@ -110,3 +156,11 @@ def _run_job(overrides: tuple[str, ...], outputs: str) -> str:
     from runner.execution import run
 
     return str(run(*overrides, f"outputs={outputs}").folder)
+
+
+def _calibrate_job(overrides: tuple[str, ...], outputs: str) -> str:
+    """Carry out one calibration in a worker process."""
+    quiet_environment()
+    from runner.calibration_job import calibrate
+
+    return str(calibrate(*overrides, f"outputs={outputs}").folder)

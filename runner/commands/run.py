@@ -2,37 +2,38 @@
 
 import itertools
 import sys
-import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import hydra
 from hydra.core.hydra_config import HydraConfig
-from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
 from runner.config.compose import force, from_hydra, quiet_environment
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
-from runner.errors import ConfigError
 from runner.paths import conf_dir
 
+if TYPE_CHECKING:
+    from runner.store import Run
+    from runner.sweep.run import Ended
 
-class _Jobs:
-    """What the jobs of one command line led to; Hydra hands nothing back."""
+_FAILURES_SHOWN = 20
+
+
+class _Task:
+    """What Hydra calls, and what came of it; Hydra hands nothing back.
+
+    An error is kept for `main` to raise: in here Hydra would print its own text.
+    """
 
     def __init__(self) -> None:
-        self.stored: list[tuple[tuple[str, ...], Any]] = []
-        self.problems: list[str] = []
-        self.crash: Exception | None = None
+        self.run: Run | None = None
+        self.ended: Ended | None = None
+        self.error: Exception | None = None
 
-    def do(self, config: DictConfig) -> None:
-        """Run one job; what goes wrong is kept, as Hydra would print it in its own words.
-
-        The other jobs of a sweep still run after a bad config, but not after a full disk or an error of ours.
-        """
-        if self.crash is not None:
-            return
+    def __call__(self, config: DictConfig) -> None:
+        """Make one run."""
         from runner.execution import execute  # after the config has composed: bad input is answered at once
 
         hydra_config = HydraConfig.get()
@@ -41,55 +42,61 @@ class _Jobs:
         overrides = tuple(override.removeprefix("++") for override in typed)
         own = [Path(source.path) for source in hydra_config.runtime.config_sources if source.provider == "command-line"]
         try:
-            self.stored.append((overrides, execute(from_hydra(config, hydra_config.runtime.choices, overrides, own))))
-        except ConfigError as error:
-            prefix = f"[{' '.join(overrides)}] " if hydra_config.mode == RunMode.MULTIRUN else ""
-            self.problems += [prefix + problem for problem in error.problems]
-        except Exception as error:  # main raises it: in here Hydra would print its own text and end the sweep
-            self.crash = error
+            self.run = execute(from_hydra(config, hydra_config.runtime.choices, overrides, own))
+        except Exception as error:
+            self.error = error
+
+    def sweep(self, make: Callable[[], "Ended"]) -> None:
+        """Make a sweep; our sweeper calls this."""
+        try:
+            self.ended = make()
+        except Exception as error:
+            self.error = error
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Run the jobs of a command line; print the folder made as the last line."""
+    """Make the run or the sweep of a command line; print the folder made as the last line."""
     quiet_environment()
-    jobs = _Jobs()
+    task = _Task()
     completing = bool({"-sc", "--shell-completion"} & set(arguments))
-    multirun = bool({"-m", "--multirun"} & set(arguments))
-    with tempfile.TemporaryDirectory() as scratch:
-        # Hydra's sweeper leaves its own notes in its folder; sweep.json says the same and more.
-        aside = [f"hydra.sweep.dir={scratch}"] if multirun else []
-        sys.argv = ["runner", *(arguments if completing else force(arguments)), *aside]
-        try:
-            # The absolute path works from a console script and from a wheel, where a relative one does not.
-            hydra.main(version_base="1.3", config_path=str(conf_dir()), config_name="config")(jobs.do)()
-        except COMPOSITION_ERRORS as error:
-            raise explain(error, _config_dirs(arguments)) from None
-    if jobs.crash is not None:
-        raise jobs.crash
-    if jobs.problems:
-        stored = len(jobs.stored)
-        raise ConfigError(jobs.problems, f"  {stored} other runs of the sweep are stored already" if stored else "")
-    if not jobs.stored:
+    sys.argv = ["runner", *(arguments if completing else force(arguments))]
+    try:
+        # The absolute path works from a console script and from a wheel, where a relative one does not.
+        hydra.main(version_base="1.3", config_path=str(conf_dir()), config_name="config")(task)()
+    except COMPOSITION_ERRORS as error:
+        raise explain(error, _config_dirs(arguments)) from None
+    if task.error is not None:
+        raise task.error
+    if task.ended is not None:
+        return _tell_sweep(task.ended)
+    if task.run is None:
         return 0  # --cfg, --hydra-help and the like
-    return _tell(jobs, multirun)
+    return _tell_run(task.run)
 
 
-def _tell(jobs: _Jobs, multirun: bool) -> int:
-    from runner import store
+def _tell_run(run: "Run") -> int:
+    for warning in run.provenance["warnings"]:
+        print(f"runner: warning: {warning}", file=sys.stderr)
+    if run.failure:
+        print(f"runner: {run.failure_text}", file=sys.stderr)
+    print(run.folder)
+    return 1 if run.failure else 0
 
-    failed = 0
-    for overrides, run in jobs.stored:
-        for warning in run.provenance["warnings"]:
-            print(f"runner: warning: {warning}", file=sys.stderr)
-        if run.status == "failed":
-            failed += 1
-            print(f"runner: [{' '.join(overrides)}] {run.failure_text}", file=sys.stderr)
-    if multirun:
-        outputs = jobs.stored[0][1].folder.parent.parent
-        print(store.write_sweep(outputs, [(overrides, run.hash) for overrides, run in jobs.stored]))
-    else:
-        print(jobs.stored[-1][1].folder)
-    return 1 if failed else 0
+
+def _tell_sweep(ended: "Ended") -> int:
+    if ended.failures:
+        from runner.commands.columns import aligned
+
+        rows = [[" ".join(overrides), why, str(where)] for overrides, why, where in ended.failures[:_FAILURES_SHOWN]]
+        count = len(ended.failures)
+        print(f"runner: {count} run{'s' if count > 1 else ''} failed", file=sys.stderr)
+        print(aligned([["run", "why", "more in"], *rows]), file=sys.stderr)
+        if len(ended.failures) > len(rows):
+            print(f"  and {len(ended.failures) - len(rows)} more", file=sys.stderr)
+    if ended.left:
+        print(f"runner: stopped at a failure; {ended.left} runs are left", file=sys.stderr)
+    print(ended.folder)
+    return 1 if ended.failures else 0
 
 
 def _config_dirs(arguments: Sequence[str]) -> list[Path]:

@@ -1,15 +1,25 @@
-"""Plain text tables for a terminal."""
+"""`runner table DIR`: a sweep as one tidy table, Parquet and CSV."""
 
 from collections.abc import Sequence
+from pathlib import Path
+
+from runner.commands.arguments import Parser
+from runner.config.compose import quiet_environment
 
 
-def aligned(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
-    """Return rows of equal length as lines with aligned columns."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = ("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)
-    return "\n".join(f"{indent}{line}".rstrip() for line in lines)
+def main(arguments: Sequence[str]) -> int:
+    """Write `table.parquet` and `table.csv` into the sweep's folder; print that folder as the last line."""
+    parser = Parser("table", __doc__)
+    parser.add_argument("folder", type=Path, metavar="DIR", help="folder of a sweep")
+    options = parser.parse_args(arguments)
+    quiet_environment()
+    from runner import store
+    from runner.sweep.measurements import measure
+    from runner.sweep.table import write_table
 
-
-def number(value: float | None) -> str:
-    """Return a number with five digits, "-" where there is none."""
-    return "-" if value is None else f"{value:.5g}"
+    sweep = store.open_sweep(options.folder)
+    frame = write_table(measure(sweep.overrides, sweep.runs()), options.folder)
+    failed = int((frame["status"] != "ok").sum())
+    print(f"{len(frame)} cells, {failed} of them failed; {len(frame.columns)} columns: table.parquet, table.csv")
+    print(options.folder)
+    return 0

@@ -6,7 +6,7 @@ from functools import partial
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveInt
+from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
 
 from runner.calibration import Tool
 from runner.calibration.procedures import CALIBRATIONS, Bench, Procedure
@@ -33,7 +33,7 @@ class CalibrationSettings(StrictModel):
 
     seed: NonNegativeInt
     repetitions: PositiveInt
-    gravity: NonNegativeFloat
+    gravity: PositiveFloat
     outputs: Annotated[str, Field(min_length=1)]
 
 

@@ -7,9 +7,15 @@ from runner.paths import conf_dir
 
 
 def groups(config_dirs: Sequence[Path] = ()) -> list[str]:
-    """Return the names of the config groups, sorted."""
-    folders = (*config_dirs, conf_dir())
-    return sorted({entry.name for folder in folders if folder.is_dir() for entry in folder.iterdir() if entry.is_dir()})
+    """Return the names of the config groups, sorted; Hydra's own are none of them."""
+    found = {
+        entry.name
+        for folder in (*config_dirs, conf_dir())
+        if folder.is_dir()
+        for entry in folder.iterdir()
+        if entry.is_dir()
+    }
+    return sorted(found - {"hydra"})
 
 
 def group_options(group: str, config_dirs: Sequence[Path] = ()) -> dict[str, str]:

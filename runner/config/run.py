@@ -8,6 +8,7 @@ from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveFloat, Pos
 
 from runner.config.noise import NoiseConfig
 from runner.config.robot import RobotConfig
+from runner.config.sweep import SweepConfig
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
@@ -46,6 +47,7 @@ class RunConfig:
         environment: Config of the world around the tip, likewise.
         wrist_sensor: Config of the force/torque sensor.
         robot: Config of the robot.
+        sweep: How a sweep that the run is part of is run.
         arm: The robot's rigid-body model, stage by stage.
         tick: Period of the fastest loop, in s: of the controller, or of the servo below it.
         commands: Whether the controller gives joint torques, or joint positions to a plant that follows them.
@@ -63,6 +65,7 @@ class RunConfig:
     environment: Any
     wrist_sensor: ForceTorqueConfig
     robot: RobotConfig
+    sweep: SweepConfig
     arm: Robot
     tick: float
     commands: Literal["torque", "position"]

@@ -15,6 +15,7 @@ from runner.config.per_stage import by_stage
 from runner.config.preset import PresetConfig
 from runner.config.robot import OneArmConfig
 from runner.config.run import RunConfig, RunSettings
+from runner.config.sweep import SweepConfig
 from runner.config.timing import check_duration, count_steps
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS
@@ -39,6 +40,7 @@ _PLAIN: dict[str, type[StrictModel]] = {
     "wrist_sensor": ForceTorqueConfig,
     "robot": OneArmConfig,
     "preset": PresetConfig,
+    "sweep": SweepConfig,
 }
 _GROUPS: dict[str, Registry | type[StrictModel]] = {**_KINDS, **_PLAIN}
 _SETTINGS = tuple(RunSettings.model_fields)

@@ -3,13 +3,13 @@
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib.metadata import entry_points
 from types import ModuleType
 
 import numpy as np
 
 from runner.metrics import contact, effort, positioning, reaching, tracking
 from runner.metrics.context import MetricContext
+from runner.plugins import added
 from runner.trace import Trace
 from runner.trajectories.shifted import Shifted
 
@@ -37,7 +37,7 @@ class Summary:
 
 def families() -> tuple[ModuleType, ...]:
     """Return the metric families, those of other packages (entry points in `runner.metric`) included."""
-    return (*_FAMILIES, *(point.load() for point in entry_points(group="runner.metric")))
+    return (*_FAMILIES, *(point.load() for point in added("metric")))
 
 
 def units() -> dict[str, str]:

@@ -1,14 +1,20 @@
 """Reference bands: what a run's metrics are checked against."""
 
+from runner.references.learned import Learned, Move, find_moves, learn, load_learned
 from runner.references.reference import Band, Finding, Reference, check_run, load_reference
 from runner.references.shipped import find_shipped, shipped_references
 
 __all__ = [
     "Band",
     "Finding",
+    "Learned",
+    "Move",
     "Reference",
     "check_run",
+    "find_moves",
     "find_shipped",
+    "learn",
+    "load_learned",
     "load_reference",
     "shipped_references",
 ]

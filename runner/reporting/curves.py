@@ -4,6 +4,7 @@ import base64
 import html
 import math
 import textwrap
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ Json = dict[str, Any]
 _MODES = {"line": "lines", "dashed": "lines", "dotted": "lines", "points": "markers", "points_line": "lines+markers"}
 _DASHES = {"dashed": "dash", "dotted": "dot"}
 _LEGEND_WIDTH, _TITLE_WIDTH = 40, 45
+_MOST_NAMES = 16
 
 
 def plotly_spec(curves: Curves) -> list[Json]:
@@ -38,18 +40,37 @@ def _panel(panel: Panel) -> Json:
         drawn = [*_band(series, number), _trace(series, number)]
         traces += drawn
         colors += [color] * len(drawn)
+    edges = [edge for series in panel.series for edge in (series.low, series.high) if edge is not None]
+    heights = [series.y for series in panel.series] + edges
+    across = _axis(panel.x_label, panel.x_log, panel.x_range, [series.x for series in panel.series])
     layout = {
-        "xaxis": _axis(panel.x_label, panel.x_log, panel.x_range, [series.x for series in panel.series]),
-        "yaxis": _axis(panel.y_label, panel.y_log, panel.y_range, [series.y for series in panel.series]),
+        "xaxis": across | named_places(panel.x_names) if panel.x_names else across,
+        "yaxis": _axis(panel.y_label, panel.y_log, panel.y_range, heights),
         "showlegend": any(plain(series.name).strip() for series in panel.series),
-        "hovermode": "x unified" if all(map(_forward, panel.series)) else "closest",
+        "hovermode": "x unified" if all(map(_compared, panel.series)) else "closest",
     }
     return {"traces": traces, "colors": colors, "layout": layout}
+
+
+def named_places(names: Sequence[str]) -> Json:
+    """Return an axis with names at the places 0, 1, ...; of many, every other one and so on."""
+    step = -(-len(names) // _MOST_NAMES) or 1
+    return {
+        "tickmode": "array",
+        "tickvals": list(range(0, len(names), step)),
+        "ticktext": [neutral(name) for name in names[::step]],
+        "range": [-0.5, len(names) - 0.5],
+    }
 
 
 def _trace(series: Series, number: int) -> Json:
     thinned = thin(series)
     name = plain(series.name).strip()
+    pointed: Json = {}
+    if series.hints:
+        pointed |= {"text": [neutral(hint) for hint in thinned.hints], "hoverinfo": "text"}
+    if series.runs:
+        pointed["customdata"] = list(thinned.runs)
     return {
         "type": "scatter",
         "mode": _MODES[series.style],
@@ -60,6 +81,7 @@ def _trace(series: Series, number: int) -> Json:
         "marker": {"size": 6},
         "x": _typed(thinned.x),
         "y": _typed(thinned.y),
+        **pointed,
     }
 
 
@@ -108,9 +130,9 @@ def _lines(text: str, characters: int) -> str:
     return "<br>".join(neutral(line) for line in textwrap.wrap(plain(text), characters))
 
 
-def _forward(series: Series) -> bool:
-    """Return whether the abscissae never go back, so that one x has one y."""
-    return not np.any(np.diff(series.x[np.isfinite(series.x)]) < 0)
+def _compared(series: Series) -> bool:
+    """Return whether curves are read at one x: the abscissae never go back, and no point has a hint of its own."""
+    return not series.hints and not np.any(np.diff(series.x[np.isfinite(series.x)]) < 0)
 
 
 def _typed(values: FloatArray) -> Json:

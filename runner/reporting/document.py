@@ -74,6 +74,8 @@ class Series:
         low: Lower edge of a shaded band around the curve, shape (T,), or None.
         high: Upper edge of the band, shape (T,), or None.
         color: Index into the palette; None takes the next one. Curves that belong together share it.
+        hints: What the reader is told of each point when pointing at it, one for each, or none.
+        runs: Hash of the run behind each point, one for each, or none; in HTML a click leads to it in the run list.
     """
 
     name: str
@@ -83,11 +85,16 @@ class Series:
     low: FloatArray | None = None
     high: FloatArray | None = None
     color: int | None = None
+    hints: Sequence[str] = ()
+    runs: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes with its curves; labels carry the unit, as in "tip error (m)"."""
+    """One pair of axes with its curves; labels carry the unit, as in "tip error (m)".
+
+    With `x_names` the abscissae are places 0, 1, ... with these names below them.
+    """
 
     title: str
     x_label: str
@@ -97,6 +104,7 @@ class Panel:
     y_log: bool = False
     x_range: tuple[float, float] | None = None
     y_range: tuple[float, float] | None = None
+    x_names: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -114,6 +122,88 @@ class Curves:
     caption: str
     panels: Sequence[Panel]
     columns: int = 2
+    origin: Origin = field(default_factory=Origin)
+
+
+@dataclass(frozen=True)
+class Map:
+    """One grid of coloured cells: rows from below, columns from the left.
+
+    Attributes:
+        title: What stands above it.
+        x_label: Name of the horizontal axis.
+        y_label: Name of the vertical axis.
+        x_names: Name of each column.
+        y_names: Name of each row.
+        values: Value of each cell, shape (rows, columns); NaN leaves it empty.
+        failed: Whether a cell is marked as failed, shape (rows, columns).
+        lines: Curves over the grid, abscissae counted in columns and ordinates in rows, both from 0.
+        contours: Whether it shows lines of equal value in place of cells.
+        hints: What the reader is told of each cell, row by row, or none.
+        runs: Hash of the run behind each cell, row by row, or none.
+    """
+
+    title: str
+    x_label: str
+    y_label: str
+    x_names: Sequence[str]
+    y_names: Sequence[str]
+    values: FloatArray
+    failed: NDArray[np.bool_]
+    lines: Sequence[Series] = ()
+    contours: bool = False
+    hints: Sequence[str] = ()
+    runs: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Maps:
+    """Heat maps with one scale of colours: interactive in HTML, a still in the PDF.
+
+    Attributes:
+        caption: What is seen, in a sentence; inline mathematics as in Text.
+        value_label: What the colours mean, with unit.
+        panels: The maps, in reading order.
+        log: Whether the colours follow the logarithm.
+        columns: How many maps stand beside each other.
+        origin: Its number in the source, command and commit.
+    """
+
+    block: ClassVar[str] = "maps"
+    caption: str
+    value_label: str
+    panels: Sequence[Map]
+    log: bool = False
+    columns: int = 2
+    origin: Origin = field(default_factory=Origin)
+
+
+@dataclass(frozen=True)
+class RunList:
+    """The runs of a sweep: filtered, sorted and plotted against each other in HTML, a short table in the PDF.
+
+    Attributes:
+        caption: What it lists; inline mathematics as in Text.
+        axes: Name of each swept axis with the names of its values.
+        levels: Index of each run's value on each axis, shape (runs, axes).
+        metrics: Name of each metric with its unit; those listed first are shown first.
+        values: Median of each metric, shape (runs, metrics); NaN where there is none.
+        hashes: Hash of each run.
+        failures: Why each run failed, empty for a good one.
+        commands: The command that makes each run.
+        folders: Address of each run's folder, seen from the report; empty where it has none.
+    """
+
+    block: ClassVar[str] = "runlist"
+    caption: str
+    axes: Sequence[tuple[str, Sequence[str]]]
+    levels: NDArray[np.intp]
+    metrics: Sequence[tuple[str, str]]
+    values: FloatArray
+    hashes: Sequence[str]
+    failures: Sequence[str]
+    commands: Sequence[str]
+    folders: Sequence[str]
     origin: Origin = field(default_factory=Origin)
 
 
@@ -307,7 +397,7 @@ class Provenance:
     rows: Sequence[tuple[str, str]]
 
 
-Block = Text | Notice | Formula | Curves | Picture | Table | Claim | Equations | Playback | Provenance
+Block = Text | Notice | Formula | Curves | Maps | RunList | Picture | Table | Claim | Equations | Playback | Provenance
 
 
 @dataclass(frozen=True)

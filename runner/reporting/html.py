@@ -9,7 +9,9 @@ from urllib.parse import quote
 from runner.paths import templates_dir
 from runner.reporting import formulas, outline, palette, playback
 from runner.reporting.curves import plotly_spec
-from runner.reporting.document import Curves, Document, Playback
+from runner.reporting.document import Curves, Document, Maps, Playback, RunList
+from runner.reporting.maps import maps_spec
+from runner.reporting.run_list import run_list_spec
 from runner.reporting.templating import Code, html_environment
 
 
@@ -18,7 +20,8 @@ def render(document: Document) -> str:
     displayed, inline = outline.formulas(document)
     images = {True: formulas.draw(displayed, displayed=True), False: formulas.draw(inline, displayed=False)}
     stage = _Stage()
-    has_curves = any(isinstance(block, Curves) for block in outline.blocks(document))
+    has_plots = any(isinstance(block, Curves | Maps | RunList) for block in outline.blocks(document))
+    has_run_list = any(isinstance(block, RunList) for block in outline.blocks(document))
     return (
         html_environment()
         .get_template("report.html.j2")
@@ -28,12 +31,15 @@ def render(document: Document) -> str:
             formula_image=lambda text, is_displayed: images[is_displayed].get(text.strip()),
             data_uri=data_uri,
             plotly_spec=plotly_spec,
+            maps_spec=maps_spec,
+            run_list_spec=run_list_spec,
             scene=stage.scene,
             player=stage.player,
-            plotly=_plotly() if has_curves else "",
+            plotly=_plotly() if has_plots else "",
             palette={"light": palette.LIGHT, "dark": palette.DARK},
             style=_asset("style.css"),
             script=_asset("report.js"),
+            run_list_script=_asset("run_list.js") if has_run_list else "",
         )
     )
 

@@ -10,9 +10,11 @@ from runner.reporting.document import (
     Document,
     Equations,
     Formula,
+    Maps,
     Notice,
     Picture,
     Playback,
+    RunList,
     Section,
     Table,
     Text,
@@ -81,7 +83,7 @@ def _texts(block: Block) -> Iterator[str]:
     match block:
         case Text() | Notice():
             yield block.text
-        case Curves() | Picture() | Playback():
+        case Curves() | Maps() | RunList() | Picture() | Playback():
             yield block.caption
         case Table():
             yield block.caption

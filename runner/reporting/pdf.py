@@ -6,8 +6,9 @@ from pathlib import Path
 
 import typst
 
-from runner.reporting import formulas, outline, stills
-from runner.reporting.document import Curves, Document
+from runner.reporting import formulas, map_stills, outline, stills
+from runner.reporting.document import Curves, Document, Maps
+from runner.reporting.run_list import table_header, table_rows
 from runner.reporting.templating import typst_environment
 
 
@@ -25,6 +26,9 @@ def render(document: Document) -> bytes:
                 chapters=outline.chapters(document),
                 formula_valid=lambda text, is_displayed: images[is_displayed].get(text) is not None,
                 curves_file=folder.curves,
+                maps_file=folder.maps,
+                run_list_header=table_header,
+                run_list_rows=table_rows,
                 image_file=folder.image,
             )
         )
@@ -44,6 +48,9 @@ class _Folder:
 
     def curves(self, block: Curves) -> str:
         return self.image(stills.draw(block))
+
+    def maps(self, block: Maps) -> str:
+        return self.image(map_stills.draw(block))
 
     def image(self, svg: str) -> str:
         self._count += 1

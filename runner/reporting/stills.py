@@ -4,12 +4,13 @@ import io
 import math
 import textwrap
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
@@ -27,8 +28,9 @@ WIDTH = 6.5
 _LEFT, _RIGHT, _BOTTOM = 0.64, 0.12, 0.42
 _LINE, _CHARACTER, _HANDLE, _GAP = 0.135, 0.054, 0.42, 0.12
 _POINTS_PER_INCH = 300
+_NAME = 14  # characters of a name below an axis
 _LINES = {"line": "-", "dashed": "--", "dotted": ":", "points": "none", "points_line": "-"}
-_STYLE: Any = {
+STYLE: Any = {
     "font.size": 7,
     "axes.titlesize": 7.5,
     # Above the power of ten that stands on top of an axis.
@@ -77,13 +79,17 @@ class _Frame:
 
 def draw(curves: Curves) -> str:
     """Return the figure as SVG; the same figure gives the same text."""
-    with mpl.rc_context(_STYLE), warnings.catch_warnings():
+    return to_svg(lambda: _figure(curves))
+
+
+def to_svg(make: Callable[[], Figure]) -> str:
+    """Return what is drawn, in the style of all stills, as SVG."""
+    with mpl.rc_context(STYLE), warnings.catch_warnings():
         # Characters that the font lacks become a box, and values without a logarithm leave their axes empty.
         warnings.filterwarnings("ignore", message="Glyph .* missing from")
         warnings.filterwarnings("ignore", message="Data has no positive values")
-        figure = _figure(curves)
         stream = io.StringIO()
-        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+        make().savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     return stream.getvalue()
 
 
@@ -106,8 +112,8 @@ def _figure(curves: Curves) -> Figure:
 
 
 def _frame(panel: Panel, width: float, height: float) -> _Frame:
-    title = _wrapped(panel.title, width / _CHARACTER)
-    names = [_wrapped(series.name, (width - _HANDLE) / _CHARACTER) for series in panel.series]
+    title = wrapped(panel.title, width / _CHARACTER)
+    names = [wrapped(series.name, (width - _HANDLE) / _CHARACTER) for series in panel.series]
     longest = max((len(line) for name in names for line in name.splitlines()), default=0)
     named = sum(map(bool, names))
     fitting = max(1, min(named, int((width + _GAP) / (longest * _CHARACTER + _HANDLE))))
@@ -121,9 +127,9 @@ def _row_height(row: Sequence[_Frame]) -> float:
 
 def _draw_panel(axes: Axes, frame: _Frame) -> None:
     panel = frame.panel
-    _literal(axes.set_title("", loc="left", y=1.0), frame.title)
-    _literal(axes.xaxis.label, _cut(panel.x_label, frame.width / _CHARACTER))
-    _literal(axes.yaxis.label, _cut(panel.y_label, frame.height / _CHARACTER))
+    literal(axes.set_title("", loc="left", y=1.0), frame.title)
+    literal(axes.xaxis.label, cut(panel.x_label, frame.width / _CHARACTER))
+    literal(axes.yaxis.label, cut(panel.y_label, frame.height / _CHARACTER))
     if panel.x_log:
         axes.set_xscale("log", nonpositive="mask")
     if panel.y_log:
@@ -139,11 +145,28 @@ def _draw_panel(axes: Axes, frame: _Frame) -> None:
         axes.set_xlim(panel.x_range)
     if usable(panel.y_range, panel.y_log):
         axes.set_ylim(panel.y_range)
+    if panel.x_names:
+        set_names(axes.xaxis, panel.x_names, names_beside(panel.x_names, frame.width))
+        axes.set_xlim(-0.5, len(panel.x_names) - 0.5)
     for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
         if axis.get_scale() == "log":
             # Short labels between the powers of ten, and only where these alone would leave the axis bare.
             axis.set_minor_formatter(FuncFormatter(_minor_label) if high < 30.0 * low else NullFormatter())
     _draw_legend(axes, frame, handles)
+
+
+def names_beside(names: Sequence[str], length: float) -> int:
+    """Return how many of some names fit beside each other [in]."""
+    longest = max((len(plain(name)) for name in names), default=0)
+    return int(length / ((min(longest, _NAME) + 2) * _CHARACTER))
+
+
+def set_names(axis: Axis, names: Sequence[str], room: int) -> None:
+    """Name the places 0, 1, ... of an axis; where there is room for fewer names, every other one and so on."""
+    step = math.ceil(len(names) / max(1, room)) or 1
+    # A dollar sign begins a formula in a tick's label, and ticks are labelled anew at every drawing.
+    labels = [cut(name, _NAME).replace("$", r"\$") for name in names[::step]]
+    axis.set_ticks(range(0, len(names), step), labels)
 
 
 def _minor_label(value: float, position: int | None) -> str:
@@ -180,18 +203,21 @@ def _draw_legend(axes: Axes, frame: _Frame, handles: Sequence[Line2D]) -> None:
     )
     # Names are set afterwards, because matplotlib gives a meaning to a leading underscore.
     for text, (_, name) in zip(legend.get_texts(), named, strict=True):
-        _literal(text, name)
+        literal(text, name)
 
 
-def _literal(label: Text, text: str) -> None:
+def literal(label: Text, text: str) -> None:
+    """Set a text of which no character means anything to matplotlib."""
     label.set_parse_math(False)
     label.set_text(text)
 
 
-def _wrapped(text: str, characters: float) -> str:
+def wrapped(text: str, characters: float) -> str:
+    """Return a text in lines of so many characters."""
     return "\n".join(textwrap.wrap(plain(text).strip(), max(10, int(characters))))
 
 
-def _cut(text: str, characters: float) -> str:
+def cut(text: str, characters: float) -> str:
+    """Return a text on one line of so many characters, its end cut off where it is longer."""
     text, limit = plain(text).strip(), max(10, int(characters))
     return text if len(text) <= limit else text[: limit - 1] + "…"

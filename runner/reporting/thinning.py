@@ -1,6 +1,7 @@
 """Long curves made short without losing a peak, and shaded bands as polygons."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +29,8 @@ def thin(series: Series, points: int = POINTS) -> Series:
         return series
     kept = _kept(_channels(series), points)
     low, high = (None if edge is None else edge[kept] for edge in (series.low, series.high))
-    return Series(series.name, series.x[kept], series.y[kept], series.style, low, high, series.color)
+    hints, runs = ([texts[index] for index in kept] if texts else () for texts in (series.hints, series.runs))
+    return replace(series, x=series.x[kept], y=series.y[kept], low=low, high=high, hints=hints, runs=runs)
 
 
 def usable(limits: tuple[float, float] | None, log: bool) -> bool:

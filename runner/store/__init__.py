@@ -3,15 +3,19 @@
 from runner.store.calibration import Calibration, find_calibration, open_calibration, write_calibration
 from runner.store.identity import run_hash, simulated_part
 from runner.store.run import Run, is_run, open_run
+from runner.store.shards import Outcome, Shards
 from runner.store.sweep import Sweep, is_sweep, open_runs, open_sweep, write_sweep
-from runner.store.writing import RunResult, find_run, prepare, write_run
+from runner.store.writing import RunResult, find_outcome, find_run, prepare, write_run
 
 __all__ = [
     "Calibration",
+    "Outcome",
     "Run",
     "RunResult",
+    "Shards",
     "Sweep",
     "find_calibration",
+    "find_outcome",
     "find_run",
     "is_run",
     "is_sweep",

@@ -2,9 +2,13 @@
 
 import contextlib
 import os
+import socket
+import time
 from pathlib import Path
 
 from runner.errors import StoreError
+
+_STALE = 60.0  # s; a temporary file lives for milliseconds
 
 
 def write_atomically(path: Path, content: bytes) -> None:
@@ -13,7 +17,7 @@ def write_atomically(path: Path, content: bytes) -> None:
     Raises:
         StoreError: if the folder or disk does not take it; what stood there before is untouched.
     """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    temporary = path.with_name(f".{path.name}.{socket.gethostname()}.{os.getpid()}.tmp")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with temporary.open("wb") as file:
@@ -25,3 +29,17 @@ def write_atomically(path: Path, content: bytes) -> None:
         with contextlib.suppress(OSError):  # the first error says more
             temporary.unlink(missing_ok=True)
         raise StoreError(f"cannot write {path}: {error.strerror}") from error
+
+
+def remove_leftovers(folder: Path) -> None:
+    """Remove temporary files of writers that were killed: whose process is gone, or that are older than a minute."""
+    for path in folder.glob(".*.tmp"):
+        host, _, process = path.name.removesuffix(".tmp").rpartition(".")
+        with contextlib.suppress(OSError):
+            here = host.endswith(f".{socket.gethostname()}")
+            if (here and not _is_alive(process)) or time.time() - path.stat().st_mtime > _STALE:
+                path.unlink()
+
+
+def _is_alive(process: str) -> bool:
+    return process.isdigit() and Path(f"/proc/{process}").exists()

@@ -4,33 +4,36 @@ import hashlib
 import json
 from collections.abc import Mapping
 from functools import cache
-from importlib.metadata import entry_points, version
+from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from runner.paths import package_dir
+from runner.plugins import added
 
 # These say where and under which name a run is kept, not what is simulated.
-_LEFT_OUT = ("outputs", "preset")
+_LEFT_OUT = ("outputs", "preset", "sweep")
 # Rooms that come after a stored run: a changed template or claim leaves the physics as it is.
-_NOT_PHYSICS = ("reporting", "claims", "commands", "references", "store")
+_NOT_PHYSICS = (
+    "audit", "claims", "commands", "references", "reporting", "statistics", "store", "sweep", "tuning",
+)  # fmt: skip
 
-_PLUGIN_GROUPS = tuple(f"runner.{group}" for group in ("controller", "metric", "plant", "trajectory"))
+_PLUGIN_KINDS = ("calibration", "controller", "environment", "metric", "plant", "trajectory")
 
 
 def run_hash(resolved: Mapping[str, Any], urdf: str) -> str:
     """Return the name of a run's folder: SHA-256 over all that its result follows from.
 
-    That is the resolved config (without outputs and preset, whose values the groups have taken), the URDF's text,
-    the source of the rooms below the store and of parts that other packages add, and the versions of PyBullet and
-    Pinocchio.
+    That is the resolved config (without outputs, sweep, and preset, whose values the groups have taken), the URDF's
+    text, the source of the rooms below the store and of parts that other packages add, and the versions of PyBullet
+    and Pinocchio.
     """
     content = {
         "config": simulated_part(resolved),
         "urdf": urdf,
         "source": source_digest(),
-        "engines": {name: version(name) for name in ("pybullet", "pin")},
+        "engines": _engines(),
     }
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:24]
 
@@ -41,6 +44,11 @@ def simulated_part(resolved: Mapping[str, Any]) -> dict[str, Any]:
 
 
 @cache
+def _engines() -> dict[str, str]:
+    return {name: version(name) for name in ("pybullet", "pin")}
+
+
+@cache
 def source_digest() -> str:
     """Return a digest of the source that decides about results: ours, and of the parts that other packages add."""
     digest = hashlib.sha256()
@@ -48,8 +56,7 @@ def source_digest() -> str:
     for path in sorted(root.rglob("*.py")):
         if path.relative_to(root).parts[0] not in (*_NOT_PHYSICS, "cli.py", "__main__.py"):
             digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
-    added = {point.value for group in _PLUGIN_GROUPS for point in entry_points(group=group)}
-    for module in sorted(added):
+    for module in sorted({point.value for kind in _PLUGIN_KINDS for point in added(kind)}):
         spec = find_spec(module)
         if spec is not None and spec.origin is not None:
             digest.update(module.encode() + b"\0" + Path(spec.origin).read_bytes() + b"\0")

@@ -48,18 +48,14 @@ class Run:
 
     @property
     def failure(self) -> Mapping[str, Any] | None:
-        """Reason, time, joint and repetition of a failed run."""
+        """Reason, time, joint and repetition of a failed run; all but the reason None where it was cut short."""
         failure: Mapping[str, Any] | None = self.record.get("failure")
         return failure
 
     @property
     def failure_text(self) -> str:
         """When, where and why a failed run failed, in words; empty for a good one."""
-        if self.failure is None:
-            return ""
-        repetition, time, joint, reason = (self.failure[key] for key in ("repetition", "time", "joint", "reason"))
-        where = f" ({joint})" if joint else ""
-        return f"failed in repetition {repetition} at t = {time:.4g} s{where}: {reason}"
+        return "" if self.failure is None else describe_failure(self.failure)
 
     @property
     def metrics(self) -> Mapping[str, Mapping[str, Any]]:
@@ -113,6 +109,19 @@ class Run:
             raise StoreError(f"cannot read {path}: {str(error).splitlines()[0]}; run it again to mend it") from error
 
 
+def describe_failure(failure: Mapping[str, Any]) -> str:
+    """Return when, where and why a run failed, in words.
+
+    Args:
+        failure: Reason, time, joint and repetition, as stored.
+    """
+    repetition, time, joint, reason = (failure[key] for key in ("repetition", "time", "joint", "reason"))
+    if time is None:
+        return f"cut short: {reason}"
+    where = f" ({joint})" if joint else ""
+    return f"failed in repetition {repetition} at t = {time:.4g} s{where}: {reason}"
+
+
 def is_run(folder: Path) -> bool:
     """Tell whether a folder looks like a run's, finished or not."""
     return any((folder / name).exists() for name in ("metrics.json", "config.yaml", "trace.parquet"))
@@ -135,7 +144,7 @@ def open_run(folder: Path) -> Run:
         )
     try:
         record = json.loads(record_path.read_text())
-        config = yaml.safe_load((folder / "config.yaml").read_text())
+        config = yaml.load((folder / "config.yaml").read_text(), yaml.CSafeLoader)
     except (OSError, UnicodeDecodeError, json.JSONDecodeError, yaml.YAMLError) as error:
         raise StoreError(f"cannot read the run in {folder}: {' '.join(str(error).split())}") from error
     if not isinstance(config, dict):

@@ -14,7 +14,10 @@ from runner.errors import StoreError
 from runner.metrics import Summary
 from runner.store.atomic import write_atomically
 from runner.store.run import SCHEMA, Run, open_run
+from runner.store.shards import Outcome, outcome
 from runner.trace import Failure, Trace
+
+_PARQUET_END = b"PAR1"
 
 
 @dataclass(frozen=True)
@@ -66,13 +69,40 @@ def find_run(outputs: Path, name: str) -> Run | None:
     return run
 
 
+def find_outcome(outputs: Path, name: str) -> Outcome | None:
+    """Return how the run of that hash ended, by a look at its folder, or None when it must be simulated.
+
+    Unlike `find_run` it reads the record alone, and of the trace no more than whether its end is there.
+    """
+    folder = outputs / "runs" / name
+    try:
+        record = json.loads((folder / "metrics.json").read_bytes())
+        with (folder / "trace.parquet").open("rb") as trace:
+            trace.seek(-len(_PARQUET_END), io.SEEK_END)
+            whole = trace.read() == _PARQUET_END and (folder / "config.yaml").stat().st_size > 0
+        return outcome(Run(folder, {}, record)) if whole else None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return None
+
+
 def write_run(outputs: Path, name: str, result: RunResult) -> Run:
-    """Store a run.
+    """Store a run in a folder of its own.
 
     Raises:
         StoreError: if the disk does not take it.
     """
     folder = outputs / "runs" / name
+    record = make_record(result)
+    config = yaml.dump(dict(result.resolved), sort_keys=False, Dumper=yaml.CSafeDumper)
+    write_atomically(folder / "config.yaml", config.encode())
+    write_atomically(folder / "robot.urdf", result.urdf.encode())
+    write_atomically(folder / "trace.parquet", _parquet(result.trace))
+    write_atomically(folder / "metrics.json", (json.dumps(record, indent=1, allow_nan=False) + "\n").encode())
+    return Run(folder, result.resolved, record)
+
+
+def make_record(result: RunResult) -> dict[str, Any]:
+    """Return what metrics.json holds of a run."""
     record: dict[str, Any] = {
         "schema": SCHEMA,
         "status": "ok" if result.failure is None else "failed",
@@ -81,14 +111,24 @@ def write_run(outputs: Path, name: str, result: RunResult) -> Run:
     if result.failure is not None:
         repetition, failure = result.failure
         record["failure"] = {**asdict(failure), "repetition": repetition}
-    record["metrics"] = {metric: asdict(summary) for metric, summary in result.metrics.items()}
+    record["metrics"] = {metric: vars(summary) for metric, summary in result.metrics.items()}
     record["timing"] = dict(result.timing)
     record["provenance"] = dict(result.provenance)
-    write_atomically(folder / "config.yaml", yaml.safe_dump(dict(result.resolved), sort_keys=False).encode())
-    write_atomically(folder / "robot.urdf", result.urdf.encode())
-    write_atomically(folder / "trace.parquet", _parquet(result.trace))
-    write_atomically(folder / "metrics.json", (json.dumps(record, indent=1, allow_nan=False) + "\n").encode())
-    return open_run(folder)
+    return record
+
+
+def cut_short_record(reason: str, repetitions: int, provenance: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what is stored of a run that something else than its physics ended."""
+    failure = {"reason": reason, "time": None, "joint": None, "repetition": None}
+    return {
+        "schema": SCHEMA,
+        "status": "failed",
+        "repetitions": repetitions,
+        "failure": failure,
+        "metrics": {},
+        "timing": {},
+        "provenance": dict(provenance),
+    }
 
 
 def _parquet(trace: Trace) -> bytes:

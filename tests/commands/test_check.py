@@ -70,7 +70,7 @@ def test_a_failed_run_falls_short(cli, reference):
 
 
 def test_a_sweep_is_checked_run_by_run(cli, reference):
-    sweep = cli("-m", *SHORT, "robot=macro,mini").folder
+    sweep = cli("-m", "hydra.sweeper.workers=0", *SHORT, "robot=macro,mini").folder
     assert cli("check", sweep, "--reference", reference(GOOD)).out.startswith("good: 2 metrics of 2 runs lie in ")
     assert cli("check", sweep, "--reference", reference(BAD)).out.count("fall short") == 2
 

@@ -78,7 +78,7 @@ def test_a_ratio_to_zero_is_left_out(cli):
 
 def test_folders_that_are_no_runs(cli, tmp_path):
     run = cli(*SHORT).folder
-    sweep = cli("-m", *SHORT, "seed=0,1").folder
+    sweep = cli("-m", "hydra.sweeper.workers=0", *SHORT, "seed=0,1").folder
     for bad, what in ((tmp_path / "gone", "no folder"), (tmp_path, "is no stored run"), (sweep, "is a sweep")):
         for pair in ((run, bad), (bad, run)):
             ending = cli("diff", *pair)
@@ -90,3 +90,25 @@ def test_two_folders_are_needed(cli):
     ending = cli("diff", "one")
     assert ending.code == 2
     assert ending.err == "runner: the following arguments are required: B; usage: runner diff [-h] A B\n"
+
+
+def test_equal_seeds_are_compared_in_pairs(cli):
+    case = (*SHORT, "trajectory=quintic", "noise=thesis", "repetitions=6")
+    a, b = cli(*case).folder, cli(*case, "noise.position=2e-3").folder
+    _, paired = cli("diff", a, b).out.split("in 6 pairs on the same seeds")
+    line = next(line for line in paired.splitlines() if line.split()[:1] == ["rms_torque"])
+    *_, effect, p_value, _ = line.split()
+    assert (float(effect), float(p_value)) == (1.0, pytest.approx(2 / 2**6, rel=0.02))  # twice the noise, every time
+    assert line.endswith("larger")
+
+
+@pytest.mark.parametrize(
+    ("other", "reason"),
+    [
+        (("seed=1", "repetitions=6"), "not compared in pairs: seed 0 and seed 1 share no noise"),
+        (("repetitions=5",), "not compared in pairs: 5 repetitions in common, and 6 are needed"),
+    ],
+)
+def test_what_makes_no_pairs_is_said(cli, other, reason):
+    a, b = cli(*SHORT, "repetitions=6").folder, cli(*SHORT, *other).folder
+    assert reason in cli("diff", a, b).out

@@ -1,3 +1,5 @@
+import json
+import re
 import shutil
 
 import pytest
@@ -36,12 +38,36 @@ def test_a_report_can_be_made_from_a_copied_run(cli, stored, tmp_path):
     assert ending.folder.joinpath("report.html").read_bytes() == here
 
 
-def test_a_sweep_is_reported_with_an_overview(cli):
-    sweep = cli("-m", *SHORT, "seed=0,1").folder
+@pytest.fixture
+def sweep(cli):
+    return cli("-m", "hydra.sweeper.workers=0", *SHORT, "seed=0,1").folder
+
+
+def test_a_sweep_has_a_report_of_its_own(cli, sweep):
     ending = cli("report", sweep, "--html")
     page = ending.folder.joinpath("report.html").read_text()
+    assert "Sweep over seed" in page
+    assert "2 cells over seed (2), all of them finished; repetitions in each: 1." in page
+    assert ending.folder != cli("report", sweep, "--html", "--metric", "peak_torque").folder
+
+
+def test_several_folders_are_reported_run_by_run(cli, sweep, stored):
+    page = cli("report", sweep, stored, "--html").folder.joinpath("report.html").read_text()
     assert "Overview" in page
-    assert "2 runs, all of them finished." in page
+    assert "3 runs, all of them finished." in page
+
+
+def test_the_links_of_a_report_lead_to_the_runs(cli, sweep):
+    folder = cli("report", sweep, "--html").folder
+    links = re.findall(r'"folders": (\[.*?\])', folder.joinpath("report.html").read_text())
+    assert [(folder / link / "metrics.json").exists() for link in json.loads(links[0])] == [True, True]
+
+
+def test_a_metric_is_asked_for_where_a_sweep_has_it(cli, sweep, stored):
+    ending = cli("report", sweep, "--metric", "peak_torq")
+    assert ending.code == 2
+    assert "--metric: the runs have no 'peak_torq' (did you mean peak_torque?)" in ending.err
+    assert "--metric is for the report on one sweep" in cli("report", stored, "--metric", "peak_torque").err
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,7 @@ def small_work(monkeypatch):
 def test_an_unknown_work_names_the_nearest(cli, tmp_path):
     ending = cli("reproduce", "thesys")
     assert ending.code == 2
-    assert ending.err == "runner: no work 'thesys' (did you mean thesis?); works: thesis, xarm7, audit, all\n"
+    assert ending.err == "runner: no work 'thesys' (did you mean thesis?); works: thesis, xarm7, meca500, audit, all\n"
     assert list(tmp_path.iterdir()) == []
 
 

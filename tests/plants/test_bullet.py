@@ -200,11 +200,14 @@ def test_joints_are_ordered_by_name_as_in_the_model(make):
     np.testing.assert_allclose(plant.q, [0.1, 0.2], atol=1e-6)
 
 
-def test_close_releases_the_client(macro_urdf):
+def test_close_empties_the_server_for_the_next_arm(macro_urdf):
     plant = Bullet(macro_urdf, RobotModel(macro_urdf, "tip"), 1e-3, 1)
-    assert pybullet.getConnectionInfo(plant._client)["isConnected"]
+    assert pybullet.getNumBodies(physicsClientId=plant._client) == 1
     plant.close()
-    assert not pybullet.getConnectionInfo(plant._client)["isConnected"]
+    assert pybullet.getNumBodies(physicsClientId=plant._client) == 0
+    again = Bullet(macro_urdf, RobotModel(macro_urdf, "tip"), 1e-3, 1)
+    assert again._client == plant._client
+    again.close()
 
 
 def test_an_urdf_that_bullet_refuses_is_an_error_and_leaves_no_client(macro_urdf):

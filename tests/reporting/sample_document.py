@@ -13,12 +13,15 @@ from runner.reporting.document import (
     Equations,
     Finding,
     Formula,
+    Map,
+    Maps,
     Notice,
     Origin,
     Panel,
     Picture,
     Playback,
     Provenance,
+    RunList,
     Section,
     Series,
     Table,
@@ -72,6 +75,29 @@ def equations(text: str = "words", **changes: object) -> Equations:
     return Equations(**({"caption": text, "rows": rows} | changes))
 
 
+def maps(text: str = "error", **changes: object) -> Maps:
+    values = np.array([[1.0, 2.0, np.inf], [np.nan, 5.0, 6.0]])
+    line = Series(text, np.array([0.0, 2.0]), np.array([1.0, 0.0]), "dashed")
+    cells = Map(text, text, text, [text] * 3, [text] * 2, values, np.isnan(values), [line])
+    pointed = Map(text, text, text, ["1", "2", "3"], ["1", "2"], values, values > 5, (), True, [text] * 6, ["ab"] * 6)
+    return Maps(**({"caption": text, "value_label": text, "panels": [cells, pointed]} | changes))
+
+
+def run_list(text: str = "words", **changes: object) -> RunList:
+    given = {
+        "caption": text,
+        "axes": [(text, [text, "1"])],
+        "levels": np.array([[0], [1]]),
+        "metrics": [(text, "m"), ("peak", "1")],
+        "values": np.array([[1.0, np.nan], [2e-5, 3.0]]),
+        "hashes": ["ab" * 12, "cd" * 12],
+        "failures": ["", text],
+        "commands": [text, text],
+        "folders": ["", "../../runs/x/"],
+    }
+    return RunList(**(given | changes))
+
+
 def document(text: str = "words") -> Document:
     origin = Origin(text, text, text)
     blocks = [
@@ -79,6 +105,8 @@ def document(text: str = "words") -> Document:
         Notice("warning", text, text),
         Formula(text, text, text),
         curves(text, origin=origin),
+        maps(text, origin=origin),
+        run_list(text, origin=origin),
         Picture(text, SVG, text, origin=origin),
         Table(text, [text, text], [[text, text]] * 2, [1], origin),
         Claim(text, text, text, text, [Finding(text, text, "holds"), Finding(text, text, "cannot")], text, text),

@@ -64,3 +64,19 @@ def test_curves_that_belong_together_share_a_color():
     x = np.arange(3.0)
     series = [Series("a", x, x, color=1), Series("b", x, x), Series("c", x, x, color=1), Series("d", x, x)]
     assert plotly_spec(Curves("", [Panel("", "", "", series)]))[0]["colors"] == [1, 0, 1, 2]
+
+
+def test_points_carry_their_hints_and_runs():
+    x = np.array([1.0, 2.0])
+    pointed = Series("a", x, x, "points", hints=["<one>", "two"], runs=["ab", "cd"])
+    (spec,) = plotly_spec(Curves("", [Panel("", "x", "y", [pointed])]))
+    assert spec["traces"][0]["text"] == ["&lt;one&gt;", "two"]
+    assert spec["traces"][0]["customdata"] == ["ab", "cd"]
+    assert spec["layout"]["hovermode"] == "closest"
+
+
+def test_an_axis_of_names_has_a_place_for_each():
+    x = np.arange(2.0)
+    (spec,) = plotly_spec(Curves("", [Panel("", "x", "y", [Series("", x, x)], x_names=["one_way", "<b>"])]))
+    assert spec["layout"]["xaxis"]["tickvals"] == [0, 1]
+    assert spec["layout"]["xaxis"]["ticktext"] == ["one_way", "&lt;b&gt;"]

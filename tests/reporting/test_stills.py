@@ -53,3 +53,10 @@ def test_figures_without_panels_or_curves_are_no_error():
     for empty in (Curves("", []), Curves("", [Panel("t", "x", "y", [])])):
         ElementTree.fromstring(stills.draw(empty))
         plotly_spec(empty)
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_an_axis_of_names_takes_any_text(text):
+    x = np.arange(2.0)
+    named = Curves("", [Panel("", "", "", [Series("", x, x)], x_names=[text, "two"])])
+    assert "<!-- two -->" in stills.draw(named)

@@ -47,3 +47,11 @@ def test_a_band_is_one_polygon_for_each_unbroken_stretch():
     x, y = band(Series("", np.arange(5.0), low, low=low, high=low + 1))
     assert np.isnan(x).sum() == 1
     assert y[:4].tolist() == [1, 1, 0, 0]
+
+
+def test_hints_and_runs_stay_with_their_points():
+    x = np.linspace(0.0, 1.0, 5000)
+    names = [f"{value:.6f}" for value in x]
+    thinned = thin(Series("", x, np.sin(40 * x), hints=names, runs=names), 100)
+    assert len(thinned.x) < 200
+    assert list(thinned.hints) == list(thinned.runs) == [f"{value:.6f}" for value in thinned.x]

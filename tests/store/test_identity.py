@@ -53,8 +53,10 @@ def test_the_robot_counts():
 
 def test_the_engines_versions_count(monkeypatch):
     before = changed()
+    identity._engines.cache_clear()
     monkeypatch.setattr(identity, "version", lambda name: "9.9" if name == "pin" else "1")
     assert changed() != before
+    identity._engines.cache_clear()
 
 
 def test_the_source_counts_but_not_that_of_reports_and_commands(monkeypatch, tmp_path):

@@ -8,7 +8,7 @@ from runner.store import is_run, is_sweep, open_runs, open_sweep, write_sweep
 
 @pytest.fixture
 def sweep(cli):
-    return cli("-m", "robot=macro", "seed=0,1", "duration=0.05").folder
+    return cli("-m", "hydra.sweeper.workers=0", "robot=macro", "seed=0,1", "duration=0.05").folder
 
 
 def test_a_sweep_opens_with_its_runs_in_order(sweep):
@@ -20,12 +20,12 @@ def test_a_sweep_opens_with_its_runs_in_order(sweep):
 
 
 def test_a_run_opens_as_a_list_of_one(sweep):
-    run = open_sweep(sweep).runs()[0]
+    run = next(open_sweep(sweep).runs())
     assert [opened.hash for opened in open_runs(run.folder)] == [run.hash]
 
 
 def test_folders_tell_what_they_are(sweep, tmp_path):
-    run = open_sweep(sweep).runs()[0].folder
+    run = next(open_sweep(sweep).runs()).folder
     assert (is_sweep(sweep), is_run(sweep)) == (True, False)
     assert (is_sweep(run), is_run(run)) == (False, True)
     assert (is_sweep(tmp_path), is_run(tmp_path)) == (False, False)
@@ -33,9 +33,10 @@ def test_folders_tell_what_they_are(sweep, tmp_path):
 
 def test_the_same_jobs_are_the_same_sweep(tmp_path):
     jobs = [(("seed=0",), "a"), (("seed=1",), "b")]
-    folder = write_sweep(tmp_path, jobs)
-    assert write_sweep(tmp_path, jobs) == folder
-    assert write_sweep(tmp_path, jobs[::-1]) != folder
+    folder = write_sweep(tmp_path, jobs, "runner -m seed=0,1")
+    assert write_sweep(tmp_path, jobs, "runner -m seed=0,1 hydra.sweeper.workers=0") == folder
+    assert write_sweep(tmp_path, jobs[::-1], "") != folder
+    assert open_sweep(folder).command == "runner -m seed=0,1 hydra.sweeper.workers=0"
     assert json.loads((folder / "sweep.json").read_text())["schema"] == 1
 
 
@@ -58,7 +59,7 @@ def test_a_damaged_sweep_is_said(sweep, content, message):
 
 
 def test_a_missing_run_of_a_sweep_is_named(sweep):
-    gone = open_sweep(sweep).runs()[1].folder
+    gone = open_runs(sweep)[1].folder
     (gone / "metrics.json").unlink()
     with pytest.raises(StoreError, match=f"{gone.name} is a run that did not finish"):
         open_runs(sweep)

@@ -22,7 +22,7 @@ def at_the_tip_section(runs: Mapping[str, Run]) -> Section:
             case,
             number(float(np.abs(wrenches(run, "felt")[:, 3:]).max())),
             number(filtered_turn(run)) if case != "at the flange" else "–",
-            number(_turned(run)),
+            number(tool_turn(run)),
         ]
         for case, run in cases.items()
     ]
@@ -56,10 +56,10 @@ def at_the_tip_section(runs: Mapping[str, Run]) -> Section:
                 "finding",
                 "A pure force through the tip turns nothing",
                 f"Through transform and filter it turns {number(filtered_turn(tip))} rad, and the tool itself "
-                f"{number(_turned(tip))} rad. Taken at the flange the same force turns the tool by "
-                f"{quantity(_turned(flange), 'rad')}. Joint servos do not hold orientation under a force: they add "
-                f"{quantity(_turned(servo), 'rad')} by their springs, with no rotation asked for; the noise of a "
-                f"Mini40 adds {quantity(_turned(noisy), 'rad')}.",
+                f"{number(tool_turn(tip))} rad. Taken at the flange the same force turns the tool by "
+                f"{quantity(tool_turn(flange), 'rad')}. Joint servos do not hold orientation under a force: they add "
+                f"{quantity(tool_turn(servo), 'rad')} by their springs, with no rotation asked for; the noise of a "
+                f"Mini40 adds {quantity(tool_turn(noisy), 'rad')}.",
             ),
         ),
     )
@@ -75,5 +75,6 @@ def filtered_turn(run: Run) -> float:
     return largest
 
 
-def _turned(run: Run) -> float:
+def tool_turn(run: Run) -> float:
+    """Return the largest rotation of the tool in a run, in rad."""
     return float(np.linalg.norm(turns(run), axis=1).max())

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 Calibrations = dict[str, tuple[str, ...]]
+_Cases = Mapping[float, tuple[str, ...]]
 REPEATABILITIES = (0.0, 1e-6, 5e-6, 2e-5, 1e-4)  # m
 DIRECTION_REPEATABILITIES = (0.0, 5e-6, 1e-4)  # m
 POSES = (3, 4, 6, 10, 20)
@@ -48,37 +49,40 @@ def calibration_jobs() -> Calibrations:
 
 
 def _tool_centre_point() -> Calibrations:
-    jobs: Calibrations = {}
-    for key, values in (("repeatability", REPEATABILITIES), ("poses", POSES), ("spread", SPREADS)):
-        for value in values:
-            jobs[name_of(f"tool_centre_point/{key}", value)] = (*_TOUCHING, f"calibration.{key}={value}")
-    return jobs
+    base = ("calibration=tool_centre_point", *_TOUCHING)
+    keys = {"repeatability": REPEATABILITIES, "poses": POSES, "spread": SPREADS}
+    return _vary(base, {key: {value: (f"calibration.{key}={value}",) for value in keys[key]} for key in keys})
 
 
 def _tool_direction() -> Calibrations:
-    jobs: Calibrations = {}
-    keys = ("repeatability", DIRECTION_REPEATABILITIES), ("poses", DIRECTION_POSES), ("shorter", SHORTER)
-    for key, values in keys:
-        for value in values:
-            own = ("calibration=tool_direction", *_TOUCHING, f"calibration.{key}={value}")
-            jobs[name_of(f"tool_direction/{key}", value)] = own
-    return jobs
+    base = ("calibration=tool_direction", *_TOUCHING)
+    keys = {"repeatability": DIRECTION_REPEATABILITIES, "poses": DIRECTION_POSES, "shorter": SHORTER}
+    return _vary(base, {key: {value: (f"calibration.{key}={value}",) for value in keys[key]} for key in keys})
 
 
 def _gravity() -> Calibrations:
-    base = "calibration=gravity"
-    jobs: Calibrations = {}
-    for factor in NOISES:
-        noise = ",".join(f"{factor * value:g}" for value in _NOISE)
-        own = (f"wrist_sensor.noise=[{noise}]",) if factor else _EXACT
-        jobs[name_of("gravity/noise", factor)] = (base, *own)
-    for choice in CHOICES:
-        for count in ORIENTATIONS:
-            own = (f"calibration.choice={choice}", f"calibration.orientations={count}")
-            jobs[name_of(f"gravity/{choice}", count)] = (base, *own)
-    for spread in WEIGHING_SPREADS:
-        own = (f"calibration.spread={spread}", "calibration.candidates=4000")
-        jobs[name_of("gravity/spread", spread)] = (base, *own)
-    for samples in SAMPLES:
-        jobs[name_of("gravity/samples", samples)] = (base, f"calibration.samples={samples}")
+    chosen: dict[str, _Cases] = {
+        choice: {count: (f"calibration.choice={choice}", f"calibration.orientations={count}") for count in ORIENTATIONS}
+        for choice in CHOICES
+    }
+    cases: dict[str, _Cases] = {
+        "noise": {factor: (f"wrist_sensor.noise=[{_times(factor)}]",) if factor else _EXACT for factor in NOISES},
+        **chosen,
+        "spread": {x: (f"calibration.spread={x}", "calibration.candidates=4000") for x in WEIGHING_SPREADS},
+        "samples": {count: (f"calibration.samples={count}",) for count in SAMPLES},
+    }
+    return _vary(("calibration=gravity",), cases)
+
+
+def _times(factor: float) -> str:
+    return ",".join(f"{factor * value:g}" for value in _NOISE)
+
+
+def _vary(base: tuple[str, ...], variations: Mapping[str, _Cases]) -> Calibrations:
+    """Return the base case and, by the name of each variation and its value, the base case with other overrides."""
+    kind = base[0].removeprefix("calibration=")
+    jobs = {f"{kind}/base": base}
+    for variation, cases in variations.items():
+        for value, overrides in cases.items():
+            jobs.setdefault(name_of(f"{kind}/{variation}", value), (*base, *overrides))
     return jobs

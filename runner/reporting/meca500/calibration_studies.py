@@ -48,7 +48,12 @@ CONSISTENCY_HEADER = ("NEES", "99 % band", "inside")
 
 
 def error_curves(
-    calibrations: Calibrations, variations: Mapping[str, Sequence[float]], x_label: str, y_label: str, *names: str
+    calibrations: Calibrations,
+    variations: Mapping[str, Sequence[float]],
+    x_label: str,
+    y_label: str,
+    *names: str,
+    log: bool = True,
 ) -> Panel:
     """Return errors over what was varied: found as points, predicted as lines.
 
@@ -58,6 +63,7 @@ def error_curves(
         x_label: Label of the values.
         y_label: Label of the errors.
         names: The components that make the error; none for all.
+        log: Whether the axes are logarithmic.
     """
     series = []
     for color, (variation, all_values) in enumerate(variations.items()):
@@ -72,16 +78,20 @@ def error_curves(
             Series(f"{label}found", x, found, "points", color=color),
             Series(f"{label}predicted", x, predicted, "line", color=color),
         ]
-    return Panel("", x_label, y_label, series, x_log=True, y_log=True)
+    return Panel("", x_label, y_label, series, x_log=log, y_log=log)
 
 
-def consistency_notice(calibrations: Calibrations) -> Notice:
-    """Return in how many calibrations the errors are as large as predicted."""
-    judged = {name: c.consistency for name, c in calibrations.items() if c.consistency is not None}
+def consistency_notice(calibrations: Calibrations, kind: str) -> Notice:
+    """Return in how many calibrations of a kind the errors are as large as predicted."""
+    judged = {
+        name: calibration.consistency
+        for name, calibration in calibrations.items()
+        if name.startswith(f"{kind}/") and calibration.consistency is not None
+    }
     outside = [name for name, consistency in judged.items() if not consistency["holds"]]
     text = (
-        f"The mean normalised estimation error squared $e^T P^(-1) e$ lies in its 99 % chi-square band in "
-        f"{len(judged) - len(outside)} of {len(judged)} calibrations"
+        "The mean normalised estimation error squared (NEES) $e^T P^(-1) e$ lies in its 99 % chi-square band in "
+        f"{len(judged) - len(outside)} of {len(judged)} of these calibrations"
         + (f", and not in {', '.join(outside)}" if outside else "")
         + ". Chance alone puts one of a hundred outside."
     )

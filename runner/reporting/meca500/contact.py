@@ -22,16 +22,16 @@ def contact_section(runs: Mapping[str, Run]) -> Section:
         [
             plant,
             number(stiffness),
-            number(force(run, "felt"), 5),
-            number(abs(force(run, "felt") / _by_depth(run) - 1.0)),
+            number(felt_force(run), 5),
+            number(reading_error(run)),
             number(_in_series(run), 5),
-            f"{100.0 * (force(run, 'felt') / _in_series(run) - 1.0):+.2g} %",
+            f"{100.0 * (felt_force(run) / _in_series(run) - 1.0):+.2g} %",
             number(float(-wrenches(run, "external")[:, 0].min())),
         ]
         for (plant, stiffness), run in walls.items()
     ]
-    worst = max(abs(force(run, "felt") / _by_depth(run) - 1.0) for run in walls.values())
-    series = max(abs(force(run, "felt") / _in_series(run) - 1.0) for run in walls.values())
+    worst = max(reading_error(run) for run in walls.values())
+    series = max(abs(felt_force(run) / _in_series(run) - 1.0) for run in walls.values())
     first = walls["kinematic", 1e3]
     law, way = law_of(first), _way(first)
     return Section(
@@ -77,9 +77,14 @@ def contact_section(runs: Mapping[str, Run]) -> Section:
     )
 
 
-def force(run: Run, signal: str) -> float:
-    """Return the wall's push against the way in at the end of a run, "felt" or "external", in N."""
-    return float(-wrenches(run, signal)[-1, 0])
+def felt_force(run: Run) -> float:
+    """Return the wall's push against the way in as it is felt at the end of a run, in N."""
+    return float(-wrenches(run, "felt")[-1, 0])
+
+
+def reading_error(run: Run) -> float:
+    """Return how far the force felt at the end is off the wall's stiffness times the tip's depth, as a share of it."""
+    return abs(felt_force(run) / _by_depth(run) - 1.0)
 
 
 def _way(run: Run) -> float:

@@ -85,18 +85,22 @@ def frequency_response_section(runs: Mapping[str, Run]) -> Section:
 
 
 def _responses(runs: Mapping[str, Run], case: str) -> ComplexArray:
-    """Return x / f of each axis at each frequency, shape (W, 6), by least squares on the settled part."""
+    """Return x / f of each axis at each frequency, shape (W, 6)."""
     responses = np.zeros((len(FREQUENCIES), len(AXES)), dtype=np.complex128)
     for row, frequency in zip(responses, FREQUENCIES, strict=True):
-        run = runs[f"sine/{case}/{frequency}"]
-        environment = run.config["environment"]
-        times = clock(run)
-        settled = times >= _SETTLED
-        angle = 2.0 * np.pi * frequency * (times[settled] - float(environment["begin"]))
-        basis = np.column_stack([np.sin(angle), np.cos(angle)])
-        (sine, cosine), *_ = np.linalg.lstsq(basis, displacement(run)[settled], rcond=None)
-        row[:] = (sine + 1j * cosine) / np.array([*environment["force"], *environment["moment"]])
+        row[:] = fitted_response(runs[f"sine/{case}/{frequency}"])
     return responses
+
+
+def fitted_response(run: Run) -> ComplexArray:
+    """Return x / f of each axis of a run under a sine, shape (6,), in m/N and rad/(N m)."""
+    environment, times = run.config["environment"], clock(run)
+    settled = times >= _SETTLED
+    angle = 2.0 * np.pi * float(environment["frequency"]) * (times[settled] - float(environment["begin"]))
+    basis = np.column_stack([np.sin(angle), np.cos(angle)])
+    (sine, cosine), *_ = np.linalg.lstsq(basis, displacement(run)[settled], rcond=None)
+    response: ComplexArray = (sine + 1j * cosine) / np.array([*environment["force"], *environment["moment"]])
+    return response
 
 
 def _give(runs: Mapping[str, Run]) -> FloatArray:

@@ -36,9 +36,9 @@ def hand_guiding_section(runs: Mapping[str, Run]) -> Section:
                 "finding",
                 "It comes along, takes little force, and stays",
                 f"The hand pulls with at most {quantity(_peak(ideal), 'N')}; damping at the hand's peak speed alone is "
-                f"{quantity(damped, 'N')}. At the end the tip is {quantity(_left(ideal), 'm')} from where the hand "
-                f"wants it, and has turned by {quantity(_turned(ideal), 'rad')} at most. With the noise of a Mini40 "
-                f"and joint servos: {quantity(_peak(lab), 'N')}, {quantity(_left(lab), 'm')} and "
+                f"{quantity(damped, 'N')}. At the end the tip is {quantity(left_at_end(ideal), 'm')} from where the "
+                f"hand wants it, and has turned by {quantity(_turned(ideal), 'rad')} at most. With the noise of a "
+                f"Mini40 and joint servos: {quantity(_peak(lab), 'N')}, {quantity(left_at_end(lab), 'm')} and "
                 f"{quantity(_turned(lab), 'rad')}.",
             ),
         ),
@@ -49,7 +49,8 @@ def _peak(run: Run) -> float:
     return float(np.linalg.norm(wrenches(run, "external")[:, :3], axis=1).max())
 
 
-def _left(run: Run) -> float:
+def left_at_end(run: Run) -> float:
+    """Return the tip's distance at the end from where the hand wants it, in m."""
     tip = columns(run.trace, "tip")
     return float(np.linalg.norm(tip[-1] - tip[0] - np.array(run.config["environment"]["travel"])))
 

@@ -2,10 +2,8 @@
 
 from collections.abc import Mapping
 
-import numpy as np
-
-from runner.reporting.document import Curves, FloatArray, Panel, Section, Series, Table, Text
-from runner.reporting.figures import columns, origin
+from runner.reporting.document import Curves, Panel, Section, Series, Table, Text
+from runner.reporting.figures import origin
 from runner.reporting.meca500.plan import STEPS
 from runner.reporting.plant_agreement import describe_agreement, disagreement
 from runner.reporting.quantities import number
@@ -27,11 +25,11 @@ def plants_section(runs: Mapping[str, Run]) -> Section:
                 number(float(apart(run, exact, "tip").max())),
             ]
         )
-    series = [
-        Series("bullet", clock(finest), _way(finest), "line"),
-        Series("rk4", clock(runs["plants/rk4"]), _way(runs["plants/rk4"]), "dashed"),
-        Series("kinematic", clock(exact), _way(exact), "dotted"),
-    ]
+    panels = []
+    for name, other in (("Runge-Kutta", runs["plants/rk4"]), ("the kinematic plant", exact)):
+        series = [Series(f"{step:g} s", clock(run), apart(run, other, "tip")) for step in STEPS
+                  for run in [runs[f"plants/{step}"]]]  # fmt: skip
+        panels.append(Panel(f"PyBullet from {name}", "time (s)", "distance of the tips (m)", series))
     return Section(
         "Whether the simulation can be trusted",
         (
@@ -42,9 +40,9 @@ def plants_section(runs: Mapping[str, Run]) -> Section:
             ),
             Text(describe_agreement(finest)),
             Curves(
-                "How far the tip gives way to the push, on the three plants.",
-                (Panel("Distance from the circle's goal", "time (s)", "distance (m)", series),),
-                1,
+                "Distance of the tips from plant to plant, by PyBullet's step.",
+                panels,
+                2,
                 origin(finest),
             ),
             Table(
@@ -57,9 +55,3 @@ def plants_section(runs: Mapping[str, Run]) -> Section:
             ),
         ),
     )
-
-
-def _way(run: Run) -> FloatArray:
-    """Return the tip's distance from the desired one, shape (T,), in m."""
-    distance: FloatArray = np.linalg.norm(columns(run.trace, "error"), axis=1)
-    return distance

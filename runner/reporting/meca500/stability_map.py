@@ -48,7 +48,7 @@ def stability_map_section(runs: Mapping[str, Run]) -> Section:
                 ]
             )
     first = runs[f"map/kinematic/0.001/{MAP_SHARES['kinematic'][0]}"]
-    right, count = _agreement(runs)
+    right, count = agreement(runs)
     return Section(
         "Stability at a wall over its stiffness and the sample time",
         (
@@ -109,7 +109,7 @@ def _servo_spring(run: Run) -> str:
     return number(1.0 / float(servo_compliance(run)[0, 0]))
 
 
-def _agreement(runs: Mapping[str, Run]) -> tuple[int, int]:
+def agreement(runs: Mapping[str, Run]) -> tuple[int, int]:
     """Return how many runs on the kinematic plant are stable or not as predicted, and of how many."""
     agree = [
         bounces(runs[f"map/kinematic/{period}/{share}"]) == (share > 1.0)

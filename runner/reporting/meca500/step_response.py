@@ -26,7 +26,7 @@ def law_of(run: Run) -> Admittance:
 
 def step_response_section(runs: Mapping[str, Run]) -> Section:
     """Return the six step responses, on joints that go where they are told and on servos, at 1 ms and at 16.7 ms."""
-    errors = {(case, axis): _error(runs[f"step/{case}/{axis}"], axis) for case in STEP_CASES for axis in AXES}
+    errors = {(case, axis): step_error(runs[f"step/{case}/{axis}"], axis) for case in STEP_CASES for axis in AXES}
     rows = []
     for axis in AXES:
         _, answer, _ = _answers(runs[f"step/kinematic, 1 ms/{axis}"], axis)
@@ -110,7 +110,8 @@ def _give(runs: Mapping[str, Run], axis: str) -> float:
     return float(servo_compliance(run)[index, index] * law_of(run).stiffness[index])
 
 
-def _error(run: Run, axis: str) -> float:
+def step_error(run: Run, axis: str) -> float:
+    """Return the largest distance of a step response from the analytic one, as a share of its peak."""
     _, answer, expected = _answers(run, axis)
     return float(np.abs(answer - expected).max() / np.abs(expected).max())
 

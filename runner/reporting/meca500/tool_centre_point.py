@@ -11,6 +11,7 @@ from runner.reporting.meca500.calibration_studies import (
     Calibrations,
     calibration_origin,
     consistency_cells,
+    consistency_notice,
     error_curves,
     fit,
     flange_of,
@@ -63,7 +64,8 @@ def tool_centre_point_section(calibrations: Calibrations) -> Section:
         ),
         _curves(calibrations),
         _finding(calibrations),
-        _shared_pose(base),
+        consistency_notice(calibrations, _KIND),
+        _shared_pose(calibrations[name_of(f"{_KIND}/poses", POSES[-1])]),
         _refused(base),
     ]
     return Section("Tool centre point", blocks)
@@ -105,7 +107,7 @@ def _curves(calibrations: Calibrations) -> Curves:
         "Error of the tool centre point over repeatability, number and spread of the poses.",
         (
             error_curves(calibrations, {f"{_KIND}/repeatability": REPEATABILITIES}, "repeatability (m)", y_label),
-            error_curves(calibrations, {f"{_KIND}/poses": POSES}, "number of poses", y_label),
+            error_curves(calibrations, {f"{_KIND}/poses": POSES}, "number of poses", y_label, log=False),
             error_curves(calibrations, {f"{_KIND}/spread": SPREADS}, "spread (rad)", y_label),
         ),
         3,
@@ -128,47 +130,70 @@ def _finding(calibrations: Calibrations) -> Notice:
         f"{np.degrees(SPREADS[0]):.1f}°: the error goes with the power {number(power, 2)} of the spread, while the "
         f"condition number stays at {number(narrow.summary('measures', 'condition_number')['median'], 2)}, as it sees "
         "the shape of the set and not its size. The smallest singular value is what falls. "
-        f"{POSES[-1]} poses in place of 4 lower the error from {metres(predicted_error(few))} to "
+        f"{POSES[-1]} poses in place of 4 lower the predicted error from {metres(predicted_error(few))} to "
         f"{metres(predicted_error(many))} only: all are measured against pose 1, whose error stays.",
     )
 
 
-def _shared_pose(base: Calibration) -> Notice:
-    """Return what happens when pose 1 is taken as new in every row."""
-    model, postures = flange_of(base), base.postures
+def _shared_pose(many: Calibration) -> Notice:
+    """Return what happens when pose 1 is taken as new in every row, and when no pose is singled out."""
+    model, postures = flange_of(many), many.postures
     poses = np.array([model.tip_pose(q) for q in postures])
-    covariances = pose_covariances(model, postures, _deviation(base))
+    covariances = pose_covariances(model, postures, _deviation(many))
+    tips = tip_covariances(poses, covariances, np.array(many.config["robot"]["tool"]["tip"]))
     right = identify_tool_centre_point(poses, covariances).covariance
-    wrong = independent_rows_covariance(poses, covariances, np.array(base.config["robot"]["tool"]["tip"]))
-    errors = base.values("errors")
-    level = float(base.record["consistency"]["level"])
+    wrong, together = independent_rows_covariance(poses, tips), common_point_covariance(poses, tips)
+    errors, level = many.values("errors"), 0.99
     judged = consistency(errors, np.repeat(wrong[None], len(errors), axis=0), level)
+    predicted = [metres(float(np.sqrt(np.trace(covariance)))) for covariance in (wrong, right, together)]
     return Notice(
         "finding",
         "Rows that share pose 1 are not independent",
         "Taken as new in every row, as least squares with $sigma^2 (A^T A)^(-1)$ does, pose 1 would be averaged away: "
-        f"the predicted error is {metres(float(np.sqrt(np.trace(wrong))))} in place of "
-        f"{metres(float(np.sqrt(np.trace(right))))}, and NEES of the same {len(errors)} errors "
-        f"{number(judged.mean)}, {'inside' if judged.holds else 'outside'} the band of {number(judged.lower)} to "
-        f"{number(judged.upper)}.",
+        f"for {len(poses)} poses the predicted error would be {predicted[0]} in place of {predicted[1]}, and NEES of "
+        f"the same {len(errors)} errors is {number(judged.mean)}, {'inside' if judged.holds else 'outside'} its band "
+        f"of {number(judged.lower)} to {number(judged.upper)}. The equation itself can be mended: solved for the tip "
+        f"and the point touched together, $R_k p - c = -P_k$, no pose is singled out, and {len(poses)} poses would "
+        f"leave {predicted[2]}.",
     )
 
 
-def independent_rows_covariance(poses: FloatArray, covariances: FloatArray, tip: FloatArray) -> FloatArray:
-    """Return sigma^2 (A'A)^-1, shape (3, 3), in m^2, with sigma^2 twice the mean variance of a tip's coordinate.
+def tip_covariances(poses: FloatArray, covariances: FloatArray, tip: FloatArray) -> FloatArray:
+    """Return the covariance of the tip's position in each pose, shape (N, 3, 3), in m^2.
 
     Args:
         poses: Flange in the base frame, shape (N, 4, 4).
         covariances: Of their errors, position in m and rotation vector in rad, shape (N, 6, 6).
         tip: The tool centre point in the flange's frame, shape (3,), in m.
     """
-    variances = []
-    for pose, covariance in zip(poses, covariances, strict=True):
-        lever = np.hstack([np.eye(3), -pin.skew(pose[:3, :3] @ tip)])
-        variances.append(np.trace(lever @ covariance @ lever.T) / 3.0)
+    levers = np.array([np.hstack([np.eye(3), -pin.skew(pose[:3, :3] @ tip)]) for pose in poses])
+    at_tip: FloatArray = levers @ covariances @ levers.transpose(0, 2, 1)
+    return at_tip
+
+
+def independent_rows_covariance(poses: FloatArray, tips: FloatArray) -> FloatArray:
+    """Return sigma^2 (A'A)^-1, shape (3, 3), in m^2, with sigma^2 twice the mean variance of a tip's coordinate.
+
+    Args:
+        poses: Flange in the base frame, shape (N, 4, 4).
+        tips: Covariances of the tip's position in each, shape (N, 3, 3), in m^2.
+    """
     A = (poses[0, :3, :3] - poses[1:, :3, :3]).reshape(-1, 3)
-    covariance_of_tip: FloatArray = 2.0 * float(np.mean(variances)) * np.linalg.inv(A.T @ A)
-    return covariance_of_tip
+    covariance: FloatArray = 2.0 * np.einsum("kii->", tips) / (3.0 * len(tips)) * np.linalg.inv(A.T @ A)
+    return covariance
+
+
+def common_point_covariance(poses: FloatArray, tips: FloatArray) -> FloatArray:
+    """Return the covariance of p where R_k p - c = -P_k is solved for p and c, shape (3, 3), in m^2.
+
+    Args:
+        poses: Flange in the base frame, shape (N, 4, 4).
+        tips: Covariances of the tip's position in each, shape (N, 3, 3), in m^2.
+    """
+    A = np.vstack([np.hstack([pose[:3, :3], -np.eye(3)]) for pose in poses])
+    blocks = np.linalg.pinv(A)[:3].reshape(3, len(poses), 3).transpose(1, 0, 2)
+    covariance: FloatArray = np.sum(blocks @ tips @ blocks.transpose(0, 2, 1), axis=0)
+    return covariance
 
 
 def _refused(base: Calibration) -> Table:

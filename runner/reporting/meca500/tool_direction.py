@@ -10,6 +10,7 @@ from runner.reporting.meca500.calibration_studies import (
     Calibrations,
     calibration_origin,
     consistency_cells,
+    consistency_notice,
     error_curves,
     found_error,
     predicted_error,
@@ -67,6 +68,7 @@ def tool_direction_section(calibrations: Calibrations) -> Section:
             calibration_origin(base),
         ),
         _finding(calibrations),
+        consistency_notice(calibrations, _KIND),
         _misprint(np.array(config["direction"])),
     ]
     return Section("Tool direction and alignment", blocks)

@@ -1,0 +1,91 @@
+"""What a sweep costs beside simulating: CPU time per run, use of both cores, memory of the parent, and saving.
+
+`python -m bench sweep` makes 2,000 short Macro runs, each with its trace in a folder of its own, and 100,000 of the
+shortest kind, which go to shards. Start-up is what a sweep of two runs costs.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from runner import store
+from runner.assembly import assemble, make_encoders
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.execution import simulate_job
+from runner.simulation import simulate
+
+_SHORT = ("robot=macro", "noise=thesis", "duration=1")
+_SHORTEST = ("robot=macro", "plant=rk4", "noise=thesis", "duration=0.05", "sweep.trace=never")
+_WORKERS = 2
+
+
+@dataclass(frozen=True)
+class Cost:
+    """CPU time of a command and all its processes, wall-clock time, both in s, and its own peak memory in MB."""
+
+    cpu: float
+    wall: float
+    memory: float
+
+
+def main() -> bool:
+    """Measure and print; return whether every target is met."""
+    simulating, saving = _simulating(_SHORT), _saving(_SHORT)
+    few, short, shortest = _sweep(_SHORT, 2), _sweep(_SHORT, 2000), _sweep(_SHORTEST, 100_000)
+    overhead = (short.cpu - few.cpu) / 2000 - simulating
+    busy = (short.cpu - few.cpu) / (_WORKERS * (short.wall - few.wall))
+    print(f"2,000 runs: {short.cpu:.0f} s of CPU, {short.wall:.0f} s, {simulating * 1e3:.1f} ms simulating each")
+    print(f"100,000 runs: {shortest.cpu:.0f} s of CPU, {shortest.wall:.0f} s")
+    met = [
+        _judge("overhead per run (ms of CPU)", overhead * 1e3, 10.0),
+        _judge("both cores idle (share)", 1.0 - busy, 0.1),
+        _judge("shortest run, all in all (ms)", shortest.wall / 100_000 * 1e3, 5.0),
+        _judge("memory of the parent (MB)", max(short.memory, shortest.memory), 500.0),
+        _judge("saving a run (ms of CPU)", saving * 1e3, 3.0),
+    ]
+    return all(met)
+
+
+def _sweep(overrides: tuple[str, ...], runs: int) -> Cost:
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, "-m", "runner", "-m", *overrides, f"seed=range(0,{runs})", f"outputs={folder}"]
+        start = time.perf_counter()
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        _, status, used = os.wait4(process.pid, 0)
+        wall = time.perf_counter() - start
+        assert status == 0
+        done = next(Path(folder).glob("sweeps/*"))
+        assert len(store.open_sweep(done).hashes) == runs
+    return Cost(used.ru_utime + used.ru_stime, wall, used.ru_maxrss / 1024)
+
+
+def _simulating(overrides: tuple[str, ...]) -> float:
+    config = validate(compose(overrides).resolved)
+    loop = assemble(config)
+    return _cpu_time(lambda: simulate(loop, make_encoders(config, loop, 0)))
+
+
+def _saving(overrides: tuple[str, ...]) -> float:
+    composed = compose(overrides)
+    result = simulate_job(validate(composed.resolved), composed)
+    with tempfile.TemporaryDirectory() as folder:
+        return _cpu_time(lambda: store.write_run(Path(folder), "run", result))
+
+
+def _cpu_time(work: Callable[[], object], times: int = 100) -> float:
+    work()
+    start = time.process_time()
+    for _ in range(times):
+        work()
+    return (time.process_time() - start) / times
+
+
+def _judge(what: str, value: float, target: float) -> bool:
+    print(f"  {what:30} {value:7.2f}  target {target:g}: {'met' if value <= target else 'MISSED'}")
+    return value <= target

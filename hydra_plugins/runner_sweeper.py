@@ -1,0 +1,50 @@
+"""Hydra's door to our sweeps; Hydra finds it by the name of this folder."""
+
+import shlex
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from hydra.plugins.sweeper import Sweeper
+from hydra.types import HydraContext, TaskFunction
+from omegaconf import DictConfig
+
+
+class RunnerSweeper(Sweeper):
+    """Hands a sweep's command line to `runner.sweep`, which composes, checks and makes its runs.
+
+    Args:
+        workers: Number of processes on this machine; 0 for the process itself.
+        address: Address of a running Dask scheduler, or None.
+        params: Values by key, as on the command line, which comes after and wins.
+    """
+
+    def __init__(self, workers: int, address: str | None, params: Mapping[str, Any] | None) -> None:
+        self._workers, self._address = workers, address
+        self._params = [f"{key}={value}" for key, value in (params or {}).items()]
+
+    def setup(self, *, hydra_context: HydraContext, task_function: TaskFunction, config: DictConfig) -> None:
+        """Take what Hydra knows; see its Sweeper."""
+        task: Any = task_function
+        self._loader, self._task, self._config = hydra_context.config_loader, task, config
+
+    def sweep(self, arguments: list[str]) -> None:
+        """Make the sweep; see Hydra's Sweeper."""
+        self._task.sweep(lambda: self._make(arguments))
+
+    def _make(self, arguments: list[str]) -> Any:
+        from runner.sweep.plan import Plan
+        from runner.sweep.run import Engine, run_sweep
+
+        def load(options: list[str]) -> DictConfig:
+            return self._loader.load_sweep_config(self._config, options)
+
+        sources = self._config.hydra.runtime.config_sources
+        own = [Path(source.path) for source in sources if source.provider == "command-line"]
+        plan = Plan([*self._params, *arguments], self._loader, load, own)
+        return run_sweep(
+            plan,
+            Engine(self._workers, self._address),
+            shlex.join(["runner", *(argument.removeprefix("++") for argument in sys.argv[1:])]),
+        )

@@ -1,0 +1,27 @@
+"""`runner status DIR`: how far a sweep is, from what is stored."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from runner.commands.arguments import Parser
+from runner.config.compose import quiet_environment
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Print how many runs are done, how many failed, what is left and for how long, and how to go on."""
+    parser = Parser("status", __doc__)
+    parser.add_argument("folder", type=Path, metavar="DIR", help="folder of a sweep")
+    options = parser.parse_args(arguments)
+    quiet_environment()
+    from runner.store import open_sweep
+    from runner.sweep.status import find_status, in_words
+
+    sweep = open_sweep(options.folder)
+    status = find_status(sweep)
+    failed = f" ({status.failed} of them failed)" if status.failed else ""
+    print(f"{status.done + status.left} runs: {status.done} done{failed}, {status.left} left")
+    if status.left and status.at_work:
+        print("at work" + ("" if status.seconds is None else f", about {in_words(status.seconds)} to go"))
+    elif status.left:
+        print(f"not at work; this goes on with it: {sweep.command}")
+    return 0

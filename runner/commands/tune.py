@@ -1,0 +1,97 @@
+"""`runner tune OVERRIDES --minimize METRIC`: choose numeric keys so that metrics get better, and report on it.
+
+A key is tuned by its range in place of a value: controller.natural_frequency="interval(5,50)", on a logarithmic scale
+"tag(log, interval(5,50))", whole numbers "int(interval(1,9))", a grid "range(0.01,0.05,0.01)". The same command goes on
+where it was interrupted; with more --trials it adds to them.
+"""
+
+import shlex
+import sys
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from runner.commands.arguments import Parser
+from runner.config.compose import quiet_environment
+from runner.errors import RunnerError
+
+if TYPE_CHECKING:
+    from runner.tuning.study import Tuning
+
+_TRIALS = 100
+_AT_ONCE = 4
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Make the trials that are missing and write the report; print its folder as the last line."""
+    parser = Parser("tune", __doc__)
+    parser.add_argument("overrides", nargs="*", metavar="OVERRIDE", help="as for a run; a range where a key is tuned")
+    for direction in ("minimize", "maximize"):
+        parser.add_argument(
+            f"--{direction}",
+            action="append",
+            dest="objectives",
+            metavar="METRIC",
+            type=partial(_objective, direction),
+            help="of several objectives the report shows the Pareto front",
+        )
+    parser.add_argument("--trials", type=_count, default=_TRIALS, metavar="N", help=f"in all; default {_TRIALS}")
+    parser.add_argument(
+        "--at-once",
+        type=_count,
+        default=_AT_ONCE,
+        metavar="N",
+        help=f"trials under way at once, at least as many as processes; default {_AT_ONCE}",
+    )
+    parser.add_argument("--config-dir", type=Path, action="append", default=[], metavar="DIR", help="of your own YAML")
+    options = parser.parse_intermixed_args(arguments)
+    objectives = dict.fromkeys(options.objectives or ())
+    if not objectives:
+        parser.error("name a metric to --minimize or --maximize")
+    if len({metric for _, metric in objectives}) < len(objectives):
+        raise RunnerError("a metric cannot be minimized and maximized at once")
+    quiet_environment()
+    from runner.tuning.objective import Objective
+    from runner.tuning.run import tune
+
+    tuning = tune(
+        options.overrides,
+        [Objective(metric, direction) for direction, metric in objectives],
+        options.trials,
+        options.at_once,
+        shlex.join(["runner", "tune", *arguments]),
+        options.config_dir,
+    )
+    return _tell(tuning)
+
+
+def _tell(tuning: "Tuning") -> int:
+    from runner.reporting.render import write_report
+    from runner.reporting.tuning.report import tuning_document
+    from runner.tuning.trial import best
+
+    trials, objectives = tuning.trials, tuning.study.objectives
+    failed = sum(bool(trial.failure) for trial in trials)
+    print(f"runner: {len(trials)} trials, {failed} of them failed", file=sys.stderr)
+    for number in best(trials, objectives):
+        values = ", ".join(
+            f"{objective.metric} {value:.5g} {objective.unit}".strip()
+            for objective, value in zip(objectives, trials[number].values, strict=True)
+        )
+        print(f"best: {values} with {shlex.join(tuning.study.trial_overrides(trials[number]))}")
+    folder = tuning.folder.parent.parent / "reports" / tuning.folder.name
+    write_report(tuning_document(tuning, folder), folder)
+    print(folder)
+    return 0 if failed < len(trials) else 1
+
+
+def _objective(direction: str, metric: str) -> tuple[str, str]:
+    return direction, metric
+
+
+def _count(text: str) -> int:
+    number = int(text)
+    if number < 1:
+        raise ValueError
+    return number

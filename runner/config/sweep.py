@@ -1,0 +1,26 @@
+"""Config of how a sweep is run: nothing here changes what a run gives."""
+
+from typing import Literal
+
+from pydantic import PositiveFloat, PositiveInt
+
+from runner.registry import StrictModel
+
+
+class SweepConfig(StrictModel):
+    """How the runs of a sweep are kept, and what happens to those that fail.
+
+    Attributes:
+        trace: Which runs keep their trace, and with it a folder of their own: all, the failed ones and one in a
+            hundred (sample), the failed ones, or none; auto is all up to some thousand runs, sample above.
+        retry: Whether runs that failed in an earlier sweep are simulated again.
+        on_failure: What the first failed run does to the rest of the sweep.
+        attempts: How often a run is tried that was cut short: by its time limit, an error, or a worker's death.
+        time_limit: Longest wall-clock time of a run, in s, looked at in every control tick; None for no limit.
+    """
+
+    trace: Literal["auto", "all", "sample", "failed", "never"]
+    retry: Literal["none", "failed"]
+    on_failure: Literal["continue", "stop"]
+    attempts: PositiveInt
+    time_limit: PositiveFloat | None

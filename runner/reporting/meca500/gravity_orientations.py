@@ -1,0 +1,141 @@
+"""Which orientations weigh a tool well: number, choice by conditioning, and spread."""
+
+import numpy as np
+import pinocchio as pin
+
+from runner.calibration.orientations import check_orientations
+from runner.reporting.document import Curves, FloatArray, Formula, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.meca500.calibration_plan import CHOICES, ORIENTATIONS, WEIGHING_SPREADS, name_of
+from runner.reporting.meca500.calibration_studies import (
+    CONSISTENCY_HEADER,
+    Calibrations,
+    calibration_origin,
+    consistency_cells,
+    found_error,
+    predicted_error,
+    refusal,
+)
+from runner.reporting.quantities import number, quantity
+from runner.store import Calibration
+
+_TITLES = {"best": "by conditioning", "first": "evenly over the joints"}
+
+
+def orientations_section(calibrations: Calibrations) -> Section:
+    """Return conditioning and errors over number, choice and spread of the orientations, and what is refused."""
+    base = calibrations["gravity/base"]
+    return Section(
+        "Choice of orientations",
+        (
+            Text(
+                "Both steps see of an orientation nothing but $rho$. The choice by conditioning takes, of "
+                f"{base.config['calibration']['candidates']} postures spread evenly over the joint limits, one after "
+                "the other the one that adds most to the determinant of"
+            ),
+            Formula(
+                "sum_i vec(1, rho_i) vec(1, rho_i)^T",
+                "the sum over the orientations of the vector 1, rho times its transpose",
+            ),
+            Table(
+                "Condition numbers of the two steps, errors of mass and mounting angle (root mean square), and NEES, "
+                "whose expectation is 11.",
+                [
+                    "orientations",
+                    "number",
+                    "force step",
+                    "moment step",
+                    "mass (g)",
+                    "predicted (g)",
+                    "$theta$ (mrad)",
+                    "predicted (mrad)",
+                    *CONSISTENCY_HEADER,
+                ],
+                _rows(calibrations),
+                (1, 2, 3, 4, 5, 6, 7, 8, 9),
+                calibration_origin(base),
+            ),
+            _curves(calibrations),
+            _finding(calibrations),
+            _refused(),
+        ),
+    )
+
+
+def _row(title: str, done: Calibration) -> list[str]:
+    conditions = (done.summary("measures", f"condition_{step}")["median"] for step in ("force", "moment"))
+    errors = (1e3 * error(done, name) for name in ("mass", "theta") for error in (found_error, predicted_error))
+    count = str(done.config["calibration"]["orientations"])
+    return [title, count, *map(number, conditions), *map(number, errors), *consistency_cells(done)]
+
+
+def _rows(calibrations: Calibrations) -> list[list[str]]:
+    chosen = [
+        _row(_TITLES[choice], calibrations[name_of(f"gravity/{choice}", count)])
+        for choice in CHOICES
+        for count in ORIENTATIONS
+    ]
+    spread = [
+        _row(f"within {np.degrees(value):.0f}° of home", calibrations[name_of("gravity/spread", value)])
+        for value in WEIGHING_SPREADS
+    ]
+    return chosen + spread
+
+
+def _curves(calibrations: Calibrations) -> Curves:
+    counts = np.array(ORIENTATIONS, dtype=float)
+    conditions, errors = [], []
+    for color, choice in enumerate(CHOICES):
+        done = [calibrations[name_of(f"gravity/{choice}", count)] for count in ORIENTATIONS]
+        condition = np.array([c.summary("measures", "condition_force")["median"] for c in done])
+        conditions.append(Series(_TITLES[choice], counts, condition, "points_line", color=color))
+        found, predicted = (
+            1e3 * np.array([error(c, "mass") for c in done]) for error in (found_error, predicted_error)
+        )
+        errors.append(Series(f"{_TITLES[choice]}, found", counts, found, "points", color=color))
+        errors.append(Series(f"{_TITLES[choice]}, predicted", counts, predicted, "line", color=color))
+    return Curves(
+        "Conditioning and the mass's error over the number of orientations.",
+        (
+            Panel("Force step", "orientations", "condition number", conditions),
+            Panel("Mass", "orientations", "error (g)", errors, x_log=True, y_log=True),
+        ),
+        2,
+        calibration_origin(calibrations["gravity/base"]),
+    )
+
+
+def _finding(calibrations: Calibrations) -> Notice:
+    few = ORIENTATIONS[0]
+    best, first = (calibrations[name_of(f"gravity/{choice}", few)] for choice in CHOICES)
+    narrow, base = calibrations[name_of("gravity/spread", WEIGHING_SPREADS[0])], calibrations["gravity/base"]
+    return Notice(
+        "finding",
+        "Few orientations must be chosen, many need not; but they must be spread",
+        f"Of {few} orientations those chosen by conditioning know the mass to "
+        f"{quantity(1e3 * predicted_error(best, 'mass'), 'g')}, the first ones of an even spread to "
+        f"{quantity(1e3 * predicted_error(first, 'mass'), 'g')}; with {ORIENTATIONS[-1]} the choice hardly counts. "
+        f"With gravity within {np.degrees(WEIGHING_SPREADS[0]):.0f}° of where it is at home, "
+        f"{base.config['calibration']['orientations']} orientations leave "
+        f"{quantity(1e3 * predicted_error(narrow, 'mass'), 'g')} in place of "
+        f"{quantity(1e3 * predicted_error(base, 'mass'), 'g')}: the weight and the bias along z can hardly be told "
+        "apart.",
+    )
+
+
+def _refused() -> Table:
+    def attempt(vectors: list[FloatArray]) -> str:
+        orientations = np.array([pin.exp3(vector) for vector in vectors])
+        return refusal(lambda: check_orientations(orientations))
+
+    attempts = {
+        "2 orientations": [np.zeros(3), np.array([1.0, 0.0, 0.0])],
+        "4 orientations turned about the vertical": [np.array([0.0, 0.0, k * np.pi / 2]) for k in range(4)],
+        "4 orientations tilted by 10 deg all around": [
+            np.radians(10.0) * np.array([np.cos(a), np.sin(a), 0.0]) for a in np.arange(4) * np.pi / 2
+        ],
+    }
+    return Table(
+        "Sets of orientations that are refused, and why.",
+        ["set", "reason given"],
+        [[name, attempt(vectors)] for name, vectors in attempts.items()],
+    )

@@ -1,0 +1,1 @@
+"""The report on a sweep, made from its stored runs alone."""

@@ -1,0 +1,99 @@
+"""Which axis matters: shares of the variation with permutation tests, and main effects."""
+
+import numpy as np
+
+from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
+from runner.reporting.quantities import number
+from runner.reporting.sweep.intervals import axis_panel, cells_with_intervals, places
+from runner.reporting.sweep.subject import Subject
+from runner.statistics import EffectAnalysis
+from runner.sweep.measurements import Axis
+
+
+def section(subject: Subject) -> Section:
+    """Return what each axis does to each metric."""
+    blocks: list[Block] = [_table(subject.effects), Text(_explained(subject.effects)), _main_effects(subject)]
+    if len(subject.axes) <= 2:
+        blocks += [
+            figure for figure in (cells_with_intervals(subject, metric) for metric in subject.metrics[:2]) if figure
+        ]
+    return Section("Which axis matters", blocks)
+
+
+def summary(subject: Subject) -> str:
+    """Return in a sentence which axis matters most to the first metric."""
+    main = [effect for effect in subject.effects[subject.metrics[0]].effects if len(effect.axes) == 1]
+    strongest = max(main, key=lambda effect: effect.share)
+    if strongest.p_value is None:
+        return f"No axis can be said to matter for {subject.metrics[0]}: {strongest.remark}."
+    said = f"{strongest.axes[0]} explains {_percent(strongest.share)} of the variation of {subject.metrics[0]}"
+    if strongest.p_value > 0.05:
+        return f"{said}, the most of all axes, but no more than chance may (p = {strongest.p_value:.2g})."
+    return f"{said}, the most of all axes (p = {strongest.p_value:.2g})."
+
+
+def _table(analyses: dict[str, EffectAnalysis]) -> Table:
+    rows = []
+    for effects in zip(*(analysis.effects for analysis in analyses.values()), strict=True):
+        cells = []
+        for effect in effects:
+            tested = effect.remark if effect.p_value is None else f"p = {effect.p_value:.2g}"
+            cells.append(f"{_percent(effect.share)} ({tested})")
+        rows.append([" × ".join(effects[0].axes), *cells])
+    header = ["effect", *analyses]
+    return Table(
+        "Share of the variation that each axis explains, and what two axes do together beyond what each does by "
+        "itself.",
+        [cell.replace("$", "$$") for cell in header],
+        [[cell.replace("$", "$$") for cell in row] for row in rows],
+    )
+
+
+def _explained(analyses: dict[str, EffectAnalysis]) -> str:
+    logs = [name for name, analysis in analyses.items() if analysis.logarithmic]
+    lost = [f"{analysis.left_out} of {name}" for name, analysis in analyses.items() if analysis.left_out]
+    used = ", ".join(dict.fromkeys(str(analysis.n) for analysis in analyses.values()))
+    texts = [
+        "A share is the sum of squares of an effect over the total; p is the share of 999 permutations of the "
+        f"residuals with as large an effect. Values used: {used}.",
+        f"Of {', '.join(logs)} the logarithms were taken, as the values span decades." if logs else "",
+        f"Left out, as beyond every number: {', '.join(lost)}; shares of what is left may overlap." if lost else "",
+        "Equal seeds in all cells make the test careful: what they share counts as scatter. One in twenty tests "
+        "falls below p = 0.05 by chance.",
+    ]
+    return " ".join(text for text in texts if text).replace("$", "$$")
+
+
+def _main_effects(subject: Subject) -> Curves:
+    panels = []
+    for metric in subject.metrics[:3]:
+        panels += [_main_effect(subject, metric, axis) for axis in subject.axes]
+    return Curves(
+        "Main effects: median of all repetitions at each value of an axis, over the values of the others; shaded, or a "
+        "bar, the half of them between the quartiles. No point stands where half of the runs or more failed.",
+        panels,
+        columns=3 if len(subject.axes) in (3, 5, 6) else 2,
+    )
+
+
+def _main_effect(subject: Subject, metric: str, axis: Axis) -> Panel:
+    values = subject.measurements.values[metric]
+    quartiles = np.full((3, len(axis.values)), np.nan)
+    for level in range(len(axis.values)):
+        pooled = values[axis.level == level]
+        pooled = pooled[~np.isnan(pooled)]
+        if pooled.size:
+            quartiles[:, level] = np.quantile(pooled, (0.25, 0.5, 0.75), method="inverted_cdf")
+    quartiles[~np.isfinite(quartiles)] = np.nan
+    x = places(axis)
+    low, median, high = quartiles
+    series = [Series("", x, median, "points_line", low, high, color=0)]
+    if axis.numbers is None:  # between texts there is nothing that a line could stand for
+        gap = np.full(len(x), np.nan)
+        whiskers = Series("", np.repeat(x, 3), np.column_stack([low, high, gap]).ravel(), color=0)
+        series = [whiskers, Series("", x, median, "points", color=0)]
+    return axis_panel("", axis, subject.label(metric), series, quartiles)
+
+
+def _percent(share: float) -> str:
+    return f"{number(100 * share, 2)} %" if share >= 1e-3 else "< 0.1 %"

@@ -1,0 +1,104 @@
+"""The best and the worst cell, and whether the best is better than those behind it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from runner.errors import StoreError
+from runner.reporting.document import Block, Notice, Section, Table, Text
+from runner.reporting.figures import playback, torque_and_error
+from runner.reporting.quantities import number, quantity
+from runner.reporting.sweep.subject import Subject
+from runner.statistics import compare_paired, median_interval
+from runner.store import Run
+
+_BEHIND = 5
+
+
+def section(subject: Subject, best: Run, worst: Run) -> Section:
+    """Return the best and the worst cell with their motion.
+
+    Args:
+        subject: The sweep, with at least one ranked cell.
+        best: Run of the first ranked cell.
+        worst: Run of the last ranked cell.
+    """
+    ranked = subject.ranked
+    ends = [ranked[0], ranked[-1]] if len(ranked) > 1 else [ranked[0]]
+    blocks: list[Block] = [_medians(subject, ends)]
+    if len(ranked) > 1:
+        blocks += _behind(subject, ranked)
+    sections = [_motion(f"Best: {subject.cell_name(ranked[0])}", best)]
+    if len(ranked) > 1:
+        sections.append(_motion(f"Worst: {subject.cell_name(ranked[-1])}", worst))
+    return Section("Best and worst", blocks, sections)
+
+
+def _medians(subject: Subject, cells: Sequence[int]) -> Table:
+    rows = []
+    for name in subject.metrics:
+        unit = subject.measurements.units[name]
+        rows.append([name, *(_with_interval(subject.measurements.of_cell(name, cell), unit) for cell in cells)])
+    header = ["metric", *(subject.cell_name(cell).replace("$", "$$") for cell in cells)]
+    return Table(
+        "Best and worst cell: medians, in brackets their 95 % intervals by the bootstrap over the repetitions.",
+        header,
+        rows,
+        tuple(range(1, len(header))),
+    )
+
+
+def _with_interval(values: np.ndarray, unit: str) -> str:
+    if not values.size:
+        return "–"
+    interval = median_interval(values)
+    text = quantity(interval.median, unit) if np.isfinite(interval.median) else "never"
+    return text if interval.low is None else f"{text} ({_end(interval.low)} to {_end(interval.high)})"
+
+
+def _behind(subject: Subject, ranked: Sequence[int]) -> list[Block]:
+    """Compare the cells next to the best with it, repetition by repetition."""
+    if any(axis.name == "seed" for axis in subject.axes):
+        return [Text("Cells are not compared in pairs: the sweep varies the seed, so that no two share their noise.")]
+    metric, unit = subject.metrics[0], subject.measurements.units[subject.metrics[0]]
+    values = subject.measurements.values[metric]
+    rows = []
+    for cell in ranked[1 : 1 + _BEHIND]:
+        paired = ~np.isnan(values[ranked[0]]) & ~np.isnan(values[cell])
+        comparison = compare_paired(values[ranked[0]][paired], values[cell][paired])
+        difference = comparison.difference
+        rows.append(
+            [
+                subject.cell_name(cell).replace("$", "$$"),
+                quantity(difference.median, unit) if np.isfinite(difference.median) else "beyond every number",
+                "–" if difference.low is None else f"{_end(difference.low)} to {_end(difference.high)}",
+                f"{comparison.effect:.2f}",
+                "–" if comparison.p_value is None else f"{comparison.p_value:.2g}",
+                comparison.verdict,
+            ]
+        )
+    return [
+        Table(
+            f"The next cells against the best, by {metric} on the same seeds: median of the differences, its 95 % "
+            "interval, effect size (rank-biserial correlation, 1 where the best is better in every repetition), and p "
+            "of the signed-rank test.",
+            ["cell", "difference", "interval", "effect", "p", "than the best"],
+            rows,
+            (1, 2, 3, 4),
+        )
+    ]
+
+
+def _motion(title: str, run: Run) -> Section:
+    try:
+        blocks: list[Block] = [
+            torque_and_error(run, "Torque of each joint and tip position error, repetition 0."),
+            playback(run, "The motion of repetition 0."),
+        ]
+    except StoreError as error:
+        blocks = [Notice("warning", "No motion to show", str(error).replace("$", "$$"))]
+    return Section(title, blocks)
+
+
+def _end(value: float | None) -> str:
+    return number(value) if value is None or np.isfinite(value) else "never"

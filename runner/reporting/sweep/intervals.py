@@ -1,0 +1,59 @@
+"""Cells of a sweep over one or two axes, each with its confidence interval."""
+
+import numpy as np
+
+from runner.reporting.document import Curves, Panel, Series
+from runner.reporting.sweep.subject import Subject, spans_decades, value_name, value_names
+from runner.statistics import median_interval
+from runner.sweep.measurements import Axis, FloatArray
+
+_MOST_LINES = 6
+_MOST_INTERVALS = 60
+
+
+def cells_with_intervals(subject: Subject, metric: str) -> Curves | None:
+    """Return the median of each cell over one axis, a curve for each value of the other axis if there are two.
+
+    Returns:
+        The figure, or None where there are more curves or cells than a reader can tell apart.
+    """
+    # Along the axis with more values, and rather along numbers than along texts.
+    along, *other = sorted(subject.axes, key=lambda axis: (axis.numbers is None, -len(axis.values)))
+    groups = other[0].level if other else np.zeros(len(subject.measurements.hashes), dtype=np.intp)
+    count = len(other[0].values) if other else 1
+    if count > _MOST_LINES or count * len(along.values) > _MOST_INTERVALS:
+        return None
+    curves = []
+    for group in range(count):
+        cells = np.flatnonzero(groups == group)
+        cells = cells[np.argsort(along.level[cells], kind="stable")].tolist()
+        ends = np.array([_interval(subject, metric, cell) for cell in cells]).reshape(-1, 3)
+        low, median, high = np.where(np.isfinite(ends), ends, np.nan).T
+        name = f"{other[0].name} = {value_name(other[0], group)}" if other else ""
+        x = places(along)[along.level[cells]]
+        hints, runs = subject.hints(cells), subject.hashes(cells)
+        curves.append(Series(name, x, median, "points_line", low, high, group, hints, runs))
+    panel = axis_panel("", along, subject.label(metric), curves, np.concatenate([series.y for series in curves]))
+    caption = "Median of each cell; shaded its 95 % interval by the bootstrap over the repetitions, if they are enough."
+    return Curves(caption, [panel], columns=1)
+
+
+def _interval(subject: Subject, metric: str, cell: int) -> tuple[float, float, float]:
+    values = subject.measurements.of_cell(metric, cell)
+    if not values.size:
+        return (np.nan, np.nan, np.nan)
+    interval = median_interval(values)
+    low, high = (np.nan if end is None else end for end in (interval.low, interval.high))
+    return (low, interval.median, high)
+
+
+def places(axis: Axis) -> FloatArray:
+    """Return where the values of an axis stand: at their numbers, or at 0, 1, ... where they are texts."""
+    return np.arange(len(axis.values), dtype=float) if axis.numbers is None else axis.numbers
+
+
+def axis_panel(title: str, axis: Axis, y_label: str, series: list[Series], y: FloatArray) -> Panel:
+    """Return a panel over one axis of the sweep, logarithmic where its values, or the ordinates, span decades."""
+    names = value_names(axis) if axis.numbers is None else ()
+    x_log = axis.numbers is not None and spans_decades(axis.numbers)
+    return Panel(title, axis.name, y_label, series, x_log, spans_decades(y), x_names=names)

@@ -1,0 +1,110 @@
+"""The report on a sweep: axes, effects, maps, trade-off, distributions, best and worst, failures, all runs."""
+
+import shlex
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from runner.reporting.document import Document, Provenance, RunList, Section, Text
+from runner.reporting.sweep import axes, distributions, effects, extremes, failures, maps, tradeoff
+from runner.reporting.sweep.subject import Subject, choose, value_names
+from runner.store import Sweep
+from runner.sweep.measurements import measure
+
+MOST_RUNS = 5000
+"""Runs that the list of a report holds; of more, the best and the worst."""
+
+
+def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str = "") -> Document:
+    """Return the report on a stored sweep.
+
+    Args:
+        sweep: The sweep.
+        metrics: Metrics that it compares, the first of which ranks the cells; empty chooses those that differ.
+        runs_address: Address of the folder of runs, seen from the report, ending in a slash.
+
+    Raises:
+        RunnerError: If a metric is none of the sweep's.
+        StoreError: If a run is missing or damaged.
+    """
+    subject = choose(measure(sweep.overrides, sweep.runs()), metrics)
+    measurements = subject.measurements
+    sections = [axes.section(subject, sweep.command)]
+    ranked = subject.ranked
+    if subject.metrics and subject.axes:
+        sections.append(effects.section(subject))
+    if subject.metrics and len(subject.axes) > 1:
+        sections.append(maps.section(subject))
+    traded = tradeoff.pair(subject) if subject.metrics else None
+    if traded is not None:
+        sections.append(tradeoff.section(subject, traded))
+    if ranked:
+        sections.append(distributions.section(subject))
+        best, worst = replace(sweep, hashes=[measurements.hashes[cell] for cell in (ranked[0], ranked[-1])]).runs()
+        sections.append(extremes.section(subject, best, worst))
+    if any(status != "ok" for status in measurements.statuses):
+        sections.append(failures.section(subject))
+    sections.append(_all_runs(subject, sweep, runs_address))
+    sections.append(Section("Provenance", (Provenance(_made_by(subject, sweep)),)))
+    return Document(
+        title="Sweep over " + (" × ".join(axis.name for axis in subject.axes) or "nothing"),
+        subtitle=", ".join(measurements.fixed),
+        abstract=_abstract(subject).replace("$", "$$"),
+        sections=sections,
+        date=max(measurements.provenance["made on"]),
+    )
+
+
+def _abstract(subject: Subject) -> str:
+    measurements = subject.measurements
+    cells, failed = len(measurements.hashes), sum(status != "ok" for status in measurements.statuses)
+    sizes = " × ".join(f"{axis.name} ({len(axis.values)})" for axis in subject.axes)
+    ends = f"{failed} of them failed" if failed else "all of them finished"
+    over = f" over {sizes}" if sizes else ""
+    texts = [f"{cells} cells{over}, {ends}; repetitions in each: {measurements.repetitions}."]
+    ranked = subject.ranked
+    if ranked and subject.axes:
+        metric = subject.metrics[0]
+        texts.append(f"Least {metric}: {subject.cell_name(ranked[0])}; most: {subject.cell_name(ranked[-1])}.")
+        texts.append(effects.summary(subject))
+    return " ".join(texts)
+
+
+def _all_runs(subject: Subject, sweep: Sweep, address: str) -> Section:
+    measurements = subject.measurements
+    order = subject.order
+    caption = "All runs, from best to worst; medians of each."
+    if len(order) > MOST_RUNS:
+        order = np.concatenate([order[: MOST_RUNS // 2], order[-MOST_RUNS // 2 :]])
+        caption = f"The {MOST_RUNS // 2} best and the {MOST_RUNS // 2} worst of {len(measurements.hashes)} runs."
+    names = list(dict.fromkeys([*subject.metrics, *measurements.values]))
+    medians = [subject.medians[name][order] for name in names]
+    values = np.column_stack(medians) if medians else np.zeros((len(order), 0))
+    cells = order.tolist()
+    levels = np.column_stack([axis.level[order] for axis in subject.axes] or [np.zeros((len(order), 0), dtype=np.intp)])
+    listing = RunList(
+        caption,
+        [(axis.name, value_names(axis)) for axis in subject.axes],
+        levels,
+        [(name, measurements.units[name]) for name in names],
+        np.where(np.isfinite(values), values, np.nan),
+        subject.hashes(cells),
+        [measurements.failures[cell] for cell in cells],
+        [_command(sweep.overrides[cell]) for cell in cells],
+        [f"{address}{name}/" if (sweep.outputs / "runs" / name).is_dir() else "" for name in subject.hashes(cells)],
+    )
+    text = Text(
+        "In the HTML report: filter by value, plot any two quantities against each other, sort by a column; a click on "
+        "a point, here or in any figure, shows its run. The command runner table writes all numbers as Parquet and CSV."
+    )
+    return Section("All runs", (text, listing))
+
+
+def _made_by(subject: Subject, sweep: Sweep) -> list[tuple[str, str]]:
+    rows = [(name, ", ".join(values)) for name, values in subject.measurements.provenance.items()]
+    return [*rows, ("sweep", sweep.folder.name)]
+
+
+def _command(overrides: Sequence[str]) -> str:
+    return shlex.join(["runner", *(text for text in overrides if text.partition("=")[0] != "outputs")])

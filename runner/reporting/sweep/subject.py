@@ -1,0 +1,157 @@
+"""What a report on a sweep is about: its cells, the metrics that it compares, and their order."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.errors import RunnerError, nearest
+from runner.reporting.quantities import quantity
+from runner.statistics import EffectAnalysis, axis_effects
+from runner.sweep.measurements import Axis, FloatArray, Measurements
+
+MOST_METRICS = 4
+"""Metrics that a report compares when nobody has named any."""
+
+_PREFERRED = (
+    "max_tracking_error",
+    "settling_time",
+    "steady_state_error",
+    "peak_torque",
+    "cross_track_error",
+    "saturation_fraction",
+    "control_effort",
+)
+COSTS = ("peak_torque", "rms_torque", "control_effort", "energy")
+"""Metrics of what a motion costs."""
+
+_PART = re.compile(r".*_([xyz]|q\d+)$")  # a metric of one direction or joint
+_DECADE = 10.0
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A sweep as its report looks at it; of every metric less is better.
+
+    Attributes:
+        measurements: Its cells.
+        metrics: The metrics compared; the first one ranks the cells.
+    """
+
+    measurements: Measurements
+    metrics: Sequence[str]
+
+    @property
+    def axes(self) -> Sequence[Axis]:
+        """The swept axes."""
+        return self.measurements.axes
+
+    @cached_property
+    def medians(self) -> dict[str, FloatArray]:
+        """Median of every metric in each cell, shape (cells,): infinite where it is beyond every number."""
+        return {name: self.measurements.medians(name) for name in self.measurements.values}
+
+    @cached_property
+    def effects(self) -> dict[str, EffectAnalysis]:
+        """What the axes do to each metric compared, over all repetitions of all cells."""
+        return {metric: self._analyse(self.measurements.values[metric]) for metric in self.metrics}
+
+    def _analyse(self, values: FloatArray) -> EffectAnalysis:
+        present = ~np.isnan(values).ravel()
+        levels = {axis.name: np.repeat(axis.level, values.shape[1])[present] for axis in self.axes}
+        return axis_effects(levels, values.ravel()[present])
+
+    @cached_property
+    def order(self) -> NDArray[np.intp]:
+        """The cells from best to worst by the first metric, failed ones last."""
+        failed = np.array([status != "ok" for status in self.measurements.statuses])
+        if not self.metrics:
+            return np.argsort(failed, kind="stable")
+        return np.lexsort((self.medians[self.metrics[0]], failed))
+
+    @property
+    def ranked(self) -> list[int]:
+        """The cells that did not fail and have a number for the first metric, from best to worst."""
+        if not self.metrics:
+            return []
+        medians, statuses = self.medians[self.metrics[0]], self.measurements.statuses
+        return [cell for cell in self.order.tolist() if np.isfinite(medians[cell]) and statuses[cell] == "ok"]
+
+    def label(self, metric: str) -> str:
+        """Return the name of a metric with its unit, as on the axis of a figure."""
+        unit = self.measurements.units[metric]
+        return metric if unit == "1" else f"{metric} ({unit})"
+
+    def cell_name(self, cell: int, separator: str = ", ") -> str:
+        """Return the values of a cell on all axes, such as "noise.position=0.001, torque_limits.max=20"."""
+        return separator.join(f"{axis.name}={value_name(axis, int(axis.level[cell]))}" for axis in self.axes)
+
+    def hint(self, cell: int) -> str:
+        """Return what a reader is told of a cell when pointing at it."""
+        units = self.measurements.units
+        found = [f"{name} {_text(self.medians[name][cell], units[name])}" for name in self.metrics]
+        failure = [self.measurements.failures[cell]] if self.measurements.failures[cell] else []
+        return "; ".join([self.cell_name(cell), *found, *failure])
+
+    def hints(self, cells: Sequence[int]) -> list[str]:
+        """Return what a reader is told of some cells."""
+        return [self.hint(cell) for cell in cells]
+
+    def hashes(self, cells: Sequence[int]) -> list[str]:
+        """Return the hashes of some cells' runs."""
+        return [self.measurements.hashes[cell] for cell in cells]
+
+
+def choose(measurements: Measurements, wanted: Sequence[str] = ()) -> Subject:
+    """Return what a report is about: the metrics asked for, or those that differ between the cells.
+
+    Raises:
+        RunnerError: If a metric asked for is none of the sweep's.
+    """
+    for name in wanted:
+        if name not in measurements.values:
+            known = ", ".join(measurements.values) or "none, as all runs failed"
+            raise RunnerError(
+                f"--metric: the runs have no '{name}'{nearest(name, measurements.values)}; known: {known}"
+            )
+    if wanted:
+        return Subject(measurements, tuple(dict.fromkeys(wanted)))
+    names = [name for name in (*_PREFERRED, *measurements.values) if name in measurements.values]
+    whole = [name for name in dict.fromkeys(names) if not _PART.match(name)]
+    varying = [name for name in whole if _varies(measurements.medians(name))]
+    chosen = (varying or whole)[:MOST_METRICS]
+    cost = next((name for name in COSTS if name in varying), None)
+    if cost is not None and cost not in chosen:
+        chosen[-1] = cost  # what the others are traded off against
+    return Subject(measurements, tuple(chosen))
+
+
+def value_name(axis: Axis, level: int) -> str:
+    """Return the value of an axis as text."""
+    value = axis.values[level]
+    return value if isinstance(value, str) else f"{value:g}"
+
+
+def value_names(axis: Axis) -> list[str]:
+    """Return all values of an axis as texts."""
+    return [value_name(axis, level) for level in range(len(axis.values))]
+
+
+def spans_decades(values: FloatArray) -> bool:
+    """Return whether values are seen better on a logarithmic scale: all positive, over a decade or more."""
+    finite = values[np.isfinite(values)]
+    return bool(finite.size and finite.min() > 0 and finite.max() >= _DECADE * finite.min())
+
+
+def _varies(medians: FloatArray) -> bool:
+    finite = medians[np.isfinite(medians)]
+    return bool(finite.size and np.any(finite != finite[0]))
+
+
+def _text(median: float, unit: str) -> str:
+    if np.isnan(median):
+        return "–"
+    return quantity(float(median), unit) if np.isfinite(median) else "never"

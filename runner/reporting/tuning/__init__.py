@@ -1,0 +1,1 @@
+"""The report on a tuning: history, Pareto front, keys, best trials."""

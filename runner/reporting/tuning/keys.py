@@ -1,0 +1,48 @@
+"""What each key does to the objectives, and how much of it decides."""
+
+import numpy as np
+
+from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
+from runner.reporting.sweep.subject import spans_decades
+from runner.reporting.tuning.subject import Subject, label, literal
+from runner.tuning.sampler import importances
+
+
+def section(subject: Subject) -> Section:
+    """Return the objectives over each key, and the importance of the keys."""
+    panels = []
+    for index, objective in enumerate(subject.objectives):
+        y = subject.values[:, index]
+        for key in subject.keys:
+            x = np.array([subject.trials[trial].params[key.name] for trial in subject.good], dtype=float)
+            hints, runs = subject.hints(subject.good), subject.runs(subject.good)
+            best = [subject.good.index(trial) for trial in subject.best]
+            series = [
+                Series("trials", x, y, "points", hints=hints, runs=runs),
+                Series(
+                    "best",
+                    x[best],
+                    y[best],
+                    "points",
+                    hints=subject.hints(subject.best),
+                    runs=subject.runs(subject.best),
+                ),
+            ]
+            panels.append(Panel("", key.name, label(objective), series, key.log, spans_decades(y), (key.low, key.high)))
+    return Section("Keys", [Curves("Good trials over the range of each key.", panels), _importance(subject)])
+
+
+def _importance(subject: Subject) -> Block:
+    found = [
+        importances(subject.keys, subject.trials, objective, place)
+        for place, objective in enumerate(subject.objectives)
+    ]
+    if not all(found):
+        return Text("Of fewer than 20 good trials it cannot be said which key matters.")
+    rows = [[key.name, *(f"{100 * shares[key.name]:.0f} %" for shares in found)] for key in subject.keys]
+    caption = (
+        "Importance of the keys: how far the values of each among the best tenth of the good trials differ from those "
+        "among all of them, in shares (PED-ANOVA). Where trials crowd, it says what still decides there."
+    )
+    header = ["key", *(objective.metric for objective in subject.objectives)]
+    return Table(caption, literal(header), [literal(row) for row in rows], tuple(range(1, len(header))))

@@ -1,0 +1,142 @@
+"""The report on a tuning, made from its journal and its stored runs."""
+
+import os
+import shlex
+from pathlib import Path
+
+import numpy as np
+
+from runner.reporting.document import Document, Notice, Origin, Provenance, RunList, Section, Table, Text
+from runner.reporting.tuning import best_trials, front, history, keys
+from runner.reporting.tuning.subject import Subject, key_value, literal
+from runner.store import Sweep, open_run
+from runner.sweep.measurements import Measurements, measure
+from runner.tuning.study import Tuning
+
+_MOST_FAILURES = 40
+
+
+def tuning_document(tuning: Tuning, folder: Path) -> Document:
+    """Return the report on a stored tuning.
+
+    Args:
+        tuning: The tuning.
+        folder: Where the report will stand: its links to the runs lead from there.
+
+    Raises:
+        StoreError: If a run is missing or damaged.
+    """
+    subject = Subject(tuning)
+    made = [place for place, trial in enumerate(subject.trials) if trial.run]
+    overrides = [tuning.study.trial_overrides(subject.trials[place]) for place in made]
+    sweep = Sweep(tuning.folder, overrides, subject.runs(made), tuning.study.command)
+    measurements = measure(sweep.overrides, sweep.runs())
+    sections = [_what(subject)]
+    if subject.good:
+        sections += [history.section(subject), keys.section(subject)]
+        if len(subject.objectives) > 1:
+            sections.insert(2, front.section(subject))
+        places = list(subject.best_by_objective())
+        runs = {place: open_run(sweep.outputs / "runs" / subject.trials[place].run) for place in places}
+        commands = {place: _command(tuning.study.trial_overrides(subject.trials[place])) for place in places}
+        sections.append(best_trials.section(subject, runs, commands))
+    if len(subject.good) < len(subject.trials):
+        sections.append(_failures(subject))
+    sections.append(_all_runs(subject, sweep, made, measurements, folder))
+    made_by = [(name, ", ".join(values)) for name, values in measurements.provenance.items()]
+    sections.append(Section("Provenance", (Provenance([*made_by, ("tuning", tuning.folder.name)]),)))
+    return Document(
+        title="Tuning of " + ", ".join(key.name for key in subject.keys),
+        subtitle=", ".join(tuning.study.overrides),
+        abstract=_abstract(subject).replace("$", "$$"),
+        sections=sections,
+        date=max(measurements.provenance.get("made on", [""])),
+    )
+
+
+def _abstract(subject: Subject) -> str:
+    goals = ", ".join(f"{objective.direction} {objective.metric}" for objective in subject.objectives)
+    text = f"{len(subject.trials)} trials to {goals}; {len(subject.trials) - len(subject.good)} of them failed."
+    if len(subject.best) == 1:
+        trial = subject.best[0]
+        return f"{text} Best is trial {trial}: {subject.outcome(trial)}, with {subject.settings(trial)}."
+    return f"{text} {len(subject.best)} trials stand on the Pareto front." if subject.best else text
+
+
+def _what(subject: Subject) -> Section:
+    rows = [
+        [
+            key.name,
+            key_value(key.low),
+            key_value(key.high),
+            "logarithmic" if key.log else "linear",
+            "any" if key.step is None and not key.integer else f"by {key_value(key.step or 1)}",
+        ]
+        for key in subject.keys
+    ]
+    study = subject.tuning.study
+    text = Text(
+        "The first ten trials are drawn at random; each later one follows from what came before it (tree-structured "
+        f"Parzen estimator of Optuna), {study.at_once} of them under way at once. Of a metric the median over the "
+        "repetitions counts. The same command gives the same trials, on however many processes."
+    )
+    caption = "Tuned keys with their ranges."
+    table = Table(
+        caption,
+        ["key", "low", "high", "scale", "values"],
+        [literal(row) for row in rows],
+        (1, 2),
+        Origin(command=study.command),
+    )
+    failed = len(subject.trials) - len(subject.good)
+    if not failed:
+        return Section("What was tuned", (table, text))
+    notice = Notice(
+        "failure",
+        f"{failed} of {len(subject.trials)} trials failed",
+        "They rank behind all others, so that the search keeps away from them; a section of its own lists them.",
+    )
+    return Section("What was tuned", (table, text, notice))
+
+
+def _failures(subject: Subject) -> Section:
+    failed = [place for place, trial in enumerate(subject.trials) if trial.failure]
+    rows = [
+        literal(
+            [str(place), subject.trials[place].run[:8] or "–", subject.settings(place), subject.trials[place].failure]
+        )
+        for place in failed[:_MOST_FAILURES]
+    ]
+    left = len(failed) - len(rows)
+    more = f" {left} more stand in the list of runs." if left else ""
+    return Section("Failed trials", (Table(f"Failed trials.{more}", ["trial", "run", "values", "failure"], rows),))
+
+
+def _all_runs(subject: Subject, sweep: Sweep, made: list[int], measurements: Measurements, folder: Path) -> Section:
+    goals = [objective.metric for objective in subject.objectives]
+    names = [name for name in dict.fromkeys([*goals, *measurements.values]) if name in measurements.values]
+    tuned = [[subject.trials[place].params[key.name] for place in made] for key in subject.keys]
+    columns = [made, *tuned, *(measurements.medians(name) for name in names)]
+    values = np.column_stack([np.array(column, dtype=float) for column in columns])
+    address = os.path.relpath(sweep.outputs / "runs", folder)
+    listing = RunList(
+        "All runs, in the order of the trials; medians of each.",
+        [],
+        np.zeros((len(made), 0), dtype=np.intp),
+        [
+            ("trial", "1"),
+            *((key.name, "1") for key in subject.keys),
+            *((name, measurements.units[name]) for name in names),
+        ],
+        np.where(np.isfinite(values), values, np.nan),
+        sweep.hashes,
+        [subject.trials[place].failure for place in made],
+        [_command(overrides) for overrides in sweep.overrides],
+        [f"{address}/{name}/" if (sweep.outputs / "runs" / name).is_dir() else "" for name in sweep.hashes],
+    )
+    text = Text("In the HTML report a click on a point, here or in any figure, shows its run.")
+    return Section("All runs", (text, listing))
+
+
+def _command(overrides: list[str] | tuple[str, ...]) -> str:
+    return shlex.join(["runner", *overrides])

@@ -1,0 +1,1 @@
+"""Sweeps: many runs from one command, and what they give together."""

@@ -1,0 +1,191 @@
+"""The one engine of sweeps: Dask distributed on this machine or on a running cluster, or the process itself."""
+
+import contextlib
+import logging
+import os
+import shutil
+import time
+from collections.abc import Iterator, Sequence
+from concurrent.futures import CancelledError
+from pathlib import Path
+from typing import Any
+
+from runner.config.validation import validate
+from runner.errors import RunnerError
+from runner.store.identity import source_digest
+from runner.store.shards import outcome, shard_path, write_shard
+from runner.sweep.queue import Queue
+from runner.sweep.work import Chunk, Report, cut_short, work, write_log
+
+_DEATHS = 3  # of workers over one run, until it is taken for their cause
+_ANSWER_WITHIN = 10.0  # s, for a scheduler and its workers
+_LOOK_EVERY = 5.0  # s between two looks for workers
+_BACK_WITHIN = 120.0  # s without any worker
+_GO_ON = "finished runs are stored, the same command goes on from there"
+
+
+def in_process(queue: Queue) -> Iterator[Report]:
+    """Work off a queue in this process; yield what became of each chunk."""
+    while (chunk := queue.take(1)) is not None:
+        report = work(chunk)
+        queue.learn(report)
+        yield report
+
+
+def on_cluster(queue: Queue, client: Any) -> Iterator[Report]:
+    """Work off a queue on a Dask cluster, with a bounded number of chunks under way; yield what became of each.
+
+    Args:
+        queue: The queue.
+        client: A `distributed.Client`.
+
+    Raises:
+        RunnerError: if the scheduler is lost, or all workers are and none comes back.
+    """
+    from distributed.scheduler import KilledWorker
+
+    under_way: dict[Any, Chunk] = {}
+    suspects: set[str] = set()
+
+    def submit(chunk: Chunk) -> None:
+        future = client.submit(work, chunk, key=f"runs-{chunk.name}", pure=False)
+        under_way[future] = chunk
+
+    def fill() -> None:
+        workers = max(1, len(client.nthreads()))
+        while len(under_way) < 2 * workers and (chunk := queue.take(workers)) is not None:
+            submit(chunk)
+        if not under_way and (suspect := queue.take_suspect()) is not None:
+            suspects.add(suspect.name)
+            submit(suspect)
+
+    try:
+        fill()
+        while under_way:
+            future = _next_done(client, list(under_way))
+            chunk = under_way.pop(future)
+            if future.status == "finished":
+                report = future.result()
+                queue.learn(report)
+            elif future.status in ("cancelled", "lost"):
+                raise CancelledError("its tasks are gone")
+            elif isinstance(future.exception(), KilledWorker):
+                # Whatever else its worker had to do is under suspicion, too, until each was made alone.
+                report = _give_up(chunk) if chunk.name in suspects else Report(queue.give_back(chunk), "", 0.0)
+            else:
+                raise future.exception()
+            future.release()
+            fill()
+            yield report
+    except (OSError, CancelledError) as error:
+        raise RunnerError(f"the Dask scheduler is lost: {error}; {_GO_ON}") from error
+    finally:
+        client.cancel(list(under_way))
+
+
+def _next_done(client: Any, futures: Sequence[Any]) -> Any:
+    from distributed import wait
+
+    last_seen = time.monotonic()
+    while not any(future.done() for future in futures):
+        if client.nthreads():
+            last_seen = time.monotonic()
+        elif time.monotonic() - last_seen > _BACK_WITHIN:
+            raise RunnerError(f"all workers are gone and none came back for {_BACK_WITHIN:g} s; {_GO_ON}")
+        with contextlib.suppress(TimeoutError):
+            wait(futures, timeout=_LOOK_EVERY, return_when="FIRST_COMPLETED")
+    return next(future for future in futures if future.done())
+
+
+def _give_up(chunk: Chunk) -> Report:
+    """Store that the one run of a chunk was cut short, as it brings every worker down."""
+    name, composed = chunk.runs[0]
+    config = validate(composed.resolved, composed.config_dirs)
+    run = cut_short(name, config, composed, chunk.rules, f"its worker process died {_DEATHS + 1} times")
+    write_log(run, chunk.rules)
+    write_shard(shard_path(chunk.rules.outputs, chunk.name), [run])
+    return Report([outcome(run)], "", 0.0)
+
+
+def _hush() -> None:
+    """Keep Dask's own notes off the terminal: what matters in them is told as a run's failure or an error."""
+    for part in ("", ".client", ".core", ".nanny", ".scheduler", ".worker"):
+        logging.getLogger(f"distributed{part}").setLevel(logging.CRITICAL)
+
+
+@contextlib.contextmanager
+def local_client(workers: int, scratch: Path) -> Iterator[Any]:
+    """Start a cluster of single-threaded processes on this machine; yield its `distributed.Client`.
+
+    Args:
+        workers: Number of processes.
+        scratch: Folder for all temporary files of the cluster and of what runs on it; it is removed.
+    """
+    import dask
+    from distributed import Client, LocalCluster
+
+    scratch.mkdir(parents=True, exist_ok=True)
+    _hush()
+    settings = {
+        "distributed.scheduler.allowed-failures": _DEATHS,
+        # A worker that dies is started again; Dask would drop it, should it be down 15 s after an earlier death.
+        "distributed.deploy.lost-worker-timeout": "1000 days",
+        "distributed.worker.memory.terminate": False,
+        "distributed.admin.system-monitor.gil.enabled": False,
+        "distributed.nanny.environ": {"OMP_NUM_THREADS": 1, "TMPDIR": str(scratch)},
+    }
+    try:
+        with (
+            dask.config.set(settings),
+            LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                host="127.0.0.1",
+                dashboard_address="127.0.0.1:0",  # none is installed, but its port is opened
+                memory_limit=0,
+                local_directory=str(scratch),
+                silence_logs=logging.CRITICAL,
+            ) as cluster,
+            Client(cluster) as client,
+        ):
+            yield client
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+
+
+@contextlib.contextmanager
+def remote_client(address: str) -> Iterator[Any]:
+    """Connect to a running Dask scheduler; yield the `distributed.Client`.
+
+    Raises:
+        RunnerError: if none answers, it has no workers, or another version of the runner is installed there.
+    """
+    from distributed import Client
+
+    start = (
+        f"start one with `dask scheduler --host 127.0.0.1 --port {address.rpartition(':')[2]}` and workers with "
+        f"`dask worker {address} --nthreads 1 --nworkers {os.cpu_count()}`"
+    )
+    _hush()
+    try:
+        client = Client(address, timeout=_ANSWER_WITHIN)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise RunnerError(f"hydra.sweeper.address: no Dask scheduler answers at {address}; {start}") from error
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=_ANSWER_WITHIN)
+        except TimeoutError as error:
+            raise RunnerError(f"hydra.sweeper.address: the scheduler at {address} has no workers; {start}") from error
+        _check_versions(client)
+        yield client
+
+
+def _check_versions(client: Any) -> None:
+    same = "; install the same version of the runner for the command, the scheduler and all workers"
+    try:
+        found = {"the scheduler": client.run_on_scheduler(source_digest), **client.run(source_digest)}
+    except (ImportError, AttributeError) as error:
+        raise RunnerError(f"the cluster cannot make runs: {error}{same}") from error
+    other = [place for place, digest in found.items() if digest != source_digest()]
+    if other:
+        raise RunnerError(f"the cluster has other source code at {', '.join(other)}{same}")

@@ -1,0 +1,70 @@
+"""The runs of a sweep that are still to do, handed out in chunks."""
+
+import time
+from collections import deque
+from collections.abc import Iterable, Sequence
+
+from runner import store
+from runner.sweep.plan import Plan
+from runner.sweep.work import Chunk, Report, Rules, find_in_shard
+
+_SECONDS_PER_CHUNK = 1.0  # long against the 5 ms that a chunk costs, short against a sweep
+_LARGEST = 500
+
+
+class Queue:
+    """Chunks that take about a second each, single runs at first and again when few are left; suspects come last.
+
+    Args:
+        plan: The sweep's plan.
+        names: Hash of each cell's run.
+        cells: The cells to do.
+        rules: How their runs are made and kept.
+    """
+
+    def __init__(self, plan: Plan, names: Sequence[str], cells: Iterable[int], rules: Rules) -> None:
+        self.rules = rules
+        self._plan, self._names = plan, names
+        self._left, self._suspects = deque(cells), deque[int]()
+        self._cell_of = {names[cell]: cell for cell in self._left}
+        self._begun = f"{time.time_ns():020d}"
+        self._handed_out = 0
+        self._seconds_per_run: float | None = None
+
+    def take(self, workers: int) -> Chunk | None:
+        """Return the next chunk, or None when none is left; `workers` share what is left."""
+        if not self._left:
+            return None
+        size = 1
+        if self._seconds_per_run is not None:
+            fair = -(-len(self._left) // (2 * workers))
+            size = max(1, min(fair, _LARGEST, int(_SECONDS_PER_CHUNK / self._seconds_per_run)))
+        return self._chunk([self._left.popleft() for _ in range(min(size, len(self._left)))])
+
+    def take_suspect(self) -> Chunk | None:
+        """Return the next run whose workers died, as a chunk; made alone, it shows whether it is the cause."""
+        return self._chunk([self._suspects.popleft()]) if self._suspects else None
+
+    def learn(self, report: Report) -> None:
+        """Take note of how long a chunk took."""
+        if report.outcomes:
+            seconds = max(report.seconds / len(report.outcomes), 1e-4)
+            known = self._seconds_per_run
+            self._seconds_per_run = seconds if known is None else 0.5 * (known + seconds)
+
+    def give_back(self, chunk: Chunk) -> list[store.Outcome]:
+        """Take back a chunk whose workers died: its runs are suspects; return how those ended that are stored."""
+        done = []
+        known = find_in_shard(chunk)
+        for name, _ in chunk.runs:
+            end = known.get(name) or store.find_outcome(self.rules.outputs, name)
+            if end is not None and self.rules.accepts(end):
+                done.append(end)
+            else:
+                self._suspects.append(self._cell_of[name])
+        return done
+
+    def _chunk(self, cells: Sequence[int]) -> Chunk:
+        self._handed_out += 1
+        runs = [(self._names[cell], self._plan.composed(cell)) for cell in cells]
+        return Chunk(f"{self._begun}-{self._handed_out:06d}", self.rules, runs)

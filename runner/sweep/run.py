@@ -1,0 +1,175 @@
+"""A whole sweep: from its plan to its stored runs."""
+
+import shutil
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from runner import store
+from runner.config.sweep import SweepConfig
+from runner.errors import ConfigError, StoreError
+from runner.store.atomic import remove_leftovers
+from runner.sweep.engine import in_process, local_client, on_cluster, remote_client
+from runner.sweep.lock import at_work
+from runner.sweep.plan import Plan
+from runner.sweep.progress import Progress, estimate
+from runner.sweep.queue import Queue
+from runner.sweep.status import in_words
+from runner.sweep.work import Report, Rules, TraceKeeping
+
+_ALL_TRACES_UP_TO = 3000  # runs; with more, sweep.trace=auto is sample
+
+
+@dataclass(frozen=True)
+class Engine:
+    """Where the runs of a sweep are made.
+
+    Attributes:
+        workers: Number of processes on this machine; 0 for the process itself.
+        address: Address of a running Dask scheduler, such as tcp://127.0.0.1:8786; then `workers` has no effect.
+    """
+
+    workers: int
+    address: str | None
+
+    def __post_init__(self) -> None:
+        if isinstance(self.workers, bool) or not isinstance(self.workers, int) or self.workers < 0:
+            raise ConfigError([f"hydra.sweeper.workers: must be a whole number, 0 or more; found {self.workers!r}"])
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a sweep ended.
+
+    Attributes:
+        folder: The sweep's folder.
+        failures: Overrides, reason and where to read on, of each run that failed.
+        left: Number of runs that were not made, as the sweep was to stop at the first failure.
+    """
+
+    folder: Path
+    failures: Sequence[tuple[Sequence[str], str, Path]]
+    left: int
+
+
+def run_sweep(plan: Plan, engine: Engine, command: str) -> Ended:
+    """Make all runs of a plan that are not stored yet.
+
+    Args:
+        plan: The plan.
+        engine: Where they are made.
+        command: The command that makes the sweep, kept with it.
+
+    Raises:
+        ConfigError: if a cell cannot be run; nothing has been started then.
+        StoreError: if the disk does not take them, or a worker cannot work.
+        RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
+    """
+    checked = plan.check()
+    names, outputs = checked.names, checked.outputs
+    store.prepare(outputs)
+    with at_work(outputs):
+        folder = store.write_sweep(outputs, [(plan.overrides(i), name) for i, name in enumerate(names)], command)
+        rules = _rules(checked.settings, folder, len(names))
+        ends = _find_stored(names, rules)
+        left = list({name: cell for cell, name in enumerate(names) if name not in ends}.values())
+        for report in _make(plan, Queue(plan, names, left, rules), left, engine, len(ends)):
+            ends |= {end.name: end for end in report.outcomes}
+            if report.trouble:
+                raise StoreError(f"{report.trouble}; finished runs are stored, the same command goes on from there")
+            if rules.stop_at_failure and any(end.failure for end in report.outcomes):
+                break
+        _clean(rules, [names[cell] for cell in left])
+    failed = [(cell, ends[name]) for cell, name in enumerate(names) if name in ends and ends[name].failure]
+    failures = [(plan.overrides(cell), end.failure, _where(end.name, outputs, folder)) for cell, end in failed]
+    return Ended(folder, failures, len(set(names) - ends.keys()))
+
+
+def _rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
+    automatic: TraceKeeping = "all" if runs <= _ALL_TRACES_UP_TO else "sample"
+    folder = folder.resolve()
+    return Rules(
+        outputs=folder.parent.parent,
+        sweep=folder,
+        trace=automatic if settings.trace == "auto" else settings.trace,
+        accept_failed=settings.retry == "none",
+        stop_at_failure=settings.on_failure == "stop",
+        attempts=settings.attempts,
+        time_limit=settings.time_limit,
+    )
+
+
+def _find_stored(names: Sequence[str], rules: Rules) -> dict[str, store.Outcome]:
+    """Return how those runs ended that count as done: one that shall keep its trace only with it."""
+    runs = rules.outputs / "runs"
+    folders = {entry.name for entry in runs.iterdir()}
+    shards = store.Shards(rules.outputs)
+    found = {}
+    for name in names:
+        end = store.find_outcome(rules.outputs, name) if name in folders else None
+        if end is None:
+            end = shards.outcome(name)
+            if end is not None and not end.cut_short and rules.keeps_trace(name, bool(end.failure)):
+                continue
+        if end is not None and rules.accepts(end):
+            found[name] = end
+    return found
+
+
+def _make(plan: Plan, queue: Queue, cells: Sequence[int], engine: Engine, stored: int) -> Iterator[Report]:
+    """Make the runs of a queue and show the progress; yield what became of each chunk."""
+    _tell(f"{len(cells) + stored} runs, {stored} of them stored already" if stored else f"{len(cells)} runs")
+    if not cells:
+        return
+    progress = Progress(queue.rules.sweep, len(cells) + stored, stored)
+    with progress:
+        for report in _reports(plan, queue, cells, engine):
+            progress.add(report.outcomes)
+            yield report
+
+
+def _reports(plan: Plan, queue: Queue, cells: Sequence[int], engine: Engine) -> Iterator[Report]:
+    if engine.address is not None:
+        with remote_client(engine.address) as client:
+            _tell_estimate(plan, cells, max(1, len(client.nthreads())))
+            yield from on_cluster(queue, client)
+    elif engine.workers == 0:
+        _tell_estimate(plan, cells, 1)
+        yield from in_process(queue)
+    else:
+        workers = min(engine.workers, len(cells))
+        _tell_estimate(plan, cells, workers)
+        with local_client(workers, _scratch(queue.rules)) as client:
+            yield from on_cluster(queue, client)
+
+
+def _tell_estimate(plan: Plan, cells: Sequence[int], processes: int) -> None:
+    seconds = estimate(plan, cells, processes)
+    _tell(f"about {in_words(seconds)} on {processes} process{'es' if processes > 1 else ''}")
+
+
+def _tell(text: str) -> None:
+    print(f"runner: {text}", file=sys.stderr)
+
+
+def _scratch(rules: Rules) -> Path:
+    return rules.sweep / "scratch"
+
+
+def _clean(rules: Rules, names: Sequence[str]) -> None:
+    """Remove what processes that were killed left behind: temporary files, and half-written runs now in a shard."""
+    shutil.rmtree(_scratch(rules), ignore_errors=True)
+    for folder in (rules.sweep, rules.sweep / "logs", rules.outputs / "shards", rules.outputs / "runs"):
+        remove_leftovers(folder)
+    for name in names:
+        folder = rules.outputs / "runs" / name
+        if folder.exists():
+            remove_leftovers(folder)
+            if not (folder / "metrics.json").exists():
+                shutil.rmtree(folder, ignore_errors=True)
+
+
+def _where(name: str, outputs: Path, folder: Path) -> Path:
+    log = folder / "logs" / f"{name}.txt"
+    return log if log.exists() else outputs / "runs" / name / "metrics.json"

@@ -1,0 +1,67 @@
+"""The overrides of a sweep: which keys are swept, over which values."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from hydra.core.config_loader import ConfigLoader
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.override_parser.types import Override, Transformer
+
+from runner.config.composition_errors import COMPOSITION_ERRORS, explain
+from runner.errors import ConfigError
+
+
+@dataclass(frozen=True)
+class SweptKey:
+    """A key of a sweep's command line with its values; one that is not swept has one.
+
+    Attributes:
+        name: The key, such as "noise.position".
+        overrides: The override of each value as Hydra takes it, such as "++noise.position=0.001".
+        values: The values themselves.
+        option: Whether they choose an option of a config group, or delete a key: what needs composing anew.
+    """
+
+    name: str
+    overrides: Sequence[str]
+    values: Sequence[Any]
+    option: bool
+
+
+def parse_sweep(arguments: Sequence[str], groups: Sequence[str], loader: ConfigLoader) -> list[SweptKey]:
+    """Return the keys of a sweep in order; of a key that stands twice the last values count, in the first place.
+
+    Args:
+        arguments: Overrides, such as "robot=macro,mini" and "++noise.position=1e-4,1e-3".
+        groups: Names of the config groups.
+        loader: Hydra's loader, which knows what `glob(*)` stands for.
+
+    Raises:
+        ConfigError: for what is no override, and for a key that is swept over no value.
+    """
+    try:
+        overrides = OverridesParser.create(config_loader=loader).parse_overrides(list(arguments))
+        keys = {override.get_key_element(): _read(override, groups) for override in overrides}
+    except COMPOSITION_ERRORS as error:
+        raise explain(error) from None
+    empty = [f"{key.name}: is swept over no value; give one or more" for key in keys.values() if not key.values]
+    if empty:
+        raise ConfigError(empty)
+    return list(keys.values())
+
+
+def _read(override: Override, groups: Sequence[str]) -> SweptKey:
+    name = override.key_or_group
+    if override.is_sweep_override():
+        values = [Override._convert_value(value) for value in override.sweep_iterator(Transformer.identity)]
+        encoded = override.sweep_string_iterator()
+        # Hydra would escape the braces of an interpolation, and so end it.
+        texts = [value if "${" in str(value) else text for value, text in zip(values, encoded, strict=True)]
+        overrides = [f"{override.get_key_element()}={text}" for text in texts]
+    else:
+        value: Any = override.value()
+        values, overrides = [value], [override.input_line or ""]
+    is_group = name in groups or "/" in name or override.package is not None
+    mapping = any(isinstance(value, dict) for value in values)
+    return SweptKey(name, overrides, values, (is_group and not mapping) or override.is_delete())

@@ -1,0 +1,178 @@
+"""What a worker does with a chunk of runs: simulate those that are not stored yet, and store them."""
+
+import threading
+import time
+import traceback
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from runner import store
+from runner.config.compose import Composed, quiet_environment
+from runner.config.run import RunConfig
+from runner.config.validation import validate
+from runner.errors import StoreError
+from runner.execution import TimeLimitError, job_provenance, simulate_job
+from runner.store.atomic import write_atomically
+from runner.store.shards import ShardRun, outcome, read_outcomes, shard_path, write_shard
+from runner.store.writing import cut_short_record, make_record
+
+TraceKeeping = Literal["all", "sample", "failed", "never"]
+
+_SAMPLE = 100  # one run in so many
+_one_at_a_time = threading.Lock()  # should a worker have several threads
+
+
+@dataclass(frozen=True)
+class Rules:
+    """How the runs of a sweep are made and kept.
+
+    Attributes:
+        outputs: The outputs folder, absolute: every worker must see it.
+        sweep: The sweep's folder, absolute.
+        trace: Which runs keep their trace.
+        accept_failed: Whether a stored run that failed counts as done.
+        stop_at_failure: Whether the first failed run ends the sweep.
+        attempts: How often a run is tried that is cut short.
+        time_limit: Longest wall-clock time of a run, in s; None for no limit.
+    """
+
+    outputs: Path
+    sweep: Path
+    trace: TraceKeeping
+    accept_failed: bool
+    stop_at_failure: bool
+    attempts: int
+    time_limit: float | None
+
+    def keeps_trace(self, name: str, failed: bool) -> bool:
+        """Tell whether a run keeps its trace, and with it a folder of its own."""
+        if self.trace == "sample":
+            return failed or int(name, 16) % _SAMPLE == 0
+        return self.trace == "all" or (failed and self.trace == "failed")
+
+    def log(self, name: str) -> Path:
+        """Return the file that says why a run without a folder of its own failed."""
+        return self.sweep / "logs" / f"{name}.txt"
+
+    def accepts(self, end: store.Outcome | None) -> bool:
+        """Tell whether a stored run counts as done."""
+        return end is not None and (self.accept_failed or not end.failure)
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Some runs for one worker.
+
+    Attributes:
+        name: Name of its shard.
+        rules: How they are made and kept.
+        runs: Hash and composed config of each.
+    """
+
+    name: str
+    rules: Rules
+    runs: Sequence[tuple[str, Composed]]
+
+
+@dataclass(frozen=True)
+class Report:
+    """What became of a chunk.
+
+    Attributes:
+        outcomes: How its runs ended, those that were stored already included.
+        trouble: Why it stopped before its end, where no other run would fare better; empty otherwise.
+        seconds: Wall-clock time it took, in s.
+    """
+
+    outcomes: Sequence[store.Outcome]
+    trouble: str
+    seconds: float
+
+
+def work(chunk: Chunk) -> Report:
+    """Make the runs of a chunk; a chunk that was begun before goes on where it was."""
+    quiet_environment()
+    start = time.perf_counter()
+    outcomes: list[store.Outcome] = []
+    traceless: list[ShardRun] = []
+    trouble = ""
+    with _one_at_a_time:
+        try:
+            _check_folder(chunk.rules)
+            known = find_in_shard(chunk)
+            for name, composed in chunk.runs:
+                end = known.get(name) or store.find_outcome(chunk.rules.outputs, name)
+                if end is None or not (name in known or chunk.rules.accepts(end)):
+                    end = _make(name, composed, chunk.rules, traceless)
+                outcomes.append(end)
+                if end.failure and chunk.rules.stop_at_failure:
+                    break
+            if traceless:
+                write_shard(shard_path(chunk.rules.outputs, chunk.name), traceless)
+        except StoreError as error:
+            trouble = str(error)
+    return Report(outcomes, trouble, time.perf_counter() - start)
+
+
+def find_in_shard(chunk: Chunk) -> dict[str, store.Outcome]:
+    """Return how the runs of a chunk ended that its shard has: none before it is written.
+
+    Raises:
+        StoreError: if the shard cannot be read.
+    """
+    shard = shard_path(chunk.rules.outputs, chunk.name)
+    return {end.name: end for end in read_outcomes(shard)} if shard.exists() else {}
+
+
+def _check_folder(rules: Rules) -> None:
+    if not (rules.sweep / "sweep.json").exists():
+        raise StoreError(f"a worker does not see {rules.sweep}; outputs must be a folder that all workers share")
+
+
+def _make(name: str, composed: Composed, rules: Rules, traceless: list[ShardRun]) -> store.Outcome:
+    """Simulate one run; store it in its folder, or add it to those without trace."""
+    config = validate(composed.resolved, composed.config_dirs)
+    if store.run_hash(composed.resolved, config.arm.urdf) != name:
+        raise StoreError("a worker has other source code or libraries than the command; install the same version there")
+    for _ in range(rules.attempts):
+        result, reason, details = _try(config, composed, rules.time_limit)
+        if result is not None:
+            break
+    if result is None:
+        run = cut_short(name, config, composed, rules, reason)
+    elif rules.keeps_trace(name, result.failure is not None):
+        return outcome(store.write_run(rules.outputs, name, result))
+    else:
+        run = ShardRun(rules.outputs / "runs" / name, composed.resolved, make_record(result), config.arm.urdf)
+    if run.failure:
+        write_log(run, rules, details)
+    traceless.append(run)
+    return outcome(run)
+
+
+def _try(config: RunConfig, composed: Composed, limit: float | None) -> tuple[store.RunResult | None, str, str]:
+    """Return the result, or why there is none, and the traceback of an error of ours or of a part that was added."""
+    try:
+        return simulate_job(config, composed, limit), "", ""
+    except TimeLimitError:
+        return None, f"no result within sweep.time_limit, {limit:g} s", ""
+    except Exception as error:
+        return None, f"{type(error).__name__}: {error}", traceback.format_exc()
+
+
+def cut_short(name: str, config: RunConfig, composed: Composed, rules: Rules, reason: str) -> ShardRun:
+    """Return what is stored of a run that something else than its physics ended."""
+    record = cut_short_record(reason, config.settings.repetitions, job_provenance(config, composed))
+    return ShardRun(rules.outputs / "runs" / name, composed.resolved, record, config.arm.urdf)
+
+
+def write_log(run: ShardRun, rules: Rules, details: str = "") -> None:
+    """Write down why a run without a folder of its own failed.
+
+    Raises:
+        StoreError: if the disk does not take it.
+    """
+    text = f"{run.provenance['command']}\n{run.failure_text}\n{details}"
+    write_atomically(rules.log(run.hash), text.encode())

@@ -1,0 +1,95 @@
+"""A numeric key that is tuned, and the range that it is tuned in."""
+
+import math
+from dataclasses import dataclass
+
+from hydra.core.override_parser.types import IntervalSweep, Override, RangeSweep, Transformer
+
+from runner.errors import ConfigError
+
+RANGES = (
+    "interval(low, high), tag(log, interval(low, high)), int(interval(low, high)) for whole numbers, or "
+    "range(start, stop, step), which leaves stop out"
+)
+
+_INSIDE = 0.618  # of the way from low to high: a place that no round number of a user stands at
+_DIGITS = 9  # of a value, so that a trial's command can be read and typed
+_DIGITS_ON_GRID = 12
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key that is tuned.
+
+    Attributes:
+        name: The key, such as "controller.natural_frequency".
+        low: Its smallest value.
+        high: Its largest value.
+        step: Distance between two of its values; None where it may take any.
+        log: Whether it is looked at on a logarithmic scale.
+        integer: Whether it takes whole numbers alone.
+    """
+
+    name: str
+    low: float
+    high: float
+    step: float | None
+    log: bool
+    integer: bool
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.low) and math.isfinite(self.high)):
+            raise ConfigError([f"{self.name}: its range must be finite; found {self.low:g} to {self.high:g}"])
+        if self.low >= self.high:
+            raise ConfigError(
+                [f"{self.name}: its range is empty, {self.low:g} to {self.high:g}; low must be below high"]
+            )
+        if self.log and self.low <= 0.0:
+            raise ConfigError([f"{self.name}: on a logarithmic scale low must be above 0; found {self.low:g}"])
+
+    @property
+    def probes(self) -> tuple[float, ...]:
+        """Both ends of its range and a value between them."""
+        between = self.low * (self.high / self.low) ** _INSIDE if self.log else self._at(_INSIDE)
+        return (self.value(self.low), self.value(between), self.value(self.high))
+
+    def value(self, proposed: float) -> float:
+        """Return the value of this key next to a proposed one: whole or on its grid where it has one."""
+        if self.integer and self.step is None:
+            return round(proposed)
+        if self.step is not None:
+            found = self.low + round((proposed - self.low) / self.step) * self.step
+            return round(found) if self.integer else float(f"{found:.{_DIGITS_ON_GRID}g}")
+        return min(max(float(f"{proposed:.{_DIGITS}g}"), self.low), self.high)
+
+    def override(self, value: float) -> str:
+        """Return the override that sets it."""
+        return f"{self.name}={value!r}"
+
+    def _at(self, share: float) -> float:
+        return self.low + share * (self.high - self.low)
+
+
+def read_key(override: Override) -> Key | None:
+    """Return the key that an override tunes, or None where it gives one value.
+
+    Raises:
+        ConfigError: for a range that is empty or of another kind, and for several values.
+    """
+    found = override.value()
+    if not override.is_sweep_override():
+        return None
+    name = override.key_or_group
+    if isinstance(found, IntervalSweep) and found.tags <= {"log"}:
+        integer = isinstance(found.start, int)
+        return Key(name, found.start, found.end, None, "log" in found.tags, integer)
+    if isinstance(found, RangeSweep) and not found.tags:
+        values = list(override.sweep_iterator(Transformer.identity))
+        if len(values) < 2:
+            raise ConfigError(
+                [f"{name}: its range is empty; {found.start} to {found.stop} by {found.step} is one value"]
+            )
+        integer = all(isinstance(value, int) for value in values)
+        return Key(name, values[0], values[-1], abs(found.step), False, integer)
+    text = (override.input_line or "").removeprefix("++")
+    raise ConfigError([f"'{text}' is no range to tune in; ranges: {RANGES}"])

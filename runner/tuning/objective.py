@@ -1,0 +1,64 @@
+"""What a tuning makes better: a metric, as small or as large as possible."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from runner.errors import RunnerError, nearest
+from runner.metrics.summary import unit_of, units
+from runner.store import Run
+
+Direction = Literal["minimize", "maximize"]
+
+
+@dataclass(frozen=True)
+class Objective:
+    """A metric and the direction in which it is better; of a run its median over the repetitions counts.
+
+    Attributes:
+        metric: Name of the metric.
+        direction: Whether less or more of it is better.
+
+    Raises:
+        RunnerError: If there is no such metric.
+    """
+
+    metric: str
+    direction: Direction
+
+    def __post_init__(self) -> None:
+        if unit_of(self.metric) is None:
+            known = ", ".join(units())
+            raise RunnerError(
+                f"--{self.direction}: no metric '{self.metric}'{nearest(self.metric, units())}; known: {known}, also "
+                "of one joint or axis (peak_torque_q1), or of a carrying stage (macro_settling_time)"
+            )
+
+    @property
+    def unit(self) -> str:
+        """Unit of the metric."""
+        return unit_of(self.metric) or ""
+
+    @property
+    def sign(self) -> float:
+        """1 where less is better, -1 where more is."""
+        return 1.0 if self.direction == "minimize" else -1.0
+
+    @property
+    def worst(self) -> float:
+        """What no value is worse than."""
+        return self.sign * math.inf
+
+    def read(self, run: Run) -> float | None:
+        """Return the median of the metric in a good run, or None where it is beyond every number.
+
+        Raises:
+            RunnerError: If runs of this kind have no such metric.
+        """
+        if self.metric not in run.metrics:
+            raise RunnerError(
+                f"--{self.direction}: these runs have no '{self.metric}'{nearest(self.metric, run.metrics)}; "
+                f"they have: {', '.join(run.metrics)}"
+            )
+        median: float | None = run.metrics[self.metric]["median"]
+        return median

@@ -1,0 +1,129 @@
+"""The trials of a tuning, handed out to the engine of sweeps as they are chosen."""
+
+from collections import deque
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import cast
+
+from runner import store
+from runner.config.compose import Composed
+from runner.config.validation import validate
+from runner.errors import ConfigError
+from runner.sweep.plan import Plan
+from runner.sweep.queue import Queue
+from runner.sweep.work import Chunk, Report, Rules
+from runner.tuning.composer import Composer
+from runner.tuning.journal import Journal
+from runner.tuning.sampler import propose
+from runner.tuning.study import Study
+from runner.tuning.trial import Trial
+
+
+@dataclass(frozen=True)
+class _Started:
+    """A trial that was chosen: its values, its run, and why there is no run."""
+
+    params: Mapping[str, float]
+    run: str
+    failure: str
+
+
+class TrialQueue(Queue):
+    """Chooses trials when there is room for them, and tells the journal of those that ended, in order.
+
+    What trial n is follows from the seed and the trials before n - at_once alone: not from how many processes are at
+    work, which of them is faster, or where a tuning was interrupted.
+
+    Args:
+        study: What is tuned.
+        journal: The trials that have ended already.
+        composer: Composes their configs.
+        rules: How their runs are made and kept.
+        trials: Number of trials after which to end.
+        seed: Seed of the search.
+    """
+
+    def __init__(
+        self, study: Study, journal: Journal, composer: Composer, rules: Rules, trials: int, seed: int
+    ) -> None:
+        self._runs: list[str] = []
+        super().__init__(cast(Plan, self), self._runs, (), rules)
+        self._study, self._journal, self._composer = study, journal, composer
+        self._trials, self._seed = trials, seed
+        self._started = deque[_Started]()
+        self._configs: dict[int, Composed] = {}
+        self._ends: dict[str, store.Outcome] = {}
+
+    @property
+    def left(self) -> int:
+        """Number of trials that have not ended."""
+        return max(0, self._trials - len(self._journal.trials))
+
+    def composed(self, cell: int) -> Composed:
+        """Return the composed config of a run that is to do; cells are counted as they are handed in."""
+        return self._configs[cell]
+
+    def take(self, workers: int) -> Chunk | None:
+        """Return the next runs, or None when others must end before more are chosen; see Queue."""
+        while len(self._started) < min(self._study.at_once, self.left):
+            self._start(self._choose())
+            self._settle()
+        return super().take(workers)
+
+    def learn(self, report: Report) -> None:
+        """Take note of how long a chunk took, and how its runs ended."""
+        super().learn(report)
+        self.note(report.outcomes)
+
+    def note(self, outcomes: Sequence[store.Outcome]) -> None:
+        """Take note of how runs ended.
+
+        Raises:
+            RunnerError: if a good run lacks the metric of an objective.
+            StoreError: if a run cannot be read, or the journal not be written.
+        """
+        for end in outcomes:
+            self._ends[end.name] = end
+            self._configs.pop(self._cell_of[end.name], None)
+        self._settle()
+
+    def _choose(self) -> dict[str, float]:
+        chosen = [trial.params for trial in (*self._journal.trials, *self._started)]
+        known = max(0, len(chosen) + 1 - self._study.at_once)
+        return propose(
+            self._study.keys, self._study.objectives, self._journal.history[:known], chosen[known:], self._seed
+        )
+
+    def _start(self, params: Mapping[str, float]) -> None:
+        overrides = [*self._study.overrides, *(key.override(params[key.name]) for key in self._study.keys)]
+        try:
+            composed = self._composer.plan(overrides).composed(0)
+            run = store.run_hash(composed.resolved, validate(composed.resolved, composed.config_dirs).arm.urdf)
+        except ConfigError as error:
+            self._started.append(_Started(params, "", "; ".join(error.problems)))
+            return
+        self._started.append(_Started(params, run, ""))
+        if run not in self._cell_of:
+            cell = self._cell_of[run] = len(self._runs)
+            self._runs.append(run)
+            self._configs[cell] = composed
+            self._left.append(cell)
+
+    def _settle(self) -> None:
+        """Tell the journal of the trials that ended, up to the first that has not."""
+        while self._started and (self._started[0].failure or self._started[0].run in self._ends):
+            self._journal.append(self._judge(self._started[0]))
+            self._started.popleft()
+
+    def _judge(self, started: _Started) -> Trial:
+        objectives = self._study.objectives
+        failure = started.failure or self._ends[started.run].failure
+        if not failure:
+            run = store.open_run(self.rules.outputs / "runs" / started.run)
+            found = [objective.read(run) for objective in objectives]
+            values = tuple(value for value in found if value is not None)
+            if len(values) == len(found):
+                return Trial(started.params, values, started.run, "")
+            beyond = [objective.metric for objective, value in zip(objectives, found, strict=True) if value is None]
+            failure = f"{', '.join(beyond)}: beyond every number"
+        return Trial(started.params, tuple(objective.worst for objective in objectives), started.run, failure)

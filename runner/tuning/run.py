@@ -1,0 +1,151 @@
+"""A whole tuning: from its command line to its stored trials."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.override_parser.types import Override
+
+from runner import store
+from runner.config.compose import force
+from runner.config.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.options import groups
+from runner.errors import ConfigError, StoreError
+from runner.sweep.lock import at_work
+from runner.sweep.plan import Checked, Plan
+from runner.sweep.run import Engine, _clean, _make, _rules
+from runner.tuning.composer import Composer
+from runner.tuning.journal import Journal
+from runner.tuning.key import RANGES, Key, read_key
+from runner.tuning.objective import Objective
+from runner.tuning.queue import TrialQueue
+from runner.tuning.study import Study, Tuning, journal_path
+
+_NOT_SIMULATED = ("hydra", "outputs", "sweep")
+
+
+def tune(
+    overrides: Sequence[str],
+    objectives: Sequence[Objective],
+    trials: int,
+    at_once: int,
+    command: str,
+    config_dirs: Sequence[Path] = (),
+) -> Tuning:
+    """Make the trials of a tuning that have not been made yet.
+
+    Args:
+        overrides: Overrides, such as "robot=macro" and "controller.natural_frequency=interval(5,50)".
+        objectives: What is to get better.
+        trials: Number of trials after which to end, those of earlier commands included.
+        at_once: Number of trials under way at once; the choice of trials depends on it.
+        command: The command that makes it and goes on with it, kept with it.
+        config_dirs: Config folders of the user's.
+
+    Raises:
+        ConfigError: if a key cannot be tuned, or a config in its range not be run; nothing has been started then.
+        RunnerError: if a run lacks a metric, another sweep is at work there, or the Dask scheduler does not answer.
+        StoreError: if the disk does not take the runs, or a worker cannot work.
+    """
+    fixed, keys = _read(overrides, config_dirs)
+    composer = Composer(config_dirs)
+    sweeper = composer.sweeper(force(fixed))
+    engine = Engine(sweeper.workers, sweeper.address)
+    shared = [text for text in fixed if not text.startswith("hydra.")]
+    _check_numbers(composer.plan(shared), keys)
+    plan, checked = _check_ranges(composer, shared, keys)
+    shown = [text for text in shared if text.partition("=")[0].partition(".")[0] not in _NOT_SIMULATED]
+    study = Study(shown, keys, objectives, at_once, command)
+    seed = plan.composed(0).resolved["seed"]
+    store.prepare(checked.outputs)
+    with at_work(checked.outputs):
+        folder = study.folder(checked.outputs, checked.names)
+        rules = replace(_rules(checked.settings, folder, trials), trace="all")
+        study.write(folder, [])
+        journal = Journal(journal_path(folder), keys, objectives)
+        queue = TrialQueue(study, journal, composer, rules, trials, seed)
+        try:
+            _work_off(plan, queue, engine, len(journal.trials))
+        finally:
+            study.write(folder, journal.trials)
+        _clean(rules, [trial.run for trial in journal.trials if trial.run])
+    return Tuning(folder, study, journal.trials)
+
+
+def _work_off(plan: Plan, queue: TrialQueue, engine: Engine, ended: int) -> None:
+    """Make all trials of a queue; once more where the last ones brought their workers down."""
+    while queue.left:
+        for report in _make(plan, queue, [0] * queue.left, engine, ended):
+            if report.trouble:
+                raise StoreError(f"{report.trouble}; finished trials are stored, the same command goes on from there")
+            queue.note(report.outcomes)
+            if queue.rules.stop_at_failure and any(end.failure for end in report.outcomes):
+                return
+
+
+def _read(overrides: Sequence[str], config_dirs: Sequence[Path]) -> tuple[list[str], list[Key]]:
+    """Return the overrides that all trials share, as typed, and the keys to tune."""
+    try:
+        parsed = OverridesParser.create().parse_overrides(force(overrides))
+    except COMPOSITION_ERRORS as error:
+        raise explain(error) from None
+    fixed, keys, problems = [], {}, []
+    for text, override in zip(overrides, parsed, strict=True):
+        try:
+            key = _read_key(override, groups(config_dirs))
+        except ConfigError as error:
+            problems += error.problems
+            continue
+        if key is None:
+            fixed.append(text)
+        else:
+            keys[key.name] = key
+    if problems:
+        raise ConfigError(problems)
+    if not keys:
+        raise ConfigError([f"nothing to tune; give a key a range, as in KEY={RANGES}"])
+    return fixed, list(keys.values())
+
+
+def _read_key(override: Override, known_groups: Sequence[str]) -> Key | None:
+    key = read_key(override)
+    if key is not None and key.name in known_groups:
+        raise ConfigError([f"{key.name}: is a group of options, no number"])
+    if key is not None and key.name.partition(".")[0] in _NOT_SIMULATED:
+        raise ConfigError([f"{key.name}: says how runs are made, not what is simulated; it cannot be tuned"])
+    return key
+
+
+def _check_numbers(plan: Plan, keys: Sequence[Key]) -> None:
+    """Check that keys stand for numbers, or null; one that is unknown is found with its neighbours' names later."""
+    resolved = plan.composed(0).resolved
+    problems = []
+    for key in keys:
+        found = resolved
+        for part in key.name.split("."):
+            found = found.get(part) if isinstance(found, dict) else None
+        if isinstance(found, dict):
+            problems.append(f"{key.name}: is a group of keys ({', '.join(map(str, found))}); tune one of them")
+        elif isinstance(found, bool | str | list):
+            problems.append(f"{key.name}: is no number; found {found!r}")
+    if problems:
+        raise ConfigError(problems)
+
+
+def _check_ranges(composer: Composer, shared: Sequence[str], keys: Sequence[Key]) -> tuple[Plan, Checked]:
+    """Check the configs at both ends and inside of the ranges; return the plan of the last one and what they gave."""
+    problems: dict[str, None] = {}
+    names: list[str] = []
+    for values in zip(*(key.probes for key in keys), strict=True):
+        plan = composer.plan([*shared, *(key.override(value) for key, value in zip(keys, values, strict=True))])
+        try:
+            checked = plan.check()
+            names += checked.names
+        except ConfigError as error:
+            problems |= dict.fromkeys(error.problems)
+    if problems:
+        raise ConfigError(problems, "  nothing was started")
+    if checked.settings.trace not in ("auto", "all"):
+        raise ConfigError([f"sweep.trace: a tuning keeps the trace of every run; found '{checked.settings.trace}'"])
+    return plan, replace(checked, names=names)

@@ -1,0 +1,99 @@
+"""What to try next: Optuna's tree-structured Parzen estimator, as a function of what came before."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import optuna
+from optuna.distributions import BaseDistribution, FloatDistribution, IntDistribution
+from optuna.trial import FrozenTrial, TrialState, create_trial
+
+from runner.tuning.key import Key
+from runner.tuning.objective import Objective
+from runner.tuning.trial import Trial
+
+_FAILED = "failed"  # name of the constraint that a failed trial violates
+_FEWEST_FOR_IMPORTANCE = 20  # trials, of which the best tenth is compared with all
+
+
+def propose(
+    keys: Sequence[Key],
+    objectives: Sequence[Objective],
+    history: Sequence[FrozenTrial],
+    under_way: Sequence[Mapping[str, float]],
+    seed: int,
+) -> dict[str, float]:
+    """Return the values to try next; they follow from the arguments alone.
+
+    The first ten are drawn at random. Then those values are taken that are likely among the best trials and unlikely
+    among the others, failed ones and those under way counted with the latter (Bergstra et al., Algorithms for
+    Hyper-Parameter Optimization, 2011; Watanabe, Tree-Structured Parzen Estimator, 2023).
+
+    Args:
+        keys: The keys to choose values for.
+        objectives: What is to get better.
+        history: The trials that have ended, as `ended` gives them.
+        under_way: Values of the trials that have not.
+        seed: Seed of the search.
+    """
+    number = len(history) + len(under_way)
+    own_seed = int(np.random.SeedSequence([seed, number]).generate_state(1)[0])
+    study = _study(objectives, optuna.samplers.TPESampler(seed=own_seed, multivariate=True))
+    study.add_trials([*history, *(_under_way(keys, params) for params in under_way)])
+    found = study.ask(_distributions(keys)).params
+    return {key.name: key.value(found[key.name]) for key in keys}
+
+
+def ended(keys: Sequence[Key], trial: Trial) -> FrozenTrial:
+    """Return a trial that has ended, as Optuna keeps it; a failed one violates a constraint, and so ranks last."""
+    return create_trial(
+        params=dict(trial.params),
+        distributions=_distributions(keys),
+        values=list(trial.values),
+        constraints={_FAILED: 1.0 if trial.failure else 0.0},
+        user_attrs={"run": trial.run, "failure": trial.failure},
+    )
+
+
+def read_ended(frozen: FrozenTrial) -> Trial:
+    """Return what `ended` was given."""
+    return Trial(frozen.params, tuple(frozen.values), frozen.user_attrs["run"], frozen.user_attrs["failure"])
+
+
+def importances(keys: Sequence[Key], trials: Sequence[Trial], objective: Objective, place: int) -> dict[str, float]:
+    """Return how much each key decides whether a trial is among the best tenth, in shares; none of few trials.
+
+    Args:
+        keys: The keys.
+        trials: The trials.
+        objective: The objective that tells which are best.
+        place: Its place among the objectives.
+
+    Source:
+        PED-ANOVA: Watanabe et al., Efficiently Quantifying Hyperparameter Importance in Arbitrary Subspaces, 2023.
+    """
+    good = [trial for trial in trials if not trial.failure]
+    if len(good) < _FEWEST_FOR_IMPORTANCE:
+        return {}
+    study = _study([objective], None)
+    for trial in good:
+        study.add_trial(ended(keys, Trial(trial.params, (trial.values[place],), trial.run, "")))
+    return optuna.importance.get_param_importances(study)
+
+
+def _study(objectives: Sequence[Objective], sampler: optuna.samplers.BaseSampler | None) -> optuna.Study:
+    optuna.logging.set_verbosity(optuna.logging.ERROR)
+    return optuna.create_study(directions=[objective.direction for objective in objectives], sampler=sampler)
+
+
+def _under_way(keys: Sequence[Key], params: Mapping[str, float]) -> FrozenTrial:
+    return create_trial(state=TrialState.RUNNING, params=dict(params), distributions=_distributions(keys))
+
+
+def _distributions(keys: Sequence[Key]) -> dict[str, BaseDistribution]:
+    return {key.name: _distribution(key) for key in keys}
+
+
+def _distribution(key: Key) -> BaseDistribution:
+    if key.integer:
+        return IntDistribution(int(key.low), int(key.high), log=key.log, step=int(key.step or 1))
+    return FloatDistribution(key.low, key.high, log=key.log, step=key.step)

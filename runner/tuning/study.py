@@ -1,0 +1,109 @@
+"""A tuning: what is tuned, towards what, and where it is kept."""
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from runner.errors import StoreError
+from runner.store.atomic import write_atomically
+from runner.tuning.journal import read_trials
+from runner.tuning.key import Key
+from runner.tuning.objective import Objective
+from runner.tuning.trial import Trial
+
+_SCHEMA = 1
+_FILE = "tuning.json"
+
+
+@dataclass(frozen=True)
+class Study:
+    """What is tuned, and towards what.
+
+    Attributes:
+        overrides: The overrides that all trials share, as typed; what only says how and where they are made left out.
+        keys: The tuned keys.
+        objectives: What is to get better.
+        at_once: Number of trials under way at once: each is chosen when all but so many before it are known.
+        command: The command that makes it and goes on with it.
+    """
+
+    overrides: Sequence[str]
+    keys: Sequence[Key]
+    objectives: Sequence[Objective]
+    at_once: int
+    command: str
+
+    def trial_overrides(self, trial: Trial) -> list[str]:
+        """Return the overrides of a trial."""
+        return [*self.overrides, *(key.override(trial.params[key.name]) for key in self.keys)]
+
+    def folder(self, outputs: Path, probes: Sequence[str]) -> Path:
+        """Return the folder that it is kept in.
+
+        Args:
+            outputs: The outputs folder.
+            probes: Hashes of runs in its ranges, which stand for all that its trials share: another config, robot or
+                source is another tuning.
+        """
+        objectives = [asdict(objective) for objective in self.objectives]
+        content = [list(probes), [asdict(key) for key in self.keys], objectives, self.at_once]
+        return outputs / "tunings" / hashlib.sha256(json.dumps(content).encode()).hexdigest()[:24]
+
+    def write(self, folder: Path, trials: Sequence[Trial]) -> None:
+        """Write what is tuned, and the list of its runs: with that it is a sweep to all other commands.
+
+        Raises:
+            StoreError: if the disk does not take it.
+        """
+        jobs = [{"overrides": self.trial_overrides(trial), "run": trial.run} for trial in trials if trial.run]
+        for name, content in ((_FILE, asdict(self)), ("sweep.json", {"command": self.command, "jobs": jobs})):
+            text = json.dumps({"schema": _SCHEMA, **content}, indent=1)
+            write_atomically(folder / name, f"{text}\n".encode())
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """A stored tuning, at work or ended.
+
+    Attributes:
+        folder: Its folder.
+        study: What is tuned.
+        trials: The trials that ended.
+    """
+
+    folder: Path
+    study: Study
+    trials: Sequence[Trial]
+
+
+def journal_path(folder: Path) -> Path:
+    """Return the file of a tuning's journal."""
+    return folder / "journal.log"
+
+
+def is_tuning(folder: Path) -> bool:
+    """Tell whether a folder is a tuning's."""
+    return (folder / _FILE).exists()
+
+
+def open_tuning(folder: Path) -> Tuning:
+    """Open a stored tuning.
+
+    Raises:
+        StoreError: if the folder is no tuning or damaged.
+    """
+    path = folder / _FILE
+    try:
+        content = json.loads(path.read_text())
+        study = Study(
+            overrides=content["overrides"],
+            keys=[Key(**key) for key in content["keys"]],
+            objectives=[Objective(**objective) for objective in content["objectives"]],
+            at_once=content["at_once"],
+            command=content["command"],
+        )
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError, KeyError, TypeError) as error:
+        raise StoreError(f"cannot read the tuning in {folder}: {error}") from error
+    return Tuning(folder, study, read_trials(journal_path(folder)))

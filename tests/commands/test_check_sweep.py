@@ -1,0 +1,118 @@
+"""A whole sweep as reference: learned, and compared cell by cell."""
+
+import pytest
+import yaml
+
+SWEEP = ("-m", "hydra.sweeper.workers=0", "robot=macro", "duration=0.3", "noise=thesis", "trajectory=quintic")
+AXIS = "controller.natural_frequency=20,30"
+
+
+@pytest.fixture
+def learned(cli, tmp_path):
+    folder = cli(*SWEEP, AXIS, "repetitions=5").folder
+    path = tmp_path / "reference.yaml"
+    ending = cli("check", folder, "--learn", path)
+    assert ending.code == 0
+    assert ending.out == f"learned: {_count(path)} metrics of {folder} stand in {path}\n"
+    return folder, path
+
+
+def _count(path):
+    return sum(map(len, yaml.safe_load(path.read_text())["cells"].values()))
+
+
+def change(path, cell, metric, **values):
+    content = yaml.safe_load(path.read_text())
+    content["cells"][cell][metric] |= values
+    path.write_text(yaml.safe_dump(content))
+
+
+def test_a_sweep_is_good_against_what_it_taught(cli, learned):
+    folder, path = learned
+    for flags in ((), ("--markdown",)):
+        ending = cli("check", folder, "--reference", path, *flags)
+        assert (ending.code, ending.err) == (0, "")
+        assert f"{_count(path)} metrics of 2 cells: 0 moved, 0 beyond the seeds' spread" in ending.out
+        assert ending.out.count("\n") == 1
+
+
+def test_other_seeds_move_within_the_spread(cli, learned):
+    other = cli(*SWEEP, AXIS, "repetitions=5", "seed=1").folder
+    ending = cli("check", other, "--reference", learned[1])
+    assert " 0 moved" not in ending.out
+    moved = [line.split() for line in ending.out.splitlines()[2:]]
+    assert {"up", "down"} & {word for line in moved for word in line}
+    assert any(line[-1] == "no" for line in moved)
+
+
+def test_what_moved_is_told_with_direction_and_spread(cli, learned):
+    folder, path = learned
+    cells = yaml.safe_load(path.read_text())["cells"]
+    cell = "controller.natural_frequency=20"
+    peak, energy = (cells[cell][name]["median"] for name in ("peak_torque", "energy"))
+    change(path, cell, "peak_torque", median=peak / 2, min=peak / 2, max=peak / 2)
+    change(path, cell, "energy", median=energy * 2, min=energy / 2, max=energy * 3)
+    ending = cli("check", folder, "--reference", path, "--markdown")
+    assert ending.code == 1
+    head, blank, titles, rule, *rows = ending.out.splitlines()
+    assert head.endswith("2 moved, 1 beyond the seeds' spread**")
+    assert (blank, titles) == ("", "| cell | metric | was | is | moved | beyond the seeds' spread |")
+    assert rule.count("---|") == titles.count("|") - 1
+    table = {row.split(" | ")[1]: row.strip("| ").split(" | ") for row in rows}
+    assert table["peak_torque"][0] == cell
+    assert table["peak_torque"][4:] == ["up 1e+02 %", "yes"]
+    assert table["energy"][4:] == ["down 50 %", "no"]
+    assert table["energy"][2].endswith(" J")
+
+
+def test_a_metric_without_value_is_beyond_every_number(cli, learned):
+    folder, path = learned
+    change(path, "controller.natural_frequency=30", "settling_time", median=None, min=None, max=None)
+    change(path, "controller.natural_frequency=20", "peak_torque", median=None, min=0.0, max=None)
+    ending = cli("check", folder, "--reference", path)
+    rows = {line.split()[0] + line.split()[1]: line.split() for line in ending.out.splitlines()[2:]}
+    assert "down" in rows["controller.natural_frequency=20peak_torque"]
+    assert rows["controller.natural_frequency=20peak_torque"][-1] == "no"
+
+
+def test_cells_that_are_new_gone_or_failed_are_told(cli, learned):
+    other = cli(*SWEEP, "controller.natural_frequency=20,40", "repetitions=5").folder
+    ending = cli("check", other, "--reference", learned[1])
+    assert ending.code == 1
+    lines = [" ".join(line.split()) for line in ending.out.splitlines()]
+    assert "controller.natural_frequency=40 (all) is new no" in lines
+    assert "controller.natural_frequency=30 (all) is gone yes" in lines
+    failing = ("plant=rk4", "controller.period=0.06", "controller.singularity_damping=0", "duration=2")
+    failed = cli(*SWEEP, AXIS, "repetitions=5", *failing).folder
+    ending = cli("check", failed, "--reference", learned[1])
+    assert ending.code == 1
+    assert "diverged" in ending.out
+    assert "cannot learn from a failed run" in cli("check", failed, "--learn", learned[1]).err
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("schema: 2\ncells: {a: {energy: {unit: J, median: 1.0, min: 1.0, max: 1.0, seeds: 1}}}", "schema: must be 1"),
+        ("schema: 1\ncells: {}", "cells: must hold the metrics of at least one cell"),
+        (
+            "schema: 1\ncells: {a: {energy: {unit: J, median: x, min: 1.0, max: 1.0, seeds: 1}}}",
+            "cells.a.energy.median",
+        ),
+        ("schema: [", "reference.yaml, line 2"),
+    ],
+)
+def test_a_damaged_reference_is_said(cli, learned, content, message):
+    folder, path = learned
+    path.write_text(content)
+    ending = cli("check", folder, "--reference", path)
+    assert (ending.code, ending.out) == (2, "")
+    assert message in ending.err
+
+
+def test_markdown_is_for_sweeps(cli, learned):
+    folder, path = learned
+    path.write_text("schema: 1\nmetrics: {peak_torque: {min: 0.0, reason: no sign}}\n")
+    ending = cli("check", folder, "--reference", path, "--markdown")
+    assert ending.code == 2
+    assert "--markdown needs a reference of a sweep, made by --learn" in ending.err

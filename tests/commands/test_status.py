@@ -1,0 +1,57 @@
+import shutil
+
+import pytest
+
+from runner.store import open_runs
+from runner.sweep.lock import at_work
+from runner.sweep.status import in_words
+
+SWEEP = ("-m", "hydra.sweeper.workers=0", "robot=macro", "duration=0.05", "seed=0,1,2")
+
+
+@pytest.fixture
+def sweep(cli):
+    return cli(*SWEEP).folder
+
+
+def test_an_ended_sweep_is_done(cli, sweep):
+    ending = cli("status", sweep)
+    assert (ending.code, ending.out) == (0, "3 runs: 3 done, 0 left\n")
+
+
+def test_what_is_left_is_counted_with_the_way_to_go_on(cli, sweep):
+    runs = open_runs(sweep)
+    shutil.rmtree(runs[0].folder)
+    (runs[1].folder / "metrics.json").unlink()
+    ending = cli("status", sweep)
+    assert ending.out == (
+        "3 runs: 1 done, 2 left\n"
+        "not at work; this goes on with it: runner -m hydra.sweeper.workers=0 robot=macro duration=0.05 seed=0,1,2\n"
+    )
+
+
+def test_a_sweep_at_work_says_how_long_it_will_take(cli, sweep):
+    shutil.rmtree(open_runs(sweep)[0].folder)
+    with at_work(sweep.parent.parent):
+        assert cli("status", sweep).out == "3 runs: 2 done, 1 left\nat work\n"
+        (sweep / "progress.json").write_text('{"seconds_per_run": 100.0}')
+        assert cli("status", sweep).out == "3 runs: 2 done, 1 left\nat work, about 2 min to go\n"
+
+
+def test_failed_runs_are_counted_in_shards_too(cli):
+    cell = ("plant=rk4", "controller.period=0.01,0.06", "controller.singularity_damping=0", "trajectory=quintic")
+    sweep = cli("-m", "hydra.sweeper.workers=0", "robot=macro", *cell, "sweep.trace=never").folder
+    assert cli("status", sweep).out == "2 runs: 2 done (1 of them failed), 0 left\n"
+
+
+def test_a_folder_that_is_no_sweep(cli, tmp_path):
+    ending = cli("status", tmp_path)
+    assert ending.code == 2
+    assert "cannot read the sweep in" in ending.err
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"), [(0.2, "1 s"), (89.4, "89 s"), (90.0, "2 min"), (5399.0, "90 min"), (9000.0, "2.5 h")]
+)
+def test_durations_in_words(seconds, words):
+    assert in_words(seconds) == words

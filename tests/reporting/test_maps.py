@@ -1,0 +1,84 @@
+import json
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from sample_document import HOSTILE, maps
+
+from runner.reporting import map_stills
+from runner.reporting.document import Map, Maps
+from runner.reporting.maps import maps_spec, scale_marks, value_range
+
+
+def one_map(values, log=False, **changes):
+    values = np.asarray(values, dtype=float)
+    names = [[f"{kind}{number}" for number in range(count)] for kind, count in zip("yx", values.shape, strict=True)]
+    panel = Map(**({"title": "", "x_label": "x", "y_label": "y", "x_names": names[1], "y_names": names[0],
+                    "values": values, "failed": np.zeros(values.shape, dtype=bool)} | changes))  # fmt: skip
+    return Maps("", "error (m)", [panel], log)
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_any_text_gives_a_valid_drawing_and_reaches_plotly_as_no_markup(text):
+    ElementTree.fromstring(map_stills.draw(maps(text)))
+    written = json.dumps(maps_spec(maps(text)), allow_nan=False)
+    assert "<" not in written
+    assert "$" not in written
+
+
+def test_the_same_maps_give_the_same_text():
+    assert map_stills.draw(maps()) == map_stills.draw(maps())
+
+
+def test_cells_keep_their_places_hints_and_runs():
+    (spec,) = maps_spec(one_map([[1, 2, 3], [4, 5, 6]], hints=list("abcdef"), runs=list("ABCDEF")))
+    heat = spec["traces"][0]
+    assert heat["z"] == [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]
+    assert heat["hovertext"][1][0] == "d"
+    assert heat["customdata"][1] == ["D", "E", "F"]
+    assert spec["layout"]["xaxis"]["ticktext"] == ["x0", "x1", "x2"]
+    assert spec["layout"]["yaxis"]["ticktext"] == ["y0", "y1"]
+
+
+def test_all_maps_share_one_scale():
+    block = Maps("", "m", [one_map([[1, 2]]).panels[0], one_map([[5, np.inf]]).panels[0]])
+    assert value_range(block) == (1.0, 5.0)
+    assert {(spec["traces"][0]["zmin"], spec["traces"][0]["zmax"]) for spec in maps_spec(block)} == {(1.0, 5.0)}
+
+
+def test_the_logarithm_is_coloured_and_the_value_is_written():
+    block = one_map([[1e-4, 1e-2]], log=True)
+    (spec,) = maps_spec(block)
+    assert spec["traces"][0]["z"] == [[-4.0, -2.0]]
+    assert spec["traces"][0]["text"] == [["1·10⁻⁴", "0.01"]]
+    places, marks = scale_marks(block)
+    assert (places[0], places[-1]) == (-4.0, -2.0)
+    assert marks[2] == "1·10⁻³"
+
+
+def test_a_value_beyond_every_number_is_never_and_a_failed_cell_is_crossed():
+    failed = np.array([[False, False, True]])
+    (spec,) = maps_spec(one_map([[1.0, np.inf, np.inf]], failed=failed))
+    heat, cross = spec["traces"]
+    assert heat["z"] == [[1.0, None, None]]
+    assert heat["text"] == [["1", "never", ""]]
+    assert (cross["x"], cross["y"]) == ([2], [0])
+
+
+def test_many_columns_show_colours_alone():
+    assert "text" in maps_spec(one_map(np.arange(10.0)[None]))[0]["traces"][0]
+    assert "text" not in maps_spec(one_map(np.arange(11.0)[None]))[0]["traces"][0]
+
+
+def test_contours_join_equal_values():
+    (spec,) = maps_spec(one_map(np.arange(9.0).reshape(3, 3), contours=True))
+    assert spec["traces"][0]["type"] == "contour"
+    assert "text" not in spec["traces"][0]
+
+
+@pytest.mark.parametrize("values", [[[np.nan]], [[2.0, 2.0]], [[-1.0, 0.0]], [[np.inf, np.inf]]])
+@pytest.mark.parametrize("log", [False, True])
+def test_odd_values_are_no_error(values, log):
+    block = one_map(values, log)
+    ElementTree.fromstring(map_stills.draw(block))
+    json.dumps(maps_spec(block), allow_nan=False)

@@ -1,0 +1,139 @@
+import numpy as np
+import pytest
+from scipy import stats
+
+from runner.statistics import axis_effects
+
+
+def grid(*sizes, repetitions):
+    """Levels of a full grid at every value, named a, b, ..."""
+    cells = np.indices((*sizes, repetitions)).reshape(len(sizes) + 1, -1)
+    return dict(zip("abc", cells[:-1], strict=False))
+
+
+def effects_of(axes, values, seed=0):
+    return {effect.axes: effect for effect in axis_effects(axes, values, seed).effects}
+
+
+def test_shares_by_hand():
+    # y = 3 a + b on a grid of 2 x 2: sums of squares 9 and 1, no interaction.
+    axes = grid(2, 2, repetitions=1)
+    found = effects_of(axes, 3.0 * axes["a"] + axes["b"] - 5.0)
+    assert found[("a",)].share == pytest.approx(0.9)
+    assert found[("b",)].share == pytest.approx(0.1)
+    assert found[("a", "b")].share == pytest.approx(0.0, abs=1e-12)
+
+
+def test_shares_of_a_balanced_grid_and_its_noise_add_up():
+    axes = grid(3, 4, repetitions=5)
+    rng = np.random.default_rng(0)
+    values = axes["a"] - 2.0 * axes["b"] + axes["a"] * axes["b"] + rng.normal(size=60)
+    found = effects_of(axes, values)
+    cell = axes["a"] * 4 + axes["b"]
+    within = sum(np.sum((values[cell == c] - values[cell == c].mean()) ** 2) for c in range(12))
+    total = np.sum((values - values.mean()) ** 2)
+    assert sum(effect.share for effect in found.values()) == pytest.approx(1.0 - within / total)
+
+
+def test_the_permutation_test_agrees_with_the_f_test_where_the_values_are_normal():
+    rng = np.random.default_rng(1)
+    axes = grid(3, repetitions=30)
+    values = 0.25 * axes["a"] + rng.normal(size=90)
+    exact = stats.f_oneway(*(values[axes["a"] == level] for level in range(3))).pvalue
+    assert 0.02 < exact < 0.5
+    assert effects_of(axes, values)[("a",)].p_value == pytest.approx(exact, abs=4 * np.sqrt(exact / 999))
+
+
+def test_without_effects_p_values_are_uniform():
+    axes = grid(3, 3, repetitions=2)
+    rng = np.random.default_rng(2)
+    found = [effects_of(axes, rng.standard_exponential(18), seed) for seed in range(60)]
+    for name in (("a",), ("b",), ("a", "b")):
+        p_values = [effects[name].p_value for effects in found]
+        assert stats.kstest(p_values, "uniform").pvalue > 0.01
+
+
+def test_what_matters_is_found_among_what_does_not():
+    axes = grid(4, 3, repetitions=5)
+    values = 1.5 * axes["a"] + np.random.default_rng(3).normal(size=60)
+    found = effects_of(axes, values)
+    assert found[("a",)].p_value <= 0.002
+    assert found[("b",)].p_value > 0.05
+    assert found[("a", "b")].p_value > 0.05
+
+
+def test_an_interaction_without_main_effects_is_found():
+    axes = grid(2, 2, repetitions=10)
+    values = np.where(axes["a"] == axes["b"], 1.0, -1.0) + 0.3 * np.random.default_rng(4).normal(size=40)
+    found = effects_of(axes, values)
+    assert found[("a", "b")].share > 0.8
+    assert found[("a", "b")].p_value <= 0.002
+
+
+def test_over_decades_a_product_is_no_interaction():
+    axes = grid(3, 3, repetitions=4)
+    factors = 10.0 ** axes["a"] * 3.0 ** axes["b"]
+    noise = np.exp(0.05 * np.random.default_rng(5).normal(size=36))
+    analysis = axis_effects(axes, factors * noise)
+    assert analysis.logarithmic
+    assert analysis.effects[-1].axes == ("a", "b")
+    assert analysis.effects[-1].share < 1e-2
+    assert analysis.effects[-1].p_value > 0.05
+
+
+def test_missing_values_are_left_out_and_counted():
+    axes = grid(3, 3, repetitions=4)
+    values = 1.0 + axes["a"] + 0.01 * np.random.default_rng(6).normal(size=36)
+    values[[0, 5]] = np.inf, np.nan
+    analysis = axis_effects(axes, values)
+    assert (analysis.n, analysis.left_out) == (34, 2)
+    found = {effect.axes: effect for effect in analysis.effects}
+    assert found[("a",)].share > 0.95
+    assert found[("a",)].p_value <= 0.002
+
+
+@pytest.mark.parametrize(
+    ("axes", "values", "remark"),
+    [
+        (grid(3, repetitions=1), [1.0, 2.0, 4.0], "no repetition to tell it from chance"),
+        (grid(2, repetitions=2), [1.0, 2.0, 4.0, 5.0], "too few values to tell it from chance"),
+        (grid(3, repetitions=4), [2.0] * 12, "all values are the same"),
+        (grid(3, repetitions=1), [np.inf, np.nan, 1.0], "fewer than two values"),
+        (grid(3, repetitions=1), [np.inf] * 3, "fewer than two values"),
+        (grid(1, repetitions=8), list(range(8)), "cannot be told apart from the other axes"),
+    ],
+)
+def test_where_a_sample_is_too_small_it_is_said(axes, values, remark):
+    (effect,) = axis_effects(axes, np.array(values, dtype=float)).effects
+    assert effect.p_value is None
+    assert effect.remark == remark
+
+
+def test_one_value_a_cell_says_main_effects_and_no_interaction():
+    axes = grid(4, 4, repetitions=1)
+    found = effects_of(axes, axes["a"] + 0.1 * np.random.default_rng(7).normal(size=16))
+    assert found[("a",)].p_value <= 0.01
+    assert found[("a", "b")].remark == "no repetition to tell it from chance"
+
+
+def test_a_large_sweep_is_drawn_from():
+    axes = grid(5, 5, repetitions=1000)
+    analysis = axis_effects({"a": axes["a"]}, axes["a"] + np.random.default_rng(8).normal(size=25_000))
+    assert (analysis.n, analysis.left_out) == (5000, 0)
+    assert analysis.effects[0].share == pytest.approx(2.0 / 3.0, abs=0.02)
+
+
+def test_the_same_values_give_the_same_answer():
+    axes = grid(3, 2, repetitions=3)
+    values = np.random.default_rng(9).normal(size=18)
+    assert axis_effects(axes, values) == axis_effects(axes, values)
+
+
+def test_an_interaction_of_many_values_is_found_in_groups_of_them():
+    axes = grid(40, 30, repetitions=1)
+    rng = np.random.default_rng(10)
+    product = (axes["a"] - 19.5) * (axes["b"] - 14.5) / 100.0
+    with_product, without = (effects_of(axes, y + rng.normal(size=1200)) for y in (product, 0.1 * axes["a"]))
+    assert with_product[("a", "b")].p_value <= 0.002
+    assert with_product[("a", "b")].share > 0.4
+    assert without[("a", "b")].p_value > 0.05

@@ -1,0 +1,65 @@
+import numpy as np
+import pytest
+
+from runner.statistics import SMALLEST_SAMPLE, median_interval
+
+
+def interval_of(values, seed=0):
+    return median_interval(np.array(values, dtype=float), seed)
+
+
+@pytest.mark.parametrize(("n", "trials"), [(7, 300), (12, 300), (40, 300)])
+@pytest.mark.parametrize(("draw", "median"), [("standard_normal", 0.0), ("standard_exponential", np.log(2.0))])
+def test_ninety_five_of_a_hundred_intervals_hold_the_median(n, trials, draw, median):
+    rng = np.random.default_rng(n)
+    intervals = [median_interval(getattr(rng, draw)(n), seed) for seed in range(trials)]
+    covered = np.mean([interval.low <= median <= interval.high for interval in intervals])
+    # 95 % less three standard errors of 300 trials; above, short samples may be on the safe side.
+    assert covered > 0.95 - 3 * np.sqrt(0.95 * 0.05 / trials)
+    assert covered < 1.0
+
+
+def test_the_interval_shrinks_with_the_root_of_the_sample():
+    rng = np.random.default_rng(1)
+    widths = [np.mean([i.high - i.low for i in (median_interval(rng.normal(size=n)) for _ in range(20))])
+              for n in (50, 800)]  # fmt: skip
+    assert widths[0] / widths[1] == pytest.approx(4.0, rel=0.25)
+
+
+def test_it_moves_and_scales_with_the_values():
+    values = np.random.default_rng(2).normal(size=15)
+    plain, moved = interval_of(values), interval_of(3.0 * values + 7.0)
+    assert [moved.low, moved.median, moved.high] == pytest.approx(
+        [3.0 * plain.low + 7.0, 3.0 * plain.median + 7.0, 3.0 * plain.high + 7.0]
+    )
+
+
+def test_its_ends_are_the_order_statistics_of_large_samples():
+    # The exact interval of a median of 1000: order statistics 469 and 532 (binomial, 95 %).
+    interval = interval_of(np.arange(1.0, 1001.0))
+    assert interval.low == pytest.approx(469.0, abs=3.0)
+    assert interval.high == pytest.approx(532.0, abs=3.0)
+
+
+@pytest.mark.parametrize("n", [1, SMALLEST_SAMPLE - 1])
+def test_small_samples_have_a_median_and_no_interval(n):
+    interval = interval_of(range(n))
+    assert (interval.median, interval.low, interval.high, interval.n) == ((n - 1) / 2, None, None, n)
+
+
+def test_values_beyond_every_number_are_within_the_interval_and_not_averaged_away():
+    interval = interval_of([1, 2, 3, 4, 5, 6, 7, np.inf, np.inf, np.inf])
+    assert interval.median == 5.5
+    assert interval.low < 5.5
+    assert interval.high == np.inf
+    assert not np.isnan(interval.low)
+
+
+def test_equal_values_have_an_interval_of_no_width():
+    interval = interval_of([2.0] * 8)
+    assert (interval.low, interval.median, interval.high) == (2.0, 2.0, 2.0)
+
+
+def test_the_same_values_give_the_same_interval():
+    values = np.random.default_rng(3).normal(size=9)
+    assert interval_of(values) == interval_of(values)

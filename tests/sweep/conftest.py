@@ -1,0 +1,20 @@
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from runner.sweep.plan import plan_sweep
+from runner.sweep.run import Ended, Engine, run_sweep
+
+SHORT = ("robot=macro", "duration=0.05")
+
+
+@pytest.fixture
+def sweep(tmp_path: Path) -> Callable[..., Ended]:
+    """Make a sweep of short Macro runs in this process, or as `engine` says."""
+
+    def make(*overrides: str, engine: Engine = Engine(0, None)) -> Ended:  # noqa: B008 - it cannot be changed
+        plan = plan_sweep([*SHORT, f"outputs={tmp_path}/outputs", *overrides])
+        return run_sweep(plan, engine, "runner -m ...")
+
+    return make

@@ -1,0 +1,121 @@
+"""One result, wherever the runs are made: in this process, on one or two, on a Dask cluster, and after kills."""
+
+import socket
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+from runner import store
+from runner.errors import RunnerError
+from runner.store.identity import source_digest
+from runner.sweep.run import Engine
+
+GRID = ("noise=thesis", "robot=macro,mini", "plant=rk4,bullet", "seed=range(0,4)", "repetitions=2", "duration=0.3")
+
+
+def results(ended):
+    return {run.hash: (run.metrics, run.failure) for run in store.open_sweep(ended.folder).runs()}
+
+
+@pytest.fixture
+def expected(sweep, tmp_path):
+    return results(sweep(*GRID, f"outputs={tmp_path}/expected"))
+
+
+@pytest.fixture
+def scheduler(tmp_path):
+    """A scheduler with two workers, each a process of its own; gives its address and the workers."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    address = f"tcp://127.0.0.1:{port}"
+    quiet = {"cwd": tmp_path, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    command = [sys.executable, "-m", "dask"]
+    processes = [
+        subprocess.Popen([*command, "scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"], **quiet)
+    ]
+    worker = [*command, "worker", address, "--nthreads", "1", "--no-dashboard"]
+    processes += [subprocess.Popen([*worker, *how], **quiet) for how in (["--no-nanny"], ["--no-nanny"])]
+    yield address, processes
+    for process in processes:
+        process.kill()
+        process.wait()
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_processes_of_this_machine_give_what_this_process_gives(sweep, expected, workers, tmp_path):
+    assert results(sweep(*GRID, engine=Engine(workers, None))) == expected
+    assert [path for path in tmp_path.rglob("*") if path.name.startswith(".") or path.name == "scratch"] == []
+
+
+def test_a_running_cluster_gives_it_too_though_a_worker_is_killed(sweep, expected, scheduler, tmp_path):
+    address, processes = scheduler
+
+    def kill():
+        while not list((tmp_path / "outputs" / "runs").glob("*/metrics.json")):
+            time.sleep(0.01)
+        processes[1].kill()
+
+    killer = threading.Thread(target=kill)
+    killer.start()
+    ended = sweep(*GRID, engine=Engine(0, address))
+    killer.join()
+    assert results(ended) == expected
+    assert processes[2].poll() is None
+
+
+def test_a_scheduler_that_is_lost_is_said(sweep, scheduler, tmp_path):
+    address, processes = scheduler
+
+    def kill():
+        while not list((tmp_path / "outputs" / "runs").glob("*/metrics.json")):
+            time.sleep(0.01)
+        processes[0].kill()
+
+    threading.Thread(target=kill).start()
+    with pytest.raises(RunnerError, match=r"the Dask scheduler is lost: .*; finished runs are stored"):
+        sweep(*GRID, "seed=range(0,400)", engine=Engine(0, address))
+
+
+DEADLY = """\
+import multiprocessing
+import os
+
+UNITS = {}
+
+
+def evaluate(trace, context):
+    if multiprocessing.parent_process() is not None and len(trace.t) == 31:
+        os._exit(1)
+    return {}
+"""
+
+
+@pytest.fixture
+def deadly_metric(tmp_path, monkeypatch):
+    """A metric of another package that brings a worker's process down after 30 ticks."""
+    for name, text in (
+        ("deadly.py", DEADLY),
+        ("deadly-1.0.dist-info/METADATA", "Metadata-Version: 2.1\nName: deadly\nVersion: 1.0\n"),
+        ("deadly-1.0.dist-info/entry_points.txt", "[runner.metric]\ndeadly = deadly\n"),
+    ):
+        (tmp_path / "site" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "site" / name).write_text(text)
+    monkeypatch.syspath_prepend(tmp_path / "site")
+    source_digest.cache_clear()
+    yield
+    source_digest.cache_clear()
+    sys.modules.pop("deadly", None)
+
+
+@pytest.mark.usefixtures("deadly_metric")
+def test_a_run_that_brings_its_workers_down_is_cut_short_and_the_others_are_made(sweep):
+    ended = sweep("duration=0.1,0.2,0.3,0.4,0.5", engine=Engine(1, None))
+    ((overrides, why, log),) = ended.failures
+    assert "duration=0.3" in overrides
+    assert why == "cut short: its worker process died 4 times"
+    assert why in log.read_text()
+    assert [run.status for run in store.open_sweep(ended.folder).runs()] == ["ok", "ok", "failed", "ok", "ok"]

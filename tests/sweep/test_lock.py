@@ -1,0 +1,28 @@
+import subprocess
+import sys
+
+import pytest
+
+from runner.errors import RunnerError
+from runner.sweep import lock
+from runner.sweep.lock import at_work, is_at_work
+
+HOLDS = (
+    "import sys, time; from pathlib import Path; from runner.sweep.lock import at_work; \n"
+    "with at_work(Path(sys.argv[1])): print('held', flush=True); time.sleep(60)"
+)
+
+
+def test_a_killed_process_leaves_no_lock(tmp_path, monkeypatch):
+    monkeypatch.setattr(lock, "_PATIENCE", 0.1)
+    holder = subprocess.Popen([sys.executable, "-c", HOLDS, tmp_path], stdout=subprocess.PIPE)
+    holder.stdout.readline()
+    assert is_at_work(tmp_path)
+    with pytest.raises(RunnerError, match="another sweep is at work in"), at_work(tmp_path):
+        pass
+    holder.kill()
+    holder.communicate()
+    assert not is_at_work(tmp_path)
+    with at_work(tmp_path):
+        assert is_at_work(tmp_path)
+    assert [*tmp_path.iterdir()] == []

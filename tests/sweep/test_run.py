@@ -1,0 +1,259 @@
+"""A whole sweep in this process: what is stored, what is made again, and what stops it."""
+
+import errno
+import json
+import os
+import shutil
+import threading
+import time
+
+import numpy as np
+import pytest
+
+from runner import store
+from runner.controllers.operational_space import OperationalSpace
+from runner.errors import ConfigError, RunnerError, StoreError
+from runner.sweep import work
+from runner.sweep.plan import plan_sweep
+from runner.sweep.run import Engine
+
+DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "trajectory=quintic", "duration=1")
+PERIODS = "controller.period=0.01,0.06"  # the second one diverges
+
+
+@pytest.fixture
+def made(monkeypatch):
+    """Names of the runs that are simulated."""
+    names = []
+    make = work._make
+
+    def note(name, *others):
+        names.append(name)
+        return make(name, *others)
+
+    monkeypatch.setattr(work, "_make", note)
+    return names
+
+
+def runs(ended):
+    return list(store.open_sweep(ended.folder).runs())
+
+
+def test_what_is_stored_is_not_made_again(sweep, made):
+    first = sweep("seed=0,1")
+    assert len(made) == 2
+    second = sweep("seed=0,1")
+    assert len(made) == 2
+    assert second == first
+    assert [run.config["seed"] for run in runs(sweep("seed=0,1,2"))] == [0, 1, 2]
+    assert len(made) == 3
+
+
+def test_cells_of_one_config_are_one_run(sweep, made):
+    ended = sweep("seed=1,1", "preset=sound")
+    assert len(made) == 1
+    assert len(runs(ended)) == 2
+
+
+@pytest.mark.parametrize("damage", ["metrics.json", "trace.parquet", "config.yaml"])
+@pytest.mark.parametrize("how", ["gone", "half"])
+def test_a_half_written_run_is_made_again(sweep, made, damage, how):
+    ended = sweep("seed=0,1")
+    path = runs(ended)[1].folder / damage
+    whole = path.read_bytes()
+    path.unlink() if how == "gone" else path.write_bytes(whole[: len(whole) // 2 if damage != "config.yaml" else 0])
+    sweep("seed=0,1")
+    assert len(made) == 3
+    assert path.stat().st_size == pytest.approx(len(whole), abs=100)  # times have other digits
+
+
+def test_a_failed_run_is_made_again_only_when_asked(sweep, made):
+    first = sweep(*DIVERGES, PERIODS)
+    assert len(made) == 2
+    ((overrides, why, where),) = first.failures
+    assert overrides[-1] == "controller.period=0.06"
+    assert why.startswith("failed in repetition 0 at t = 0.6 s (q1): diverged")
+    assert json.loads(where.read_text())["status"] == "failed"
+    assert sweep(*DIVERGES, PERIODS).failures == first.failures
+    assert len(made) == 2
+    assert sweep(*DIVERGES, PERIODS, "sweep.retry=failed").failures[0][1] == why
+    assert len(made) == 3
+
+
+def test_a_sweep_may_stop_at_the_first_failure_and_go_on_later(sweep, made):
+    overrides = (*DIVERGES, "controller.period=0.06,0.01,0.02,0.005")
+    ended = sweep(*overrides, "sweep.on_failure=stop")
+    assert (len(made), len(ended.failures), ended.left) == (1, 1, 3)
+    ended = sweep(*overrides)
+    assert (len(made), len(ended.failures), ended.left) == (4, 1, 0)
+
+
+@pytest.mark.parametrize(("policy", "folders"), [("all", 3), ("failed", 1), ("never", 0)])
+def test_traces_are_kept_as_asked_and_metrics_always(sweep, tmp_path, policy, folders):
+    everything = runs(sweep(*DIVERGES, "controller.period=0.01,0.06,0.02"))
+    ended = sweep(*DIVERGES, "controller.period=0.01,0.06,0.02", f"sweep.trace={policy}", f"outputs={tmp_path}/other")
+    found = runs(ended)
+    assert len([*(tmp_path / "other" / "runs").iterdir()]) == folders
+    for run, whole in zip(found, everything, strict=True):
+        assert run.hash == whole.hash
+        assert run.metrics == whole.metrics
+        assert run.failure == whole.failure
+        assert run.urdf == whole.urdf
+        assert store.simulated_part(run.config) == store.simulated_part(whole.config)
+    without = [run for run in found if not run.folder.exists()]
+    for run in without:
+        with pytest.raises(StoreError, match=r"kept no trace \(sweep\.trace\); this simulates it again with one: "):
+            _ = run.trace
+    if policy == "never":
+        assert "more in" not in ended.failures[0][2].read_text()
+        assert "diverged" in ended.failures[0][2].read_text()
+
+
+def test_one_in_a_hundred_is_sampled(tmp_path):
+    rules = work.Rules(tmp_path, tmp_path, "sample", True, False, 1, None)
+    kept = sum(rules.keeps_trace(f"{np.random.default_rng(n).bytes(12).hex()}", False) for n in range(5000))
+    assert 30 <= kept <= 70
+    assert all(rules.keeps_trace(f"{n:024x}", True) for n in range(20))
+
+
+def test_a_run_in_a_shard_counts_unless_its_trace_is_wanted(sweep, made):
+    sweep("seed=0,1", "sweep.trace=never")
+    sweep("seed=0,1", "sweep.trace=never")
+    assert len(made) == 2
+    ended = sweep("seed=0,1", "sweep.trace=all")
+    assert len(made) == 4
+    assert all(len(run.trace) > 1 for run in runs(ended))
+
+
+def test_a_run_that_takes_too_long_is_cut_short(sweep, made):
+    start = time.monotonic()
+    ended = sweep("duration=1e4,0.05", "sweep.time_limit=0.3", "sweep.attempts=2")
+    assert time.monotonic() - start < 20
+    ((overrides, why, log),) = ended.failures
+    assert overrides[-1] == "duration=10000.0"
+    assert why == "cut short: no result within sweep.time_limit, 0.3 s"
+    assert log.read_text().startswith("runner robot=macro duration=10000.0\ncut short: ")
+    long, short = runs(ended)
+    assert (long.status, long.metrics, short.status) == ("failed", {}, "ok")
+    assert sweep("duration=1e4,0.05", "sweep.time_limit=0.3").failures == ended.failures
+    assert len(made) == 2  # it is not tried again
+
+
+def test_an_error_of_a_part_is_a_failed_run_with_its_traceback(sweep, monkeypatch, made):
+    calls = []
+
+    def fall_over(self, *_):
+        calls.append(1)
+        if len(calls) == 1:
+            raise RuntimeError("a bug")
+        return torque(self, *_)
+
+    torque = OperationalSpace.torque
+    monkeypatch.setattr(OperationalSpace, "torque", fall_over)
+    monkeypatch.setattr("runner.sweep.run.estimate", lambda *_: 1.0)
+    ended = sweep("seed=0,1")
+    ((_, why, log),) = ended.failures
+    assert why == "cut short: RuntimeError: a bug"
+    assert "Traceback" in log.read_text()
+    assert "in fall_over" in log.read_text()
+    calls.clear()
+    assert sweep("seed=0,1", "sweep.retry=failed", "sweep.attempts=3").failures == []
+
+
+def test_an_invalid_cell_is_named_before_anything_starts(sweep, tmp_path, made):
+    with pytest.raises(ConfigError) as raised:
+        sweep("noise.position=1e-4,-1,1e-3", "seed=0,1")
+    (problem,) = raised.value.problems
+    assert problem.endswith("noise.position=-1 seed=0] and 1 other cells: noise.position: must be 0 or more; found -1")
+    assert "nothing was started" in str(raised.value)
+    assert (made, list(tmp_path.iterdir())) == ([], [])
+
+
+def test_a_problem_that_only_assembly_shows_is_named_before_anything_starts(sweep, made):
+    with pytest.raises(ConfigError, match=r"plant\.wrist_rotation: parallel leaves"):
+        sweep("robot=combined,macro", "plant.wrist_rotation=parallel", "controller.wrist_rotation=real")
+    assert made == []
+
+
+def test_many_problems_are_counted(sweep):
+    with pytest.raises(ConfigError, match=r"and 5 more problems; nothing was started"):
+        sweep("noise.position=range(-25,0)")
+
+
+def test_outputs_are_one_folder_for_all(sweep, tmp_path):
+    with pytest.raises(ConfigError, match="must have one value in all runs of a sweep"):
+        sweep(f"outputs={tmp_path}/a,{tmp_path}/b")
+
+
+def test_a_second_sweep_says_that_the_first_is_at_work(sweep, monkeypatch):
+    begun, done = threading.Event(), threading.Event()
+    make = work._make
+
+    def wait(*arguments):
+        begun.set()
+        done.wait(30)
+        return make(*arguments)
+
+    monkeypatch.setattr(work, "_make", wait)
+    first = threading.Thread(target=sweep, args=("seed=0,1",))
+    first.start()
+    begun.wait(30)
+    with pytest.raises(RunnerError, match="another sweep is at work in"):
+        sweep("seed=0,1")
+    done.set()
+    first.join()
+    assert len(runs(sweep("seed=0,1"))) == 2
+
+
+@pytest.mark.parametrize("trace", ["all", "never"])
+def test_a_full_disk_stops_the_sweep_which_goes_on_later(sweep, made, monkeypatch, tmp_path, trace):
+    fsync, calls = os.fsync, []
+
+    def fill_up(file):
+        calls.append(file)
+        if len(calls) > 8:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        fsync(file)
+
+    monkeypatch.setattr(os, "fsync", fill_up)
+    with pytest.raises(StoreError, match="No space left on device; finished runs are stored, the same command goes on"):
+        sweep("seed=range(0,40)", f"sweep.trace={trace}")
+    monkeypatch.undo()
+    ended = sweep("seed=range(0,40)", f"sweep.trace={trace}")
+    assert len(runs(ended)) == 40
+    assert [path for path in tmp_path.rglob("*") if path.name.startswith(".")] == []
+
+
+def test_a_copied_sweep_opens_elsewhere(sweep, tmp_path):
+    ended = sweep("seed=range(0,3)", "sweep.trace=never")
+    copy = shutil.copytree(tmp_path / "outputs", tmp_path / "elsewhere")
+    shutil.rmtree(tmp_path / "outputs")
+    opened = store.open_sweep(copy / "sweeps" / ended.folder.name)
+    assert [run.config["seed"] for run in opened.runs()] == [0, 1, 2]
+
+
+@pytest.mark.parametrize("workers", [-1, 1.5, "two", True])
+def test_a_number_of_workers_that_is_none_is_said(workers):
+    with pytest.raises(ConfigError, match=r"hydra.sweeper.workers: must be a whole number, 0 or more; found"):
+        Engine(workers, None)
+
+
+def test_a_scheduler_that_does_not_answer_is_named(sweep, monkeypatch):
+    monkeypatch.setattr("runner.sweep.engine._ANSWER_WITHIN", 0.5)
+    with pytest.raises(RunnerError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9; start one with `dask"):
+        sweep("seed=0,1", engine=Engine(2, "tcp://127.0.0.1:9"))
+
+
+def test_more_than_some_thousand_runs_are_sampled(sweep, monkeypatch, tmp_path):
+    monkeypatch.setattr("runner.sweep.run._ALL_TRACES_UP_TO", 4)
+    sweep("seed=range(0,4)")
+    assert len([*(tmp_path / "outputs" / "runs").iterdir()]) == 4
+    ended = sweep("seed=range(10,30)")
+    assert len([*(tmp_path / "outputs" / "runs").iterdir()]) < 10
+    assert [run.config["seed"] for run in runs(ended)] == [*range(10, 30)]
+
+
+def test_plans_stay_small(tmp_path):
+    plan = plan_sweep(["robot=macro", "seed=range(0,100000)", f"outputs={tmp_path}"])
+    assert len(plan) == 100_000
+    assert plan.composed(99_999).resolved["seed"] == 99_999

@@ -1,0 +1,55 @@
+import pytest
+
+from runner.errors import ConfigError
+from runner.sweep.plan import plan_sweep
+
+
+def keys(*arguments):
+    return plan_sweep(arguments)._keys
+
+
+@pytest.mark.parametrize(
+    ("argument", "values"),
+    [
+        ("seed=3", [3]),
+        ("seed=0,1", [0, 1]),
+        ("seed=range(0,3)", [0, 1, 2]),
+        ("noise.position=1e-4,null", [1e-4, None]),
+        ("robot.goal=[0,0,1],[0,1,1]", [[0, 0, 1], [0, 1, 1]]),
+        ("robot.name='a,b',c", ["a,b", "c"]),
+        ("trajectory.goal=${robot.goal},null", ["${robot.goal}", None]),
+    ],
+)
+def test_values_are_read_as_hydra_reads_them(argument, values):
+    (key,) = keys(argument)
+    assert key.values == values
+    assert not key.option
+    assert [plan_sweep([text]).composed(0).resolved for text in key.overrides]
+
+
+def test_options_of_groups_are_told_from_values():
+    assert [key.option for key in keys("robot=macro,mini", "noise={position:1}", "seed=1", "~noise", "~seed")] == [
+        True,
+        False,
+        False,
+        True,
+        True,
+    ]
+    assert "macro" in keys("robot=glob(m*)")[0].values
+
+
+def test_the_last_values_of_a_key_count():
+    (key,) = keys("seed=1,2", "seed=3")
+    assert key.values == [3]
+
+
+@pytest.mark.parametrize("argument", ["seed=range(3,3)", "robot=glob(z*)"])
+def test_an_empty_axis_is_named(argument):
+    name = argument.partition("=")[0]
+    with pytest.raises(ConfigError, match=f"{name}: is swept over no value; give one or more"):
+        keys(argument)
+
+
+def test_what_is_no_override_is_said():
+    with pytest.raises(ConfigError, match="'seed=0,1,,2' is no override"):
+        keys("seed=0,1,,2")

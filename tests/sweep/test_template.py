@@ -1,0 +1,70 @@
+"""Cells made from a template are those that Hydra composes, whatever the keys do to each other."""
+
+import random
+
+import pytest
+
+from runner.config.compose import compose
+from runner.errors import ConfigError
+from runner.sweep.plan import plan_sweep
+
+INDEPENDENT = [
+    ("robot=macro,mini", "noise.position=1e-4,1e-3", "controller.period=0.01,0.02"),
+    ("experiment=thesis/figure_3_5,thesis/figure_3_9", "noise.position=0,1e-3,2e-3"),
+    ("robot=combined", "preset=sound,as_reported", "controller.period.macro=0.01,0.02", "robot.period.mini=1e-3,2e-3"),
+    (
+        "robot.period=0.01,0.02,0.03",
+        "noise=none,thesis",
+        "torque_limits.max=null,40,[1,2,3]",
+        "robot.goal=[0,0,1],[0,1,1]",
+    ),
+    ("preset.feedforward=true,false,true", "seed=range(0,4)", "+new.key=1,2", "~torque_limits"),
+    ("noise.position=0,1,1.0,true", "robot.name='a b','c,d'", "seed=0"),
+    ("robot.natural_frequency=1,2", "controller.natural_frequency=3,4", "controller.natural_frequency=5,6"),
+]
+ENTANGLED = [
+    ("robot.period=0.01,0.02", "trajectory.duration=1,${robot.period}", "trajectory=quintic"),  # one takes the other
+    ("robot=combined", "robot.period={macro:0.01},{macro:0.02}", "controller.period.mini=1,2"),  # mappings merge
+    ("robot.masses={link2:1.5},{link3:0.5}", "robot.masses.link2=3,4"),  # one place
+    ("seed=1,2", "+robot.note='${robot.${robot.pick}}'", "+robot.pick=name,tip"),  # one chooses what is taken
+]
+
+
+@pytest.mark.parametrize("arguments", [*INDEPENDENT, *ENTANGLED], ids=" ".join)
+def test_a_cell_is_what_hydra_composes(arguments):
+    plan = plan_sweep(arguments)
+    cells = range(len(plan))
+    for cell in random.Random(1).sample(cells, min(len(cells), 8)):
+        ours, hydras = plan.composed(cell), compose(plan.overrides(cell))
+        assert repr(ours.resolved) == repr(hydras.resolved)  # 1, 1.0 and True are three values
+        assert ours.choices == hydras.choices
+        assert list(ours.overrides) == [text.removeprefix("++") for text in hydras.overrides]
+
+
+@pytest.mark.parametrize(("cases", "independent"), [(INDEPENDENT, True), (ENTANGLED, False)])
+def test_keys_that_act_on_each_other_are_composed_cell_by_cell(cases, independent):
+    for arguments in cases:
+        plan = plan_sweep(arguments)
+        plan.composed(0)
+        assert [template._changes is not None for template in plan._templates.values()] == [independent], arguments
+
+
+def test_hydra_composes_once_for_each_combination_of_options(monkeypatch):
+    plan = plan_sweep(("robot=macro,mini", "noise=none,thesis", "seed=range(0,50)"))
+    loaded = []
+    load = plan._load
+    monkeypatch.setattr(plan, "_load", lambda options: loaded.append(options) or load(options))
+    seeds = {plan.composed(cell).resolved["seed"] for cell in range(len(plan))}
+    assert (len(plan), len(loaded), seeds) == (200, 4, {*range(50)})
+
+
+def test_a_cell_does_not_change_its_neighbours():
+    plan = plan_sweep(("noise.position=1,2",))
+    one, two = plan.composed(0), plan.composed(1)
+    assert (one.resolved["noise"]["position"], two.resolved["noise"]["position"]) == (1, 2)
+    assert one.resolved["robot"] is two.resolved["robot"]  # what is the same is shared, as 10^5 cells need it
+
+
+def test_what_does_not_compose_is_said():
+    with pytest.raises(ConfigError, match=r"Interpolation key 'robot\.nope' not found"):
+        plan_sweep(("trajectory.goal=[0,0,1],${robot.nope}",)).composed(1)
