@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.commands.arguments import Parser
-from runner.commands.table import aligned, number
+from runner.commands.columns import aligned, number
 from runner.errors import RunnerError
 
 if TYPE_CHECKING:

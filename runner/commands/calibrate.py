@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.commands.arguments import Parser
-from runner.commands.table import aligned, number
+from runner.commands.columns import aligned, number
 from runner.config.compose import quiet_environment
 
 if TYPE_CHECKING:
