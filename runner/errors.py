@@ -23,6 +23,10 @@ class ConfigError(RunnerError):
         lines = [head, *(f"  - {problem}" for problem in self.problems), *([hint] if hint else [])]
         super().__init__("\n".join(lines))
 
+    def __reduce__(self) -> tuple[type["ConfigError"], tuple[tuple[str, ...], str]]:
+        """Come out of a worker process as it went in."""
+        return ConfigError, (self.problems, self.hint)
+
 
 class StoreError(RunnerError):
     """A run folder, sweep folder or reference file that cannot be read or written."""

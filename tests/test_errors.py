@@ -1,3 +1,5 @@
+import pickle
+
 import pytest
 
 from runner.errors import ConfigError, RunnerError, SimulationError, StoreError, nearest
@@ -32,3 +34,9 @@ def test_a_simulation_error_says_when_and_where(joint, text):
     error = SimulationError("gone", 0.12345, joint)
     assert str(error) == text
     assert (error.reason, error.time, error.joint) == ("gone", 0.12345, joint)
+
+
+def test_a_config_error_comes_out_of_a_worker_process_as_it_went_in():
+    error = ConfigError(["a.b: must be above 0; found -1", "c: unknown key"], "  2 runs are stored already")
+    again = pickle.loads(pickle.dumps(error))  # noqa: S301 - what processes do with what they hand over
+    assert (again.problems, again.hint, str(again)) == (error.problems, error.hint, str(error))

@@ -62,8 +62,8 @@ class AdmittanceControl:
 
     f is what the wrist's sensor feels of the world, its bias and the tool off, seen from the tip (Meca500 report,
     sections 4 to 6), so that a force through the tip turns nothing. Orientation: that of home, turned by e. Where the
-    joints cannot follow, at their limits or at a singular posture, the filter is put where the arm is, and stays
-    stable there; `notices` tells when it was.
+    joints cannot follow, at their limits or at a singular posture, the filter is put where the arm is, as fast as
+    it is, and stays stable there; `notices` tells when it was.
 
     Args:
         robot: The robot.
@@ -97,12 +97,15 @@ class AdmittanceControl:
         """Return the next command; see PositionController.joint_positions."""
         at_tip, at_flange = self._compensation.external(q, dq, self._reading)
         self.felt = at_tip
+        translation, rotation = self._filter.translation, self._filter.rotation
         self._filter.step(at_tip if self._at_tip else at_flange)
         rest = self._approach.follow(reference[0] + self._config.period * reference[1])
         wanted = pin.SE3(self._filter.rotation @ self._orientation, rest + self._filter.translation)
         command, reached = self._motion.lead(time, wanted)
         if not self._motion.free:
-            self._filter.place(reached.translation - rest, reached.rotation @ self._orientation.T)
+            held, turned = reached.translation - rest, reached.rotation @ self._orientation.T
+            way = np.concatenate([held - translation, pin.log3(turned @ rotation.T)])
+            self._filter.place(held, turned, way / self._config.period)  # as fast as the arm: it slows, not stops
         return command
 
     def notices(self) -> list[str]:

@@ -118,11 +118,17 @@ class AdmittanceFilter:
         """Linear velocity in m/s and angular velocity in rad/s, shape (6,)."""
         return self._velocity.copy()
 
-    def place(self, translation: FloatArray, rotation: FloatArray) -> None:
-        """Rest at a displacement, shape (3,), in m, and a rotation, shape (3, 3), where something holds the frame."""
+    def place(self, translation: FloatArray, rotation: FloatArray, velocity: FloatArray) -> None:
+        """Move on from where something holds the frame.
+
+        Args:
+            translation: Displacement, shape (3,), in m.
+            rotation: Rotation, shape (3, 3).
+            velocity: Linear velocity in m/s and angular velocity in rad/s, shape (6,).
+        """
         self._rotation = pin.Quaternion(rotation)
         self._displacement = np.concatenate([translation, pin.log3(self._rotation.coeffs())])
-        self._velocity = np.zeros(6)
+        self._velocity = velocity.copy()
 
     def step(self, wrench: FloatArray) -> None:
         """Move on by one period under a wrench, force in N and moment in N m, shape (6,)."""

@@ -9,7 +9,7 @@ from runner.errors import ConfigError
 from runner.robots.model import RobotModel
 
 _DAMPED_BELOW = 0.02  # of the reach: singular value below which the inverse is damped
-_FREE = 1e-5  # m and rad; farther from the pose wanted than this the tip is held back
+_FREE = 1e-6  # m and rad; farther from the pose wanted than this the tip is held back
 
 
 class LimitedMotion:

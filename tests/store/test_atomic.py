@@ -31,6 +31,7 @@ def test_what_a_killed_writer_leaves_is_removed(tmp_path):
         ("elsewhere.net", 1, 0.0, True),
         ("elsewhere.net", 1, 90.0, False),
     ],
+    ids=["ours, new", "ours, old", "another machine's, new", "another machine's, old"],  # no process numbers in names
 )
 def test_files_of_living_writers_stay_for_a_minute(tmp_path, host, process, age, stays):
     path = tmp_path / f".trace.parquet.{host}.{process}.tmp"

@@ -57,7 +57,7 @@ def inertials_section(runs: Mapping[str, Run]) -> Section:
             ),
             Table(
                 f"Torques, in N m, with the tool: of gravity over {_COUNT} random postures, and peaks around a circle "
-                "within 1 s under a push.",
+                f"within {first.config['duration']:g} s under a push.",
                 [
                     "joint",
                     "gravity, cad_closed",

@@ -34,9 +34,10 @@ def plants_section(runs: Mapping[str, Run]) -> Section:
         "Whether the simulation can be trusted",
         (
             Text(
-                "The tool goes around a circle within a second, and is pushed aside on the way. On the kinematic plant "
-                "joints go where they are told, up to their speed limits; PyBullet and Runge-Kutta integrate the arm "
-                f"with its masses, on servos of {servo['stiffness']:g} N m/rad, in two ways that share no code."
+                f"The tool goes around a circle within {exact.config['duration']:g} s, and is pushed aside on the way. "
+                "On the kinematic plant joints go where they are told, up to their speed limits; PyBullet and "
+                f"Runge-Kutta integrate the arm with its masses, on servos of {servo['stiffness']:g} N m/rad, in two "
+                "ways that share no code."
             ),
             Text(describe_agreement(finest)),
             Curves(

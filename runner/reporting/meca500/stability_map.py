@@ -120,7 +120,7 @@ def agreement(runs: Mapping[str, Run]) -> tuple[int, int]:
 
 
 def _map(runs: Mapping[str, Run]) -> Curves:
-    periods = np.geomspace(MAP_PERIODS["kinematic"][0], MAP_PERIODS["kinematic"][-1], 40)
+    periods = np.geomspace(MAP_PERIODS["kinematic"][0], MAP_PERIODS["kinematic"][-1], 12)
     bounds = {delay: np.array([stiffest_wall(law(), h, 0, 0.0, delay) for h in periods]) for delay in (0, 1)}
     panels = []
     for plant in MAP_PERIODS:
