@@ -60,7 +60,8 @@ def torture(outputs: Path, arguments: list[str], workers: int, commands: int, se
         time.sleep(0.1)
     doubled |= _look(outputs, made)
     assert process.returncode == 0, process.returncode
-    sweep = open_sweep(next((outputs / "sweeps").iterdir()))
+    (folder,) = (outputs / "sweeps").iterdir()  # several, if the source was changed meanwhile
+    sweep = open_sweep(folder)
     lost = len(set(sweep.hashes)) - sum(1 for _ in sweep.runs())
     rows = Counter(end.name for shard in (outputs / "shards").glob("*.parquet") for end in read_outcomes(shard))
     doubled |= {name for name, count in rows.items() if count > 1}

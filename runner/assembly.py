@@ -16,18 +16,28 @@ from runner.errors import ConfigError
 from runner.feasibility import check_path
 from runner.interaction import Interaction
 from runner.metrics import MetricContext
-from runner.plants import PLANTS, Plant, PositionPlant
+from runner.plants import PLANTS, Plant, PositionPlant, innermost
 from runner.plants.servo import JointServo
 from runner.robots.inverse_kinematics import solve_tip_position
-from runner.robots.robot import end_points
+from runner.robots.mismatch import believe
+from runner.robots.robot import Robot, end_points
 from runner.sensing import ForceTorqueSensor, JointEncoders
 from runner.simulation import ClosedLoop
 from runner.trace import FloatArray
 from runner.trajectories import TRAJECTORIES, Trajectory
 
+_BELIEFS = 2**32 - 1  # in the seeds of what controllers believe; the loops' places count from 0
 
-def assemble(config: RunConfig) -> ClosedLoop:
+
+def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
     """Make the closed loop that a config describes.
+
+    Controllers and servos get the arm as they believe it to be, in a repetition; plant, path and start are of the true
+    one.
+
+    Args:
+        config: The checked config.
+        repetition: Number of the repetition, of which the beliefs follow.
 
     Raises:
         ConfigError: where the start of the trajectory cannot be reached, joints that are told where to go cannot
@@ -44,8 +54,9 @@ def assemble(config: RunConfig) -> ClosedLoop:
         check_path(config.controller, arm, trajectory, q_start, config.robot.settling_band)
     duration = trajectory.run_duration if config.settings.duration is None else config.settings.duration
     environment: Environment | None = ENVIRONMENTS.build(config.environment)
-    loops: tuple[Loop, ...] = CONTROLLERS.build(config.controller, arm)
-    plant = _make_plant(config, limits)
+    believed = _believe(config, repetition)
+    loops: tuple[Loop, ...] = CONTROLLERS.build(config.controller, believed)
+    plant = _make_plant(config, believed, limits)
     return ClosedLoop(
         robot=arm,
         plant=plant,
@@ -58,7 +69,14 @@ def assemble(config: RunConfig) -> ClosedLoop:
         interaction=_make_interaction(config, loops, environment, plant, trajectory.start),
         q_start=q_start,
         parallel=parallel,
+        delay=config.delay,
     )
+
+
+def _believe(config: RunConfig, repetition: int) -> Robot:
+    """Return the robot as its controllers believe it to be."""
+    generator = np.random.default_rng([config.settings.seed, repetition, _BELIEFS])
+    return believe(config.arm, config.mismatch, np.array(config.robot.payload.position), generator)
 
 
 def _check_path_reach(config: RunConfig, trajectory: Trajectory) -> None:
@@ -75,7 +93,7 @@ def _check_path_reach(config: RunConfig, trajectory: Trajectory) -> None:
         )
 
 
-def _make_plant(config: RunConfig, limits: FloatArray) -> Plant | PositionPlant:
+def _make_plant(config: RunConfig, believed: Robot, limits: FloatArray) -> Plant | PositionPlant:
     arm = config.arm
     plant: Plant | PositionPlant
     if PLANTS.commands(config.plant.kind) == "position":
@@ -85,14 +103,14 @@ def _make_plant(config: RunConfig, limits: FloatArray) -> Plant | PositionPlant:
     if config.commands == "torque":
         return plant
     every = round(config.controller.period / config.tick)
-    return JointServo(plant, arm.model, config.plant.servo, arm.home, limits, every)
+    return JointServo(plant, believed.model, config.plant.servo, arm.home, limits, every, config.delay)
 
 
 def _make_interaction(
     config: RunConfig, loops: tuple[Loop, ...], environment: Environment | None, plant: Any, start: FloatArray
 ) -> Interaction | None:
     """Return what the tip feels; a wall stands in the plant itself where that makes contacts."""
-    within = getattr(plant, "plant", plant)  # below a servo
+    within = innermost(plant)
     if isinstance(environment, Wall):
         tool = config.robot.tool
         if tool is None:
@@ -112,6 +130,7 @@ def _make_interaction(
 def _check_wall(config: RunConfig, wall: Wall) -> None:
     if getattr(config.controller, "check_stability", False):
         delay = 0 if PLANTS.commands(config.plant.kind) == "position" else 1
+        delay += math.ceil(config.delay * config.tick / config.controller.period - 1e-9)
         law, values = config.controller.law, wall.config
         check_wall(law, config.controller.period, values.stiffness, values.damping, delay)
 
@@ -159,10 +178,8 @@ def make_encoders(config: RunConfig, closed: ClosedLoop, repetition: int) -> lis
     is, it starts alike, so that runs can be compared in pairs.
     """
     noise = config.noise
-    per_stage = by_stage("noise.position", noise.position, config.arm.stage_names)
-    amplitudes = np.concatenate(
-        [np.full(stage.model.nq, value) for value, stage in zip(per_stage, config.arm.stages, strict=True)]
-    )
+    amplitudes = _for_joints(config, "noise.position", noise.position)
+    resolution = _for_joints(config, "noise.resolution", noise.resolution)
     return [
         JointEncoders(
             closed.ticks // closed.every(loop) + 1,
@@ -170,10 +187,18 @@ def make_encoders(config: RunConfig, closed: ClosedLoop, repetition: int) -> lis
             amplitudes,
             noise.distribution,
             noise.velocity,
+            resolution,
             np.random.default_rng([config.settings.seed, repetition, place]),
         )
         for place, loop in enumerate(closed.loops)
     ]
+
+
+def _for_joints(config: RunConfig, key: str, value: Any) -> FloatArray:
+    """Return a value by stage for each joint, shape (nq,)."""
+    stages = config.arm.stages
+    values = by_stage(key, value, config.arm.stage_names)
+    return np.concatenate([np.full(stage.model.nq, value) for stage, value in zip(stages, values, strict=True)])
 
 
 def make_wrist_sensor(config: RunConfig, closed: ClosedLoop, repetition: int) -> ForceTorqueSensor | None:

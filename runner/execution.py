@@ -74,6 +74,9 @@ def simulate_job(config: RunConfig, composed: Composed, time_limit: float | None
     notices: list[str] = []
     try:
         for repetition in range(config.settings.repetitions):
+            if repetition > 0 and config.mismatch.spread > 0.0:  # other beliefs
+                last, loop = loop, assemble(config, repetition)
+                last.plant.close()
             encoders, wrist = make_encoders(config, loop, repetition), make_wrist_sensor(config, loop, repetition)
             if time_limit is not None:
                 encoders = [_Timed(sensor, wall + time_limit) for sensor in encoders]

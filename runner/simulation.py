@@ -9,7 +9,7 @@ import numpy as np
 
 from runner.controllers import Loop
 from runner.interaction import Interaction, Touch
-from runner.plants import Plant, PositionPlant
+from runner.plants import Plant, PositionPlant, innermost
 from runner.robots.robot import Robot, end_points
 from runner.sensing import ForceTorqueSensor, JointEncoders
 from runner.trace import Failure, FloatArray, Trace
@@ -36,6 +36,7 @@ class ClosedLoop:
         interaction: What the tip feels of the world; None where there is nothing to feel.
         q_start: Joint positions at t = 0, shape (nq,), in rad; the robot starts at rest.
         parallel: Whether riding stages keep the orientation of home, as the plant has it.
+        delay: Ticks from a command until it acts.
     """
 
     robot: Robot
@@ -49,6 +50,7 @@ class ClosedLoop:
     interaction: Interaction | None
     q_start: FloatArray
     parallel: bool
+    delay: int
 
     def every(self, loop: Loop) -> int:
         """Return the number of ticks in a loop's period."""
@@ -59,8 +61,9 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
     """Run the control loops once.
 
     At each of its ticks a loop reads the encoders of every joint afresh, asks its controller, and its torques are
-    clipped joint by joint and held until its next tick, while the plant advances. The last row holds the final state,
-    with the torques asked for there. Joint positions are handed on as they are; the torques are then the plant's, and
+    clipped joint by joint and held until its next tick, while the plant advances. They act, and stand in the trace, by
+    the delay later; the first act from the start. The last row holds the final state, with the torques that would act
+    from there. Joint positions are handed on as they are; the torques are then the plant's, and
     the last row repeats those of the last tick.
 
     Args:
@@ -85,7 +88,7 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
         (closed.every(loop), sensor.measure, law, loop.joints, closed.limits[loop.joints])
         for loop, sensor, law in zip(closed.loops, encoders, laws, strict=True)
     ]
-    touch = None
+    touch, moved = None, innermost(plant)
     if closed.interaction is not None and wrist is not None:
         feeling: Any = [loop.controller for loop in closed.loops if loop.feels]
         touch = Touch(closed.interaction, wrist, feeling, closed.q_start, n + 1)
@@ -101,7 +104,7 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
             q_rows[k] = q = plant.q
             dq_rows[k] = dq = plant.dq
             if touch is not None:
-                load = touch.update(k, times[k], q, dq, getattr(plant, "plant", plant))  # what is below a servo
+                load = touch.update(k, times[k], q, dq, moved)
             try:
                 for every, measure, law, joints, limits in loops:
                     if k % every == 0:
@@ -119,13 +122,14 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
             if k % _CHECK_EVERY == 0 and (diverged := _find_divergence(q_rows, dq_rows, k)) is not None:
                 break
             if k < n:
+                acting = held_rows[max(k - closed.delay, 0)]
                 if positions:
                     if load is not None:
                         plant.load[:] = load
-                    plant.advance(held)
+                    plant.advance(acting)
                     tau_rows[k] = tau_rows[k + 1] = plant.tau
                 else:
-                    plant.advance(held if load is None else held + load)
+                    plant.advance(acting if load is None else acting + load)
         else:
             diverged = _find_divergence(q_rows, dq_rows, n)
     if failure is None and diverged is not None:
@@ -137,7 +141,7 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
         t=times[kept],
         q=q_rows[kept],
         dq=dq_rows[kept],
-        tau=(tau_rows if positions else held_rows)[kept],
+        tau=(tau_rows if positions else held_rows[np.maximum(np.arange(n + 1) - closed.delay, 0)])[kept],
         q_command=held_rows[kept] if positions else None,
         touch=None if touch is None else touch.signals(kept),
         end_points=end_points(closed.robot, q_rows[kept], closed.parallel),

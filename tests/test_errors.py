@@ -38,5 +38,5 @@ def test_a_simulation_error_says_when_and_where(joint, text):
 
 def test_a_config_error_comes_out_of_a_worker_process_as_it_went_in():
     error = ConfigError(["a.b: must be above 0; found -1", "c: unknown key"], "  2 runs are stored already")
-    again = pickle.loads(pickle.dumps(error))  # noqa: S301 - what processes do with what they hand over
+    again = pickle.loads(pickle.dumps(error))
     assert (again.problems, again.hint, str(again)) == (error.problems, error.hint, str(error))

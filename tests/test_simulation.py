@@ -70,7 +70,9 @@ def loop_of(closed_loop):
 
 
 def exact(loop):
-    return [JointEncoders(loop.ticks + 1, loop.tick, np.zeros(3), "none", "exact", np.random.default_rng(0))]
+    return [
+        JointEncoders(loop.ticks + 1, loop.tick, np.zeros(3), "none", "exact", np.zeros(3), np.random.default_rng(0))
+    ]
 
 
 def fingerprint(trace):

@@ -58,7 +58,7 @@
     const filters = [...axes, ...(runs.some(failed) ? [status] : [])];
     const hidden = filters.map(() => new Set());
     const state = {
-      x: axes[0] ?? metrics[0], y: metrics[0] ?? axes[0], color: axes[1] ?? null,
+      x: axes[0] ?? metrics[0], y: metrics[axes.length ? 0 : 1] ?? metrics[0] ?? axes[0], color: axes[1] ?? null,
       sort: null, up: true, rows: FIRST_ROWS, chosen: null,
     };
 

@@ -5,6 +5,7 @@ A key is tuned by its range in place of a value: controller.natural_frequency="i
 where it was interrupted; with more --trials it adds to them.
 """
 
+import argparse
 import shlex
 import sys
 from collections.abc import Sequence
@@ -12,6 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runner.commands import report
 from runner.commands.arguments import Parser
 from runner.config.compose import quiet_environment
 from runner.errors import RunnerError
@@ -51,6 +53,9 @@ def main(arguments: Sequence[str]) -> int:
         parser.error("name a metric to --minimize or --maximize")
     if len({metric for _, metric in objectives}) < len(objectives):
         raise RunnerError("a metric cannot be minimized and maximized at once")
+    for folder in options.config_dir:
+        if not folder.is_dir():
+            raise RunnerError(f"--config-dir: no folder {folder}")
     quiet_environment()
     from runner.tuning.objective import Objective
     from runner.tuning.run import tune
@@ -67,8 +72,6 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _tell(tuning: "Tuning") -> int:
-    from runner.reporting.render import write_report
-    from runner.reporting.tuning.report import tuning_document
     from runner.tuning.trial import best
 
     trials, objectives = tuning.trials, tuning.study.objectives
@@ -80,9 +83,7 @@ def _tell(tuning: "Tuning") -> int:
             for objective, value in zip(objectives, trials[number].values, strict=True)
         )
         print(f"best: {values} with {shlex.join(tuning.study.trial_overrides(trials[number]))}")
-    folder = tuning.folder.parent.parent / "reports" / tuning.folder.name
-    write_report(tuning_document(tuning, folder), folder)
-    print(folder)
+    report.main([str(tuning.folder)])
     return 0 if failed < len(trials) else 1
 
 
@@ -91,7 +92,6 @@ def _objective(direction: str, metric: str) -> tuple[str, str]:
 
 
 def _count(text: str) -> int:
-    number = int(text)
-    if number < 1:
-        raise ValueError
-    return number
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"must be a whole number, 1 or more; found '{text}'")
+    return int(text)

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 
-from pydantic import PositiveFloat
+from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.errors import ConfigError
 
 PositivePerJoint = PositiveFloat | list[PositiveFloat]
+NonNegativePerJoint = NonNegativeFloat | list[NonNegativeFloat]
 
 
 def expand(key: str, value: float | list[float], joints: Sequence[str]) -> list[float]:

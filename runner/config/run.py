@@ -11,6 +11,7 @@ from runner.config.robot import RobotConfig
 from runner.config.sweep import SweepConfig
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.registry import StrictModel
+from runner.robots.mismatch import MismatchConfig
 from runner.robots.robot import Robot
 from runner.sensing import ForceTorqueConfig
 
@@ -46,6 +47,7 @@ class RunConfig:
         torque_limits: Config of the torque limits.
         environment: Config of the world around the tip, likewise.
         wrist_sensor: Config of the force/torque sensor.
+        mismatch: How what the controllers believe of the robot differs from it.
         robot: Config of the robot.
         sweep: How a sweep that the run is part of is run.
         arm: The robot's rigid-body model, stage by stage.
@@ -53,6 +55,7 @@ class RunConfig:
         commands: Whether the controller gives joint torques, or joint positions to a plant that follows them.
         step: Integration step of the plant, in s.
         steps_per_tick: Integration steps in one tick.
+        delay: Ticks from a command until it acts.
         resolved: The composed config as plain data, interpolations resolved.
     """
 
@@ -64,6 +67,7 @@ class RunConfig:
     torque_limits: TorqueLimitsConfig
     environment: Any
     wrist_sensor: ForceTorqueConfig
+    mismatch: MismatchConfig
     robot: RobotConfig
     sweep: SweepConfig
     arm: Robot
@@ -71,6 +75,7 @@ class RunConfig:
     commands: Literal["torque", "position"]
     step: float
     steps_per_tick: int
+    delay: int
     resolved: Mapping[str, Any]
 
     @property

@@ -49,6 +49,24 @@ def count_steps(arm: Robot, plant: Any, controller: Any) -> tuple[float, float, 
     return tick, step, steps
 
 
+def count_delay(plant: Any, tick: float) -> int:
+    """Return the number of ticks from a command until it acts; a plant whose config has no such key has none.
+
+    Raises:
+        ConfigError: if the delay is no multiple of the tick.
+    """
+    delay: float = getattr(plant, "command_delay", 0.0)
+    ticks = round(delay / tick)
+    if delay and not _is_multiple(delay, tick):
+        raise ConfigError(
+            [
+                f"plant.command_delay: {delay:g} s is no multiple of the fastest loop's period, {tick:g} s; take "
+                f"{ticks * tick:g} or {(ticks + (1 if delay > ticks * tick else -1)) * tick:g}"
+            ]
+        )
+    return ticks
+
+
 def check_duration(settings: RunSettings, tick: float, trajectory: Any) -> None:
     """Check that a run is neither shorter than a tick nor longer than memory holds.
 

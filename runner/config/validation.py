@@ -13,16 +13,17 @@ from runner.config.parsing import parse, parse_group
 from runner.config.per_joint import expand
 from runner.config.per_stage import by_stage
 from runner.config.preset import PresetConfig
-from runner.config.robot import OneArmConfig
+from runner.config.robot import OneArmConfig, RobotConfig
 from runner.config.run import RunConfig, RunSettings
 from runner.config.sweep import SweepConfig
-from runner.config.timing import check_duration, count_steps
+from runner.config.timing import check_duration, count_delay, count_steps
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS
 from runner.environments import ENVIRONMENTS
 from runner.errors import ConfigError, nearest
 from runner.plants import PLANTS
 from runner.registry import Registry, StrictModel
+from runner.robots.mismatch import MismatchConfig
 from runner.robots.model import STANDARD_GRAVITY
 from runner.robots.robot import Robot
 from runner.sensing import ForceTorqueConfig
@@ -38,6 +39,7 @@ _PLAIN: dict[str, type[StrictModel]] = {
     "noise": NoiseConfig,
     "torque_limits": TorqueLimitsConfig,
     "wrist_sensor": ForceTorqueConfig,
+    "mismatch": MismatchConfig,
     "robot": OneArmConfig,
     "preset": PresetConfig,
     "sweep": SweepConfig,
@@ -69,8 +71,9 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
     settings = collect(lambda: parse("", RunSettings, {key: resolved.get(key) for key in _SETTINGS}))
     parts = {group: collect(partial(parse_group, group, kind, resolved)) for group, kind in _GROUPS.items()}
     robot, plant, controller, trajectory = (parts[g] for g in ("robot", "plant", "controller", "trajectory"))
-    arm, timing = None, None
+    arm, timing, delay = None, None, None
     if robot is not None:
+        collect(lambda: _check_payload(robot, parts["mismatch"]))
         gravity = STANDARD_GRAVITY if settings is None else settings.gravity
         arm = collect(lambda: build_robot(robot, gravity, config_dirs, parts["wrist_sensor"]))
     if arm is not None:
@@ -82,9 +85,11 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
             timing = collect(lambda: count_steps(arm, plant, controller))
         if controller is not None and not problems:
             collect(lambda: CONTROLLERS.build(controller, arm))
+    if timing is not None:
+        delay = collect(lambda: count_delay(plant, timing[0]))
     if settings is not None and timing is not None and trajectory is not None:
         collect(lambda: check_duration(settings, timing[0], trajectory))
-    if problems or arm is None or timing is None:
+    if problems or arm is None or timing is None or delay is None:
         raise ConfigError(problems)
     tick, step, steps_per_tick = timing
     parts.pop("preset")  # its values have been taken by the other groups
@@ -96,6 +101,7 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
         commands=CONTROLLERS.commands(controller.kind),
         step=step,
         steps_per_tick=steps_per_tick,
+        delay=delay,
         resolved=resolved,
     )
 
@@ -109,9 +115,9 @@ def _check_groups(resolved: Mapping[str, Any]) -> None:
 
 def _check_stage_values(arm: Robot, noise: NoiseConfig | None, torque_limits: TorqueLimitsConfig | None) -> None:
     problems: list[str] = []
-    if noise is not None:
+    for key in ("position", "resolution") if noise is not None else ():
         try:
-            by_stage("noise.position", noise.position, arm.stage_names)
+            by_stage(f"noise.{key}", getattr(noise, key), arm.stage_names)
         except ConfigError as error:
             problems += error.problems
     if torque_limits is not None and torque_limits.max is not None:
@@ -124,6 +130,16 @@ def _check_stage_values(arm: Robot, noise: NoiseConfig | None, torque_limits: To
             problems += error.problems
     if problems:
         raise ConfigError(problems)
+
+
+def _check_payload(robot: RobotConfig, mismatch: MismatchConfig | None) -> None:
+    if mismatch is not None and mismatch.payload < -robot.payload.mass:
+        raise ConfigError(
+            [
+                f"mismatch.payload: {mismatch.payload:g} kg is less than nothing of the true payload, "
+                f"robot.payload.mass with {robot.payload.mass:g} kg; allowed: {-robot.payload.mass:g} or more"
+            ]
+        )
 
 
 def _check_commands(plant: str, controller: str) -> None:

@@ -1,6 +1,6 @@
 """Simulated arms: from torques, or joint positions commanded, to true motion."""
 
-from runner.plants.plant import Plant, PositionPlant
+from runner.plants.plant import Plant, PositionPlant, innermost
 from runner.registry import Registry
 
 PLANTS = Registry(
@@ -8,4 +8,4 @@ PLANTS = Registry(
     {"bullet": "runner.plants.bullet", "kinematic": "runner.plants.kinematic", "rk4": "runner.plants.rk4"},
 )
 
-__all__ = ["PLANTS", "Plant", "PositionPlant"]
+__all__ = ["PLANTS", "Plant", "PositionPlant", "innermost"]

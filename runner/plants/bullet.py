@@ -5,10 +5,11 @@ from typing import Literal
 
 import numpy as np
 import pinocchio as pin
-from pydantic import PositiveFloat
+from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.errors import ConfigError
 from runner.plants.decoupled import assemble_plant
+from runner.plants.friction import FrictionConfig
 from runner.plants.plant import FloatArray, Plant
 from runner.plants.quiet import quiet_stderr
 from runner.plants.servo import ServoConfig
@@ -33,6 +34,8 @@ class BulletConfig(StrictModel):
         step: Integration step, in s; None is a tenth of the fastest controller period, a quarter with several stages.
         dynamics: Whether stages that ride on each other act on each other; see assemble_plant.
         wrist_rotation: Whether the carrier turns the rider's base; see assemble_plant.
+        friction: Friction in the joints.
+        command_delay: Time from a controller's command until it acts, in s.
         servo: The joints' position servos, where the controller commands joint positions.
     """
 
@@ -40,6 +43,8 @@ class BulletConfig(StrictModel):
     step: PositiveFloat | None
     dynamics: Literal["coupled", "decoupled"]
     wrist_rotation: Literal["real", "parallel"]
+    friction: FrictionConfig
+    command_delay: NonNegativeFloat
     servo: ServoConfig
 
 
@@ -61,6 +66,8 @@ class Bullet:
         self.dq = np.zeros(model.nq)
         self._client = _idle.pop() if _idle else pybullet.connect(pybullet.DIRECT)
         self._wall: int | None = None
+        self._tool_mount: int | None = None
+        self._steps_per_tick = steps_per_tick
         try:
             self._body = self._load(urdf)
             self._joints = self._order_joints(model.joint_names)
@@ -184,7 +191,8 @@ class Bullet:
         wrench = np.zeros(6)
         if self._wall is not None:
             for contact in pybullet.getContactPoints(self._body, self._wall, physicsClientId=self._client):
-                place, force = np.array(contact[5]), contact[9] * np.array(contact[7])
+                # Bullet divides the impulse of the last step by the time of all steps of the tick.
+                place, force = np.array(contact[5]), self._steps_per_tick * contact[9] * np.array(contact[7])
                 wrench += np.concatenate([force, np.cross(place, force)])
         return wrench
 
@@ -202,7 +210,8 @@ CONFIG = BulletConfig
 
 def build(config: BulletConfig, robot: Robot, step: float, steps_per_tick: int) -> Plant:
     """Make the plant that a config describes."""
-    return assemble_plant(config, robot, lambda urdf, model: Bullet(urdf, model, step, steps_per_tick))
+    tick = step * steps_per_tick
+    return assemble_plant(config, robot, tick, lambda urdf, model: Bullet(urdf, model, step, steps_per_tick))
 
 
 def default_step(tick: float, stages: int) -> float:

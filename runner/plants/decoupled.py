@@ -5,7 +5,9 @@ from typing import Protocol
 
 import numpy as np
 
+from runner.config.per_joint import expand
 from runner.errors import ConfigError
+from runner.plants.friction import FrictionConfig, rub
 from runner.plants.plant import FloatArray, Plant
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, StageBase
@@ -24,33 +26,48 @@ class StagedPlantConfig(Protocol):
         """Either "real" or "parallel"."""
         ...
 
+    @property
+    def friction(self) -> FrictionConfig:
+        """Friction in the joints."""
+        ...
 
-def assemble_plant(config: StagedPlantConfig, robot: Robot, make: Callable[[str, RobotModel], Plant]) -> Plant:
+
+def assemble_plant(
+    config: StagedPlantConfig, robot: Robot, tick: float, make: Callable[[str, RobotModel], Plant]
+) -> Plant:
     """Make a plant for a robot: of the whole, or of its stages each for itself.
 
     A robot of one stage has nothing to couple, and both keys no effect.
 
     Args:
-        config: Says whether stages act on each other (dynamics) and whether a carrier turns its rider (wrist_rotation).
+        config: Says whether stages act on each other (dynamics), whether a carrier turns its rider (wrist_rotation),
+            and what friction there is in the joints.
         robot: The robot.
-        make: Makes the plant of one arm from its URDF text and model.
+        tick: Time that one `advance` takes, in s.
+        make: Makes the plant of one arm, without friction, from its URDF text and model.
 
     Raises:
-        ConfigError: for coupled dynamics with a base that does not turn, which no rigid body can do.
+        ConfigError: for coupled dynamics with a base that does not turn, which no rigid body can do, or a list of
+            another length than the robot has joints.
     """
+    names = robot.model.joint_names
+    viscous = np.array(expand("plant.friction.viscous", config.friction.viscous, names))
+    coulomb = np.array(expand("plant.friction.coulomb", config.friction.coulomb, names))
+
+    def make_rubbing(urdf: str, model: RobotModel, joints: slice) -> Plant:
+        return rub(make(urdf, model), model, viscous[joints], coulomb[joints], tick)
+
     parallel = config.wrist_rotation == "parallel"
-    if len(robot.stages) == 1:
-        return make(robot.urdf, robot.model)
-    if config.dynamics == "coupled":
-        if parallel:
+    if len(robot.stages) == 1 or config.dynamics == "coupled":
+        if parallel and len(robot.stages) > 1:
             raise ConfigError(
                 [
                     "plant.wrist_rotation: parallel leaves the rider's base unturned, which coupled rigid bodies "
                     "cannot; set plant.dynamics=decoupled, or plant.wrist_rotation=real"
                 ]
             )
-        return make(robot.urdf, robot.model)
-    return Decoupled(robot, [make(stage.urdf, stage.model) for stage in robot.stages], parallel)
+        return make_rubbing(robot.urdf, robot.model, slice(None))
+    return Decoupled(robot, [make_rubbing(stage.urdf, stage.model, stage.joints) for stage in robot.stages], parallel)
 
 
 class Decoupled:

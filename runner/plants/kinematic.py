@@ -4,6 +4,7 @@ from typing import Literal
 
 import numpy as np
 import pinocchio as pin
+from pydantic import NonNegativeFloat
 
 from runner.plants.plant import FloatArray, Plant
 from runner.plants.set_points import SetPoints
@@ -21,11 +22,13 @@ class KinematicConfig(StrictModel):
         kind: Its name in the registry.
         step: None: nothing is integrated.
         wrist_rotation: Whether the carrier turns the rider's base, where arms ride on each other.
+        command_delay: Time from a controller's command until it acts, in s.
     """
 
     kind: Literal["kinematic"]
     step: None
     wrist_rotation: Literal["real"]
+    command_delay: NonNegativeFloat
 
 
 class Kinematic:

@@ -1,6 +1,6 @@
 """What every plant offers."""
 
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,3 +42,10 @@ class PositionPlant(Plant, Protocol):
 
     tau: FloatArray
     load: FloatArray
+
+
+def innermost(plant: Any) -> Any:
+    """Return the plant that moves the arm, below servos and friction."""
+    while hasattr(plant, "plant"):
+        plant = plant.plant
+    return plant

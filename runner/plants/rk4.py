@@ -4,9 +4,10 @@ from typing import Literal
 
 import numpy as np
 import pinocchio as pin
-from pydantic import PositiveFloat
+from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.plants.decoupled import assemble_plant
+from runner.plants.friction import FrictionConfig
 from runner.plants.plant import FloatArray, Plant
 from runner.plants.servo import ServoConfig
 from runner.registry import StrictModel
@@ -22,6 +23,8 @@ class Rk4Config(StrictModel):
         step: Integration step, in s; None is the fastest controller period.
         dynamics: Whether stages that ride on each other act on each other; see assemble_plant.
         wrist_rotation: Whether the carrier turns the rider's base; see assemble_plant.
+        friction: Friction in the joints.
+        command_delay: Time from a controller's command until it acts, in s.
         servo: The joints' position servos, where the controller commands joint positions.
     """
 
@@ -29,6 +32,8 @@ class Rk4Config(StrictModel):
     step: PositiveFloat | None
     dynamics: Literal["coupled", "decoupled"]
     wrist_rotation: Literal["real", "parallel"]
+    friction: FrictionConfig
+    command_delay: NonNegativeFloat
     servo: ServoConfig
 
 
@@ -92,7 +97,8 @@ CONFIG = Rk4Config
 
 def build(config: Rk4Config, robot: Robot, step: float, steps_per_tick: int) -> Plant:
     """Make the plant that a config describes."""
-    return assemble_plant(config, robot, lambda _, model: Rk4(model, step, steps_per_tick))
+    tick = step * steps_per_tick
+    return assemble_plant(config, robot, tick, lambda _, model: Rk4(model, step, steps_per_tick))
 
 
 def default_step(tick: float, stages: int) -> float:

@@ -47,11 +47,12 @@ class JointServo:
 
     Args:
         plant: The plant; one `advance` of it takes a servo period.
-        model: The arm, for M, V and G.
+        model: The arm as the servo believes it to be, for M, V and G.
         config: The servo's numbers.
         home: Posture at which the damping is set, shape (nq,), in rad.
         limits: Torque limits, shape (nq,), in N m; infinite where there is none.
         ticks_per_command: Servo periods from one command to the next.
+        delay: Servo periods that a command is late.
 
     Raises:
         ConfigError: if the stiffness is a list of another length than the arm has joints.
@@ -65,6 +66,7 @@ class JointServo:
         home: FloatArray,
         limits: FloatArray,
         ticks_per_command: int,
+        delay: int = 0,
     ) -> None:
         self.plant = plant
         """What the servos drive, by torques."""
@@ -80,7 +82,7 @@ class JointServo:
         self._damping = 2.0 * config.damping_ratio * np.sqrt(self._stiffness * inertia)
         self._added_inertia = config.period * self._damping + config.period**2 * self._stiffness
         self._gravity_compensation = config.gravity_compensation
-        self._set_points = SetPoints(ticks_per_command, config.period, model.velocity_limits, config.interpolate)
+        self._set_points = SetPoints(ticks_per_command, config.period, model.velocity_limits, config.interpolate, delay)
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Put the arm into a state, its set-points where it stands; see Plant."""

@@ -129,12 +129,17 @@ class RobotModel:
         """Mass of all moving links, in kg."""
         return float(sum(inertia.mass for inertia in list(self.pin_model.inertias)[1:]))
 
-    def with_payload(self, mass: float) -> "RobotModel":
-        """Return this arm with a point mass, in kg, fixed at its tip."""
+    def with_payload(self, mass: float, position: FloatArray | None = None) -> "RobotModel":
+        """Return this arm with a point mass fixed at its tip.
+
+        Args:
+            mass: In kg; below 0 it takes off what is there.
+            position: Its place in the tip's frame, shape (3,), in m; None is the tip itself.
+        """
         loaded = copy.copy(self)
         loaded.pin_model = pin.Model(self.pin_model)
         frame = loaded.pin_model.frames[self.tip_frame]
-        point = pin.Inertia(mass, np.zeros(3), np.zeros((3, 3)))
+        point = pin.Inertia(mass, np.zeros(3) if position is None else position, np.zeros((3, 3)))
         loaded.pin_model.appendBodyToJoint(frame.parentJoint, point, frame.placement)
         loaded._data = loaded.pin_model.createData()
         return loaded

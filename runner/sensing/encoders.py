@@ -1,4 +1,4 @@
-"""Joint encoders: noisy joint positions, and velocities exact or differenced."""
+"""Joint encoders: joint positions noisy and in steps, and velocities exact or differenced."""
 
 from typing import Literal
 
@@ -20,6 +20,7 @@ class JointEncoders:
             in rad.
         distribution: Shape of the position noise.
         velocity: Whether velocities are exact, or differences of the measured positions over the period.
+        resolution: Step to which each joint's noisy position is rounded, shape (nq,), in rad; 0 for none.
         generator: Source of the draws.
     """
 
@@ -30,6 +31,7 @@ class JointEncoders:
         amplitudes: FloatArray,
         distribution: Literal["uniform", "gaussian", "none"],
         velocity: Literal["exact", "finite_difference"],
+        resolution: FloatArray,
         generator: np.random.Generator,
     ) -> None:
         if distribution == "none":
@@ -38,6 +40,8 @@ class JointEncoders:
             self._noise = amplitudes * generator.uniform(-1.0, 1.0, (ticks, len(amplitudes)))
         else:
             self._noise = amplitudes * generator.standard_normal((ticks, len(amplitudes)))
+        self._rounded = resolution > 0.0
+        self._resolution = resolution[self._rounded]
         self._period = period
         self._differenced = velocity == "finite_difference"
         self._last: FloatArray | None = None
@@ -48,6 +52,8 @@ class JointEncoders:
         A differenced velocity starts from the first measurement: it is zero there, as the arm starts at rest.
         """
         measured = q + self._noise[tick]
+        if len(self._resolution):
+            measured[self._rounded] = np.round(measured[self._rounded] / self._resolution) * self._resolution
         if not self._differenced:
             return measured, dq
         velocity = np.zeros_like(q) if self._last is None else (measured - self._last) / self._period

@@ -11,8 +11,13 @@ from runner.errors import StoreError
 _STALE = 60.0  # s; a temporary file lives for milliseconds
 
 
-def write_atomically(path: Path, content: bytes) -> None:
+def write_atomically(path: Path, content: bytes, flush: bool = True) -> None:
     """Write a file through a temporary one in the same folder, which is made when missing.
+
+    Args:
+        path: The file.
+        content: What it shall hold.
+        flush: Whether it is on the disk on return; else a power cut may leave it empty, for its reader to find out.
 
     Raises:
         StoreError: if the folder or disk does not take it; what stood there before is untouched.
@@ -22,8 +27,9 @@ def write_atomically(path: Path, content: bytes) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         with temporary.open("wb") as file:
             file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
+            if flush:
+                file.flush()
+                os.fsync(file.fileno())
         temporary.replace(path)
     except OSError as error:
         with contextlib.suppress(OSError):  # the first error says more

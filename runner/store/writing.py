@@ -64,9 +64,9 @@ def find_run(outputs: Path, name: str) -> Run | None:
     try:
         run = open_run(outputs / "runs" / name)
         _ = run.units  # reads the trace's file
+        return run if run.urdf else None
     except StoreError:
         return None
-    return run
 
 
 def find_outcome(outputs: Path, name: str) -> Outcome | None:
@@ -79,7 +79,8 @@ def find_outcome(outputs: Path, name: str) -> Outcome | None:
         record = json.loads((folder / "metrics.json").read_bytes())
         with (folder / "trace.parquet").open("rb") as trace:
             trace.seek(-len(_PARQUET_END), io.SEEK_END)
-            whole = trace.read() == _PARQUET_END and (folder / "config.yaml").stat().st_size > 0
+            whole = trace.read() == _PARQUET_END
+        whole = whole and all((folder / other).stat().st_size > 0 for other in ("config.yaml", "robot.urdf"))
         return outcome(Run(folder, {}, record)) if whole else None
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
@@ -94,9 +95,9 @@ def write_run(outputs: Path, name: str, result: RunResult) -> Run:
     folder = outputs / "runs" / name
     record = make_record(result)
     config = yaml.dump(dict(result.resolved), sort_keys=False, Dumper=yaml.CSafeDumper)
-    write_atomically(folder / "config.yaml", config.encode())
-    write_atomically(folder / "robot.urdf", result.urdf.encode())
     write_atomically(folder / "trace.parquet", _parquet(result.trace))
+    write_atomically(folder / "config.yaml", config.encode(), flush=False)
+    write_atomically(folder / "robot.urdf", result.urdf.encode(), flush=False)
     write_atomically(folder / "metrics.json", (json.dumps(record, indent=1, allow_nan=False) + "\n").encode())
     return Run(folder, result.resolved, record)
 

@@ -144,6 +144,7 @@ def local_client(workers: int, scratch: Path) -> Iterator[Any]:
                 dashboard_address="127.0.0.1:0",  # none is installed, but its port is opened
                 memory_limit=0,
                 local_directory=str(scratch),
+                preload="runner.sweep.work",  # for its dask_setup
                 silence_logs=logging.CRITICAL,
             ) as cluster,
             Client(cluster) as client,

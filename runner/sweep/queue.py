@@ -3,28 +3,36 @@
 import time
 from collections import deque
 from collections.abc import Iterable, Sequence
+from typing import Protocol
 
 from runner import store
-from runner.sweep.plan import Plan
+from runner.config.compose import Composed
 from runner.sweep.work import Chunk, Report, Rules, find_in_shard
 
 _SECONDS_PER_CHUNK = 1.0  # long against the 5 ms that a chunk costs, short against a sweep
 _LARGEST = 500
 
 
+class Cells(Protocol):
+    """What gives the cells of a queue, such as a plan."""
+
+    def composed(self, cell: int) -> Composed:
+        """Return the composed config of a cell."""
+
+
 class Queue:
     """Chunks that take about a second each, single runs at first and again when few are left; suspects come last.
 
     Args:
-        plan: The sweep's plan.
+        cells_of: Gives their configs: the sweep's plan.
         names: Hash of each cell's run.
         cells: The cells to do.
         rules: How their runs are made and kept.
     """
 
-    def __init__(self, plan: Plan, names: Sequence[str], cells: Iterable[int], rules: Rules) -> None:
+    def __init__(self, cells_of: Cells, names: Sequence[str], cells: Iterable[int], rules: Rules) -> None:
         self.rules = rules
-        self._plan, self._names = plan, names
+        self._cells_of, self._names = cells_of, names
         self._left, self._suspects = deque(cells), deque[int]()
         self._cell_of = {names[cell]: cell for cell in self._left}
         self._begun = f"{time.time_ns():020d}"
@@ -66,5 +74,5 @@ class Queue:
 
     def _chunk(self, cells: Sequence[int]) -> Chunk:
         self._handed_out += 1
-        runs = [(self._names[cell], self._plan.composed(cell)) for cell in cells]
+        runs = [(self._names[cell], self._cells_of.composed(cell)) for cell in cells]
         return Chunk(f"{self._begun}-{self._handed_out:06d}", self.rules, runs)

@@ -2,7 +2,7 @@
 
 import shutil
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -71,22 +71,23 @@ def run_sweep(plan: Plan, engine: Engine, command: str) -> Ended:
     store.prepare(outputs)
     with at_work(outputs):
         folder = store.write_sweep(outputs, [(plan.overrides(i), name) for i, name in enumerate(names)], command)
-        rules = _rules(checked.settings, folder, len(names))
+        rules = make_rules(checked.settings, folder, len(names))
         ends = _find_stored(names, rules)
         left = list({name: cell for cell, name in enumerate(names) if name not in ends}.values())
-        for report in _make(plan, Queue(plan, names, left, rules), left, engine, len(ends)):
+        for report in make_runs(plan, Queue(plan, names, left, rules), left, engine, len(ends)):
             ends |= {end.name: end for end in report.outcomes}
             if report.trouble:
                 raise StoreError(f"{report.trouble}; finished runs are stored, the same command goes on from there")
             if rules.stop_at_failure and any(end.failure for end in report.outcomes):
                 break
-        _clean(rules, [names[cell] for cell in left])
+        clean(rules, set(names))
     failed = [(cell, ends[name]) for cell, name in enumerate(names) if name in ends and ends[name].failure]
     failures = [(plan.overrides(cell), end.failure, _where(end.name, outputs, folder)) for cell, end in failed]
     return Ended(folder, failures, len(set(names) - ends.keys()))
 
 
-def _rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
+def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
+    """Return how so many runs of a sweep, which is kept in a folder, are made."""
     automatic: TraceKeeping = "all" if runs <= _ALL_TRACES_UP_TO else "sample"
     folder = folder.resolve()
     return Rules(
@@ -117,7 +118,7 @@ def _find_stored(names: Sequence[str], rules: Rules) -> dict[str, store.Outcome]
     return found
 
 
-def _make(plan: Plan, queue: Queue, cells: Sequence[int], engine: Engine, stored: int) -> Iterator[Report]:
+def make_runs(plan: Plan, queue: Queue, cells: Sequence[int], engine: Engine, stored: int) -> Iterator[Report]:
     """Make the runs of a queue and show the progress; yield what became of each chunk."""
     _tell(f"{len(cells) + stored} runs, {stored} of them stored already" if stored else f"{len(cells)} runs")
     if not cells:
@@ -157,8 +158,8 @@ def _scratch(rules: Rules) -> Path:
     return rules.sweep / "scratch"
 
 
-def _clean(rules: Rules, names: Sequence[str]) -> None:
-    """Remove what processes that were killed left behind: temporary files, and half-written runs now in a shard."""
+def clean(rules: Rules, names: Iterable[str]) -> None:
+    """Remove what killed processes left behind, now or earlier: temporary files, and folders without metrics."""
     shutil.rmtree(_scratch(rules), ignore_errors=True)
     for folder in (rules.sweep, rules.sweep / "logs", rules.outputs / "shards", rules.outputs / "runs"):
         remove_leftovers(folder)

@@ -1,5 +1,6 @@
 """What a worker does with a chunk of runs: simulate those that are not stored yet, and store them."""
 
+import signal
 import threading
 import time
 import traceback
@@ -89,6 +90,11 @@ class Report:
     outcomes: Sequence[store.Outcome]
     trouble: str
     seconds: float
+
+
+def dask_setup(_worker: object) -> None:
+    """Leave Ctrl-C to the command, which ends its workers; Dask calls this in each process of `local_client`."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def work(chunk: Chunk) -> Report:

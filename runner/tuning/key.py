@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from hydra.core.override_parser.types import IntervalSweep, Override, RangeSweep, Transformer
 
@@ -9,7 +10,7 @@ from runner.errors import ConfigError
 
 RANGES = (
     "interval(low, high), tag(log, interval(low, high)), int(interval(low, high)) for whole numbers, or "
-    "range(start, stop, step), which leaves stop out"
+    "range(start, stop, step) for a grid"
 )
 
 _INSIDE = 0.618  # of the way from low to high: a place that no round number of a user stands at
@@ -76,20 +77,18 @@ def read_key(override: Override) -> Key | None:
     Raises:
         ConfigError: for a range that is empty or of another kind, and for several values.
     """
-    found = override.value()
+    found: Any = override.value()
     if not override.is_sweep_override():
         return None
     name = override.key_or_group
     if isinstance(found, IntervalSweep) and found.tags <= {"log"}:
-        integer = isinstance(found.start, int)
-        return Key(name, found.start, found.end, None, "log" in found.tags, integer)
+        ends: tuple[Any, Any] = (found.start, found.end)
+        return Key(name, *ends, step=None, log="log" in found.tags, integer=isinstance(ends[0], int))
     if isinstance(found, RangeSweep) and not found.tags:
-        values = list(override.sweep_iterator(Transformer.identity))
+        values: list[Any] = list(override.sweep_iterator(Transformer.identity))
         if len(values) < 2:
-            raise ConfigError(
-                [f"{name}: its range is empty; {found.start} to {found.stop} by {found.step} is one value"]
-            )
+            raise ConfigError([f"{name}: its range is empty; {found.start} to {found.stop} has no two values"])
         integer = all(isinstance(value, int) for value in values)
-        return Key(name, values[0], values[-1], abs(found.step), False, integer)
+        return Key(name, values[0], values[-1], step=abs(found.step), log=False, integer=integer)
     text = (override.input_line or "").removeprefix("++")
     raise ConfigError([f"'{text}' is no range to tune in; ranges: {RANGES}"])

@@ -3,13 +3,11 @@
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import cast
 
 from runner import store
 from runner.config.compose import Composed
 from runner.config.validation import validate
 from runner.errors import ConfigError
-from runner.sweep.plan import Plan
 from runner.sweep.queue import Queue
 from runner.sweep.work import Chunk, Report, Rules
 from runner.tuning.composer import Composer
@@ -47,7 +45,7 @@ class TrialQueue(Queue):
         self, study: Study, journal: Journal, composer: Composer, rules: Rules, trials: int, seed: int
     ) -> None:
         self._runs: list[str] = []
-        super().__init__(cast(Plan, self), self._runs, (), rules)
+        super().__init__(self, self._runs, (), rules)
         self._study, self._journal, self._composer = study, journal, composer
         self._trials, self._seed = trials, seed
         self._started = deque[_Started]()
@@ -88,7 +86,7 @@ class TrialQueue(Queue):
         self._settle()
 
     def _choose(self) -> dict[str, float]:
-        chosen = [trial.params for trial in (*self._journal.trials, *self._started)]
+        chosen = [trial.params for trial in self._journal.trials] + [trial.params for trial in self._started]
         known = max(0, len(chosen) + 1 - self._study.at_once)
         return propose(
             self._study.keys, self._study.objectives, self._journal.history[:known], chosen[known:], self._seed

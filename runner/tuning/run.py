@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
@@ -14,7 +15,7 @@ from runner.config.options import groups
 from runner.errors import ConfigError, StoreError
 from runner.sweep.lock import at_work
 from runner.sweep.plan import Checked, Plan
-from runner.sweep.run import Engine, _clean, _make, _rules
+from runner.sweep.run import Engine, clean, make_rules, make_runs
 from runner.tuning.composer import Composer
 from runner.tuning.journal import Journal
 from runner.tuning.key import RANGES, Key, read_key
@@ -61,7 +62,7 @@ def tune(
     store.prepare(checked.outputs)
     with at_work(checked.outputs):
         folder = study.folder(checked.outputs, checked.names)
-        rules = replace(_rules(checked.settings, folder, trials), trace="all")
+        rules = replace(make_rules(checked.settings, folder, trials), trace="all")
         study.write(folder, [])
         journal = Journal(journal_path(folder), keys, objectives)
         queue = TrialQueue(study, journal, composer, rules, trials, seed)
@@ -69,14 +70,14 @@ def tune(
             _work_off(plan, queue, engine, len(journal.trials))
         finally:
             study.write(folder, journal.trials)
-        _clean(rules, [trial.run for trial in journal.trials if trial.run])
+        clean(rules, [trial.run for trial in journal.trials if trial.run])
     return Tuning(folder, study, journal.trials)
 
 
 def _work_off(plan: Plan, queue: TrialQueue, engine: Engine, ended: int) -> None:
     """Make all trials of a queue; once more where the last ones brought their workers down."""
     while queue.left:
-        for report in _make(plan, queue, [0] * queue.left, engine, ended):
+        for report in make_runs(plan, queue, [0] * queue.left, engine, ended):
             if report.trouble:
                 raise StoreError(f"{report.trouble}; finished trials are stored, the same command goes on from there")
             queue.note(report.outcomes)
@@ -90,7 +91,9 @@ def _read(overrides: Sequence[str], config_dirs: Sequence[Path]) -> tuple[list[s
         parsed = OverridesParser.create().parse_overrides(force(overrides))
     except COMPOSITION_ERRORS as error:
         raise explain(error) from None
-    fixed, keys, problems = [], {}, []
+    fixed: list[str] = []
+    keys: dict[str, Key] = {}
+    problems: list[str] = []
     for text, override in zip(overrides, parsed, strict=True):
         try:
             key = _read_key(override, groups(config_dirs))
@@ -122,7 +125,7 @@ def _check_numbers(plan: Plan, keys: Sequence[Key]) -> None:
     resolved = plan.composed(0).resolved
     problems = []
     for key in keys:
-        found = resolved
+        found: Any = resolved
         for part in key.name.split("."):
             found = found.get(part) if isinstance(found, dict) else None
         if isinstance(found, dict):

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from runner.errors import StoreError
 from runner.store.atomic import write_atomically
-from runner.tuning.journal import read_trials
 from runner.tuning.key import Key
 from runner.tuning.objective import Objective
 from runner.tuning.trial import Trial
@@ -94,6 +93,8 @@ def open_tuning(folder: Path) -> Tuning:
     Raises:
         StoreError: if the folder is no tuning or damaged.
     """
+    from runner.tuning.journal import read_trials  # Optuna, which `is_tuning` answers without
+
     path = folder / _FILE
     try:
         content = json.loads(path.read_text())

@@ -3,7 +3,7 @@ import pybullet
 import pytest
 
 from runner.errors import ConfigError
-from runner.plants.bullet import Bullet, BulletConfig, build, default_step
+from runner.plants.bullet import Bullet, build, default_step
 from runner.robots import RobotModel, find_urdf, read_urdf
 
 INERTIAL = '<inertial><mass value="{m}"/><inertia ixx="{i}" ixy="0" ixz="0" iyy="{i}" iyz="0" izz="{i}"/></inertial>'
@@ -227,11 +227,30 @@ def test_torques_are_only_read(make, macro_urdf):
 
 @pytest.mark.parametrize("dynamics", ["coupled", "decoupled"])
 @pytest.mark.parametrize("wrist_rotation", ["real", "parallel"])
-def test_build_and_default_step(servo, macro_urdf, one_stage, dynamics, wrist_rotation):
+def test_build_and_default_step(checked_config, macro_urdf, one_stage, dynamics, wrist_rotation):
     # One stage has nothing to couple: neither key has an effect.
-    config = BulletConfig(kind="bullet", step=None, dynamics=dynamics, wrist_rotation=wrist_rotation, servo=servo)
+    config = checked_config(
+        "robot=macro", "plant=bullet", f"plant.dynamics={dynamics}", f"plant.wrist_rotation={wrist_rotation}"
+    ).plant
     plant = build(config, one_stage(macro_urdf, RobotModel(macro_urdf, "tip")), 1e-3, 10)
     assert isinstance(plant, Bullet)
     plant.close()
     assert default_step(0.01, 1) == pytest.approx(0.001)
     assert default_step(0.001, 2) == pytest.approx(0.00025)
+
+
+@pytest.mark.parametrize("steps", [1, 4, 10])
+def test_a_wall_pushes_by_stiffness_times_depth_whatever_the_steps_of_a_tick(closed_loop, steps):
+    closed = closed_loop(
+        "robot=meca500",
+        "controller=operational_space",
+        "environment=wall",
+        "environment.distance=-0.001",
+        "environment.stiffness=3000",
+        "environment.damping=0",
+        f"plant.step={1e-4 / steps}",
+        "controller.period=1e-4",
+    )
+    closed.plant.reset(closed.q_start, np.zeros(6))
+    closed.plant.advance(closed.robot.model.gravity_torque(closed.q_start))
+    assert closed.plant.contact_wrench[0] == pytest.approx(-3.0, rel=0.01)  # it has moved by then

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from runner.plants.rk4 import Rk4, Rk4Config, build, default_step
+from runner.plants.rk4 import Rk4, build, default_step
 from runner.robots import RobotModel, find_urdf, read_urdf
 
 ARMS = [("macro", 1.0), ("mini", 0.1)]  # name, and by what all lengths, masses and times are scaled
@@ -94,9 +94,11 @@ def test_reset_copies_its_arguments():
 
 @pytest.mark.parametrize("dynamics", ["coupled", "decoupled"])
 @pytest.mark.parametrize("wrist_rotation", ["real", "parallel"])
-def test_build_and_default_step(servo, macro_urdf, one_stage, dynamics, wrist_rotation):
+def test_build_and_default_step(checked_config, macro_urdf, one_stage, dynamics, wrist_rotation):
     # One stage has nothing to couple: neither key has an effect.
-    config = Rk4Config(kind="rk4", step=None, dynamics=dynamics, wrist_rotation=wrist_rotation, servo=servo)
+    config = checked_config(
+        "robot=macro", "plant=rk4", f"plant.dynamics={dynamics}", f"plant.wrist_rotation={wrist_rotation}"
+    ).plant
     plant = build(config, one_stage(macro_urdf, RobotModel(macro_urdf, "tip")), 0.01, 1)
     assert isinstance(plant, Rk4)
     plant.close()

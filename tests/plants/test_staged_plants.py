@@ -4,18 +4,16 @@ import numpy as np
 import pytest
 
 from runner.errors import ConfigError
-from runner.plants.bullet import Bullet, BulletConfig
-from runner.plants.bullet import build as build_bullet
+from runner.plants import PLANTS
+from runner.plants.bullet import Bullet
 from runner.plants.decoupled import Decoupled
-from runner.plants.rk4 import Rk4, Rk4Config
-from runner.plants.rk4 import build as build_rk4
+from runner.plants.rk4 import Rk4
 from runner.robots.robot import StageBase
 
 STEP = 5e-4
 PRINTED = np.array([0.3, -0.5, 0.7, 0.2, -0.4, 0.9]), np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
 TORQUES = np.random.default_rng(5).uniform(-1.0, 1.0, (200, 6)) * [20.0, 20.0, 10.0, 0.05, 0.05, 0.05]
 DYNAMICS = ("coupled", "decoupled")
-KINDS = {"bullet": (BulletConfig, build_bullet), "rk4": (Rk4Config, build_rk4)}
 
 
 def random_states(count, seed=0):
@@ -30,14 +28,15 @@ def free(checked_config):
 
 
 @pytest.fixture
-def make(servo, combined):
+def make(combined, checked_config):
     """Make staged plants, released at the end of the test."""
     plants = []
 
     def make(kind="rk4", dynamics="decoupled", wrist_rotation="real", step=1e-3, steps_per_tick=1, robot=combined):
-        config, build = KINDS[kind]
-        fields = config(kind=kind, step=None, dynamics=dynamics, wrist_rotation=wrist_rotation, servo=servo)
-        plants.append(build(fields, robot, step, steps_per_tick))
+        config = checked_config(
+            "robot=combined", f"plant={kind}", f"plant.dynamics={dynamics}", f"plant.wrist_rotation={wrist_rotation}"
+        )
+        plants.append(PLANTS.build(config.plant, robot, step, steps_per_tick))
         return plants[-1]
 
     yield make

@@ -1,14 +1,16 @@
 import numpy as np
 import pytest
 
+from runner.assembly import make_encoders
 from runner.sensing import JointEncoders
 
 PERIOD = 0.01
 
 
-def encoders(ticks=20_000, joints=3, amplitude=1e-3, distribution="uniform", velocity="exact", seed=0):
+def encoders(ticks=20_000, joints=3, amplitude=1e-3, distribution="uniform", velocity="exact", resolution=0.0, seed=0):
     generator = np.random.default_rng(seed)
-    return JointEncoders(ticks, PERIOD, np.full(joints, amplitude), distribution, velocity, generator)
+    amplitudes, steps = np.full(joints, amplitude), np.full(joints, resolution)
+    return JointEncoders(ticks, PERIOD, amplitudes, distribution, velocity, steps, generator)
 
 
 def read(sensor, q, dq=None):
@@ -93,6 +95,61 @@ def test_differenced_velocities_do_not_see_a_state_that_is_renewed_in_place():
     sensor.measure(0, q, q)
     q += 0.5
     np.testing.assert_allclose(sensor.measure(1, q, q)[1], 0.5 / PERIOD)
+
+
+def test_readings_are_whole_steps_off_by_at_most_half_a_step_with_its_variance():
+    q = np.random.default_rng(3).uniform(-2.0, 2.0, (20_000, 3))
+    measured, _ = read(encoders(distribution="none", resolution=1e-3), q)
+    np.testing.assert_allclose(measured / 1e-3, np.round(measured / 1e-3), atol=1e-9)
+    assert np.abs(measured - q).max() <= 0.5e-3 + 1e-15
+    assert (measured - q).std() == pytest.approx(1e-3 / np.sqrt(12.0), rel=0.01)
+
+
+def test_noise_is_rounded_with_the_position():
+    measured, _ = read(encoders(amplitude=2e-3, resolution=1e-3), np.zeros((20_000, 3)))
+    np.testing.assert_allclose(measured, np.round(noise(amplitude=2e-3) / 1e-3) * 1e-3, atol=1e-15)
+    assert len(np.unique(np.round(measured / 1e-3))) == 5  # -2 to 2 steps
+
+
+def test_differenced_velocities_come_in_steps_over_the_period():
+    q = np.cumsum(np.full((50, 3), 0.3e-3), axis=0)
+    _, velocity = read(encoders(distribution="none", velocity="finite_difference", resolution=1e-3), q)
+    np.testing.assert_allclose(np.unique(np.round(velocity, 9)), [0.0, 1e-3 / PERIOD])
+
+
+def test_each_stage_reads_in_its_own_steps(closed_loop, checked_config):
+    overrides = ("robot=combined", "noise.resolution.mini=1e-2")
+    (macro, mini) = make_encoders(checked_config(*overrides), closed_loop(*overrides), 0)
+    for sensor in (macro, mini):  # each loop reads every joint
+        np.testing.assert_allclose(sensor.measure(0, np.full(6, 0.1234), np.zeros(6))[0], [0.1234] * 3 + [0.12] * 3)
+
+
+def test_an_arm_at_rest_is_held_within_a_step_of_its_encoders(simulated):
+    """Between two steps the loop sees no error: the joints wander by up to one, and no further."""
+    trace = simulated(
+        "robot=macro", "trajectory=quintic", "trajectory.duration=1", "noise.resolution=1e-3", "duration=3"
+    )
+    wandering = np.ptp(trace.q[trace.t > 2.0], axis=0)
+    assert (wandering > 1e-7).any()
+    assert (wandering < 2e-3).all()
+
+
+@pytest.mark.parametrize(
+    ("robot", "override", "message"),
+    [
+        ("macro", "noise.resolution=-1e-3", "noise.resolution: must be 0 or more; found -0.001"),
+        (
+            "combined",
+            "noise.resolution=1e-3",
+            "noise.resolution: needs a value for each stage (macro, mini)",
+        ),
+        ("combined", "noise.resolution.mimi=1", "noise.resolution.mimi: no such stage (did you mean mini?)"),
+    ],
+)
+def test_steps_that_cannot_be(cli, robot, override, message):
+    ending = cli(f"robot={robot}", override)
+    assert ending.code == 2
+    assert message in ending.err
 
 
 @pytest.mark.parametrize("distribution", ["uniform", "none"])

@@ -172,13 +172,13 @@ def test_a_disk_that_gives_up_leaves_no_half_written_file(cli, tmp_path, monkeyp
 def test_the_metrics_come_last(cli, tmp_path, monkeypatch):
     written = []
 
-    def write(path, content):
+    def write(path, content, **how):
         written.append(path.name)
-        write_atomically(path, content)
+        write_atomically(path, content, **how)
 
     monkeypatch.setattr("runner.store.writing.write_atomically", write)
     cli(*SHORT)
-    assert written == [".writable", "config.yaml", "robot.urdf", "trace.parquet", "metrics.json"]
+    assert written == [".writable", "trace.parquet", "config.yaml", "robot.urdf", "metrics.json"]
 
 
 def test_writing_over_a_file_keeps_the_old_one_until_the_new_one_is_whole(tmp_path, monkeypatch):

@@ -1,10 +1,14 @@
 """One result, wherever the runs are made: in this process, on one or two, on a Dask cluster, and after kills."""
 
+import contextlib
+import os
+import signal
 import socket
 import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import pytest
 
@@ -78,6 +82,35 @@ def test_a_scheduler_that_is_lost_is_said(sweep, scheduler, tmp_path):
     threading.Thread(target=kill).start()
     with pytest.raises(RunnerError, match=r"the Dask scheduler is lost: .*; finished runs are stored"):
         sweep(*GRID, "seed=range(0,400)", engine=Engine(0, address))
+
+
+def alive(group):
+    """Count processes of a group that run still; state, parent and group follow the command in /proc/PID/stat."""
+    count = 0
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):  # it ended meanwhile
+            state, _, its_group, *_ = path.read_text().rpartition(")")[2].split()
+            count += int(its_group) == group and state != "Z"
+    return count
+
+
+def test_an_interrupt_ends_all_processes_and_says_how_to_go_on(tmp_path):
+    command = [sys.executable, "-m", "runner", "-m", "robot=macro", "plant=rk4", "seed=range(0,2000)"]
+    process = subprocess.Popen(command, cwd=tmp_path, stdout=-1, stderr=-1, text=True, start_new_session=True)
+    while not list(tmp_path.glob("outputs/runs/*/metrics.json")):
+        assert process.poll() is None
+        time.sleep(0.02)
+    os.killpg(process.pid, signal.SIGINT)  # as Ctrl-C does: to the workers, too
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, out) == (130, "")
+    assert err.splitlines()[2:] == [
+        "runner: interrupted; finished runs are stored, the same command goes on from there"
+    ]
+    deadline = time.monotonic() + 20
+    while alive(process.pid):
+        assert time.monotonic() < deadline
+        time.sleep(0.1)
+    assert not list(tmp_path.glob("outputs/sweeps/*/scratch"))
 
 
 DEADLY = """\

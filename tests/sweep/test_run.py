@@ -4,6 +4,8 @@ import errno
 import json
 import os
 import shutil
+import socket
+import subprocess
 import threading
 import time
 
@@ -55,13 +57,15 @@ def test_cells_of_one_config_are_one_run(sweep, made):
     assert len(runs(ended)) == 2
 
 
-@pytest.mark.parametrize("damage", ["metrics.json", "trace.parquet", "config.yaml"])
+@pytest.mark.parametrize("damage", ["metrics.json", "trace.parquet", "config.yaml", "robot.urdf"])
 @pytest.mark.parametrize("how", ["gone", "half"])
 def test_a_half_written_run_is_made_again(sweep, made, damage, how):
     ended = sweep("seed=0,1")
     path = runs(ended)[1].folder / damage
     whole = path.read_bytes()
-    path.unlink() if how == "gone" else path.write_bytes(whole[: len(whole) // 2 if damage != "config.yaml" else 0])
+    path.unlink() if how == "gone" else path.write_bytes(
+        whole[: len(whole) // 2 if damage in ("metrics.json", "trace.parquet") else 0]
+    )
     sweep("seed=0,1")
     assert len(made) == 3
     assert path.stat().st_size == pytest.approx(len(whole), abs=100)  # times have other digits
@@ -230,6 +234,17 @@ def test_a_copied_sweep_opens_elsewhere(sweep, tmp_path):
     shutil.rmtree(tmp_path / "outputs")
     opened = store.open_sweep(copy / "sweeps" / ended.folder.name)
     assert [run.config["seed"] for run in opened.runs()] == [0, 1, 2]
+
+
+def test_what_killed_processes_left_is_removed_from_runs_that_are_stored_too(sweep, tmp_path):
+    ended = sweep("seed=0,1")
+    host, dead = socket.gethostname(), subprocess.Popen(["true"])
+    dead.wait()
+    for folder in (runs(ended)[0].folder, ended.folder, ended.folder / "scratch"):
+        folder.mkdir(exist_ok=True)
+        (folder / f".metrics.json.{host}.{dead.pid}.tmp").touch()
+    assert sweep("seed=0,1") == ended
+    assert [path for path in tmp_path.rglob("*") if path.name.startswith(".") or path.name == "scratch"] == []
 
 
 @pytest.mark.parametrize("workers", [-1, 1.5, "two", True])

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
+from runner.metrics.summary import units
 from runner.reporting.document import Block, Origin, Section, Table
 from runner.reporting.figures import playback, torque_and_error
 from runner.reporting.quantities import spread
@@ -29,19 +30,18 @@ def section(subject: Subject, runs: Mapping[int, Run], commands: Mapping[int, st
 def _trial(subject: Subject, trial: int, objectives: Sequence[Objective], run: Run, command: str) -> Section:
     params = subject.trials[trial].params
     rows = [
-        [key.name, key_value(params[key.name]), f"{key_value(key.low)} to {key_value(key.high)}"]
+        literal([key.name, key_value(params[key.name]), f"{key_value(key.low)} to {key_value(key.high)}"])
         for key in subject.keys
     ]
-    names = list(dict.fromkeys([*(objective.metric for objective in subject.objectives), *run.metrics]))
+    goals = [objective.metric for objective in subject.objectives]
+    names = dict.fromkeys([*goals, *(name for name in run.metrics if name in units())])
     metrics = [[name, spread(run.metrics[name])] for name in names]
     blocks: list[Block] = [
-        Table(
-            "Tuned keys.", ["key", "value", "range"], [literal(row) for row in rows], (1, 2), Origin(command=command)
-        ),
+        Table("Tuned keys.", ["key", "value", "range"], rows, (1, 2), Origin(command=command)),
         torque_and_error(run, "Torque of each joint and tip position error, repetition 0."),
         playback(run, "The motion of repetition 0."),
         Table(
-            "Metrics: median, in brackets smallest and largest over the repetitions.",
+            "Medians, in brackets smallest and largest over the repetitions.",
             ["metric", "value"],
             metrics,
             (1,),

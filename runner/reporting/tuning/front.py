@@ -21,8 +21,7 @@ def section(subject: Subject) -> Section:
     for a, b in combinations(range(len(objectives)), 2):
         x, y = subject.values[:, a], subject.values[:, b]
         of_all = Series("trials", x, y, "points", hints=subject.hints(subject.good), runs=subject.runs(subject.good))
-        style = "points_line" if pair else "points"
-        of_front = Series("front", x[places], y[places], style, hints=subject.hints(front), runs=subject.runs(front))
+        of_front = Series("front", x[places], y[places], "points", hints=subject.hints(front), runs=subject.runs(front))
         labels = label(objectives[a]), label(objectives[b])
         panels.append(Panel("", *labels, [of_all, of_front], spans_decades(x), spans_decades(y)))
     text = f"On the front stand {len(front)} of {len(subject.good)} good trials: none of them gets better in one "

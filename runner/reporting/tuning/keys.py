@@ -10,23 +10,17 @@ from runner.tuning.sampler import importances
 
 def section(subject: Subject) -> Section:
     """Return the objectives over each key, and the importance of the keys."""
+    hints, runs = subject.hints(subject.good), subject.runs(subject.good)
+    best_hints, best_runs = subject.hints(subject.best), subject.runs(subject.best)
+    best = [subject.good.index(trial) for trial in subject.best]
     panels = []
     for index, objective in enumerate(subject.objectives):
         y = subject.values[:, index]
         for key in subject.keys:
             x = np.array([subject.trials[trial].params[key.name] for trial in subject.good], dtype=float)
-            hints, runs = subject.hints(subject.good), subject.runs(subject.good)
-            best = [subject.good.index(trial) for trial in subject.best]
             series = [
                 Series("trials", x, y, "points", hints=hints, runs=runs),
-                Series(
-                    "best",
-                    x[best],
-                    y[best],
-                    "points",
-                    hints=subject.hints(subject.best),
-                    runs=subject.runs(subject.best),
-                ),
+                Series("best", x[best], y[best], "points", hints=best_hints, runs=best_runs),
             ]
             panels.append(Panel("", key.name, label(objective), series, key.log, spans_decades(y), (key.low, key.high)))
     return Section("Keys", [Curves("Good trials over the range of each key.", panels), _importance(subject)])

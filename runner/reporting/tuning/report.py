@@ -2,11 +2,12 @@
 
 import os
 import shlex
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
-from runner.reporting.document import Document, Notice, Origin, Provenance, RunList, Section, Table, Text
+from runner.reporting.document import Document, FloatArray, Notice, Origin, Provenance, RunList, Section, Table, Text
 from runner.reporting.tuning import best_trials, front, history, keys
 from runner.reporting.tuning.subject import Subject, key_value, literal
 from runner.store import Sweep, open_run
@@ -46,7 +47,7 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
     made_by = [(name, ", ".join(values)) for name, values in measurements.provenance.items()]
     sections.append(Section("Provenance", (Provenance([*made_by, ("tuning", tuning.folder.name)]),)))
     return Document(
-        title="Tuning of " + ", ".join(key.name for key in subject.keys),
+        title=f"Tuning to {_goals(subject)}",
         subtitle=", ".join(tuning.study.overrides),
         abstract=_abstract(subject).replace("$", "$$"),
         sections=sections,
@@ -55,12 +56,16 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
 
 
 def _abstract(subject: Subject) -> str:
-    goals = ", ".join(f"{objective.direction} {objective.metric}" for objective in subject.objectives)
-    text = f"{len(subject.trials)} trials to {goals}; {len(subject.trials) - len(subject.good)} of them failed."
+    names = ", ".join(key.name for key in subject.keys)
+    text = f"{len(subject.trials)} trials over {names}; {len(subject.trials) - len(subject.good)} of them failed."
     if len(subject.best) == 1:
         trial = subject.best[0]
         return f"{text} Best is trial {trial}: {subject.outcome(trial)}, with {subject.settings(trial)}."
     return f"{text} {len(subject.best)} trials stand on the Pareto front." if subject.best else text
+
+
+def _goals(subject: Subject) -> str:
+    return " and ".join(f"{objective.direction} {objective.metric}" for objective in subject.objectives)
 
 
 def _what(subject: Subject) -> Section:
@@ -80,14 +85,9 @@ def _what(subject: Subject) -> Section:
         f"Parzen estimator of Optuna), {study.at_once} of them under way at once. Of a metric the median over the "
         "repetitions counts. The same command gives the same trials, on however many processes."
     )
-    caption = "Tuned keys with their ranges."
-    table = Table(
-        caption,
-        ["key", "low", "high", "scale", "values"],
-        [literal(row) for row in rows],
-        (1, 2),
-        Origin(command=study.command),
-    )
+    header = ["key", "low", "high", "scale", "values"]
+    origin = Origin(command=study.command)
+    table = Table("Tuned keys with their ranges.", header, [literal(row) for row in rows], (1, 2), origin)
     failed = len(subject.trials) - len(subject.good)
     if not failed:
         return Section("What was tuned", (table, text))
@@ -101,33 +101,29 @@ def _what(subject: Subject) -> Section:
 
 def _failures(subject: Subject) -> Section:
     failed = [place for place, trial in enumerate(subject.trials) if trial.failure]
-    rows = [
-        literal(
-            [str(place), subject.trials[place].run[:8] or "–", subject.settings(place), subject.trials[place].failure]
-        )
-        for place in failed[:_MOST_FAILURES]
-    ]
+    rows = []
+    for place in failed[:_MOST_FAILURES]:
+        trial = subject.trials[place]
+        rows.append(literal([str(place), trial.run[:8] or "–", subject.settings(place), trial.failure]))
     left = len(failed) - len(rows)
     more = f" {left} more stand in the list of runs." if left else ""
     return Section("Failed trials", (Table(f"Failed trials.{more}", ["trial", "run", "values", "failure"], rows),))
 
 
 def _all_runs(subject: Subject, sweep: Sweep, made: list[int], measurements: Measurements, folder: Path) -> Section:
-    goals = [objective.metric for objective in subject.objectives]
-    names = [name for name in dict.fromkeys([*goals, *measurements.values]) if name in measurements.values]
-    tuned = [[subject.trials[place].params[key.name] for place in made] for key in subject.keys]
-    columns = [made, *tuned, *(measurements.medians(name) for name in names)]
-    values = np.column_stack([np.array(column, dtype=float) for column in columns])
+    goals = [objective.metric for objective in subject.objectives if objective.metric in measurements.values]
+    others = [name for name in measurements.values if name not in goals]
+    columns: list[tuple[str, str, Sequence[float] | FloatArray]] = [("trial", "1", made)]
+    columns += [(name, measurements.units[name], measurements.medians(name)) for name in goals]
+    columns += [(key.name, "1", [subject.trials[place].params[key.name] for place in made]) for key in subject.keys]
+    columns += [(name, measurements.units[name], measurements.medians(name)) for name in others]
+    values = np.column_stack([np.array(column, dtype=float) for *_, column in columns])
     address = os.path.relpath(sweep.outputs / "runs", folder)
     listing = RunList(
         "All runs, in the order of the trials; medians of each.",
         [],
         np.zeros((len(made), 0), dtype=np.intp),
-        [
-            ("trial", "1"),
-            *((key.name, "1") for key in subject.keys),
-            *((name, measurements.units[name]) for name in names),
-        ],
+        [(name, unit) for name, unit, _ in columns],
         np.where(np.isfinite(values), values, np.nan),
         sweep.hashes,
         [subject.trials[place].failure for place in made],
@@ -138,5 +134,5 @@ def _all_runs(subject: Subject, sweep: Sweep, made: list[int], measurements: Mea
     return Section("All runs", (text, listing))
 
 
-def _command(overrides: list[str] | tuple[str, ...]) -> str:
+def _command(overrides: Sequence[str]) -> str:
     return shlex.join(["runner", *overrides])

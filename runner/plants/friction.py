@@ -1,0 +1,134 @@
+"""Dry and viscous friction in the joints of an arm that is driven by torques."""
+
+import numpy as np
+import pinocchio as pin
+from scipy.linalg.lapack import dposv
+
+from runner.config.per_joint import NonNegativePerJoint
+from runner.plants.plant import FloatArray, Plant
+from runner.registry import StrictModel
+from runner.robots.model import RobotModel
+
+_NO_CONTACT = np.zeros(6)
+_PIVOTS = 100  # at most; an arm of ten joints takes one where nothing starts or stops, else a few
+_ROUNDING = 1e-12  # of the torques that act
+
+
+class FrictionConfig(StrictModel):
+    """Config of joint friction; a value for every joint or one for each.
+
+    Attributes:
+        viscous: Torque per speed, in N m s/rad.
+        coulomb: Torque against any motion, and up to which a joint at rest stays so, in N m.
+    """
+
+    viscous: NonNegativePerJoint
+    coulomb: NonNegativePerJoint
+
+
+def rub(plant: Plant, model: RobotModel, viscous: FloatArray, coulomb: FloatArray, tick: float) -> Plant:
+    """Return a plant with friction in its joints, and the plant itself where there is none; see Frictional."""
+    return Frictional(plant, model, viscous, coulomb, tick) if viscous.any() or coulomb.any() else plant
+
+
+class Frictional:
+    r"""A plant with friction in its joints, by backward Euler over the plant's tick h.
+
+    .. math:: (M + h b) \dot q^+ = M \dot q + h (\tau - V - G - \mu), \quad
+        \mu \in c \, \mathrm{sgn}(\dot q^+), \qquad \tau_f = -b \dot q^+ - \mu
+
+    mu is what stops a joint within the tick, or the whole c where that does not suffice, so that no friction is so
+    large that it makes the arm oscillate. tau_f is held over the tick: first order in it. tau holds all that loads the
+    joints; contacts that the plant makes itself count by what they were in the last tick.
+
+    Args:
+        plant: The plant without friction; one `advance` of it takes a tick.
+        model: The arm, for M, V and G.
+        viscous: b of each joint, shape (nq,), in N m s/rad.
+        coulomb: c of each joint, shape (nq,), in N m.
+        tick: h, in s.
+    """
+
+    def __init__(self, plant: Plant, model: RobotModel, viscous: FloatArray, coulomb: FloatArray, tick: float) -> None:
+        self.plant = plant
+        """What friction brakes."""
+        self.q, self.dq = plant.q, plant.dq
+        self._model = pin.Model(model.pin_model)
+        self._data = self._model.createData()
+        self._tick = tick
+        self._damping = tick * viscous
+        self._viscous, self._coulomb = viscous, coulomb
+        self._slides = np.zeros(model.nq)
+
+    def reset(self, q: FloatArray, dq: FloatArray) -> None:
+        """Put the arm into a state; see Plant."""
+        self.plant.reset(q, dq)
+        self._slides[:] = 0.0
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector; see Plant."""
+        self.plant.set_gravity(gravity)
+        self._model.gravity.linear = gravity
+
+    def advance(self, tau: FloatArray) -> None:
+        """Hold the torques for one tick, less friction; see Plant."""
+        model, data, h = self._model, self._data, self._tick
+        bias = pin.nonLinearEffects(model, data, self.q, self.dq).copy()
+        M = np.triu(pin.crba(model, data, self.q))  # crba fills the upper triangle only
+        M += np.triu(M, 1).T
+        pushed = M @ self.dq + h * (tau + self._contact_torque() - bias)
+        _, columns, _ = dposv(M + np.diag(self._damping), np.column_stack([pushed, h * np.eye(len(tau))]))
+        speed, yields = columns[:, 0], columns[:, 1:]
+        mu, self._slides = stopping_torques(yields, speed, self._coulomb, self._slides)
+        self.plant.advance(tau - self._viscous * (speed - yields @ mu) - mu)
+
+    def _contact_torque(self) -> FloatArray:
+        """Return the joint torques of contacts that the plant made in the last tick, shape (nq,), in N m."""
+        wrench = getattr(self.plant, "contact_wrench", _NO_CONTACT)
+        if not wrench.any():
+            return np.zeros(len(self.q))
+        pin.computeJointJacobians(self._model, self._data, self.q)
+        torque: FloatArray = pin.getJointJacobian(self._model, self._data, self._model.nq, pin.WORLD).T @ wrench
+        return torque
+
+    def close(self) -> None:
+        """Release what the plant holds."""
+        self.plant.close()
+
+
+def stopping_torques(
+    yields: FloatArray, speed: FloatArray, limit: FloatArray, slides: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    r"""Return the dry friction that stops every joint, or all there is where that does not suffice.
+
+    .. math:: v = v_0 - A \mu, \qquad |\mu_i| \le c_i, \qquad
+        v_i = 0 \;\text{ or }\; \mu_i = c_i \, \mathrm{sgn} \, v_i
+
+    has one solution, as A is positive definite. It is found by pivoting: the first joint that is on the wrong side
+    changes it, which ends after finitely many (Murty, Opsearch 11, 1974; for bounds on both sides Judice and Pires,
+    Computers and Operations Research 21(5), 1994).
+
+    Args:
+        yields: A, how speeds change by torques, shape (nq, nq), in rad/s per N m.
+        speed: v_0 without dry friction, shape (nq,), in rad/s.
+        limit: c, shape (nq,), in N m.
+        slides: Where to begin: 0 for a joint that stops, 1 or -1 for one that goes on turning up or down, shape (nq,).
+
+    Returns:
+        mu, shape (nq,), in N m; and which joints slide, as above.
+    """
+    slides = slides.copy()
+    for _ in range(_PIVOTS):
+        mu = slides * limit
+        held = slides == 0.0
+        left = speed - yields @ mu
+        if held.any():
+            mu[held] = np.linalg.solve(yields[np.ix_(held, held)], left[held])
+            left = speed - yields @ mu
+        too_much = np.where(held, np.abs(mu) - limit, -left * slides / np.diagonal(yields))
+        wrong = np.flatnonzero(too_much > _ROUNDING * (limit + np.abs(speed) / np.diagonal(yields)))
+        if not len(wrong):
+            break
+        first = wrong[0]
+        slides[first] = np.sign(mu[first]) if held[first] else 0.0
+    return np.clip(mu, -limit, limit), slides

@@ -1,0 +1,88 @@
+"""A robot as its controllers believe it to be, apart from what it is."""
+
+import copy
+from dataclasses import replace
+from typing import Annotated
+
+import numpy as np
+import pinocchio as pin
+from pydantic import Field, NonNegativeFloat, PositiveFloat
+
+from runner.registry import StrictModel
+from runner.robots.model import FloatArray, RobotModel
+from runner.robots.robot import Robot
+
+
+class MismatchConfig(StrictModel):
+    """How what controllers believe differs from the truth; all factors 1 and the rest 0 is no difference.
+
+    Attributes:
+        mass: Factor on every moving link's mass and inertia, what it carries included.
+        centre_of_mass: Factor on the distance of every link's centre of mass from its joint.
+        length: Factor on every length from the base to the tip, and so on the tip's position.
+        gravity: Factor on gravity.
+        payload: Point mass that is believed to be where the payload is, beyond the true one, in kg; below 0 for a
+            payload that is not known of.
+        spread: Largest relative error, beyond the factors, of each link's mass and centre of mass: drawn evenly for
+            each, anew in each repetition.
+    """
+
+    mass: PositiveFloat
+    centre_of_mass: NonNegativeFloat
+    length: PositiveFloat
+    gravity: NonNegativeFloat
+    payload: float
+    spread: Annotated[float, Field(ge=0.0, lt=1.0)]
+
+
+_NONE = MismatchConfig(mass=1.0, centre_of_mass=1.0, length=1.0, gravity=1.0, payload=0.0, spread=0.0)
+
+
+def believe(
+    robot: Robot, mismatch: MismatchConfig, payload_position: FloatArray, generator: np.random.Generator
+) -> Robot:
+    """Return a robot with every model changed by a mismatch, the whole's and each stage's alike.
+
+    Args:
+        robot: The robot.
+        mismatch: How the belief differs.
+        payload_position: Where the payload is, in the tip's frame, shape (3,), in m.
+        generator: Source of the draws.
+    """
+    if mismatch == _NONE:
+        return robot
+    factors = 1.0 + mismatch.spread * generator.uniform(-1.0, 1.0, (robot.model.nq, 2))
+
+    def change(model: RobotModel, joints: slice, bears_payload: bool) -> RobotModel:
+        loaded = model.with_payload(mismatch.payload, payload_position) if bears_payload else model
+        return _change(loaded, mismatch, *(factors[joints] * (mismatch.mass, mismatch.centre_of_mass)).T)
+
+    last = robot.stages[-1]
+    stages = tuple(replace(stage, model=change(stage.model, stage.joints, stage is last)) for stage in robot.stages)
+    whole = stages[0].model if len(stages) == 1 else change(robot.model, slice(None), bears_payload=True)
+    return replace(robot, model=whole, stages=stages)
+
+
+def _change(model: RobotModel, mismatch: MismatchConfig, masses: FloatArray, centres: FloatArray) -> RobotModel:
+    """Return a model with masses and centres of mass of its links scaled by factors, shapes (nq,), and the rest."""
+    believed = pin.Model(model.pin_model)
+    for joint, (mass, centre) in enumerate(zip(masses, centres, strict=True), start=1):
+        believed.inertias[joint] = _scale(believed.inertias[joint], mass, centre)
+        believed.jointPlacements[joint].translation *= mismatch.length
+    for frame in believed.frames:
+        if frame.parentJoint:  # the inertia of what is fixed on a link, such as a tool, is part of the link's
+            place = frame.placement
+            inertia = _scale(place.act(frame.inertia), masses[frame.parentJoint - 1], centres[frame.parentJoint - 1])
+            frame.inertia = place.actInv(inertia)
+        frame.placement.translation *= mismatch.length
+    believed.gravity.linear = mismatch.gravity * model.gravity
+    changed = copy.copy(model)
+    for remembered in ("reach", "shoulder"):  # of the true lengths
+        changed.__dict__.pop(remembered, None)
+    changed.pin_model = believed
+    changed._data = believed.createData()
+    return changed
+
+
+def _scale(inertia: pin.Inertia, mass: float, centre: float) -> pin.Inertia:
+    return pin.Inertia(mass * inertia.mass, centre * inertia.lever, mass * inertia.inertia)

@@ -1,0 +1,107 @@
+import re
+import shlex
+
+import pytest
+
+SHORT = ("robot=macro", "trajectory=quintic", "duration=0.05", "hydra.sweeper.workers=0")
+RANGE = "controller.natural_frequency=tag(log,interval(5,80))"
+DAMPING = "controller.damping_ratio=interval(0.3,2)"
+TUNE = ("tune", *SHORT, RANGE, "--minimize", "peak_torque", "--trials", 4)
+
+
+def test_the_best_trial_is_told_and_the_report_made(cli, tmp_path):
+    ending = cli(*TUNE)
+    assert ending.code == 0
+    assert ending.folder.parent == tmp_path / "outputs" / "reports"
+    assert {path.name for path in ending.folder.iterdir()} == {"report.html", "report.pdf"}
+    best = ending.out.splitlines()[0]
+    assert re.match(r"best: peak_torque [\d.]+ N m with robot=macro trajectory=quintic duration=0.05 controller", best)
+    assert ending.err.endswith("runner: 4 trials, 0 of them failed\n")
+
+
+def test_what_is_told_as_best_gives_the_same_run_again(cli, tmp_path):
+    best = cli(*TUNE).out.splitlines()[0]
+    told = float(best.split()[2])
+    before = {path.name for path in (tmp_path / "outputs" / "runs").iterdir()}
+    folder = cli(*shlex.split(best.partition(" with ")[2])).folder
+    assert folder.name in before
+    from runner.store import open_run
+
+    assert float(f"{open_run(folder).metrics['peak_torque']['median']:.5g}") == told
+
+
+def test_the_same_command_makes_the_same_report(cli):
+    first = cli(*TUNE).folder
+    content = {path.name: path.read_bytes() for path in first.iterdir()}
+    second = cli(*TUNE).folder
+    assert second == first
+    assert {path.name: path.read_bytes() for path in second.iterdir()} == content
+
+
+def test_other_commands_take_a_tuning_for_a_sweep(cli, tmp_path):
+    assert cli(*TUNE).code == 0
+    (folder,) = (tmp_path / "outputs" / "tunings").iterdir()
+    assert cli("status", folder).out == "4 runs: 4 done, 0 left\n"
+    assert cli("table", folder).code == 0
+    assert (folder / "table.csv").read_text().count("\n") == 5
+    assert cli("check", folder, "--learn", tmp_path / "reference.yaml").code == 0
+
+
+def test_of_several_objectives_the_front_is_told(cli):
+    ending = cli(*TUNE[:-4], DAMPING, "--minimize", "peak_torque", "--maximize", "rms_torque", "--trials", 6)
+    assert ending.code == 0
+    assert all(
+        re.match(r"best: peak_torque \S+ N m, rms_torque \S+ N m with ", line) for line in ending.out.splitlines()[:-1]
+    )
+
+
+def test_a_tuning_in_which_every_trial_failed_has_a_report_too(cli):
+    goal = ("trajectory=goal", "controller.natural_frequency=interval(1,2)")
+    ending = cli("tune", *SHORT, *goal, "--minimize", "settling_time", "--trials", 2)
+    assert ending.code == 1
+    assert "2 trials, 2 of them failed" in ending.err
+    assert (ending.folder / "report.pdf").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "why"),
+    [
+        (["tune", *SHORT, RANGE], "name a metric to --minimize or --maximize; usage: runner tune"),
+        (["tune", *SHORT, RANGE, "--minimize", "peak_torqe"], "no metric 'peak_torqe' (did you mean peak_torque?)"),
+        (["tune", *SHORT, RANGE, "--minimize", "macro_overshoot"], "these runs have no 'macro_overshoot'"),
+        (["tune", *SHORT, RANGE, "--minimize", "energy", "--maximize", "energy"], "minimized and maximized at once"),
+        (["tune", *SHORT, RANGE, "--minimize", "energy", "--trials", "0"], "argument --trials: must be a whole number"),
+        (
+            ["tune", *SHORT, RANGE, "--minimize", "energy", "--at-once", "x"],
+            "argument --at-once: must be a whole number",
+        ),
+        (["tune", *SHORT, "--minimize", "energy"], "nothing to tune; give a key a range"),
+        (["tune", *SHORT, RANGE, "--minimize", "energy", "--config-dir", "none"], "--config-dir: no folder none"),
+    ],
+)
+def test_bad_input_is_told(cli, arguments, why):
+    ending = cli(*arguments)
+    assert ending.code == 2
+    assert why in ending.err
+    assert ending.out == ""
+
+
+def test_keys_of_a_robot_of_ones_own_are_tuned(cli, tmp_path):
+    (tmp_path / "own" / "robot").mkdir(parents=True)
+    (tmp_path / "own" / "robot" / "mine.yaml").write_text(
+        "# @package _global_\ndefaults: [macro]\nrobot: {name: mine}\n"
+    )
+    ending = cli(
+        "tune", "robot=mine", *SHORT[1:], RANGE, "--minimize=energy", "--trials=2", "--config-dir", tmp_path / "own"
+    )
+    assert ending.code == 0, ending.err
+
+
+def test_the_report_can_be_made_again_from_a_copied_folder(cli, tmp_path):
+    first = cli(*TUNE).folder
+    content = {path.name: path.read_bytes() for path in first.iterdir()}
+    (tmp_path / "outputs").rename(tmp_path / "copy")
+    (folder,) = (tmp_path / "copy" / "tunings").iterdir()
+    again = cli("report", folder).folder
+    assert again == tmp_path / "copy" / "reports" / first.name
+    assert {path.name: path.read_bytes() for path in again.iterdir()} == content

@@ -1,0 +1,234 @@
+"""What controllers believe of the arm, each term by its effect against a closed form."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from runner.assembly import assemble, make_encoders
+from runner.execution import run
+from runner.robots.mismatch import MismatchConfig, believe
+from runner.simulation import simulate
+
+WN = 20.0  # rad/s
+SAGGING = (
+    "robot=macro",
+    "plant=rk4",
+    "trajectory.start=[0.7,0.6,1.2]",
+    "trajectory.goal=[0.7,0.6,1.2]",
+    f"controller.natural_frequency={WN}",
+    "controller.singularity_damping=0",
+)
+NO_DIFFERENCE = {"mass": 1.0, "centre_of_mass": 1.0, "length": 1.0, "gravity": 1.0, "payload": 0.0, "spread": 0.0}
+
+
+def belief(robot, seed=0, **terms):
+    config = MismatchConfig(**(NO_DIFFERENCE | terms))
+    return believe(robot, config, np.zeros(3), np.random.default_rng(seed))
+
+
+@pytest.fixture(scope="module")
+def sag(simulated, checked_config):
+    """Hold the Macro still against gravity; return the tip's error, where it ends, and the true arm's model."""
+
+    def hold(*overrides):
+        trace = simulated(*SAGGING, *overrides)
+        assert np.abs(trace.dq[-1]).max() < 1e-6
+        return trace.error[-1], trace.q[-1], checked_config(*SAGGING, *overrides).arm.model
+
+    return hold
+
+
+def predicted_sag(model, q, M, G):
+    r"""Rest of M J^-1 wn^2 e + G_believed = G_true."""
+    return model.tip_jacobian(q)[:3] @ np.linalg.solve(M, model.gravity_torque(q) - G) / WN**2
+
+
+def test_without_difference_it_is_the_robot_itself(combined):
+    assert belief(combined) is combined
+
+
+def test_with_the_right_model_nothing_sags(sag):
+    assert np.abs(sag()[0]).max() < 1e-9
+
+
+@pytest.mark.parametrize("factor", [0.0, 0.8, 1.2])
+def test_gravity_believed_wrong_lets_the_tip_sag_by_what_is_missing(sag, factor):
+    error, q, model = sag(f"mismatch.gravity={factor}")
+    M, G = model.mass_matrix(q), model.gravity_torque(q)
+    np.testing.assert_allclose(error, predicted_sag(model, q, M, factor * G), atol=1e-8)
+    assert np.abs(error).max() > 1e-3
+
+
+@pytest.mark.parametrize("factor", [0.8, 1.3])
+def test_masses_believed_wrong_scale_inertia_and_weight_alike(sag, factor):
+    error, q, model = sag(f"mismatch.mass={factor}")
+    M, G = model.mass_matrix(q), model.gravity_torque(q)
+    np.testing.assert_allclose(error, predicted_sag(model, q, factor * M, factor * G), atol=1e-8)
+    assert np.abs(error).max() > 1e-3
+
+
+def test_mass_and_gravity_believed_wrong_the_opposite_way_cancel_in_the_weight(sag):
+    assert np.abs(sag("mismatch.mass=1.25", "mismatch.gravity=0.8")[0]).max() < 1e-9
+
+
+@pytest.mark.parametrize("payload", [-1.5, 0.5])
+def test_a_payload_believed_wrong_is_a_weight_at_the_tip(sag, payload):
+    error, q, model = sag("robot.payload.mass=1.5", f"mismatch.payload={payload}")
+    J = model.tip_jacobian(q)[:3]
+    M, G = model.mass_matrix(q), model.gravity_torque(q)
+    M, G = M + payload * J.T @ J, G - payload * J.T @ model.gravity
+    np.testing.assert_allclose(error, predicted_sag(model, q, M, G), atol=1e-8)
+    assert np.abs(error).max() > 1e-3
+
+
+def test_a_payload_that_is_not_known_of_leaves_the_arm_without_it(checked_config):
+    place = "robot.payload.position=[0.1,0.2,0.3]"
+    loaded, bare = (checked_config("robot=xarm7", f"robot.payload.mass={mass}", place).arm for mass in (2.0, 0.0))
+    config = MismatchConfig(**(NO_DIFFERENCE | {"payload": -2.0}))
+    unaware = believe(loaded, config, np.array([0.1, 0.2, 0.3]), np.random.default_rng(0)).model
+    q = np.linspace(-1.0, 1.0, 7)
+    np.testing.assert_allclose(unaware.mass_matrix(q), bare.model.mass_matrix(q), atol=1e-12)
+    np.testing.assert_allclose(unaware.gravity_torque(q), bare.model.gravity_torque(q), atol=1e-12)
+
+
+def test_a_centre_of_mass_believed_wrong_shifts_the_weight_along_the_link(sag, checked_config):
+    error, q, model = sag("mismatch.centre_of_mass=1.1")
+    M, G = np.zeros((3, 3)), np.zeros(3)
+    data = model.pin_model.createData()
+    for joint in range(1, 4):  # link by link: J^T M J with the levers stretched
+        pin.computeJointJacobians(model.pin_model, data, q)
+        body = model.pin_model.inertias[joint]
+        J = pin.getJointJacobian(model.pin_model, data, joint, pin.LOCAL_WORLD_ALIGNED)
+        R = data.oMi[joint].rotation
+        at_centre = J[:3] - pin.skew(R @ (1.1 * body.lever)) @ J[3:]
+        M += body.mass * at_centre.T @ at_centre + J[3:].T @ R @ body.inertia @ R.T @ J[3:]
+        G -= body.mass * at_centre.T @ model.gravity
+    np.testing.assert_allclose(error, predicted_sag(model, q, M, G), atol=1e-8)
+    assert np.abs(error).max() > 1e-3
+
+
+@pytest.mark.parametrize("factor", [0.95, 1.05])
+def test_lengths_believed_wrong_scale_where_the_tip_comes_to_rest(simulated, factor):
+    """The controller brings the tip that it believes in, k x, to the goal."""
+    goal = np.array([0.5, 0.1, 0.2])
+    trace = simulated(
+        "robot=xarm7",
+        "trajectory=quintic",
+        "trajectory.start=null",
+        f"trajectory.goal={goal.tolist()}",
+        "trajectory.duration=1",
+        "duration=3",
+        f"mismatch.length={factor}",
+    )
+    np.testing.assert_allclose(factor * trace.tip[-1], goal, atol=1e-6)
+
+
+def test_lengths_scale_kinematics_and_leave_each_link_its_weight(xarm7):
+    q = np.linspace(-1.0, 1.0, 7)
+    longer = belief(xarm7, length=1.2).model
+    np.testing.assert_allclose(longer.tip_position(q), 1.2 * xarm7.model.tip_position(q), atol=1e-12)
+    assert longer.reach == pytest.approx(1.2 * xarm7.model.reach)
+    np.testing.assert_allclose(longer.shoulder, 1.2 * xarm7.model.shoulder)
+    assert longer.mass == pytest.approx(xarm7.model.mass)
+
+
+def test_servos_believe_what_controllers_do(simulated, checked_config):
+    """K (q_c - q) = (1 + A M^-1) (G - k G), A = h D + h^2 K: the servo counts on the motion that it believes in."""
+    still = ("robot=xarm7", "trajectory=goal", "trajectory.start=null", "trajectory.goal=[0.604294,0,0.150872]")
+    held = ("controller.gain=0", "controller.null_space.task=none", "plant=rk4", "mismatch.gravity=0.9", "duration=3")
+    trace = simulated(*still, *held)
+    arm = checked_config(*still).arm
+    M, G = arm.model.mass_matrix(trace.q[-1]), arm.model.gravity_torque(trace.q[-1])
+    A = np.diag(1e-3 * 2.0 * np.sqrt(1500.0 * np.diagonal(arm.model.mass_matrix(arm.home))) + 1e-6 * 1500.0)
+    expected = 0.1 * (G + A @ np.linalg.solve(M, G))
+    np.testing.assert_allclose(1500.0 * (trace.q_command - trace.q)[-1], expected, atol=1e-6)
+    assert np.abs(G).max() > 1.0
+
+
+def test_the_wrist_believes_in_a_tool_of_the_mass_that_the_link_is_believed_to_have(simulated):
+    """At rest, nothing touched: what is felt is the weight of tool that is not taken off, 0.25 kg of it."""
+    still = ("robot=meca500", "trajectory.start=null", "trajectory.goal=[0.18795,0,0.0592]", "duration=0.02")
+    trace = simulated(*still, "mismatch.mass=0.6")
+    np.testing.assert_allclose(trace.touch.felt[1, :3], [0.0, 0.0, -0.4 * 0.25 * 9.81], atol=1e-9)
+
+
+def test_what_is_measured_is_the_true_arm(simulated, checked_config):
+    trace = simulated("robot=macro", "trajectory=quintic", "mismatch.length=1.1", "mismatch.mass=2", "duration=0.5")
+    np.testing.assert_array_equal(trace.tip, checked_config("robot=macro").arm.model.tip_positions(trace.q))
+
+
+@pytest.mark.parametrize("term", ["mass", "centre_of_mass"])
+def test_drawn_errors_stay_within_their_spread_and_differ_from_link_to_link(xarm7, term):
+    def ratio(seed):
+        believed, true = (robot.model.pin_model.inertias for robot in (belief(xarm7, seed, spread=0.2), xarm7))
+        pairs = list(zip(list(believed)[1:], list(true)[1:], strict=True))
+        if term == "mass":
+            return np.array([b.mass / t.mass for b, t in pairs])
+        return np.array([np.linalg.norm(b.lever) / np.linalg.norm(t.lever) for b, t in pairs])
+
+    ratios = np.array([ratio(seed) for seed in range(200)])
+    assert np.abs(ratios - 1.0).max() <= 0.2 + 1e-12
+    assert ratios.std() == pytest.approx(0.2 / np.sqrt(3.0), rel=0.05)
+    assert np.abs(np.corrcoef(ratios.T) - np.eye(7)).max() < 4.0 / np.sqrt(200)
+    np.testing.assert_array_equal(ratio(3), ratios[3])
+
+
+def test_the_whole_and_its_stages_are_believed_alike(combined):
+    robot = belief(combined, mass=1.2, centre_of_mass=0.9, length=1.1, gravity=0.7, payload=0.05, spread=0.1)
+    mini, whole = robot.stages[1].model, robot.model
+    for own, within in zip(list(mini.pin_model.inertias)[1:], list(whole.pin_model.inertias)[4:], strict=True):
+        np.testing.assert_allclose(own.toDynamicParameters(), within.toDynamicParameters(), atol=1e-12)
+    np.testing.assert_allclose(robot.stages[0].model.gravity, whole.gravity)
+    home = robot.stages[0].model.tip_position(np.zeros(3))
+    np.testing.assert_allclose(home, 1.1 * combined.stages[0].model.tip_position(np.zeros(3)), atol=1e-12)
+
+
+def test_each_repetition_draws_anew_from_seed_and_repetition_alone(checked_config, tmp_path):
+    overrides = ("robot=macro", "trajectory=quintic", "mismatch=sampled", "noise=thesis", "duration=0.3")
+    config = checked_config(*overrides)
+
+    def trace(repetition):
+        closed = assemble(config, repetition)
+        try:
+            return simulate(closed, make_encoders(config, closed, repetition))
+        finally:
+            closed.plant.close()
+
+    values = run(*overrides, "repetitions=3", f"outputs={tmp_path}").metrics["peak_torque"]["values"]
+    assert values == [float(np.abs(trace(repetition).tau).max()) for repetition in range(3)]
+    assert len(set(values)) == 3
+    first, again = trace(2), trace(2)
+    np.testing.assert_array_equal(first.q, again.q)
+
+
+def test_beliefs_leave_the_noise_alone(checked_config):
+    def reading(*overrides):
+        config = checked_config("robot=macro", "noise=thesis", *overrides)
+        closed = assemble(config)
+        closed.plant.close()
+        (sensor,) = make_encoders(config, closed, 0)
+        return sensor.measure(0, np.zeros(3), np.zeros(3))[0]
+
+    np.testing.assert_array_equal(reading("mismatch=sampled"), reading())
+
+
+@pytest.mark.parametrize(
+    ("overrides", "message"),
+    [
+        (("mismatch.mass=0",), "mismatch.mass: must be above 0; found 0"),
+        (("mismatch.length=-1",), "mismatch.length: must be above 0; found -1"),
+        (("mismatch.gravity=-1",), "mismatch.gravity: must be 0 or more; found -1"),
+        (("mismatch.spread=1",), "mismatch.spread: must be below 1; found 1"),
+        (("mismatch.lenght=1.1",), "mismatch.lenght: unknown key (did you mean length?)"),
+        (("mismatch=some",), "mismatch: no 'some' (did you mean sampled?); known: none, sampled"),
+        (
+            ("mismatch.payload=-2", "robot.payload.mass=1.5"),
+            "mismatch.payload: -2 kg is less than nothing of the true payload, robot.payload.mass with 1.5 kg; "
+            "allowed: -1.5 or more",
+        ),
+    ],
+)
+def test_beliefs_that_cannot_be(cli, overrides, message):
+    ending = cli("robot=macro", *overrides)
+    assert ending.code == 2
+    assert message in ending.err

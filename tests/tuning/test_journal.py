@@ -1,0 +1,82 @@
+import json
+import math
+
+import pytest
+
+from runner.errors import StoreError
+from runner.tuning.journal import Journal, read_trials
+from runner.tuning.key import Key
+from runner.tuning.objective import Objective
+from runner.tuning.trial import Trial
+
+KEYS = [Key("x", 0.0, 1.0, None, False, False)]
+GOALS = [Objective("settling_time", "minimize"), Objective("peak_torque", "maximize")]
+TRIALS = [
+    Trial({"x": 0.25}, (1.5, 2.5), "abc", ""),
+    Trial({"x": 0.1 + 0.2}, (math.inf, -math.inf), "", "controller.period: must be above 0; found 0"),
+    Trial({"x": 0.5}, (1e-300, 3.0), "def", ""),
+]
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "journal.log"
+
+
+@pytest.fixture
+def written(path):
+    journal = Journal(path, KEYS, GOALS)
+    for trial in TRIALS:
+        journal.append(trial)
+    return path
+
+
+def test_trials_are_read_as_they_were_written(written):
+    content = written.read_bytes()
+    assert read_trials(written) == TRIALS
+    assert Journal(written, KEYS, GOALS).trials == TRIALS
+    assert written.read_bytes() == content
+    assert all(isinstance(json.loads(line), dict) for line in content.splitlines())
+
+
+def test_a_journal_that_was_cut_anywhere_goes_on(written):
+    content = written.read_bytes()
+    for end in range(0, len(content) + 1, 7):
+        written.write_bytes(content[:end])
+        journal = Journal(written, KEYS, GOALS)
+        whole = max(0, content[:end].count(b"\n") - 1)
+        assert journal.trials == TRIALS[:whole]
+        journal.append(TRIALS[0])
+        assert read_trials(written) == [*TRIALS[:whole], TRIALS[0]]
+
+
+def test_a_half_line_of_a_journal_at_work_is_no_trial(written):
+    with written.open("ab") as file:
+        file.write(b'{"op_code":4,')
+    assert read_trials(written) == TRIALS
+
+
+@pytest.mark.parametrize("content", [b"nonsense\nmore\n", b"{}\n{}\n", b'{"op_code":0}\n[]\n'])
+def test_a_damaged_journal_is_told(path, content):
+    path.write_bytes(content)
+    with pytest.raises(StoreError, match=r"cannot read .*journal\.log"):
+        read_trials(path)
+    with pytest.raises(StoreError, match=r"remove it to begin the tuning anew"):
+        Journal(path, KEYS, GOALS)
+
+
+def test_no_journal_is_told(path):
+    with pytest.raises(StoreError, match="no such file"):
+        read_trials(path)
+    assert not path.exists()
+
+
+def test_a_full_disk_is_told(written, monkeypatch):
+    journal = Journal(written, KEYS, GOALS)
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(StoreError, match=r"cannot write .*journal\.log: No space left on device"):
+        journal.append(TRIALS[0])

@@ -1,0 +1,240 @@
+"""A whole tuning: what is stored, what is made again, and what its trials depend on."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from short_runs import DAMPING, FREQUENCY, SHORT
+
+from runner import store
+from runner.errors import ConfigError, RunnerError, StoreError
+from runner.sweep.lock import at_work
+from runner.tuning.study import journal_path, open_tuning
+
+DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "duration=1")
+STOP = "sweep.on_failure=stop"
+PERIOD = "controller.period=range(0.005,0.0651,0.005)"  # 0.06 diverges
+
+
+def test_every_trial_is_a_stored_run(tuned, tmp_path):
+    tuning = tuned()
+    assert len(tuning.trials) == 8
+    for trial in tuning.trials:
+        run = store.open_run(tmp_path / "outputs" / "runs" / trial.run)
+        assert run.config["controller"]["natural_frequency"] == trial.params["controller.natural_frequency"]
+        assert trial.values == (run.metrics["peak_torque"]["median"],)
+        assert len(run.trace) > 1
+    assert open_tuning(tuning.folder) == tuning
+
+
+def test_a_tuning_is_a_sweep_to_other_commands(tuned):
+    tuning = tuned()
+    sweep = store.open_sweep(tuning.folder)
+    assert list(sweep.hashes) == [trial.run for trial in tuning.trials]
+    assert [run.hash for run in sweep.runs()] == list(sweep.hashes)
+    assert sweep.overrides[3] == tuple(tuning.study.trial_overrides(tuning.trials[3]))
+    assert sweep.command == "runner tune ..."
+
+
+def test_nothing_is_simulated_twice(tuned, simulated_runs):
+    first = tuned()
+    assert len(simulated_runs) == 8
+    assert tuned() == first
+    assert len(simulated_runs) == 8
+    whole = tuned("repetitions=int(interval(1,2))", trials=6)
+    assert len(set(simulated_runs)) == len(simulated_runs) == 10
+    assert len(whole.trials) == 6
+
+
+def test_more_trials_add_to_those_that_are_there(tuned, simulated_runs):
+    first = tuned(trials=5)
+    more = tuned(trials=9)
+    assert more.folder == first.folder
+    assert more.trials[:5] == first.trials
+    assert len(simulated_runs) == 9
+    assert tuned(trials=3).trials == more.trials
+
+
+def test_trials_do_not_depend_on_where_a_tuning_was_interrupted(tuned):
+    whole = tuned(trials=14)
+    journal = journal_path(whole.folder)
+    lines = journal.read_bytes().splitlines(keepends=True)
+    for kept in (0, 1, 2, 9, 13):
+        journal.write_bytes(b"".join(lines[:kept]))
+        assert tuned(trials=14).trials == whole.trials
+    journal.unlink()
+    assert tuned(trials=14).trials == whole.trials
+
+
+def test_trials_do_not_depend_on_the_number_of_processes(tuned, tmp_path):
+    whole = tuned(trials=13)
+    other = tuned(FREQUENCY, DAMPING, "hydra.sweeper.workers=2", f"outputs={tmp_path}/other", trials=13)
+    assert other.trials == whole.trials
+    assert other.folder.name == whole.folder.name
+    for trial in whole.trials:
+        one, two = (store.open_run(tmp_path / place / "runs" / trial.run) for place in ("outputs", "other"))
+        assert one.metrics == two.metrics
+
+
+def test_the_seed_decides_what_is_tried(tuned):
+    first = tuned()
+    other = tuned("seed=1", FREQUENCY, DAMPING)
+    assert other.folder != first.folder
+    assert {trial.params[FREQUENCY.partition("=")[0]] for trial in first.trials}.isdisjoint(
+        trial.params[FREQUENCY.partition("=")[0]] for trial in other.trials
+    )
+
+
+@pytest.mark.parametrize("change", ["trajectory.duration=2", "seed=1", FREQUENCY.replace("80", "81")])
+def test_another_experiment_is_another_tuning(tuned, change):
+    assert tuned(FREQUENCY, change, trials=1).folder != tuned(FREQUENCY, trials=1).folder
+
+
+def test_how_it_is_made_is_no_part_of_a_tuning(tuned):
+    change = ("sweep.time_limit=100", "hydra.sweeper.workers=0")
+    assert tuned(FREQUENCY, *change, trials=1).folder == tuned(FREQUENCY, trials=1).folder
+
+
+def test_a_failed_run_is_the_worst(tuned, simulated_runs):
+    tuning = tuned(*DIVERGES, PERIOD, trials=20, objectives=(("peak_torque", "maximize"), ("rms_torque", "minimize")))
+    failed = [trial for trial in tuning.trials if trial.failure]
+    assert failed
+    for trial in tuning.trials:
+        run = store.open_run(tuning.folder.parent.parent / "runs" / trial.run)
+        assert trial.failure == run.failure_text
+    assert all(trial.values == (-np.inf, np.inf) for trial in failed)
+    assert len(simulated_runs) == len({trial.run for trial in tuning.trials}) < 20
+    assert open_tuning(tuning.folder) == tuning
+
+
+def test_what_never_settles_failed(tuned):
+    tuning = tuned(
+        "trajectory=goal",
+        "controller.natural_frequency=interval(1,2)",
+        trials=2,
+        objectives=(("settling_time", "minimize"),),
+    )
+    assert [trial.failure for trial in tuning.trials] == ["settling_time: beyond every number"] * 2
+    assert all(trial.values == (np.inf,) for trial in tuning.trials)
+
+
+def test_a_trial_that_cannot_be_run_failed(tuned):
+    tuning = tuned("controller.period=0.012", "plant.step=range(0.001,0.0065,0.001)", trials=25)
+    failed = [trial for trial in tuning.trials if trial.failure]
+    assert {trial.params["plant.step"] for trial in failed} == {0.005}
+    for trial in failed:
+        assert (trial.run, trial.values) == ("", (np.inf,))
+        assert "0.005" in trial.failure
+    assert len(store.open_sweep(tuning.folder).hashes) == 25 - len(failed)
+
+
+def test_the_first_failure_may_end_it(tuned):
+    tuning = tuned(*DIVERGES, "controller.period=range(0.05,0.0651,0.005)", STOP, trials=20, at_once=1)
+    assert [bool(trial.failure) for trial in tuning.trials] == [False] * (len(tuning.trials) - 1) + [True]
+
+
+def test_a_run_that_takes_too_long_failed(tuned):
+    tuning = tuned("duration=interval(1e4,1e5)", "sweep.time_limit=0.2", trials=1)
+    assert tuning.trials[0].failure == "cut short: no result within sweep.time_limit, 0.2 s"
+
+
+@pytest.mark.parametrize(
+    ("overrides", "why"),
+    [
+        (["controller.natural_frequncy=interval(1,2)"], "unknown key (did you mean natural_frequency?)"),
+        (["controller.kind=interval(1,2)"], "controller.kind: is no number; found 'operational_space'"),
+        (
+            ["controller.feedforward=interval(0,1)"],
+            "controller.feedforward: is no number; found True",
+        ),
+        (["trajectory.goal=interval(0,1)"], "trajectory.goal: is no number"),
+        (["controller=interval(1,2)"], "controller: is a group of options, no number"),
+        (
+            ["robot=combined", "controller.period=interval(0.1,0.2)"],
+            "is a group of keys (macro, mini)",
+        ),
+        (["sweep.time_limit=interval(1,2)"], "sweep.time_limit: says how runs are made"),
+        (["controller.natural_frequency=interval(-5,80)"], "controller.natural_frequency: must be"),
+        (["controller.damping_ratio=interval(2,1)"], "controller.damping_ratio: its range is empty"),
+        (["plant.step=0.001", "controller.period=interval(0.01,0.02)"], "controller.period"),
+        (["repetitions=interval(1,5)"], "repetitions: must be a whole number"),
+        ([FREQUENCY, "robot=macro,mini"], "'robot=macro,mini' is no range to tune in"),
+        ([FREQUENCY, "sweep.trace=never"], "sweep.trace: a tuning keeps the trace of every run; found 'never'"),
+        ([FREQUENCY, "hydra.sweeper.workers=-1"], "hydra.sweeper.workers: must be a whole number"),
+        ([FREQUENCY, "robot=macr"], "robot: no 'macr' (did you mean macro?)"),
+        ([FREQUENCY, "nonsense"], "'nonsense' is no override"),
+        (["robot=macro"], "nothing to tune; give a key a range"),
+    ],
+)
+def test_bad_input_is_told_before_anything_starts(tuned, tmp_path, simulated_runs, overrides, why):
+    with pytest.raises(ConfigError) as error:
+        tuned(*overrides)
+    assert why in str(error.value)
+    assert not simulated_runs
+    assert not (tmp_path / "outputs").exists()
+
+
+def test_problems_at_both_ends_are_told_at_once(tuned):
+    with pytest.raises(ConfigError) as error:
+        tuned("controller.natural_frequency=interval(-5,80)", "noise.position=interval(-1,1)", "controler.x=1")
+    for problem in ("natural_frequency: must be", "noise.position: must be", "controler: unknown key"):
+        assert problem in str(error.value)
+
+
+def test_a_metric_that_these_runs_do_not_have_is_told(tuned):
+    with pytest.raises(RunnerError, match=r"--minimize: these runs have no 'macro_settling_time'.*they have: "):
+        tuned(objectives=(("macro_settling_time", "minimize"),))
+
+
+def test_two_at_once_in_one_folder(tuned, tmp_path):
+    (tmp_path / "outputs").mkdir()
+    with at_work(tmp_path / "outputs"), pytest.raises(RunnerError, match="another sweep is at work"):
+        tuned()
+
+
+def test_a_damaged_tuning_is_told(tuned):
+    folder = tuned(trials=1).folder
+    (folder / "tuning.json").write_text(json.dumps({"schema": 1}))
+    with pytest.raises(StoreError, match="cannot read the tuning in"):
+        open_tuning(folder)
+
+
+def test_a_tuning_killed_at_any_moment_ends_as_if_it_had_not_been(tuned, tmp_path):
+    whole = tuned(trials=30)
+    overrides = [*SHORT, f"outputs={tmp_path}/killed", FREQUENCY, DAMPING]
+    options = ("--minimize=peak_torque", "--trials=30", "--at-once=3")
+    command = [sys.executable, "-m", "runner", "tune", *overrides, *options]
+    rng = np.random.default_rng(0)
+    journals = tmp_path / "killed" / "tunings"
+    kills, nowhere = 0, subprocess.DEVNULL
+    while kills < 3:
+        with subprocess.Popen(
+            [*command, f"hydra.sweeper.workers={2 * (kills % 2)}"],
+            start_new_session=True,
+            stderr=nowhere,
+            stdout=nowhere,
+        ) as runner:
+            before = _size(journals)
+            deadline = time.monotonic() + 60
+            while _size(journals) == before and runner.poll() is None and time.monotonic() < deadline:
+                time.sleep(0.02)
+            time.sleep(rng.uniform(0.0, 0.3))
+            if runner.poll() is not None:
+                break
+            os.killpg(runner.pid, signal.SIGKILL)
+            kills += 1
+    assert kills >= 2
+    other = tuned(FREQUENCY, DAMPING, f"outputs={tmp_path}/killed", trials=30)
+    assert other.trials == whole.trials
+    assert not [*(tmp_path / "killed").rglob("*.tmp"), *(tmp_path / "killed").rglob("scratch")]
+    assert replace(other, folder=whole.folder) == whole
+
+
+def _size(journals):
+    return sum(path.stat().st_size for path in journals.glob("*/journal.log"))
