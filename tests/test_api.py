@@ -71,7 +71,9 @@ def test_an_outputs_folder_that_cannot_be_written_to(tmp_path):
 
 def test_own_config_folders(tmp_path):
     (tmp_path / "own" / "noise").mkdir(parents=True)
-    (tmp_path / "own" / "noise" / "mine.yaml").write_text("position: 1e-4\ndistribution: gaussian\nvelocity: exact\n")
+    (tmp_path / "own" / "noise" / "mine.yaml").write_text(
+        "position: 1e-4\ndistribution: gaussian\nvelocity: exact\nresolution: 0.0\n"
+    )
     run = runner.run("noise=mine", "duration=0.05", config_dirs=[tmp_path / "own"])
     assert run.config["noise"]["distribution"] == "gaussian"
     assert run.provenance["choices"]["noise"] == "mine"
