@@ -40,7 +40,7 @@ def on_cluster(queue: Queue, client: Any) -> Iterator[Report]:
         client: A `distributed.Client`.
 
     Raises:
-        RunnerError: if the scheduler is lost, or all workers are and none comes back.
+        RunnerError: if the scheduler is lost, all workers are and none comes back, or one cannot reach its files.
     """
     from distributed.scheduler import KilledWorker
 
@@ -72,13 +72,15 @@ def on_cluster(queue: Queue, client: Any) -> Iterator[Report]:
             elif isinstance(future.exception(), KilledWorker):
                 # Whatever else its worker had to do is under suspicion, too, until each was made alone.
                 report = _give_up(chunk) if chunk.name in suspects else Report(queue.give_back(chunk), "", 0.0)
+            elif isinstance(future.exception(), OSError):
+                raise RunnerError(f"a worker failed: {future.exception()}; {_GO_ON}") from future.exception()
             else:
                 raise future.exception()
             future.release()
             fill()
             yield report
     except (OSError, CancelledError) as error:
-        raise RunnerError(f"the Dask scheduler is lost: {error}; {_GO_ON}") from error
+        raise RunnerError(f"the Dask scheduler is lost; {_GO_ON}") from error
     finally:
         client.cancel(list(under_way))
 
