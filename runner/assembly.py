@@ -14,6 +14,7 @@ from runner.environments import ENVIRONMENTS, Environment
 from runner.environments.wall import Wall
 from runner.errors import ConfigError
 from runner.feasibility import check_path
+from runner.guard import WatchedPlant, check_trajectory, is_ours
 from runner.interaction import Interaction
 from runner.metrics import MetricContext
 from runner.plants import PLANTS, Plant, PositionPlant, innermost
@@ -21,10 +22,13 @@ from runner.plants.servo import JointServo
 from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.mismatch import believe
 from runner.robots.robot import Robot, end_points
+from runner.robots.task_space import distance_beside
 from runner.sensing import ForceTorqueSensor, JointEncoders
 from runner.simulation import ClosedLoop
 from runner.trace import FloatArray
 from runner.trajectories import TRAJECTORIES, Trajectory
+
+_BESIDE = 1e-9  # of the reach: farther beside the plane of a planar arm a path cannot be reached
 
 _BELIEFS = 2**32 - 1  # in the seeds of what controllers believe; the loops' places count from 0
 
@@ -48,6 +52,7 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
     at_home = end_points(arm, home[None], parallel)[-1, 0]
     start = at_home if config.trajectory.start is None else np.array(config.trajectory.start)
     trajectory = TRAJECTORIES.build(config.trajectory, start)
+    check_trajectory(trajectory)
     _check_path_reach(config, trajectory)
     limits, q_start = _limits(config), _start_posture(config, trajectory.start)
     if CONTROLLERS.follows_paths(config.controller.kind):
@@ -91,15 +96,29 @@ def _check_path_reach(config: RunConfig, trajectory: Trajectory) -> None:
                 "start elsewhere"
             ]
         )
+    beside = distance_beside(model, trajectory.sample(times)[:, 0])
+    row = int(beside.argmax())
+    if beside[row] > _BESIDE * model.reach:
+        raise ConfigError(
+            [
+                f"trajectory: at t = {times[row]:.4g} s the path lies {beside[row]:.4g} m beside the plane or line in "
+                "which alone the joints move the tip; take a path within it"
+            ]
+        )
+
+
+def _build_plant(config: RunConfig, *args: Any) -> Any:
+    plant = PLANTS.build(config.plant, config.arm, *args)
+    return plant if is_ours(innermost(plant)) else WatchedPlant(plant)
 
 
 def _make_plant(config: RunConfig, believed: Robot, limits: FloatArray) -> Plant | PositionPlant:
     arm = config.arm
     plant: Plant | PositionPlant
     if PLANTS.commands(config.plant.kind) == "position":
-        plant = PLANTS.build(config.plant, arm, config.tick, round(config.controller.period / config.tick))
+        plant = _build_plant(config, config.tick, round(config.controller.period / config.tick))
         return plant
-    plant = PLANTS.build(config.plant, arm, config.step, config.steps_per_tick)
+    plant = _build_plant(config, config.step, config.steps_per_tick)
     if config.commands == "torque":
         return plant
     every = round(config.controller.period / config.tick)

@@ -28,11 +28,15 @@ runner: config-driven experiments for robot-arm control, with reports
   runner calibrate [OVERRIDES]                   calibrate tool or sensor against the truth: calibration=gravity
   runner audit URDF --tip FRAME --jacobian FILE  your own formulas against a robot; also --position, --mass-matrix,
                                                  --gravity
+  runner doctor ROBOT.urdf [--tip FRAME] [--write DIR] [--html DIR]
+                                                 does a robot of yours fit, what to mend, and a config to start from
   runner list [robots|controllers|trajectories|experiments|plants|noise|presets|torque_limits|calibrations|metrics|
                claims|references]
 
   runner --cfg job [OVERRIDES]                   show the composed config without running it
   runner --config-dir DIR OVERRIDES              take YAML and URDFs from your own folder, too
+  runner --plugin controller=FILE.py OVERRIDES   take a controller, trajectory, plant, environment or metric from your
+                                                 own module; again for the next one
   runner --hydra-help                            all flags of Hydra
   eval "$(runner -sc install=bash)"              tab completion (also fish, zsh)
 
@@ -41,7 +45,7 @@ key, as in controller.period=0.005; `runner --cfg job` shows all keys. Exit code
 check fell short, 2 bad input.
 """
 COMMANDS = (
-    "reproduce", "report", "table", "status", "tune", "check", "diff", "calibrate", "audit", "list",
+    "reproduce", "report", "table", "status", "tune", "check", "diff", "calibrate", "audit", "doctor", "list",
 )  # fmt: skip
 
 
@@ -63,7 +67,7 @@ def main() -> None:
 def dispatch(arguments: Sequence[str]) -> int:
     """Run one command line and return its exit code."""
     try:
-        return _choose(arguments)
+        return _choose(_take_plugins(arguments))
     except RunnerError as error:
         print(f"runner: {error}", file=sys.stderr)
         return 2
@@ -73,6 +77,24 @@ def dispatch(arguments: Sequence[str]) -> int:
     except KeyboardInterrupt:
         print("runner: interrupted; finished runs are stored, the same command goes on from there", file=sys.stderr)
         return 130
+
+
+def _take_plugins(arguments: Sequence[str]) -> list[str]:
+    """Add the parts that `--plugin GROUP=MODULE` names, in any command, and return the other arguments."""
+    named, others = [], []
+    words = iter(arguments)
+    for word in words:
+        if word == "--plugin":
+            named.append(next(words, ""))
+        elif word.startswith("--plugin="):
+            named.append(word.removeprefix("--plugin="))
+        else:
+            others.append(word)
+    if named:
+        from runner.plugins import use_plugins
+
+        use_plugins(named)
+    return others
 
 
 def _choose(arguments: Sequence[str]) -> int:

@@ -1,7 +1,10 @@
 """Errors in the language of robots. Everything a user can mend derives from RunnerError and ends with exit code 2."""
 
 import difflib
+import sysconfig
+import traceback
 from collections.abc import Iterable
+from pathlib import Path
 
 
 class RunnerError(Exception):
@@ -51,3 +54,21 @@ def nearest(name: str, allowed: Iterable[str]) -> str:
     """Return " (did you mean X?)" for the nearest allowed name, or an empty text when none is near."""
     matches = difflib.get_close_matches(name, list(allowed), n=1, cutoff=0.5)
     return f" (did you mean {matches[0]}?)" if matches else ""
+
+
+def told(error: Exception) -> str:
+    """Return what an error of a user's part says, with the innermost place in the user's own source."""
+    text = traceback.format_exception_only(error)[-1].strip()
+    if isinstance(error, SyntaxError):
+        return f"{text} ({Path(error.filename or '?').name}, line {error.lineno})"
+    place = user_place(error)
+    return f"{text} ({place})" if place else text
+
+
+def user_place(error: BaseException) -> str:
+    """Return the innermost place in the user's own source where an error arose, or an empty text."""
+    ours = str(Path(__file__).resolve().parent)
+    libraries = tuple(sysconfig.get_paths()[name] for name in ("purelib", "platlib", "stdlib"))
+    others = (ours, "<frozen", *libraries)
+    own = [frame for frame in traceback.extract_tb(error.__traceback__) if not frame.filename.startswith(others)]
+    return f"{Path(own[-1].filename).name}, line {own[-1].lineno}, in {own[-1].name}" if own else ""

@@ -1,5 +1,6 @@
 """One job: check a composed config, simulate its repetitions, store the result; or find it stored already."""
 
+import os
 import shlex
 import time
 from collections.abc import Sequence
@@ -8,16 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from runner import provenance, store
+from runner import plugins, provenance, store
 from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
 from runner.config.compose import Composed, compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.metrics import evaluate, summarize
-from runner.sensing import ForceTorqueSensor, JointEncoders
+from runner.sensing import ForceTorqueSensor
 from runner.simulation import ClosedLoop, simulate
 from runner.store.writing import timing
-from runner.trace import Failure, FloatArray, Trace
+from runner.trace import Failure, Trace
 
 
 def run(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Run:
@@ -49,21 +50,15 @@ def execute(composed: Composed) -> store.Run:
     return store.write_run(outputs, name, simulate_job(config, composed))
 
 
-class TimeLimitError(Exception):
-    """A run that took longer than its time limit."""
-
-
-def simulate_job(config: RunConfig, composed: Composed, time_limit: float | None = None) -> store.RunResult:
+def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
     """Simulate the repetitions of a checked config.
 
     Args:
         config: The checked config.
         composed: What it was checked from, for provenance.
-        time_limit: Longest wall-clock time for all repetitions, in s; None for no limit.
 
     Raises:
         ConfigError: where the start of the trajectory cannot be reached, or a part refuses its config.
-        TimeLimitError: if it takes longer.
     """
     wall, cpu = time.perf_counter(), time.process_time()
     loop = assemble(config)
@@ -72,20 +67,19 @@ def simulate_job(config: RunConfig, composed: Composed, time_limit: float | None
     failure: tuple[int, Failure] | None = None
     metrics, ticks = [], []
     notices: list[str] = []
+    told: list[str] = []
     try:
         for repetition in range(config.settings.repetitions):
             if repetition > 0 and config.mismatch.spread > 0.0:  # other beliefs
                 last, loop = loop, assemble(config, repetition)
                 last.plant.close()
             encoders, wrist = make_encoders(config, loop, repetition), make_wrist_sensor(config, loop, repetition)
-            if time_limit is not None:
-                encoders = [_Timed(sensor, wall + time_limit) for sensor in encoders]
             trace = simulate(loop, encoders, wrist)
             notices = notices or _notices(loop, wrist)
             first = trace if first is None else first
             if trace.failure is not None and failure is None:
                 failure = (repetition, trace.failure)
-            metrics.append(evaluate(trace, context))
+            metrics.append(evaluate(trace, context, told))
             ticks.append(trace.tick_seconds)
     finally:
         loop.plant.close()
@@ -98,7 +92,7 @@ def simulate_job(config: RunConfig, composed: Composed, time_limit: float | None
         repetitions=config.settings.repetitions,
         failure=failure,
         timing=timing(np.concatenate(ticks), time.perf_counter() - wall, time.process_time() - cpu),
-        provenance=job_provenance(config, composed, notices),
+        provenance=job_provenance(config, composed, [*notices, *dict.fromkeys(told)]),
     )
 
 
@@ -109,33 +103,19 @@ def _notices(closed: ClosedLoop, wrist: ForceTorqueSensor | None) -> list[str]:
     return told + ([] if wrist is None else wrist.overloads())
 
 
-class _Timed(JointEncoders):
-    """Encoders that look at the clock whenever they are read.
-
-    Args:
-        encoders: The encoders.
-        deadline: When they give up, on the clock of `time.perf_counter`, in s.
-    """
-
-    def __init__(self, encoders: JointEncoders, deadline: float) -> None:
-        self._encoders, self._deadline = encoders, deadline
-
-    def measure(self, tick: int, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Measure as the encoders do.
-
-        Raises:
-            TimeLimitError: after the deadline.
-        """
-        if time.perf_counter() > self._deadline:
-            raise TimeLimitError
-        return self._encoders.measure(tick, q, dq)
+def _command(composed: Composed) -> str:
+    """Return the command that makes the run, folders relative to where it was given."""
+    added = [word for text in plugins.named() for word in ("--plugin", text)]
+    own = [word for folder in composed.config_dirs for word in ("--config-dir", os.path.relpath(folder))]
+    return shlex.join(["runner", *added, *own, *(o for o in composed.overrides if not o.startswith("outputs="))])
 
 
 def job_provenance(config: RunConfig, composed: Composed, notices: Sequence[str] = ()) -> dict[str, object]:
     """Return where a run comes from: command, choices, time steps, seed, commit, versions, machine."""
     return {
         "date": time.strftime("%Y-%m-%d", time.gmtime()),
-        "command": shlex.join(["runner", *(o for o in composed.overrides if not o.startswith("outputs="))]),
+        "command": _command(composed),
+        "plugins": plugins.digests(),
         "choices": dict(composed.choices),
         "plant_step": config.step,
         "steps_per_tick": config.steps_per_tick,

@@ -11,10 +11,11 @@ from runner.controllers import CONTROLLERS
 from runner.errors import ConfigError
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
+from runner.robots.task_space import task_directions
 from runner.trace import FloatArray
 from runner.trajectories import Trajectory
 
-_AT_LIMIT = 1e-6  # rad
+_AT_LIMIT = 1e-6  # rad or m
 _SINGULAR = 0.1  # of the reach; damping keeps a tip from the path well before the singular posture itself
 
 
@@ -72,20 +73,22 @@ def _find_stop(model: RobotModel, trajectory: Trajectory, times: FloatArray, q: 
     if outside.any():
         row, joint = np.argwhere(outside)[0]
         return (
-            f"trajectory: at t = {times[row]:.4g} s {model.joint_names[joint]} would be at {q[row, joint]:.4g} rad; "
-            f"its limits are {lower[joint]:.4g} to {upper[joint]:.4g} rad"
+            f"trajectory: at t = {times[row]:.4g} s {model.joint_names[joint]} would be at {q[row, joint]:.4g} "
+            f"{model.joint_units[joint]}; its limits are {lower[joint]:.4g} to {upper[joint]:.4g} "
+            f"{model.joint_units[joint]}"
         )
     distance = trajectory.distance_to_path(model.tip_positions(q))
     if distance.max() <= tolerance:
         return ""
     row = int(np.argmax(distance > tolerance))
     reasons = [
-        f"{name} stands at its limit of {limit:.4g} rad"
-        for name, *limits, value in zip(model.joint_names, lower, upper, q[row], strict=True)
+        f"{name} stands at its limit of {limit:.4g} {unit}"
+        for name, unit, *limits, value in zip(model.joint_names, model.joint_units, lower, upper, q[row], strict=True)
         for limit in limits
         if abs(value - limit) < _AT_LIMIT
     ]
-    smallest = float(np.linalg.svd(model.tip_jacobian(q[row])[:3], compute_uv=False)[-1])
+    J = task_directions(model, pose=False) @ model.tip_jacobian(q[row])[:3]
+    smallest = float(np.linalg.svd(J, compute_uv=False)[-1])
     if smallest < _SINGULAR * model.reach:
         reasons.append(
             f"the posture is singular, or nearly so (smallest singular value {smallest:.3g} m; reach "
@@ -115,9 +118,10 @@ def _find_haste(model: RobotModel, trajectory: Trajectory, times: FloatArray, q:
         return ""
     row, joint = np.unravel_index(int(np.argmax(share)), share.shape)
     name, speed, limit = model.joint_names[joint], speeds[row, joint], model.velocity_limits[joint]
+    unit, moves = model.joint_units[joint], "slide" if model.slides[joint] else "turn"
     return (
-        f"trajectory.duration: {trajectory.duration:g} s is too fast: at t = {times[row]:.4g} s {name} would turn at "
-        f"{speed:.4g} rad/s, and its limit is {limit:.4g} rad/s; the shortest feasible time is "
+        f"trajectory.duration: {trajectory.duration:g} s is too fast: at t = {times[row]:.4g} s {name} would {moves} "
+        f"at {speed:.4g} {unit}/s, and its limit is {limit:.4g} {unit}/s; the shortest feasible time is "
         f"{trajectory.duration * share.max():.4g} s"
     )
 

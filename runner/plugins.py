@@ -1,18 +1,136 @@
-"""Parts that other installed packages add through entry points."""
+"""Parts of the user's: of installed packages by entry point, and of modules named on the command line.
 
+A part is a module, such as one with a controller's `CONFIG` and `build`. An installed package declares its parts in
+entry points, group `runner.<group>`. Any other module is named by the one who starts the command, as in
+`runner --plugin controller=mine/spring.py`, and never by a config: what a YAML file says cannot run code.
+"""
+
+import hashlib
+import importlib
+import os
 import sys
+from collections.abc import Sequence
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
+from importlib.util import find_spec
+from pathlib import Path
+from types import ModuleType
+
+from runner.errors import ConfigError, RunnerError, nearest, told
+
+GROUPS = ("calibration", "controller", "environment", "metric", "plant", "trajectory")
+"""What there can be parts of."""
+
+_VARIABLE = "RUNNER_PLUGINS"  # one a line, as given but with whole paths; worker processes inherit it
 
 
-def added(kind: str) -> tuple[EntryPoint, ...]:
-    """Return the parts that other packages add, such as those in `runner.plant` for kind "plant".
+def use_plugins(given: Sequence[str]) -> None:
+    """Add the parts named, in this process and in those that it starts.
+
+    Args:
+        given: GROUP=MODULE each, such as "controller=mine/spring.py", a file, or "controller=mine.spring", a module
+            that Python finds; the part's name is the module's last, spring.
+
+    Raises:
+        RunnerError: for a group that does not exist, or a module that cannot be found.
+    """
+    lines = os.environ.get(_VARIABLE, "").splitlines()
+    for text in given:
+        group, _, module = text.partition("=")
+        if group not in GROUPS or not module:
+            raise RunnerError(
+                f"--plugin {text}: must be GROUP=MODULE, as in controller=mine/spring.py{nearest(group, GROUPS)}; "
+                f"groups: {', '.join(GROUPS)}"
+            )
+        if _is_file(module):
+            if not Path(module).is_file():
+                raise RunnerError(f"--plugin {text}: no file {module}")
+            module = str(Path(module).resolve())
+        _check_found(text, _point(f"{group}={module}").value, module)
+        if f"{group}={module}" not in lines:
+            lines.append(f"{group}={module}")
+    os.environ[_VARIABLE] = "\n".join(lines)
+
+
+def named() -> list[str]:
+    """Return the parts named on the command line, as it takes them; files relative to the working directory."""
+    found = []
+    for line in os.environ.get(_VARIABLE, "").splitlines():
+        group, _, module = line.partition("=")
+        found.append(f"{group}={os.path.relpath(module) if _is_file(module) else module}")
+    return found
+
+
+def added(group: str) -> tuple[EntryPoint, ...]:
+    """Return the parts of a group that do not come with this package.
 
     Installed packages are read once for each `sys.path`, as that takes half a millisecond and is asked in every run.
     """
-    return _read(f"runner.{kind}", tuple(sys.path))
+    lines = os.environ.get(_VARIABLE, "").splitlines()
+    of_command_line = [_point(line) for line in lines if line.partition("=")[0] == group]
+    return (*of_command_line, *_installed(f"runner.{group}", tuple(sys.path)))
+
+
+def load(group: str, name: str, module: str) -> ModuleType:
+    """Import a part's module.
+
+    Raises:
+        ConfigError: if that fails; names the place in the module.
+    """
+    try:
+        return importlib.import_module(module)
+    except Exception as error:
+        if module.startswith("runner."):
+            raise
+        raise ConfigError([f"{group} {name}: module {module} cannot be imported: {told(error)}"]) from error
+
+
+def source_files(module: str) -> list[Path]:
+    """Return the source that a part is made of: its module's file, or all of the package that this lies in."""
+    package, _, rest = module.partition(".")
+    spec = find_spec(package if rest else module)
+    if spec is None:
+        return []
+    if spec.submodule_search_locations:
+        return sorted(path for folder in spec.submodule_search_locations for path in Path(folder).rglob("*.py"))
+    return [Path(spec.origin)] if spec.origin else []
+
+
+def digests() -> dict[str, str]:
+    """Return a digest of the source of each part named on the command line, by what names it."""
+    found = {}
+    for text in named():
+        content = b"\0".join(path.read_bytes() for path in source_files(_point(text).value))
+        found[text] = hashlib.sha256(content).hexdigest()[:24]
+    return found
 
 
 @cache
-def _read(group: str, _path: tuple[str, ...]) -> tuple[EntryPoint, ...]:
+def _installed(group: str, _path: tuple[str, ...]) -> tuple[EntryPoint, ...]:
     return tuple(entry_points(group=group))
+
+
+def _is_file(module: str) -> bool:
+    return module.endswith(".py")
+
+
+def _point(line: str) -> EntryPoint:
+    """Return the part that a line GROUP=MODULE names; the folder of a file becomes one that Python looks into."""
+    group, _, module = line.partition("=")
+    if _is_file(module):
+        folder = str(Path(module).parent)
+        if folder not in sys.path:
+            sys.path.append(folder)  # at the end, so that nothing in it hides what is installed
+        module = Path(module).stem
+    return EntryPoint(name=module.rpartition(".")[2], value=module, group=f"runner.{group}")
+
+
+def _check_found(text: str, name: str, module: str) -> None:
+    try:
+        spec = find_spec(name)
+    except (ImportError, ValueError) as error:
+        raise RunnerError(f"--plugin {text}: no module {name}: {error}") from error
+    if spec is None:
+        raise RunnerError(f"--plugin {text}: no module {name}; name a file, as in {name.replace('.', '/')}.py")
+    if _is_file(module) and (spec.origin is None or Path(spec.origin).resolve() != Path(module)):
+        raise RunnerError(f"--plugin {text}: Python has another module {name}, {spec.origin}; rename yours")

@@ -1,19 +1,18 @@
 """Names to parts: what a `kind:` in a config stands for.
 
 A registry holds one line per kind, the module that defines it. The module is imported when the kind is first
-used, and offers `CONFIG`, the pydantic model of its config group, and `build`, which makes the object. Other
-packages add kinds through entry points in the group `runner.<registry>`, each pointing to such a module.
+used, and offers `CONFIG`, the pydantic model of its config group, and `build`, which makes the object. Users add
+kinds of their own: see runner/plugins.py.
 """
 
-import importlib
 from collections.abc import Mapping
 from types import ModuleType
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict
 
-from runner.errors import ConfigError, nearest
-from runner.plugins import added
+from runner.errors import ConfigError, RunnerError, nearest, told
+from runner.plugins import added, load
 
 
 class StrictModel(BaseModel):
@@ -35,21 +34,39 @@ class Registry:
         self._modules = dict(modules)
 
     def names(self) -> list[str]:
-        """Return the known kinds, those of other packages included, sorted."""
+        """Return the known kinds, those of the user's included, sorted."""
         return sorted(self._modules | self._plugins())
 
     def config_model(self, kind: str) -> type[StrictModel]:
         """Return the pydantic model of a kind's config.
 
         Raises:
-            ConfigError: if the kind is unknown.
+            ConfigError: if the kind is unknown, or its module cannot be imported or has no such model.
         """
-        model: type[StrictModel] = self._module(kind).CONFIG
+        module = self._module(kind)
+        model = getattr(module, "CONFIG", None)
+        if not (isinstance(model, type) and issubclass(model, StrictModel)):
+            raise ConfigError(
+                [
+                    f"{self.group}.kind: module {module.__name__} of '{kind}' needs CONFIG, a class derived from "
+                    f"runner.registry.StrictModel; found {model!r}"
+                ]
+            )
         return model
 
     def build(self, config: Any, *args: Any) -> Any:
-        """Make the object that a validated config describes; `args` are what every kind of this group gets."""
-        return self._module(config.kind).build(config, *args)
+        """Make the object that a validated config describes; `args` are what every kind of this group gets.
+
+        Raises:
+            ConfigError: where a part of the user's raises anything; names the place.
+        """
+        module = self._module(config.kind)
+        try:
+            return module.build(config, *args)
+        except Exception as error:
+            if module.__name__.startswith("runner.") or isinstance(error, RunnerError):
+                raise
+            raise ConfigError([f"{self.group}.kind: '{config.kind}' cannot be built: {told(error)}"]) from error
 
     def commands(self, kind: str) -> Literal["torque", "position"]:
         """Return what a kind of controller gives, or a kind of plant takes: "torque" or "position" of the joints."""
@@ -75,7 +92,7 @@ class Registry:
         if kind not in modules:
             known = ", ".join(self.names())
             raise ConfigError([f"{self.group}.kind: '{kind}' is unknown{nearest(kind, self.names())}; known: {known}"])
-        return importlib.import_module(modules[kind])
+        return load(self.group, kind, modules[kind])
 
     def _plugins(self) -> dict[str, str]:
         return {point.name: point.value for point in added(self.group)}

@@ -8,6 +8,8 @@ from typing import Any, Literal
 import numpy as np
 
 from runner.controllers import Loop
+from runner.errors import SimulationError
+from runner.guard import reset, watch_law
 from runner.interaction import Interaction, Touch
 from runner.plants import Plant, PositionPlant, innermost
 from runner.robots.robot import Robot, end_points
@@ -16,7 +18,7 @@ from runner.trace import Failure, FloatArray, Trace
 from runner.trajectories import Trajectory
 
 # Above this the equations still hold but no arm does: a run that gets there has diverged.
-DIVERGED_SPEED = 1e6  # rad/s
+DIVERGED_SPEED = 1e6  # rad/s, or m/s of a joint that slides
 _CHECK_EVERY = 64  # ticks between two looks for divergence, which the metrics never see
 
 
@@ -113,16 +115,19 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
                             np.minimum(asked, limits, out=asked)
                             np.maximum(asked, -limits, out=asked)
                         held[joints] = asked
-            except np.linalg.LinAlgError as error:
+            except (np.linalg.LinAlgError, SimulationError) as error:
                 diverged = _find_divergence(q_rows, dq_rows, k)  # then the law had nothing to answer
                 if diverged is None:
-                    failure, rows = Failure(str(error), float(times[k])), k + 1
+                    reason = error.reason if isinstance(error, SimulationError) else str(error)
+                    failure, rows = Failure(reason, float(times[k])), k + 1
                 break
             held_rows[k] = held
             if k % _CHECK_EVERY == 0 and (diverged := _find_divergence(q_rows, dq_rows, k)) is not None:
                 break
-            if k < n:
-                acting = held_rows[max(k - closed.delay, 0)]
+            if k == n:
+                continue
+            acting = held_rows[max(k - closed.delay, 0)]
+            try:
                 if positions:
                     if load is not None:
                         plant.load[:] = load
@@ -130,11 +135,16 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
                     tau_rows[k] = tau_rows[k + 1] = plant.tau
                 else:
                     plant.advance(acting if load is None else acting + load)
+            except SimulationError as error:
+                failure, rows = Failure(error.reason, float(times[k])), k + 1
+                break
         else:
             diverged = _find_divergence(q_rows, dq_rows, n)
     if failure is None and diverged is not None:
-        rows, joint = diverged[0] + 1, closed.robot.model.joint_names[diverged[1]]
-        failure = Failure(f"diverged: not finite or above {DIVERGED_SPEED:g} rad/s", float(times[diverged[0]]), joint)
+        rows, model = diverged[0] + 1, closed.robot.model
+        speed = f"{DIVERGED_SPEED:g} {model.joint_units[diverged[1]]}/s"
+        joint = model.joint_names[diverged[1]]
+        failure = Failure(f"diverged: not finite or above {speed}", float(times[diverged[0]]), joint)
     kept = slice(0, rows)
     home = end_points(closed.robot, closed.robot.home[None], closed.parallel)[:, 0]
     return Trace(
@@ -150,6 +160,7 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
         desired=desired[kept],
         limits=closed.limits,
         joint_names=closed.robot.model.joint_names,
+        joint_units=closed.robot.model.joint_units,
         tick_seconds=np.diff(clock[:rows]) * 1e-9,
         failure=failure,
     )
@@ -159,12 +170,12 @@ def _reset(loop: Loop, closed: ClosedLoop) -> Callable[..., FloatArray]:
     """Reset a loop's controller, and return its law."""
     controller: Any = loop.controller  # one or the other, as `commands` says
     if closed.commands == "torque":
-        controller.reset()
+        reset(controller)
         law: Callable[..., FloatArray] = controller.torque
     else:
-        controller.reset(closed.q_start)
+        reset(controller, closed.q_start)
         law = controller.joint_positions
-    return law
+    return watch_law(controller, law, loop.joints.stop - loop.joints.start)
 
 
 def _find_divergence(q: FloatArray, dq: FloatArray, until: int) -> tuple[int, int] | None:

@@ -57,6 +57,8 @@ class Trace:
         desired: Desired tip position, velocity, acceleration, shape (T, 3, 3): rows in m, m/s, m/s^2.
         limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
         joint_names: Names of the joints.
+        joint_units: Unit of each joint's position: rad where it turns, m where it slides. There speeds are in m/s and
+            torques are forces, in N.
         tick_seconds: Wall-clock time that each tick took, shape (T - 1,), in s.
         q_command: Joint positions commanded, held until the next row, shape (T, nq), in rad; None under torques.
         touch: What the tip felt, by what is meant; None where there was nothing to feel.
@@ -73,6 +75,7 @@ class Trace:
     desired: FloatArray
     limits: FloatArray
     joint_names: tuple[str, ...]
+    joint_units: tuple[str, ...]
     tick_seconds: FloatArray
     q_command: FloatArray | None = None
     touch: TouchSignals | None = None

@@ -1,3 +1,4 @@
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -120,7 +121,9 @@ def hand_made_trace() -> Callable[..., Trace]:
     `tip` and `desired` are positions, one row for each time; `desired` may be a single position.
     """
 
-    def make(t, tip=0.0, desired=0.0, q=0.0, dq=0.0, tau=0.0, limits=np.inf, failure=None) -> Trace:
+    def make(
+        t, tip=0.0, desired=0.0, q=0.0, dq=0.0, tau=0.0, limits=np.inf, failure=None, units=("rad", "rad")
+    ) -> Trace:
         t = np.asarray(t, dtype=float)
         rows = len(t)
         motion = np.zeros((rows, 3, 3))
@@ -136,6 +139,7 @@ def hand_made_trace() -> Callable[..., Trace]:
             desired=motion,
             limits=np.zeros(2) + limits,
             joint_names=("q1", "q2"),
+            joint_units=units,
             tick_seconds=np.zeros(rows - 1),
             failure=failure,
         )
@@ -169,3 +173,17 @@ def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureF
         return Ending(code, printed.out, printed.err)
 
     return call
+
+
+@pytest.fixture(scope="session")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The wheel, made by the build backend itself, which needs no network."""
+    folder = tmp_path_factory.mktemp("wheel")
+    subprocess.run(
+        [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", folder],
+        cwd=Path(__file__).resolve().parents[1],
+        check=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    return next(folder.glob("*.whl"))

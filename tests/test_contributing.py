@@ -1,7 +1,9 @@
-"""The recipes of CONTRIBUTING.md, followed by somebody who cannot edit this repository."""
+"""The pages of docs/ on additions, followed by somebody who cannot edit this repository."""
 
+import re
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import pytest
@@ -364,9 +366,22 @@ def test_ones_own_kinds_are_named_where_a_kind_is_unknown(workshop):
         runner.run("controller.kind=jacobian_transposed", config_dirs=[workshop])
 
 
-def test_the_recipes_name_the_groups_of_entry_points_and_the_folders():
-    text = (Path(__file__).parent.parent / "CONTRIBUTING.md").read_text()
+DOCS = Path(__file__).parent.parent / "docs"
+
+
+def test_the_pages_name_the_groups_of_entry_points_and_the_folders():
+    text = "".join(path.read_text() for path in DOCS.glob("*.md"))
     for line in ENTRY_POINTS.splitlines():
         if line.startswith("["):
             assert line.strip("[]") in text
     assert "--config-dir" in text
+
+
+def test_the_page_on_metrics_shows_one_that_works():
+    assert textwrap.indent(METRIC, "    ").rstrip() in DOCS.joinpath("metric.md").read_text()
+
+
+@pytest.mark.parametrize("page", sorted([*DOCS.glob("*.md"), *DOCS.parent.glob("*.md")]), ids=lambda page: page.name)
+def test_links_of_a_page_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text()):
+        assert (page.parent / target).exists(), target

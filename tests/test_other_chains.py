@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pinocchio as pin
 import pytest
+import strangers
 
 from runner.assembly import assemble, metric_context
 from runner.controllers.macro_mini import later_home_offset
@@ -306,14 +307,8 @@ def test_without_gravity_compensation_no_gravity_is_taken(xarm7):
 
 
 def test_two_joints_are_too_few():
-    limit = '<limit lower="-9" upper="9" effort="9" velocity="9"/>'
-    inertial = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
-    links = "".join(f'<link name="{name}">{inertial}</link>' for name in "abc")
-    joints = "".join(
-        f'<joint name="q{i}" type="revolute"><parent link="{a}"/><child link="{b}"/><axis xyz="0 0 1"/>{limit}</joint>'
-        for i, (a, b) in enumerate(("ab", "bc"), start=1)
-    )
-    model = RobotModel(f'<robot name="two">{links}{joints}</robot>', "c")
+    two = strangers.chain("two", [("revolute", strangers.X), ("revolute", strangers.Y)])
+    model = RobotModel(two, "tip")
     with pytest.raises(ConfigError, match=r"needs 3 joints or more to .*; the arm has 2 \(q1, q2\)"):
         StageLaw(model, *NUMBERS, home=np.zeros(2))
 

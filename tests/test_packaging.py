@@ -6,8 +6,6 @@ import sys
 import zipfile
 from pathlib import Path
 
-import pytest
-
 from runner.references import shipped_references
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -25,20 +23,6 @@ assert dispatch(["list", "references"]) == 0
 assert dispatch(["list", "claims"]) == 0
 sys.exit(dispatch(["robot=macro", "duration=0.05"]))
 """
-
-
-@pytest.fixture(scope="module")
-def wheel(tmp_path_factory):
-    """The wheel, made by the build backend itself, which needs no network."""
-    folder = tmp_path_factory.mktemp("wheel")
-    subprocess.run(
-        [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", folder],
-        cwd=ROOT,
-        check=True,
-        stdout=-3,
-        stderr=-3,
-    )
-    return next(folder.glob("*.whl"))
 
 
 def test_the_wheel_holds_configs_robots_templates_and_references(wheel):

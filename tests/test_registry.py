@@ -24,7 +24,7 @@ def parts(monkeypatch):
         module.default_step = lambda tick, stages: tick / 10 / stages
         monkeypatch.setitem(sys.modules, f"some_{name}", module)
     points = [EntryPoint("foreign", "some_foreign", "runner.part")]
-    monkeypatch.setattr(registry, "added", lambda kind: points if kind == "part" else [])
+    monkeypatch.setattr(registry, "added", lambda group: points if group == "part" else [])
     return Registry("part", {"own": "some_own"})
 
 
@@ -48,8 +48,25 @@ def test_an_unknown_kind_names_the_nearest(parts):
 
 def test_a_module_is_imported_when_its_kind_is_used():
     assert Registry("part", {"gone": "no.such.module"}).names() == ["gone"]
-    with pytest.raises(ModuleNotFoundError):
+    with pytest.raises(ConfigError, match=r"part gone: module no.such.module cannot be imported: ModuleNotFoundError"):
         Registry("part", {"gone": "no.such.module"}).config_model("gone")
+
+
+def test_a_module_without_a_config_model_is_refused(parts):
+    sys.modules["some_foreign"].CONFIG = dict
+    with pytest.raises(ConfigError, match=r"module some_foreign of 'foreign' needs CONFIG, a class derived from"):
+        parts.config_model("foreign")
+
+
+def test_what_a_kind_of_the_users_raises_is_told_with_its_place(parts):
+    def build(config, *args):
+        raise KeyError("spring")
+
+    sys.modules["some_foreign"].build = build
+    with pytest.raises(
+        ConfigError, match=r"part.kind: 'foreign' cannot be built: KeyError: 'spring' \(test_registry.py, line \d+, in"
+    ):
+        parts.build(Config(kind="foreign", size=2.0))
 
 
 @pytest.mark.parametrize("size", ["1", True, None, float("nan"), float("inf"), [1.0]])

@@ -9,18 +9,21 @@ from runner.config.per_joint import expand
 from runner.config.robot import ArmConfig, RobotConfig, StageConfig
 from runner.errors import ConfigError
 from runner.robots.description import find_urdf, read_urdf
-from runner.robots.inertials import Payload
+from runner.robots.inertials import Payload, set_file
 from runner.robots.model import RobotModel
 from runner.robots.mounting import Mount, mount
 from runner.robots.robot import Robot, Stage
 from runner.robots.tool_link import TOOL_TIP, ToolBody, mount_tool
 from runner.sensing.force_torque import ForceTorqueConfig
 
+_KEPT = 8
+_built: dict[tuple[object, ...], Robot] = {}
+
 
 def build_robot(
     config: RobotConfig, gravity: float, config_dirs: Sequence[Path] = (), sensor: ForceTorqueConfig | None = None
 ) -> Robot:
-    """Return the robot that a config describes.
+    """Return the robot that a config describes; the runs of a sweep share it where their files and values are equal.
 
     Args:
         config: The robot's config.
@@ -32,14 +35,29 @@ def build_robot(
         ConfigError: for a URDF that cannot be found or built, a frame or link that does not exist, a posture of the
             wrong length, or names that clash between stages.
     """
+    paths = [find_urdf(arm.urdf, config_dirs) for arm in config.arms.values()]
+    files = [file for path in paths for file in (path, set_file(path)) if file.exists()]
+    key = (
+        config.model_dump_json(),
+        gravity,
+        None if sensor is None else (sensor.mass, sensor.height),
+        *((file, file.stat().st_mtime_ns, file.stat().st_size) for file in files),
+    )
+    if key not in _built:
+        if len(_built) == _KEPT:
+            _built.clear()
+        _built[key] = _build(config, gravity, paths, sensor)
+    return _built[key]
+
+
+def _build(config: RobotConfig, gravity: float, paths: Sequence[Path], sensor: ForceTorqueConfig | None) -> Robot:
     several = len(config.arms) > 1
     stages: list[Stage] = []
     whole, prefix, tip, first = "", "", "", 0
-    for name, arm in config.arms.items():
+    for path, (name, arm) in zip(paths, config.arms.items(), strict=True):
         key = f"robot.stages.{name}" if several else "robot"
         outermost = len(stages) + 1 == len(config.arms)
         payloads = _payloads(config, arm.tip, sensor) if outermost else []
-        path = find_urdf(arm.urdf, config_dirs)
         urdf = read_urdf(path, arm.masses, arm.rotor_inertia, arm.inertials, arm.velocity_limits, payloads)
         own_tip = arm.tip
         if outermost and config.tool is not None:

@@ -13,6 +13,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.options import groups
+from runner.config.robot_defaults import complete_stage_arms
 from runner.config.stage_defaults import complete_stages
 from runner.paths import conf_dir
 
@@ -73,6 +74,7 @@ def from_hydra(
     try:
         raw: Any = OmegaConf.to_container(config, resolve=False)
         choices = {group: name for group, name in chosen.items() if name is not None and not group.startswith("hydra/")}
+        complete_stage_arms(raw.get("robot"))
         own = OmegaConf.create({key: value for key, value in raw.items() if key != "hydra"})
         complete_stages(own, choices, config_dirs)
         resolved: Any = OmegaConf.to_container(own, resolve=True)

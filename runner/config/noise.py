@@ -19,5 +19,5 @@ class NoiseConfig(StrictModel):
 
     position: NonNegativePerStage
     distribution: Literal["uniform", "gaussian", "none"]
-    resolution: NonNegativePerStage
+    resolution: NonNegativePerStage = 0.0
     velocity: Literal["exact", "finite_difference"]

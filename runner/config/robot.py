@@ -104,7 +104,7 @@ class RobotValues(StrictModel):
         period: Its controller's period, in s.
         joint_error_limit: Error of its joint positions, in rad.
         no_joint_error: Zero for each stage, which `noise: none` takes.
-        torque_limit: Its largest continuous torque, in N m.
+        torque_limit: Its largest continuous torque, in N m; None where none is stated beside the URDF's efforts.
         settling_band: Tip error within which it counts as settled, on each axis, in m.
     """
 
@@ -120,7 +120,7 @@ class RobotValues(StrictModel):
     period: PositivePerStage
     joint_error_limit: NonNegativePerStage
     no_joint_error: NonNegativePerStage
-    torque_limit: TorquePerStage
+    torque_limit: TorquePerStage | None
     settling_band: PositiveFloat
 
     @property

@@ -16,7 +16,7 @@ class SweepConfig(StrictModel):
         retry: Whether runs that failed in an earlier sweep are simulated again.
         on_failure: What the first failed run does to the rest of the sweep.
         attempts: How often a run is tried that was cut short: by its time limit, an error, or a worker's death.
-        time_limit: Longest wall-clock time of a run, in s, looked at in every control tick; None for no limit.
+        time_limit: Longest wall-clock time of a run, in s, after which it is interrupted; None for no limit.
     """
 
     trace: Literal["auto", "all", "sample", "failed", "never"]

@@ -15,6 +15,7 @@ from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
+from runner.robots.task_space import task_directions
 
 COMMANDS = "position"
 FOLLOWS_PATHS = True
@@ -78,7 +79,7 @@ class DifferentialInverseKinematics:
     def __init__(self, model: RobotModel, config: DifferentialInverseKinematicsConfig, home: FloatArray) -> None:
         _check_gain(config)
         self._orientation = held_orientation(config.task, model, home)
-        self._rows = 3 if self._orientation is None else 6
+        self._directions = task_directions(model, config.task == "pose")
         self._model = pin.Model(model.pin_model)
         self._data = self._model.createData()
         self._tip = model.tip_frame
@@ -128,11 +129,12 @@ class DifferentialInverseKinematics:
             v += dx_d + ahead * ddx_d + self._gain * (ahead * dx_d + 0.5 * ahead**2 * ddx_d)
         if self._orientation is not None:
             v = np.concatenate([v, self._gain * pin.log3(self._orientation @ (turn @ R).T)])
-        dq0 = self._null_space.velocity(q, J, self._rows)
+        dq0 = self._null_space.velocity(q, J, self._directions)
         lower, upper = (self._position_limits - self._command) / self._period
         lower = np.clip(lower, -self._speed_limits, self._speed_limits)
         upper = np.clip(upper, -self._speed_limits, self._speed_limits)
-        return self._resolved_rate.solve(J[: self._rows], v, dq0, lower, upper)
+        task = self._directions @ J[: len(v)]
+        return self._resolved_rate.solve(task, self._directions @ v, dq0, lower, upper)
 
     def _tip_at(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return position, orientation and basic Jacobian of the tip in the base frame."""

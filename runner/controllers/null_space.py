@@ -50,13 +50,14 @@ class NullSpaceTask:
         self._middle = 0.5 * (lower + upper)
         self._pull = np.where(bounded, 4.0 / (upper - lower) ** 2, 0.0)
 
-    def velocity(self, q: FloatArray, J: FloatArray, rows: int) -> FloatArray:
+    def velocity(self, q: FloatArray, J: FloatArray, directions: FloatArray) -> FloatArray:
         """Return the joint velocities asked for, shape (nq,), in rad/s.
 
         Args:
             q: Joint positions, shape (nq,), in rad.
             J: The tip's basic Jacobian in the base frame, shape (6, nq).
-            rows: How many of its rows the tip's task takes: 3 for the position, 6 for the pose.
+            directions: What the tip's task asks for, shape (rows, 3) for the position, (rows, 6) for the pose; see
+                task_directions.
         """
         if self._task == "none" or self._gain == 0.0:
             return np.zeros(len(q))
@@ -65,7 +66,7 @@ class NullSpaceTask:
         elif self._task == "joint_limits":
             direction = self._pull * (self._middle - q)
         else:
-            direction = log_manipulability_gradient(J, rows)
+            direction = log_manipulability_gradient(J, directions)
         velocity: FloatArray = self._gain * direction
         fastest = float(np.abs(velocity).max())
         if self._max_speed is not None and fastest > self._max_speed:
@@ -78,17 +79,18 @@ def manipulability(J: FloatArray) -> float:
     return float(np.sqrt(max(np.linalg.det(J @ J.T), 0.0)))
 
 
-def log_manipulability_gradient(J: FloatArray, rows: int) -> FloatArray:
+def log_manipulability_gradient(J: FloatArray, directions: FloatArray) -> FloatArray:
     r"""Return the gradient of ln w with respect to the joint positions, shape (nq,), in 1/rad.
 
     .. math:: \partial \ln w / \partial q_k = \mathrm{tr}(J^+ \, \partial J / \partial q_k)
 
-    A joint turns or shifts what comes after it: with j_i the linear and z_i the angular column of joint i,
+    A joint turns or shifts what comes after it: with j_i the linear and z_i the angular column of joint i (z_i = 0
+    where it slides),
     dj_i/dq_k = z_k x j_i and dz_i/dq_k = z_k x z_i for k <= i, dj_i/dq_k = z_i x j_k and dz_i/dq_k = 0 for k > i.
 
     Args:
         J: The tip's basic Jacobian in the base frame, shape (6, nq).
-        rows: 3 or 6, how many of its rows w is of.
+        directions: What w is of, shape (rows, 3) for the position, (rows, 6) for the pose.
 
     Raises:
         numpy.linalg.LinAlgError: at a singular posture.
@@ -97,10 +99,11 @@ def log_manipulability_gradient(J: FloatArray, rows: int) -> FloatArray:
     first = np.minimum.outer(np.arange(len(linear)), np.arange(len(linear)))  # [k, i]: the one nearer to the base
     last = np.maximum.outer(np.arange(len(linear)), np.arange(len(linear)))
     dJ = np.cross(angular[first], linear[last])  # [k, i, row]
-    if rows == 6:
+    if directions.shape[1] == 6:
         upstream = np.tril(np.ones((len(linear), len(linear)))).T[:, :, None]  # k <= i
         dJ = np.concatenate([dJ, upstream * np.cross(angular[first], angular[last])], axis=2)
-    task = J[:rows]
+    dJ = dJ @ directions.T
+    task = directions @ J[: directions.shape[1]]
     inverse = np.linalg.solve(task @ task.T, task)  # (J J^T)^-1 J, the transpose of J^+
     gradient: FloatArray = np.einsum("ri,kir->k", inverse, dJ)
     return gradient

@@ -15,6 +15,7 @@ from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
+from runner.robots.task_space import task_directions
 
 
 class OperationalSpaceConfig(StrictModel):
@@ -153,8 +154,8 @@ def tip_law(
 ) -> OperationalSpace | WholeBody:
     """Return the law that leads an arm's tip, whatever its number of joints.
 
-    Three joints lead the tip's position by OperationalSpace. More do by WholeBody, whose null space draws all of them
-    home; without that an arm drifts into its joint stops.
+    Three joints that can bring the tip in every direction lead it by OperationalSpace. Others do by WholeBody, whose
+    null space draws all joints to spare home; without that an arm drifts into its joint stops.
 
     Args:
         model: The arm.
@@ -163,9 +164,9 @@ def tip_law(
         orientation: The orientation that the tip holds, in the base frame, shape (3, 3); None leads its position alone.
 
     Raises:
-        ConfigError: if the arm has fewer than three joints.
+        ConfigError: if the arm has fewer joints than the tip has directions to go.
     """
-    if model.nq == 3 and orientation is None:
+    if model.nq == 3 == len(task_directions(model, pose=False)) and orientation is None:
         return OperationalSpace(
             model,
             numbers.natural_frequency,

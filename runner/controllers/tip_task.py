@@ -10,6 +10,7 @@ from runner.errors import ConfigError
 from runner.robots.inverse_kinematics import solve_tip_pose
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
+from runner.robots.task_space import task_directions
 
 TaskName = Literal["position", "pose"]
 
@@ -32,6 +33,9 @@ class TipTask:
     .. math:: F^*_\omega = -k_v \omega + k_p \log(R_0 R^T)
 
     About any one axis this is the same linear law. An error of half a turn has no unique axis.
+
+    Where an arm can move or turn its tip in some directions only, as a planar one, the task has these alone for its
+    rows; see task_directions.
 
     Args:
         model: The arm.
@@ -57,8 +61,10 @@ class TipTask:
         max_speed: float | None,
         singularity_damping: float,
     ) -> None:
-        self.rows = 3 if orientation is None else 6
-        """Dimensions of the task."""
+        directions = task_directions(model, orientation is not None)
+        self.rows = len(directions)
+        """Dimensions of the task: 3 or 6 of an arm that can move its tip in every direction."""
+        self._directions = None if self.rows == directions.shape[1] else directions
         self._model, self._data = pin_model, data
         self._tip = model.tip_frame
         # Views into Pinocchio's data: each update of the frame refreshes them, without a new object per tick.
@@ -73,7 +79,8 @@ class TipTask:
         self._damping = singularity_damping
         self._singular_below = 0.1 * model.reach
         # A turn counts as the way that it moves a point a reach away, so that all rows are lengths.
-        self._lengths = np.array([1.0, 1.0, 1.0] + (self.rows - 3) * [model.reach])
+        self._moves = int(np.count_nonzero(directions[:, :3].any(axis=1)))  # the other rows turn
+        self._lengths = np.array(self._moves * [1.0] + (self.rows - self._moves) * [model.reach])
 
     def update(self, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Take joint positions and velocities, shapes (nq,).
@@ -85,29 +92,34 @@ class TipTask:
         pin.forwardKinematics(model, data, q, dq, self._zero)
         pin.computeJointJacobians(model, data)
         pin.updateFramePlacement(model, data, self._tip)
-        J: FloatArray = pin.getFrameJacobian(model, data, self._tip, pin.LOCAL_WORLD_ALIGNED)[: self.rows]
+        J: FloatArray = pin.getFrameJacobian(model, data, self._tip, pin.LOCAL_WORLD_ALIGNED)
         motion = pin.getFrameClassicalAcceleration(model, data, self._tip, pin.LOCAL_WORLD_ALIGNED)
-        return J, motion.linear if self._orientation is None else motion.vector
+        dJ_dq = motion.vector
+        if self._orientation is None:
+            J, dJ_dq = J[:3], motion.linear
+        return (J, dJ_dq) if self._directions is None else (self._directions.dot(J), self._directions.dot(dJ_dq))
 
     def error(self, reference: FloatArray) -> FloatArray:
         """Return desired less actual since the last update, shape (rows,), in m and rad."""
         error: FloatArray = reference[0] - self._x
-        if self._orientation is None:
-            return error
-        return np.concatenate([error, pin.log3(self._orientation @ self._R.T)])
+        if self._orientation is not None:
+            error = np.concatenate([error, pin.log3(self._orientation @ self._R.T)])
+        return error if self._directions is None else self._directions.dot(error)
 
     def acceleration(self, error: FloatArray, velocity: FloatArray, reference: FloatArray) -> FloatArray:
         """Return F*, shape (rows,), in m/s^2 and rad/s^2, from the task's error and velocity."""
         approach = self._k_p * error
         if self._max_speed is not None:
             largest = self._k_v * self._max_speed
-            way = approach[:3]
+            way = approach[: self._moves]
             norm = float(np.sqrt(way.dot(way)))
             if norm > largest:
                 way *= largest / norm
         if not self._feedforward:
             return np.asarray(approach - self._k_v * velocity)
-        desired = reference[1:] if self.rows == 3 else np.pad(reference[1:], ((0, 0), (0, 3)))
+        desired = reference[1:] if self._orientation is None else np.pad(reference[1:], ((0, 0), (0, 3)))
+        if self._directions is not None:
+            desired = desired.dot(self._directions.T)
         return np.asarray(desired[1] + self._k_v * (desired[0] - velocity) + approach)
 
     def damping(self, J: FloatArray, error: FloatArray, mobility: FloatArray) -> FloatArray | None:
@@ -141,13 +153,17 @@ def held_orientation(task: TaskName, model: RobotModel, home: FloatArray) -> Flo
     Raises:
         ConfigError: if the task has more dimensions than the arm has joints.
     """
-    rows = 3 if task == "position" else 6
-    if model.nq < rows:
+    rows, least = (len(task_directions(model, pose)) for pose in (task == "pose", False))
+    if model.nq < rows or not least:
         raise ConfigError(
             [
                 f"controller.task: {task} has {rows} dimensions, and the arm {model.nq} joints "
                 f"({', '.join(model.joint_names)}); "
-                + ("take controller.task=position" if model.nq >= 3 else "it needs 3 joints or more")
+                + (
+                    "take controller.task=position"
+                    if 0 < least <= model.nq
+                    else f"it needs {least or 1} joints or more"
+                )
             ]
         )
     return None if task == "position" else model.tip_pose(home)[:3, :3]

@@ -67,12 +67,13 @@ class WholeBody:
         model: The whole arm.
         config: The law's numbers.
         rest: Posture of the null space, shape (nq,), in rad.
-        first_held: The first joint whose posture is held by a spring, and with it all after it. The default holds all
-            but three, which is all that riding Minis have; 0 draws all joints to the posture, see HeldPosture.
+        first_held: The first joint whose posture is held by a spring, and with it all after it. None holds all but as
+            many as the task has dimensions, which is all that riding Minis have; 0 draws all joints to the posture, see
+            HeldPosture.
         orientation: The orientation that the tip holds, in the base frame, shape (3, 3); None leads its position alone.
 
     Raises:
-        ConfigError: if the arm has fewer than three joints.
+        ConfigError: if the arm has fewer joints than the tip has directions to go.
     """
 
     def __init__(
@@ -80,16 +81,9 @@ class WholeBody:
         model: RobotModel,
         config: WholeBodyLaw,
         rest: FloatArray,
-        first_held: int = 3,
+        first_held: int | None = None,
         orientation: FloatArray | None = None,
     ) -> None:
-        if model.nq < 3:
-            raise ConfigError(
-                [
-                    f"controller.kind: needs 3 joints or more to bring the tip anywhere; the arm has {model.nq} "
-                    f"({', '.join(model.joint_names)})"
-                ]
-            )
         self._model = pin.Model(model.pin_model)
         self._data = self._model.createData()
         self._gravity_compensation = config.gravity_compensation
@@ -105,7 +99,15 @@ class WholeBody:
             config.max_tip_speed,
             config.singularity_damping,
         )
+        if not 0 < self._task.rows <= model.nq:
+            raise ConfigError(
+                [
+                    f"controller.kind: needs {self._task.rows or 1} joints or more to bring the tip anywhere; the arm "
+                    f"has {model.nq} ({', '.join(model.joint_names)})"
+                ]
+            )
         frequency = config.null_space_frequency
+        first_held = self._task.rows if first_held is None else first_held
         self._posture: Posture = (
             HeldJoints(model, frequency, rest, first_held) if first_held else HeldPosture(frequency, rest)
         )
@@ -153,6 +155,9 @@ CONFIG = WholeBodyConfig
 
 
 def build(config: WholeBodyConfig, robot: Robot) -> tuple[Loop, ...]:
-    """Make the one loop that a config describes; it commands every joint."""
-    joints = slice(0, robot.model.nq)
-    return (Loop("whole", joints, config.period, WholeBody(robot.model, config, robot.home)),)
+    """Make the one loop that a config describes; it commands every joint.
+
+    The posture of riding arms is held; of an arm on which nothing rides all joints are drawn home.
+    """
+    joints, first_held = slice(0, robot.model.nq), 0 if len(robot.stages) == 1 else None
+    return (Loop("whole", joints, config.period, WholeBody(robot.model, config, robot.home, first_held)),)

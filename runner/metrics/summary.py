@@ -3,13 +3,15 @@
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from statistics import median
 from types import ModuleType
 
-import numpy as np
-
+from runner.errors import ConfigError
+from runner.guard import is_ours, watch_metrics
 from runner.metrics import contact, effort, positioning, reaching, tracking
 from runner.metrics.context import MetricContext
-from runner.plugins import added
+from runner.plugins import added, load
 from runner.trace import Trace
 from runner.trajectories.shifted import Shifted
 
@@ -36,8 +38,19 @@ class Summary:
 
 
 def families() -> tuple[ModuleType, ...]:
-    """Return the metric families, those of other packages (entry points in `runner.metric`) included."""
-    return (*_FAMILIES, *(point.load() for point in added("metric")))
+    """Return the metric families, those of the user's included.
+
+    Raises:
+        ConfigError: where one of these cannot be imported, or has no UNITS or `evaluate`.
+    """
+    return (*_FAMILIES, *(_load_family(point.name, point.value) for point in added("metric")))
+
+
+def _load_family(name: str, place: str) -> ModuleType:
+    module = load("metric", name, place)
+    if not (isinstance(getattr(module, "UNITS", None), Mapping) and callable(getattr(module, "evaluate", None))):
+        raise ConfigError([f"metric {name}: module {place} needs UNITS, a unit for each name, and evaluate"])
+    return module
 
 
 def units() -> dict[str, str]:
@@ -45,15 +58,24 @@ def units() -> dict[str, str]:
     return {name: unit for family in families() for name, unit in family.UNITS.items()}
 
 
-def evaluate(trace: Trace, context: MetricContext) -> dict[str, float | None]:
+def evaluate(trace: Trace, context: MetricContext, notices: list[str] | None = None) -> dict[str, float | None]:
     """Return all metrics of one run; a run that failed has none.
 
     Where stages ride on each other, the positioning and tracking of a carrier's end point against x_d less the home
     offset of what rides on it stand beside the tip's, with the stage's name in front: `macro_settling_time`.
+
+    Args:
+        trace: The run's trace.
+        context: Its setting.
+        notices: Takes what went wrong in metrics of the user's, a text for each.
     """
     if trace.failure is not None:
         return {}
-    values = {name: value for family in families() for name, value in family.evaluate(trace, context).items()}
+    told = [] if notices is None else notices
+    values: dict[str, float | None] = {}
+    for family in families():
+        measured = partial(family.evaluate, trace, context)
+        values |= measured() if is_ours(family) else watch_metrics(family, measured, told)
     for index, stage in enumerate(trace.stage_names[:-1]):
         carrier = replace(context, trajectory=Shifted(context.trajectory, trace.offsets[index]))
         for family in (positioning, tracking):
@@ -71,8 +93,8 @@ def summarize(repetitions: Sequence[Mapping[str, float | None]]) -> dict[str, Su
         values = [values.get(name) for values in repetitions]
         numbers = [math.inf if value is None else value for value in values]
         unit = known[_base(name, known)]
-        median, low, high = float(np.median(numbers)), min(numbers), max(numbers)
-        summaries[name] = Summary(unit, values, *(x if math.isfinite(x) else None for x in (median, low, high)))
+        middle, low, high = median(numbers), min(numbers), max(numbers)
+        summaries[name] = Summary(unit, values, *(x if math.isfinite(x) else None for x in (middle, low, high)))
     return summaries
 
 

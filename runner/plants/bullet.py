@@ -1,6 +1,7 @@
 """PyBullet as the plant: Featherstone's articulated bodies, semi-implicit Euler."""
 
 import tempfile
+import xml.etree.ElementTree as ET
 from typing import Literal
 
 import numpy as np
@@ -21,7 +22,9 @@ from runner.robots.tool_link import TOOL_MOUNT
 with quiet_stderr():  # PyBullet announces its build time
     import pybullet
 
-_idle: list[int] = []  # physics servers of closed plants: a new one takes 15 ms of CPU time, emptying one 0.3 ms
+_KEPT = 4
+_idle: dict[str, tuple[int, int]] = {}
+"""Physics servers of closed plants and the arm in each, by its URDF: a server takes 15 ms of CPU time, an arm 3."""
 # Bullet clamps joint speeds at 100 rad/s by default; a Mini's free goal move is faster than that.
 _NO_SPEED_LIMIT = 1e12
 
@@ -64,17 +67,16 @@ class Bullet:
     def __init__(self, urdf: str, model: RobotModel, step: float, steps_per_tick: int) -> None:
         self.q = np.zeros(model.nq)
         self.dq = np.zeros(model.nq)
-        self._client = _idle.pop() if _idle else pybullet.connect(pybullet.DIRECT)
-        self._wall: int | None = None
-        self._tool_mount: int | None = None
+        self._urdf = urdf
         self._steps_per_tick = steps_per_tick
-        try:
-            self._body = self._load(urdf)
-            self._joints = self._order_joints(model.joint_names)
-        except ConfigError:
-            self.close()
-            raise
-        self._remove_damping_and_motors()
+        self._wall: int | None = None
+        used = urdf in _idle
+        self._client, self._body = _idle.pop(urdf) if used else self._load(urdf)
+        self._joints = self._order_joints(model.joint_names)
+        if used:
+            self.reset(self.q, self.dq)
+        else:
+            self._remove_damping_and_motors()
         self._tool_mount = self._feel_tool()
         self.set_gravity(model.gravity)
         # Bullet splits one stepSimulation into the steps: bit-identical to as many calls, and cheaper. Its own
@@ -85,17 +87,20 @@ class Bullet:
             physicsClientId=self._client,
         )
 
-    def _load(self, urdf: str) -> int:
+    def _load(self, urdf: str) -> tuple[int, int]:
+        """Return a physics server with the arm alone in it, and the arm."""
+        client = _empty_server()
         # Bullet caches URDFs by file name within a process, so each arm gets a file name of its own.
         with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
-            file.write(urdf)
+            file.write(_in_short_lines(urdf))
             file.flush()
             flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
             try:
-                body: int = pybullet.loadURDF(file.name, useFixedBase=True, flags=flags, physicsClientId=self._client)
+                body: int = pybullet.loadURDF(file.name, useFixedBase=True, flags=flags, physicsClientId=client)
             except pybullet.error as error:
+                pybullet.disconnect(client)
                 raise ConfigError([f"robot.urdf: PyBullet cannot load it: {error}"]) from error
-        return body
+        return client, body
 
     def _feel_tool(self) -> int | None:
         """Let Bullet compute the reaction in the tool's mount, at its origin in world axes; return that joint."""
@@ -196,13 +201,38 @@ class Bullet:
                 wrench += np.concatenate([force, np.cross(place, force)])
         return wrench
 
+    def mass_matrix(self, q: FloatArray) -> FloatArray:
+        """Return Bullet's joint-space mass matrix, shape (nq, nq), in kg m^2, joints in the model's order."""
+        places = np.argsort(np.argsort(self._joints))  # Bullet counts in its own order
+        ordered = np.empty_like(q)
+        ordered[places] = q
+        M = np.array(pybullet.calculateMassMatrix(self._body, ordered.tolist(), physicsClientId=self._client))
+        return M[np.ix_(places, places)]
+
     def close(self) -> None:
-        """Empty the physics server for the next plant."""
-        if self._wall is not None or self._tool_mount is not None:  # whose engine parameters would outlive it
+        """Leave the physics server to the next plant of the same arm."""
+        changed = self._wall is not None or self._tool_mount is not None  # engine parameters that would outlive it
+        diverged = not (np.isfinite(self.q).all() and np.isfinite(self.dq).all())
+        if changed or diverged or self._urdf in _idle or len(_idle) == _KEPT:
             pybullet.disconnect(self._client)
-            return
-        pybullet.resetSimulation(physicsClientId=self._client)
-        _idle.append(self._client)
+        else:
+            _idle[self._urdf] = self._client, self._body
+
+
+def _empty_server() -> int:
+    """Return a physics server without anything in it."""
+    if len(_idle) < _KEPT:
+        return int(pybullet.connect(pybullet.DIRECT))
+    client, _ = _idle.pop(next(iter(_idle)))
+    pybullet.resetSimulation(physicsClientId=client)
+    return client
+
+
+def _in_short_lines(urdf: str) -> str:
+    """Return an XML text with an element a line: Bullet breaks lines of 1,000 characters, even within a number."""
+    root = ET.fromstring(urdf)  # noqa: S314 - our own text, checked when it was read
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode")
 
 
 CONFIG = BulletConfig

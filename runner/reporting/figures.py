@@ -36,7 +36,7 @@ def joint_columns(trace: pd.DataFrame, stem: str) -> np.ndarray:
 
 
 def torque_and_error(run: Run, caption: str, number: str = "", until: float | None = None) -> Curves:
-    """Return the thesis' layout: torque of each joint, and tip error in x, y, z, over time.
+    """Return the thesis' layout: torque of each joint (force of those that slide), and tip error in x, y, z, over time.
 
     Args:
         run: The run.
@@ -50,14 +50,18 @@ def torque_and_error(run: Run, caption: str, number: str = "", until: float | No
     t = trace["t"].to_numpy()
     torques = joint_columns(trace, "tau")
     error = columns(trace, "error")
-    joints = [Series(str(joint + 1), t, torques[:, joint]) for joint in range(torques.shape[1])]
+    force = [run.units[f"tau{joint + 1}"] == "N" for joint in range(torques.shape[1])]
+    panels = []
+    for title, label, slides in (("Torque", "torque (N m)", False), ("Force", "force (N)", True)):
+        joints = [
+            Series(str(i + 1), t, torques[:, i], color=i) for i, is_force in enumerate(force) if is_force == slides
+        ]
+        if joints:
+            panels.append(Panel(f"{title} of each joint", "time (s)", label, joints))
     axes = [Series(axis, t, error[:, index]) for index, axis in enumerate(AXES)]
     return Curves(
         caption,
-        (
-            Panel("Torque of each joint", "time (s)", "torque (N m)", joints),
-            Panel("Tip position error", "time (s)", "error (m)", axes),
-        ),
+        (*panels, Panel("Tip position error", "time (s)", "error (m)", axes)),
         origin=origin(run, number),
     )
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_UNITS = {"1": "", "N^2 m^2 s": "N² m² s", "m/s^2": "m/s²"}
+_UNITS = {"1": "", "N^2 m^2 s": "N² m² s", "N^2 s": "N² s", "m/s^2": "m/s²"}
 
 
 def number(value: float | None, digits: int = 3) -> str:

@@ -7,7 +7,15 @@ from pathlib import Path
 
 from runner.errors import ConfigError, nearest
 from runner.paths import robots_dir
-from runner.robots.inertials import Payload, add_payload, add_rotor, replace_inertials, scale_inertial
+from runner.robots.inertials import (
+    Payload,
+    add_payload,
+    add_rotor,
+    impossible_inertia,
+    replace_inertials,
+    scale_inertial,
+)
+from runner.robots.tree import UrdfTree, moves, read_tree
 
 
 def find_urdf(name: str, config_dirs: Sequence[Path] = ()) -> Path:
@@ -42,7 +50,7 @@ def read_urdf(
     velocity_limits: Mapping[str, float] | None = None,
     payloads: Sequence[Payload] = (),
 ) -> str:
-    """Return a URDF's text with the given changes.
+    """Return a URDF's text with the given changes, and without meshes, which no part of a run reads.
 
     Args:
         path: The URDF file.
@@ -55,25 +63,20 @@ def read_urdf(
         payloads: Point masses that links carry.
 
     Raises:
-        ConfigError: if the file is no URDF, a set, link or joint named does not exist, a link named has no mass to
-            change, or a link's own mass is negative or not finite.
+        ConfigError: if the file is no URDF of one serial arm, a set, link or joint named does not exist, a link named
+            has no mass to change, or a link's own mass or inertia is none that a body can have.
     """
-    try:
-        tree = ET.fromstring(path.read_text())  # noqa: S314 - ElementTree resolves no external entities
-    except (ET.ParseError, UnicodeDecodeError) as error:
-        raise ConfigError([f"robot.urdf: {path} is no XML: {error}"]) from error
-    links = {link.get("name", ""): link for link in tree.iter("link")}
-    if tree.tag != "robot" or not links:
-        raise ConfigError([f"robot.urdf: {path} is no URDF: it needs a <robot> with links"])
+    tree = read_tree(path)
+    links = tree.links
     if inertials is not None:
         replace_inertials(links, path, inertials)
-    problems = _check_inertials(path, links)
+    problems = _check_inertials(path, links) + _check_joints(path, tree)
     for name in masses:
         if name not in links:
             problems.append(f"robot.masses.{name}: no such link{nearest(name, links)}; links: {', '.join(links)}")
         elif _mass(links[name]) == 0.0:
             problems.append(f"robot.masses.{name}: link '{name}' is massless in {path.name}; its mass cannot be scaled")
-    limits = {joint.get("name", ""): limit for joint in tree.iter("joint") for limit in joint.findall("limit")}
+    limits = {name: limit for name, joint in tree.joints.items() for limit in joint.findall("limit")}
     for name, speed in (velocity_limits or {}).items():
         if name in limits:
             limits[name].set("velocity", repr(float(speed)))
@@ -86,12 +89,38 @@ def read_urdf(
     for name, mass in masses.items():
         scale_inertial(links[name], mass)
     if rotor_inertia:
-        for joint in tree.iter("joint"):
+        for joint in tree.joints.values():
             add_rotor(joint, links, rotor_inertia)
     for payload in payloads:
         if payload.mass:
             add_payload(links, payload)
-    return ET.tostring(tree, encoding="unicode")
+    drop_meshes(links)
+    return ET.tostring(tree.robot, encoding="unicode")
+
+
+def drop_meshes(links: Mapping[str, ET.Element]) -> None:
+    """Take shapes that are meshes out of links: a stored run keeps no files of theirs, and needs none."""
+    for link in links.values():
+        for shape in (*link.findall("visual"), *link.findall("collision")):
+            if shape.find("geometry/mesh") is not None:
+                link.remove(shape)
+
+
+def _check_joints(path: Path, tree: UrdfTree) -> list[str]:
+    """Return joints that move with another, or beside it: a robot is a serial arm, or several, each with its file."""
+    moving = {name for name, joint in tree.joints.items() if moves(joint)}
+    chain = max((moving.intersection(tree.way(link)) for link in tree.ends), key=len)
+    beside = sorted(moving - chain)
+    branches = [
+        f"robot.urdf: {path} branches: {', '.join(beside)} move beside {', '.join(sorted(chain))}; allowed: a serial "
+        "arm; `runner doctor FILE --tip FRAME --write DIR` holds them fixed"
+    ]
+    return (branches if beside else []) + [
+        f"robot.urdf: joint '{name}' in {path} mimics another, and its motion would be free; make it fixed, or take "
+        "its <mimic> out"
+        for name, joint in tree.joints.items()
+        if moves(joint) and joint.find("mimic") is not None
+    ]
 
 
 def _check_inertials(path: Path, links: Mapping[str, ET.Element]) -> list[str]:
@@ -127,4 +156,4 @@ def _bad_inertia(link: ET.Element) -> list[str]:
     wrong = [f"inertia {key} that is no finite number" for key, value in values.items() if not math.isfinite(value)]
     if not wrong and _mass(link) == 0.0 and any(values.values()):
         wrong.append("inertia but no mass; PyBullet would drop it: give it a mass, or zero inertia")
-    return wrong
+    return wrong or (impossible_inertia(link) if _mass(link) > 0.0 else [])

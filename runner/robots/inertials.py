@@ -116,11 +116,11 @@ def scale_inertial(link: ET.Element, mass: float) -> None:
 
 
 def add_rotor(joint: ET.Element, links: Mapping[str, ET.Element], rotor_inertia: float) -> None:
-    """Add a rotor's inertia, in kg m^2 about a joint's axis, to the link that the joint moves."""
+    """Add a rotor's inertia, in kg m^2 about a joint's axis, to the link that the joint turns; none where it slides."""
     child, axis = joint.find("child"), joint.find("axis")
     link = None if child is None else links.get(child.get("link", ""))
     inertia = None if link is None else link.find("inertial/inertia")
-    if joint.get("type") == "fixed" or link is None or inertia is None:
+    if joint.get("type") in ("fixed", "prismatic") or link is None or inertia is None:
         return
     direction = _inertial_frame(link).rotation.T @ _vector("1 0 0" if axis is None else axis.get("xyz", "1 0 0"))
     # A thin disc: PyBullet drops an inertia that no body has, such as one about a single axis.
@@ -150,17 +150,58 @@ def add_payload(links: Mapping[str, ET.Element], payload: Payload) -> None:
     _write(link, whole.mass, whole.lever, tensor)
 
 
+def impossible_inertia(link: ET.Element) -> list[str]:
+    """Return what is wrong with a link's inertia that no rigid body has; PyBullet takes zero in its place."""
+    moments = np.linalg.eigvalsh(_tensor(link))
+    listed = ", ".join(f"{moment:.3g}" for moment in moments)
+    if moments[0] < -_ROUNDING * moments[2]:
+        return [f"an inertia that is not positive definite (principal moments {listed} kg m^2): no body has it"]
+    if moments[2] > (1.0 + _ROUNDING) * (moments[0] + moments[1]):
+        return [
+            f"principal moments of inertia of {listed} kg m^2: no body has one above the sum of the others, and "
+            "PyBullet would take zero for all"
+        ]
+    return []
+
+
+def mend_inertia(link: ET.Element) -> None:
+    """Give a link the nearest inertia that a rigid body can have.
+
+    What a body's mass is spread by along its axes, sum m x x^T = tr(I)/2 - I, cannot be negative; such spreads become a
+    thousandth of the largest one.
+    """
+    tensor = _tensor(link)
+    spread, axes = np.linalg.eigh(0.5 * np.trace(tensor) * np.eye(3) - tensor)
+    spread = np.maximum(spread, 1e-3 * max(float(spread[2]), 0.0))
+    mended = axes @ np.diag(spread.sum() - spread) @ axes.T
+    inertia = link.find("inertial/inertia")
+    if inertia is not None:
+        for row, column in _UPPER:
+            inertia.set(f"i{'xyz'[row]}{'xyz'[column]}", repr(float(mended[row, column])))
+
+
+def make_massless(link: ET.Element) -> None:
+    """Give a link zero mass and zero inertia."""
+    _write(link, 0.0, np.zeros(3).tolist(), {f"i{'xyz'[row]}{'xyz'[column]}": 0.0 for row, column in _UPPER})
+
+
+_ROUNDING = 1e-6  # of the largest moment: files print few digits
 _UPPER = tuple(itertools.combinations_with_replacement(range(3), 2))
 
 
 def _own_inertia(link: ET.Element) -> pin.Inertia:
     """Return a link's inertia in its inertial frame, whose origin is its centre of mass."""
-    mass, inertia = link.find("inertial/mass"), link.find("inertial/inertia")
-    tensor = np.zeros((3, 3))
+    mass = link.find("inertial/mass")
+    return pin.Inertia(math.nan if mass is None else float(mass.get("value", "nan")), np.zeros(3), _tensor(link))
+
+
+def _tensor(link: ET.Element) -> np.ndarray:
+    """Return a link's inertia about its centre of mass in the axes of its inertial frame, shape (3, 3), in kg m^2."""
+    inertia, tensor = link.find("inertial/inertia"), np.zeros((3, 3))
     for row, column in _UPPER:
         value = "0" if inertia is None else inertia.get(f"i{'xyz'[row]}{'xyz'[column]}", "0")
         tensor[row, column] = tensor[column, row] = float(value)
-    return pin.Inertia(math.nan if mass is None else float(mass.get("value", "nan")), np.zeros(3), tensor)
+    return tensor
 
 
 def _inertial_frame(link: ET.Element) -> pin.SE3:

@@ -8,6 +8,7 @@ from scipy.optimize import least_squares
 
 from runner.errors import ConfigError
 from runner.robots.model import FloatArray, RobotModel
+from runner.robots.task_space import task_directions
 
 TOLERANCE = 1e-12  # m; Newton's last step squares it, so that an arm starts at its trajectory's start to rounding
 _STEPS = 200  # way-points from home to the target; each needs a few Newton steps
@@ -24,8 +25,9 @@ def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) 
 
     The tip is led from home to the target by Newton steps from way-point to way-point: along the straight line, or,
     where that passes a singular posture and leaves the branch, around the shoulder. A branch is known by the sign of
-    det J, which only a singular posture changes. An arm with more joints than it needs moves them as little as it can.
-    Where joint limits bar both ways, other branches are searched.
+    det J, which only a singular posture changes. An arm with more joints than it needs moves them as little as it can,
+    and one whose tip stays in a plane is asked for the target's place in that plane. Where joint limits bar both ways,
+    other branches are searched.
 
     Args:
         model: The robot.
@@ -42,14 +44,15 @@ def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) 
     if np.array_equal(start, target):
         return np.array(home, dtype=float)
     paths = (_straight(start, target), _around(model.shoulder, start, target))
-    found = [_follow(model, (_position_task(model, point) for point in path), home) for path in paths]
+    directions = task_directions(model, pose=False)
+    found = [_follow(model, (_position_task(model, point, directions) for point in path), home) for path in paths]
     missing = [float(np.linalg.norm(model.tip_position(q) - target)) for q in found]
     reached = [q for q, distance in zip(found, missing, strict=True) if distance <= _REACHED]
     if reached:
         return next((q for q in reached if _branch(model, q) == _branch(model, home)), reached[0])
-    task = _position_task(model, target)
+    task = _position_task(model, target, directions)
     q = _search(model, task, [np.array(home, dtype=float), *found])
-    distance = float(np.linalg.norm(task(q)[0]))
+    distance = float(np.linalg.norm(target - model.tip_position(q)))
     if distance <= _REACHED:
         return q
     raise ConfigError(
@@ -84,11 +87,12 @@ def solve_tip_pose(model: RobotModel, pose: FloatArray, home: FloatArray) -> Flo
     turn = pin.log3(start[:3, :3].T @ pose[:3, :3])
     points = _straight(start[:3, 3], pose[:3, 3])
     turned = [start[:3, :3] @ pin.exp3(turn * (step + 1) / _STEPS) for step in range(_STEPS - 1)] + [pose[:3, :3]]
-    q = _follow(model, (_pose_task(model, p, R) for p, R in zip(points, turned, strict=True)), home)
-    task = _pose_task(model, pose[:3, 3], pose[:3, :3])
+    directions = task_directions(model, pose=True)
+    q = _follow(model, (_pose_task(model, p, R, directions) for p, R in zip(points, turned, strict=True)), home)
+    task = _pose_task(model, pose[:3, 3], pose[:3, :3], directions)
     if np.linalg.norm(task(q)[0]) > _REACHED:
         q = _search(model, task, [np.array(home, dtype=float), q])
-    error = task(q)[0]
+    error = _pose_error(model, q, pose[:3, 3], pose[:3, :3])
     if np.linalg.norm(error) <= _REACHED:
         return q
     turn = pin.log3(pose[:3, :3])
@@ -101,20 +105,24 @@ def solve_tip_pose(model: RobotModel, pose: FloatArray, home: FloatArray) -> Flo
     )
 
 
-def _position_task(model: RobotModel, target: FloatArray) -> Task:
+def _position_task(model: RobotModel, target: FloatArray, directions: FloatArray) -> Task:
     def task(q: FloatArray) -> tuple[FloatArray, FloatArray]:
-        return target - model.tip_position(q), model.tip_jacobian(q)[:3]
+        return directions @ (target - model.tip_position(q)), directions @ model.tip_jacobian(q)[:3]
 
     return task
 
 
-def _pose_task(model: RobotModel, position: FloatArray, rotation: FloatArray) -> Task:
+def _pose_task(model: RobotModel, position: FloatArray, rotation: FloatArray, directions: FloatArray) -> Task:
     def task(q: FloatArray) -> tuple[FloatArray, FloatArray]:
-        pose = model.tip_pose(q)
-        turn = pin.log3(rotation @ pose[:3, :3].T)  # of the base frame's axes, as the Jacobian's angular rows
-        return np.concatenate([position - pose[:3, 3], turn]), model.tip_jacobian(q)
+        return directions @ _pose_error(model, q, position, rotation), directions @ model.tip_jacobian(q)
 
     return task
+
+
+def _pose_error(model: RobotModel, q: FloatArray, position: FloatArray, rotation: FloatArray) -> FloatArray:
+    pose = model.tip_pose(q)
+    turn = pin.log3(rotation @ pose[:3, :3].T)  # of the base frame's axes, as the Jacobian's angular rows
+    return np.concatenate([position - pose[:3, 3], turn])
 
 
 def _branch(model: RobotModel, q: FloatArray) -> float:
@@ -172,8 +180,8 @@ def _newton(task: Task, q: FloatArray, limits: FloatArray) -> FloatArray:
 def _search(model: RobotModel, task: Task, guesses: Sequence[FloatArray]) -> FloatArray:
     """Return the joint positions within the limits that leave the least error, sought from guesses and at random."""
     lower, upper = model.position_limits
-    span = np.clip(model.position_limits, -np.pi, np.pi)
-    postures = np.random.default_rng(0).uniform(span[0], span[1], (_SEARCHES, model.nq))
+    least_usual, most_usual = model.usual_range
+    postures = np.random.default_rng(0).uniform(least_usual, most_usual, (_SEARCHES, model.nq))
     best, least = guesses[0], np.inf
     for guess in (*guesses, *postures):
         inside = np.clip(guess, lower + 1e-9, upper - 1e-9)

@@ -1,6 +1,7 @@
 """A robot arm as its rigid-body model: kinematics and dynamics in joint space and at the tip, by Pinocchio."""
 
 import copy
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
@@ -13,13 +14,14 @@ FloatArray = NDArray[np.float64]
 
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value (its G(q) shows 9.81 and 19.62)
 
-_NO_LIMIT = 1e6  # rad, rad/s or N m; URDF demands limits, and a file without them writes a large number
+_NO_LIMIT = 1e6  # SI units; URDF demands limits, and a file without them writes a large number
 
 
 class RobotModel:
-    """Rigid-body model of a fixed-base serial arm with revolute joints.
+    """Rigid-body model of a fixed-base serial arm with joints that turn (revolute) or slide (prismatic).
 
-    Every result is a new array; positions and Jacobians are given in the base frame.
+    Every result is a new array; positions and Jacobians are given in the base frame. Where a unit of a joint is given,
+    it is that of one that turns: rad, rad/s and N m stand for m, m/s and N where a joint slides.
 
     Args:
         urdf: The URDF's text.
@@ -27,28 +29,31 @@ class RobotModel:
         gravity: Magnitude of gravity along -z of the base, in m/s^2.
 
     Raises:
-        ConfigError: if the URDF cannot be built, holds a joint that is not revolute, or has no such frame.
+        ConfigError: if the URDF cannot be built, holds a joint of another kind, lets a joint slide without end, or
+            has no such frame.
     """
 
     def __init__(self, urdf: str, tip: str, gravity: float = STANDARD_GRAVITY) -> None:
-        try:
-            self.pin_model = pin.buildModelFromXML(urdf)
-        except (ValueError, RuntimeError) as error:
-            raise ConfigError([f"robot.urdf: Pinocchio cannot build it: {error}"]) from error
+        self.pin_model = _build(urdf)
         self.pin_model.gravity.linear = np.array([0.0, 0.0, -gravity])
         joints = list(self.pin_model.joints)[1:]
         self.joint_names: tuple[str, ...] = tuple(list(self.pin_model.names)[1:])
-        for name, joint in zip(self.joint_names, joints, strict=True):
-            if joint.nq != 1 or not joint.shortname().startswith("JointModelR"):
-                raise ConfigError(
-                    [f"robot.urdf: joint '{name}' is {joint.shortname()}; allowed: revolute (with wide limits)"]
-                )
+        _check_joints(self.pin_model, self.joint_names)
         frames = [frame.name for frame in self.pin_model.frames]
         if tip not in frames:
             raise ConfigError([f"robot.tip: no frame '{tip}'{nearest(tip, frames)}; frames: {', '.join(frames)}"])
         self.tip_name = tip
         self.tip_frame: int = self.pin_model.getFrameId(tip)
         self.nq: int = self.pin_model.nq
+        self.slides = np.array([_slides(joint) for joint in joints], dtype=bool)
+        """Which joints slide instead of turning, shape (nq,)."""
+        endless = self.slides & ~np.isfinite(self.position_limits).all(axis=0)
+        if endless.any():
+            raise ConfigError(
+                f"robot.urdf: joint '{self.joint_names[index]}' slides without limits; give it a <limit> with lower "
+                "and upper, in m"
+                for index in np.flatnonzero(endless)
+            )
         self._data = self.pin_model.createData()
 
     def tip_position(self, q: FloatArray) -> FloatArray:
@@ -151,6 +156,18 @@ class RobotModel:
         return np.array([-_limits(-model.lowerPositionLimit), _limits(model.upperPositionLimit)])
 
     @property
+    def usual_range(self) -> FloatArray:
+        """The position limits, of joints that turn within one turn about zero where that is possible, shape (2, nq)."""
+        limits = self.position_limits
+        turn = np.clip(limits, -np.pi, np.pi)
+        return np.where(self.slides | (turn[0] == turn[1]), limits, turn)
+
+    @property
+    def joint_units(self) -> tuple[str, ...]:
+        """Unit of each joint's position: rad, or m where it slides."""
+        return tuple("m" if slides else "rad" for slides in self.slides)
+
+    @property
     def velocity_limits(self) -> FloatArray:
         """The URDF's speed limits, shape (nq,), in rad/s; inf where it sets none."""
         return _limits(self.pin_model.upperVelocityLimit)
@@ -168,16 +185,47 @@ class RobotModel:
 
     @cached_property
     def reach(self) -> float:
-        """Largest distance of the tip from the first joint's axis origin that the link lengths admit, in m."""
+        """Largest distance of the tip from the first joint's axis origin that link lengths and slides admit, in m."""
         placements = list(self.pin_model.jointPlacements)[2:]
         last = self.pin_model.frames[self.tip_frame].placement
-        return float(sum(np.linalg.norm(p.translation) for p in (*placements, last)))
+        travel = float(np.abs(self.position_limits[:, self.slides]).max(axis=0).sum())
+        return float(sum(np.linalg.norm(p.translation) for p in (*placements, last))) + travel
 
     @cached_property
     def shoulder(self) -> FloatArray:
         """Origin of the first joint in the base frame, shape (3,), in m: the centre of the workspace."""
         origin: FloatArray = self.pin_model.jointPlacements[1].translation.copy()
         return origin
+
+
+def joint_names_of(urdf: str) -> tuple[str, ...]:
+    """Return the joints that move in a URDF's text, of any tree, in Pinocchio's order.
+
+    Raises:
+        ConfigError: if the URDF cannot be built.
+    """
+    return tuple(_build(urdf).names)[1:]
+
+
+def _build(urdf: str) -> pin.Model:
+    try:
+        return pin.buildModelFromXML(urdf)
+    except (ValueError, RuntimeError) as error:
+        raise ConfigError([f"robot.urdf: Pinocchio cannot build it: {error}"]) from error
+
+
+def _slides(joint: pin.JointModel) -> bool:
+    return bool(joint.shortname().startswith("JointModelP"))
+
+
+def _check_joints(model: pin.Model, names: Sequence[str]) -> None:
+    problems = []
+    for name, joint in zip(names, list(model.joints)[1:], strict=True):
+        kind = joint.shortname()
+        if joint.nq != 1 or not kind.startswith(("JointModelR", "JointModelP")):
+            problems.append(f"robot.urdf: joint '{name}' is {kind}; allowed: revolute (with wide limits) or prismatic")
+    if problems:
+        raise ConfigError(problems)
 
 
 def _limits(values: FloatArray) -> FloatArray:

@@ -59,9 +59,8 @@ def analyse(model: RobotModel, samples: int, generator: np.random.Generator) -> 
         samples: Number of random joint positions, uniform within the joint limits and one turn.
         generator: Source of the samples.
     """
-    low = np.maximum(model.pin_model.lowerPositionLimit, -np.pi)
-    high = np.minimum(model.pin_model.upperPositionLimit, np.pi)
-    q = generator.uniform(low, high, (samples, model.nq))
+    lower, upper = model.usual_range
+    q = generator.uniform(lower, upper, (samples, model.nq))
     tips = model.tip_positions(q)
     jacobians = np.array([model.tip_jacobian(configuration)[:3] for configuration in q])
     order = np.argsort(np.linalg.norm(tips - model.shoulder, axis=1))

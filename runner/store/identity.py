@@ -5,34 +5,30 @@ import json
 from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import version
-from importlib.util import find_spec
-from pathlib import Path
 from typing import Any
 
 from runner.paths import package_dir
-from runner.plugins import added
+from runner.plugins import GROUPS, added, source_files
 
 # These say where and under which name a run is kept, not what is simulated.
 _LEFT_OUT = ("outputs", "preset", "sweep")
 # Rooms that come after a stored run: a changed template or claim leaves the physics as it is.
 _NOT_PHYSICS = (
-    "audit", "claims", "commands", "references", "reporting", "statistics", "store", "sweep", "tuning",
+    "audit", "claims", "commands", "doctor", "references", "reporting", "statistics", "store", "sweep", "tuning",
 )  # fmt: skip
-
-_PLUGIN_KINDS = ("calibration", "controller", "environment", "metric", "plant", "trajectory")
 
 
 def run_hash(resolved: Mapping[str, Any], urdf: str) -> str:
     """Return the name of a run's folder: SHA-256 over all that its result follows from.
 
     That is the resolved config (without outputs, sweep, and preset, whose values the groups have taken), the URDF's
-    text, the source of the rooms below the store and of parts that other packages add, and the versions of PyBullet
-    and Pinocchio.
+    text, the source of the rooms below the store and of the user's parts, and the versions of PyBullet and Pinocchio.
     """
     content = {
         "config": simulated_part(resolved),
         "urdf": urdf,
         "source": source_digest(),
+        "parts": _parts_digest(tuple(sorted({point.value for group in GROUPS for point in added(group)}))),
         "engines": _engines(),
     }
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:24]
@@ -50,14 +46,20 @@ def _engines() -> dict[str, str]:
 
 @cache
 def source_digest() -> str:
-    """Return a digest of the source that decides about results: ours, and of the parts that other packages add."""
+    """Return a digest of our source that decides about results."""
     digest = hashlib.sha256()
     root = package_dir()
     for path in sorted(root.rglob("*.py")):
         if path.relative_to(root).parts[0] not in (*_NOT_PHYSICS, "cli.py", "__main__.py"):
             digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
-    for module in sorted({point.value for kind in _PLUGIN_KINDS for point in added(kind)}):
-        spec = find_spec(module)
-        if spec is not None and spec.origin is not None:
-            digest.update(module.encode() + b"\0" + Path(spec.origin).read_bytes() + b"\0")
+    return digest.hexdigest()
+
+
+@cache
+def _parts_digest(modules: tuple[str, ...]) -> str:
+    """Return a digest of the source of the user's parts, as it is when they are first used."""
+    digest = hashlib.sha256()
+    for module in modules:
+        for path in source_files(module):
+            digest.update(f"{module} {path.name}".encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()

@@ -139,10 +139,13 @@ def _parquet(trace: Trace) -> bytes:
 
     joints = range(trace.q.shape[1])
     columns: list[tuple[str, str, np.ndarray]] = [("t", "s", trace.t)]
-    for name, unit, values in (("q", "rad", trace.q), ("dq", "rad/s", trace.dq), ("tau", "N m", trace.tau)):
-        columns += [(f"{name}{joint + 1}", unit, values[:, joint]) for joint in joints]
+    places = trace.joint_units
+    speeds = [f"{unit}/s" for unit in places]
+    torques = ["N" if unit == "m" else "N m" for unit in places]
+    for name, units, values in (("q", places, trace.q), ("dq", speeds, trace.dq), ("tau", torques, trace.tau)):
+        columns += [(f"{name}{joint + 1}", units[joint], values[:, joint]) for joint in joints]
     if trace.q_command is not None:
-        columns += [(f"q{joint + 1}_command", "rad", trace.q_command[:, joint]) for joint in joints]
+        columns += [(f"q{joint + 1}_command", places[joint], trace.q_command[:, joint]) for joint in joints]
     if trace.touch is not None:
         for name in ("external", "felt", "reading", "load", "reaction"):
             values = getattr(trace.touch, name)

@@ -13,11 +13,12 @@ from runner import store
 from runner.config.compose import Composed, quiet_environment
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.errors import StoreError
-from runner.execution import TimeLimitError, job_provenance, simulate_job
+from runner.errors import StoreError, user_place
+from runner.execution import job_provenance, simulate_job
 from runner.store.atomic import write_atomically
 from runner.store.shards import ShardRun, outcome, read_outcomes, shard_path, write_shard
 from runner.store.writing import cut_short_record, make_record
+from runner.sweep.deadline import TimeLimitError, deadline
 
 TraceKeeping = Literal["all", "sample", "failed", "never"]
 
@@ -161,9 +162,11 @@ def _make(name: str, composed: Composed, rules: Rules, traceless: list[ShardRun]
 def _try(config: RunConfig, composed: Composed, limit: float | None) -> tuple[store.RunResult | None, str, str]:
     """Return the result, or why there is none, and the traceback of an error of ours or of a part that was added."""
     try:
-        return simulate_job(config, composed, limit), "", ""
-    except TimeLimitError:
-        return None, f"no result within sweep.time_limit, {limit:g} s", ""
+        with deadline(limit):
+            return simulate_job(config, composed), "", ""
+    except TimeLimitError as error:
+        place = user_place(error)
+        return None, f"no result within sweep.time_limit, {limit:g} s{f' ({place})' if place else ''}", ""
     except Exception as error:
         return None, f"{type(error).__name__}: {error}", traceback.format_exc()
 

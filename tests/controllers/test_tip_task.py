@@ -3,6 +3,8 @@
 import numpy as np
 import pinocchio as pin
 import pytest
+import strangers
+from strangers import X, Y, Z
 
 from runner.config.compose import compose
 from runner.config.validation import validate
@@ -91,34 +93,35 @@ def test_a_pose_starts_with_home_s_orientation():
     assert held_orientation("position", XARM7, HOME) is None
 
 
-def chain(count):
-    inertial = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
-    links = "".join(f'<link name="l{i}">{inertial}</link>' for i in range(count + 1))
-    joints = "".join(
-        f'<joint name="j{i}" type="revolute"><parent link="l{i}"/><child link="l{i + 1}"/><origin xyz="0 0 1"/>'
-        '<axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="9" velocity="9"/></joint>'
-        for i in range(count)
-    )
-    return RobotModel(f'<robot name="chain">{links}{joints}</robot>', f"l{count}")
+def chain(axes):
+    return RobotModel(strangers.chain("arm", [("revolute", axis) for axis in axes]), "tip")
 
 
 @pytest.mark.parametrize(
-    ("name", "joints", "problem"),
+    ("name", "axes", "problem"),
     [
-        (
-            "pose",
-            3,
-            "controller.task: pose has 6 dimensions, and the arm 3 joints (j0, j1, j2); take controller.task=position",
-        ),
-        ("pose", 2, "controller.task: pose has 6 dimensions, and the arm 2 joints (j0, j1); it needs 3 joints or more"),
-        (
-            "position",
-            2,
-            "controller.task: position has 3 dimensions, and the arm 2 joints (j0, j1); it needs 3 joints or more",
-        ),
+        ("pose", (X, Y, Z), "pose has 6 dimensions, and the arm 3 joints (q1, q2, q3); take controller.task=position"),
+        ("pose", (X, Y), "pose has 6 dimensions, and the arm 2 joints (q1, q2); it needs 3 joints or more"),
+        ("position", (X, Y), "position has 3 dimensions, and the arm 2 joints (q1, q2); it needs 3 joints or more"),
+        ("pose", (X, X), "pose has 3 dimensions, and the arm 2 joints (q1, q2); take controller.task=position"),
     ],
 )
-def test_a_task_of_more_dimensions_than_joints_is_refused(name, joints, problem):
+def test_a_task_of_more_dimensions_than_joints_is_refused(name, axes, problem):
     with pytest.raises(ConfigError) as caught:
-        held_orientation(name, chain(joints), np.zeros(joints))
-    assert caught.value.problems == (problem,)
+        held_orientation(name, chain(axes), np.zeros(len(axes)))
+    assert caught.value.problems == (f"controller.task: {problem}",)
+
+
+def test_a_planar_arm_of_two_joints_has_a_task_of_two_dimensions():
+    model = chain((X, X))
+    assert held_orientation("position", model, np.zeros(2)) is None
+    data = model.pin_model.createData()
+    task = TipTask(model, model.pin_model, data, None, 10.0, 1.0, True, None, 0.0)
+    q, dq = np.array([0.4, 0.7]), np.array([1.0, -2.0])
+    J, dJ_dq = task.update(q, dq)
+    np.testing.assert_allclose(J, model.tip_jacobian(q)[1:3], atol=1e-15)  # y and z: the arm turns about x
+    np.testing.assert_allclose(dJ_dq, model.tip_bias_acceleration(q, dq)[1:], atol=1e-13)
+    reference = np.array([np.add(model.tip_position(q), [0.3, 0.1, -0.2]), [9.0, 1.0, 2.0], [9.0, 3.0, 4.0]])
+    np.testing.assert_allclose(task.error(reference), [0.1, -0.2], atol=1e-15)
+    asked = task.acceleration(task.error(reference), np.zeros(2), reference)
+    np.testing.assert_allclose(asked, [100.0 * 0.1 + 20.0 * 1.0 + 3.0, 100.0 * -0.2 + 20.0 * 2.0 + 4.0], atol=1e-12)

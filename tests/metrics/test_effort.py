@@ -3,6 +3,7 @@ import pytest
 
 from runner.metrics import MetricContext
 from runner.metrics.effort import evaluate
+from runner.metrics.summary import unit_of
 from runner.trajectories.goal import Goal
 
 T = np.arange(401) * 0.01
@@ -61,3 +62,27 @@ def test_saturation_is_the_share_of_ticks_with_any_joint_at_its_limit(hand_made_
 
 def test_no_limit_is_never_reached(hand_made_trace):
     assert evaluate(hand_made_trace(T, tau=1e30), CONTEXT)["saturation_fraction"] == 0.0
+
+
+def test_joints_that_slide_have_forces_and_speeds_of_their_own(hand_made_trace):
+    trace = hand_made_trace(T, tau=[3.0, -40.0], dq=[0.5, 0.2], q=np.outer(T, [0.5, 0.2]), units=("rad", "m"))
+    found = evaluate(trace, CONTEXT)
+    assert (found["peak_torque"], found["peak_torque_q1"], found["peak_joint_speed"]) == (3.0, 3.0, 0.5)
+    assert (found["peak_joint_force"], found["peak_joint_force_q2"]) == (40.0, 40.0)
+    assert found["rms_joint_force"] == pytest.approx(40.0)
+    assert found["peak_sliding_speed"] == found["peak_sliding_speed_q2"] == 0.2
+    assert found["energy"] == pytest.approx((3.0 * 0.5 + 40.0 * 0.2) * 4.0)
+    assert found["control_effort"] == pytest.approx(9.0 * 4.0)
+    assert found["force_effort"] == pytest.approx(1600.0 * 4.0)
+    assert not {"peak_torque_q2", "peak_joint_speed_q2", "peak_joint_force_q1"} & set(found)
+    assert {unit_of(name) for name in ("peak_joint_force_q2", "rms_joint_force")} == {"N"}
+
+
+def test_an_arm_that_only_slides_has_no_torques(hand_made_trace):
+    found = evaluate(hand_made_trace(T, tau=2.0, units=("m", "m")), CONTEXT)
+    assert found["peak_joint_force"] == 2.0
+    assert not {"peak_torque", "peak_joint_speed", "control_effort"} & set(found)
+
+
+def test_an_arm_that_only_turns_has_no_forces(hand_made_trace):
+    assert not {"peak_joint_force", "peak_sliding_speed", "force_effort"} & set(evaluate(hand_made_trace(T), CONTEXT))

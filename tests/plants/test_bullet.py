@@ -1,6 +1,7 @@
 import numpy as np
 import pybullet
 import pytest
+import strangers
 
 from runner.errors import ConfigError
 from runner.plants.bullet import Bullet, build, default_step
@@ -200,22 +201,43 @@ def test_joints_are_ordered_by_name_as_in_the_model(make):
     np.testing.assert_allclose(plant.q, [0.1, 0.2], atol=1e-6)
 
 
-def test_close_empties_the_server_for_the_next_arm(macro_urdf):
-    plant = Bullet(macro_urdf, RobotModel(macro_urdf, "tip"), 1e-3, 1)
-    assert pybullet.getNumBodies(physicsClientId=plant._client) == 1
+def test_the_next_plant_of_an_arm_takes_its_server_and_is_as_fresh(macro_urdf):
+    model, torques = RobotModel(macro_urdf, "tip"), np.random.default_rng(3).uniform(-20.0, 20.0, (50, 3))
+    plant = Bullet(macro_urdf, model, 1e-3, 1)
+    expected = states(plant, torques)
+    plant.set_gravity(np.zeros(3))
     plant.close()
-    assert pybullet.getNumBodies(physicsClientId=plant._client) == 0
-    again = Bullet(macro_urdf, RobotModel(macro_urdf, "tip"), 1e-3, 1)
+    again = Bullet(macro_urdf, model, 1e-3, 1)
     assert again._client == plant._client
+    np.testing.assert_array_equal(states(again, torques), expected)
     again.close()
+
+
+def test_an_arm_that_diverged_is_not_used_again(macro_urdf):
+    model = RobotModel(macro_urdf, "tip")
+    plant = Bullet(macro_urdf, model, 1e-3, 1)
+    plant.advance(np.full(3, np.nan))
+    plant.close()
+    assert not pybullet.isConnected(plant._client)
+
+
+def test_closed_plants_leave_a_bounded_number_of_servers():
+    def servers():
+        return sum(pybullet.isConnected(client) for client in range(64))
+
+    urdf = read_urdf(find_urdf("macro.urdf"), {})
+    for mass in range(1, 12):
+        changed = urdf.replace('name="macro"', f'name="macro{mass}"')
+        Bullet(changed, RobotModel(changed, "tip"), 1e-3, 1).close()
+        assert servers() <= 4
 
 
 def test_an_urdf_that_bullet_refuses_is_an_error_and_leaves_no_client(macro_urdf):
     model = RobotModel(macro_urdf, "tip")
-    connected = [pybullet.getConnectionInfo(client)["isConnected"] for client in range(64)]
+    connected = [pybullet.isConnected(client) for client in range(64)]
     with pytest.raises(ConfigError, match=r"robot\.urdf: PyBullet cannot load it"):
         Bullet("<robot name='none'/>", model, 1e-3, 1)
-    assert [pybullet.getConnectionInfo(client)["isConnected"] for client in range(64)] == connected
+    assert all(before or not pybullet.isConnected(client) for client, before in enumerate(connected))
 
 
 def test_torques_are_only_read(make, macro_urdf):
@@ -237,6 +259,27 @@ def test_build_and_default_step(checked_config, macro_urdf, one_stage, dynamics,
     plant.close()
     assert default_step(0.01, 1) == pytest.approx(0.001)
     assert default_step(0.001, 2) == pytest.approx(0.00025)
+
+
+def test_a_text_in_one_long_line_is_read_as_it_is_written():
+    # Bullet reads 1,000 characters at a time, and breaks names and numbers there.
+    text = strangers.MADE["snake"].replace("\n", "")
+    model = RobotModel(text, "tip")
+    plant, q = Bullet(text, model, 1e-3, 1), np.full(30, 0.3)
+    try:
+        np.testing.assert_allclose(plant.mass_matrix(q), model.mass_matrix(q), atol=1e-12)
+    finally:
+        plant.close()
+
+
+def test_the_mass_matrix_counts_joints_as_the_model_does():
+    arm = strangers.config("crane").arm
+    plant = Bullet(arm.urdf, arm.model, 1e-3, 1)
+    try:
+        for q in np.random.default_rng(0).uniform(-0.4, 0.4, (5, 3)):
+            np.testing.assert_allclose(plant.mass_matrix(q), arm.model.mass_matrix(q), atol=1e-10)
+    finally:
+        plant.close()
 
 
 @pytest.mark.parametrize("steps", [1, 4, 10])

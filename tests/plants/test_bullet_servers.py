@@ -1,11 +1,7 @@
-"""A physics server that another arm has used gives what a fresh one gives, bit for bit."""
+"""A physics server that another run has used gives what a fresh one gives, bit for bit."""
 
 import subprocess
 import sys
-
-import numpy as np
-
-from runner.plants import bullet
 
 RUN = """
 from runner.config.compose import compose
@@ -20,15 +16,7 @@ print(simulate(loop, make_encoders(config, loop, 0)).q[-1].tobytes().hex())
 
 def test_a_used_server_gives_what_a_fresh_one_gives(simulated):
     fresh = subprocess.run([sys.executable, "-c", RUN], capture_output=True, text=True, check=True).stdout.strip()
-    for other in ("robot=mini", "robot=combined"):
+    for other in ("robot=mini", "robot=combined", "robot=macro"):
         simulated(other, "duration=0.1", "gravity=3.7", "plant.step=0.00025")
         trace = simulated("robot=macro", "noise=thesis", "torque_limits=thesis", "duration=0.5")
         assert trace.q[-1].tobytes().hex() == fresh
-
-
-def test_servers_are_used_again(simulated):
-    simulated("robot=macro", "duration=0.05")
-    idle = list(bullet._idle)
-    simulated("robot=mini", "duration=0.05")
-    assert bullet._idle == idle
-    assert np.unique(idle).size == len(idle)

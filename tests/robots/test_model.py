@@ -239,10 +239,17 @@ def test_joint_names(macro):
 # What is refused.
 
 
-@pytest.mark.parametrize("kind", ["continuous", "prismatic"])
-def test_only_revolute_joints(kind):
-    with pytest.raises(ConfigError, match=r"joint 'turn' is JointModel\w+; allowed: revolute \(with wide limits\)"):
+@pytest.mark.parametrize("kind", ["continuous", "floating"])
+def test_only_joints_that_turn_or_slide_within_limits(kind):
+    allowed = r"allowed: revolute \(with wide limits\) or prismatic"
+    with pytest.raises(ConfigError, match=rf"joint 'turn' is JointModel\w+; {allowed}"):
         RobotModel(one_joint(kind), "hand")
+
+
+def test_a_joint_slides_between_limits_alone():
+    endless = '<limit lower="-1e6" upper="1e6" effort="1" velocity="1"/>'
+    with pytest.raises(ConfigError, match=r"joint 'turn' slides without limits; give it a <limit> with lower"):
+        RobotModel(one_joint("prismatic", endless), "hand")
 
 
 def test_an_unknown_tip_is_named_with_the_nearest(macro_urdf):

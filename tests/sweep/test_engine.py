@@ -80,7 +80,7 @@ def test_a_scheduler_that_is_lost_is_said(sweep, scheduler, tmp_path):
         processes[0].kill()
 
     threading.Thread(target=kill).start()
-    with pytest.raises(RunnerError, match="^the Dask scheduler is lost; finished runs are stored"):
+    with pytest.raises(RunnerError, match=r"^the Dask scheduler is lost; finished runs are stored"):
         sweep(*GRID, "seed=range(0,400)", engine=Engine(0, address))
 
 

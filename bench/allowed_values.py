@@ -1,0 +1,68 @@
+"""What a config key may hold, in words, from its type."""
+
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from runner.config.per_stage import NonNegativePerStage, PositivePerStage, TorquePerStage
+from runner.registry import StrictModel
+
+_BY_STAGE = {
+    PositivePerStage: "number above 0, by stage",
+    NonNegativePerStage: "number of 0 or more, by stage",
+    TorquePerStage: "number above 0, or a list with one for each joint, by stage",
+}
+_BOUNDS = {"gt": "above {:g}", "ge": "of {:g} or more", "lt": "below {:g}", "le": "of {:g} or less"}
+
+
+def describe(annotation: Any, metadata: list[Any] | tuple[Any, ...] = ()) -> str:
+    """Return what a type and its constraints allow."""
+    for known, words in _BY_STAGE.items():
+        if any(item in get_args(known)[1:] for item in metadata):
+            return words
+    origin, parts = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return describe(parts[0], (*parts[1:], *metadata))
+    if origin is Literal:
+        return ", ".join(f"`{part}`" for part in parts)
+    if origin in (Union, UnionType):
+        return ", or ".join(dict.fromkeys(describe(part, metadata) for part in parts))
+    if origin is list:
+        return _list(parts[0], metadata)
+    if origin is dict:
+        return f"by name: {describe(parts[1])}"
+    return _plain(annotation, metadata)
+
+
+def nested_model(annotation: Any) -> type[StrictModel] | None:
+    """Return the model of a key that is a group of keys, null aside; None for any other."""
+    for part in (annotation, *get_args(annotation)):
+        if isinstance(part, type) and issubclass(part, StrictModel):
+            return part
+    return None
+
+
+def _list(item: Any, metadata: list[Any] | tuple[Any, ...]) -> str:
+    bounds = {name: value for entry in metadata for name, value in _bounds(entry, ("min_length", "max_length"))}
+    shortest, longest = bounds.get("min_length"), bounds.get("max_length")
+    count = "" if shortest is None else f"{shortest} " if shortest == longest else f"{shortest} or more "
+    return f"list of {count}({describe(item)})"
+
+
+def _plain(annotation: Any, metadata: list[Any] | tuple[Any, ...]) -> str:
+    if annotation in (NoneType, None):
+        return "`null`"
+    if isinstance(annotation, type) and issubclass(annotation, StrictModel):
+        return "a group of keys"
+    words = {float: "number", int: "whole number", bool: "`true`, `false`", str: "text"}.get(
+        annotation, str(annotation)
+    )
+    limits = [_BOUNDS[name].format(value) for entry in metadata for name, value in _bounds(entry, tuple(_BOUNDS))]
+    return " ".join([words, ", ".join(limits)]).strip() if annotation in (float, int) else words
+
+
+def _bounds(entry: Any, names: tuple[str, ...]) -> list[tuple[str, Any]]:
+    """Return the bounds that a constraint states; a pydantic Field holds several in its own metadata."""
+    inner = getattr(entry, "metadata", None)
+    if inner:
+        return [bound for item in inner for bound in _bounds(item, names)]
+    return [(name, getattr(entry, name)) for name in names if getattr(entry, name, None) is not None]

@@ -1,0 +1,221 @@
+"""Writes docs/reference.md, all keys, metrics and commands, from the models: `python -m bench.make_reference_docs`.
+
+Meaning and unit of a key come from its model's docstring, what is allowed from its type, its default from conf/. So the
+page says what the code does; a test fails where it is stale.
+"""
+
+import argparse
+import importlib
+import inspect
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import yaml
+
+from bench.allowed_values import describe, nested_model
+from runner.calibration.procedures import CALIBRATIONS
+from runner.cli import COMMANDS
+from runner.config.calibration import CalibrationSettings
+from runner.config.noise import NoiseConfig
+from runner.config.options import group_options
+from runner.config.preset import PresetConfig
+from runner.config.robot import OneArmConfig, StageConfig
+from runner.config.run import RunSettings
+from runner.config.sweep import SweepConfig
+from runner.config.torque_limits import TorqueLimitsConfig
+from runner.controllers import CONTROLLERS
+from runner.environments import ENVIRONMENTS
+from runner.metrics.summary import families
+from runner.paths import conf_dir
+from runner.plants import PLANTS
+from runner.registry import Registry, StrictModel
+from runner.robots.mismatch import MismatchConfig
+from runner.sensing import ForceTorqueConfig
+from runner.trajectories import TRAJECTORIES
+
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "reference.md"
+_HEAD = """\
+# Reference
+
+All config keys, metrics and commands. Made by `python -m bench.make_reference_docs` from the models: do not edit.
+
+Units are SI, angles in rad; a joint that slides counts in m where one that turns counts in rad. A default such as
+`${robot.period}` is the value of another key. "By stage" means: one value for a robot of one arm; for a robot of
+several a mapping with one for each.
+
+"""
+_KINDS: Mapping[str, Registry] = {
+    "controller": CONTROLLERS,
+    "trajectory": TRAJECTORIES,
+    "plant": PLANTS,
+    "environment": ENVIRONMENTS,
+    "calibration": CALIBRATIONS,
+}
+_PLAIN: Mapping[str, tuple[type[StrictModel], str]] = {
+    "noise": (NoiseConfig, "none"),
+    "torque_limits": (TorqueLimitsConfig, "none"),
+    "wrist_sensor": (ForceTorqueConfig, "ideal"),
+    "mismatch": (MismatchConfig, "none"),
+    "preset": (PresetConfig, "sound"),
+}
+
+
+def reference_text() -> str:
+    """Return the page."""
+    sections = [_HEAD, "## Keys\n\n", *_keys(), "## Metrics\n\n", *_metrics(), "## Commands\n\n", *_commands()]
+    return "".join(sections).rstrip() + "\n"
+
+
+def _keys() -> Iterator[str]:
+    yield "### At the root\n\n"
+    yield _table("", RunSettings, _read("run"))
+    yield "Of a sweep, `runner -m`:\n\n"
+    yield _table("sweep", SweepConfig, _read("run")["sweep"])
+    yield "".join(_sweeper())
+    yield "Of `runner calibrate`:\n\n"
+    yield _table("", CalibrationSettings, _read("calibrate"))
+    yield "### robot\n\n" + _options("robot")
+    defaults = _read("robot_defaults")["robot"]
+    yield _table("robot", OneArmConfig, defaults)
+    yield "A robot of arms that ride on each other has `robot.stages.NAME` for each in place of an arm's own keys:\n\n"
+    yield _table("robot.stages.NAME", StageConfig, {**defaults, "mount": None})
+    for group, registry in _KINDS.items():
+        yield f"### {group}\n\n" + _options(group)
+        for kind in (kind for kind in registry.names() if kind in registry._modules):
+            yield f"#### {group}.kind: {kind}\n\n"
+            yield _table(group, registry.config_model(kind), _of_kind(group, kind))
+    for group, (model, option) in _PLAIN.items():
+        yield f"### {group}\n\n{_options(group)}Defaults are those of `{group}={option}`.\n\n"
+        yield _table(group, model, _read(f"{group}/{option}"))
+
+
+def _sweeper() -> Iterator[str]:
+    """Yield the keys of Hydra's door to our sweeps, whose meanings stand in its file."""
+    text = (conf_dir() / "hydra" / "sweeper" / "runner.yaml").read_text(encoding="utf-8")
+    yield "| Key | Meaning | Default |\n|---|---|---|\n"
+    for name, default, meaning in re.findall(r"^([a-z]\w*): +(\S+) +# (.+)$", text, re.M):
+        yield f"| `hydra.sweeper.{name}` | {_cell(meaning)} | `{default}` |\n"
+    yield "\n"
+
+
+def _options(group: str) -> str:
+    """Return the options of a group as a list."""
+    lines = [f"- `{group}={name}`: {text}" for name, text in group_options(group).items()]
+    return "\n".join(lines) + "\n\n"
+
+
+def _of_kind(group: str, kind: str) -> Mapping[str, Any]:
+    """Return the values of the option named like a kind; a file of the root's package holds them below its group."""
+    values = _read(f"{group}/{kind}")
+    return dict(values.get(group, values))
+
+
+def _read(name: str) -> dict[str, Any]:
+    return dict(yaml.safe_load((conf_dir() / f"{name}.yaml").read_text(encoding="utf-8")))
+
+
+def _table(group: str, model: type[StrictModel], defaults: Mapping[str, Any]) -> str:
+    rows = ["| Key | Meaning | Allowed | Default |", "|---|---|---|---|"]
+    rows += [f"| {' | '.join(_cell(cell) for cell in row)} |" for row in _rows(group, model, defaults)]
+    return "\n".join(rows) + "\n\n"
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|")
+
+
+def _rows(group: str, model: type[StrictModel], defaults: Mapping[str, Any]) -> Iterator[tuple[str, str, str, str]]:
+    meanings = _meanings(model)
+    for name, field in model.model_fields.items():
+        key = f"{group}.{name}" if group else name
+        inner = nested_model(field.annotation)
+        given = defaults.get(name)
+        if inner is not None and isinstance(given, Mapping):
+            yield from _rows(key, inner, given)
+            continue
+        default = f"`{_inline(given)}`" if name in defaults else "must be given"
+        yield f"`{key}`", _null(meanings[name]), describe(field.annotation, field.metadata), default
+        if inner is not None and given is None:
+            yield from _rows(key, inner, {})
+
+
+def _inline(value: Any) -> str:
+    return yaml.safe_dump(value, default_flow_style=True, width=1000).removesuffix("\n").removesuffix("\n...")
+
+
+def _null(text: str) -> str:
+    """Return a docstring's words with None as YAML writes it."""
+    return re.sub(r"\bNone\b", "`null`", text)
+
+
+def _meanings(model: type[StrictModel]) -> dict[str, str]:
+    """Return what the docstrings of a model and its bases say of its keys."""
+    found: dict[str, str] = {}
+    for base in reversed(model.__mro__):
+        text = inspect.cleandoc(base.__doc__ or "").partition("Attributes:\n")[2]
+        entries = re.findall(r"^    (\w+): (.+?)(?=^    \w|\Z)", text, re.M | re.S)
+        found |= {name: " ".join(meaning.split()) for name, meaning in entries}
+    return found
+
+
+def _metrics() -> Iterator[str]:
+    yield (
+        "One value for each repetition, and their median, smallest and largest. A metric of one joint or axis carries "
+        "it behind its name, as `peak_torque_q1` and `max_tracking_error_x`; of a carrying stage in front, as "
+        "`macro_settling_time`. Rows of a trace are control ticks.\n\n| Metric | Unit | Formula |\n|---|---|---|\n"
+    )
+    for family in families():
+        meanings = _bullets(family.evaluate.__doc__ or "")
+        for name, unit in family.UNITS.items():
+            yield f"| `{name}` | {unit} | {_cell(_null(meanings[name]))} |\n"
+    yield "\n"
+
+
+def _bullets(docstring: str) -> dict[str, str]:
+    """Return what a docstring's bullets `- name, name: meaning.` say of each name."""
+    entries = re.findall(r"^\s*- ([\w, ]+): (.+?)(?=^\s*- |\Z)", docstring, re.M | re.S)
+    return {name.strip(): " ".join(text.split()) for names, text in entries for name in names.split(",")}
+
+
+def _commands() -> Iterator[str]:
+    yield "`runner OVERRIDES` makes one run, `runner -m OVERRIDES` a sweep; `runner --help` shows both.\n\n"
+    for name in COMMANDS:
+        parser = _parser(name)
+        yield f"### runner {name}\n\n{inspect.cleandoc(parser.description or '')}\n\n"
+        yield "| Argument | Meaning | Default |\n|---|---|---|\n"
+        for action in parser._actions:
+            if not isinstance(action, argparse._HelpAction):
+                words = ", ".join(action.option_strings) or str(action.metavar or action.dest)
+                value = f" {action.metavar}" if action.option_strings and action.metavar else ""
+                shown = action.default not in (None, False, [], argparse.SUPPRESS)
+                default = f"`{action.default}`" if shown else ""
+                yield f"| `{words}{value}` | {_cell(action.help or '')} | {default} |\n"
+        yield "\n"
+
+
+class _MadeError(Exception):
+    """Carries the parser of a command out of it, before it does anything."""
+
+
+def _parser(command: str) -> argparse.ArgumentParser:
+    def stop(parser: argparse.ArgumentParser, *_: object) -> None:
+        raise _MadeError(parser)
+
+    with (
+        patch.object(argparse.ArgumentParser, "parse_args", stop),
+        patch.object(argparse.ArgumentParser, "parse_intermixed_args", stop),
+    ):
+        try:
+            importlib.import_module(f"runner.commands.{command}").main([])
+        except _MadeError as made:
+            parser: argparse.ArgumentParser = made.args[0]
+            return parser
+    raise AssertionError(f"runner {command} takes no arguments")
+
+
+if __name__ == "__main__":
+    PAGE.write_text(reference_text(), encoding="utf-8")
+    print(PAGE.name)

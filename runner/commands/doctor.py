@@ -1,0 +1,45 @@
+"""`runner doctor ROBOT.urdf [--tip FRAME] [--write DIR] [--html DIR]`: does a robot of yours fit, and what to mend?
+
+It prints one line for each thing found, with the mend: `refused` bars the robot, a `finding` should be mended, a `note`
+is good to know. `--write` makes a config folder with a robot's YAML and a copy of the URDF, mended where that leaves no
+choice. Exit codes: 0 it fits, 1 findings, 2 it cannot be taken so.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from runner.commands.arguments import Parser
+from runner.config.compose import quiet_environment
+from runner.errors import RunnerError
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Examine one URDF; print what was found, and the folders made as the last lines."""
+    parser = Parser("doctor", __doc__)
+    parser.add_argument("urdf", type=Path, metavar="ROBOT.urdf", help="the file")
+    parser.add_argument("--tip", metavar="FRAME", help="link that is the tip; default: the last one")
+    parser.add_argument("--write", type=Path, metavar="DIR", help="make a config folder to start from")
+    parser.add_argument("--html", type=Path, metavar="DIR", help="write report.html there, with the robot drawn")
+    options = parser.parse_args(arguments)
+    if not options.urdf.is_file():
+        raise RunnerError(f"no file {options.urdf}")
+    quiet_environment()
+    from runner.doctor.config_folder import robot_name, write_folder
+    from runner.doctor.examination import examine
+    from runner.doctor.finding import exit_code
+
+    found = examine(options.urdf, options.tip)
+    print(f"{found.name}: {'no arm' if found.model is None else f'{found.model.nq} joints'}, tip '{found.tip}'")
+    for finding in found.findings:
+        print(finding)
+    if options.html is not None:
+        from runner.reporting.doctor_report import doctor_document
+        from runner.reporting.render import write_report
+
+        write_report(doctor_document(found), options.html, ("html",))
+        print(options.html)
+    if options.write is not None:
+        write_folder(found, options.write)
+        print(f"runner --config-dir {options.write} robot={robot_name(found)}")
+        print(options.write)
+    return exit_code(found.findings)

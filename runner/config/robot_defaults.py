@@ -1,0 +1,33 @@
+"""Giving each stage of a robot what its file leaves out; conf/robot_defaults.yaml gives it to a robot of one arm."""
+
+from functools import cache
+from typing import Any
+
+import yaml
+
+from runner.config.robot import ArmConfig
+from runner.paths import conf_dir
+
+
+def complete_stage_arms(robot: Any) -> None:
+    """Move the defaults of one arm from a robot that has stages to its stages, in place.
+
+    What stands at the robot itself though it is of one arm, and is no default, stays there: validation refuses it.
+
+    Args:
+        robot: The composed group as plain data; one without stages is left as it is.
+    """
+    if not isinstance(robot, dict) or not isinstance(robot.get("stages"), dict):
+        return
+    for key, value in _arm_defaults().items():
+        if robot.get(key) == value:
+            del robot[key]
+        for stage in robot["stages"].values():
+            if isinstance(stage, dict):
+                stage.setdefault(key, value)
+
+
+@cache
+def _arm_defaults() -> dict[str, Any]:
+    defaults = yaml.safe_load((conf_dir() / "robot_defaults.yaml").read_text())["robot"]
+    return {key: value for key, value in defaults.items() if key in ArmConfig.model_fields}

@@ -1,0 +1,75 @@
+"""A config folder to start from: a robot's YAML file and its mended URDF."""
+
+import re
+from pathlib import Path
+
+from runner.doctor.examination import Examination
+from runner.errors import RunnerError
+from runner.robots.model import FloatArray
+
+_ROBOT = """\
+# @package _global_
+# {name}, {joints} joints, from {source} by runner doctor
+defaults:
+  - override /controller: operational_space
+  - override /trajectory: quintic
+
+robot:
+  name: {name}
+  urdf: {name}.urdf
+  tip: {tip}  # the frame that is controlled
+  home: {home}  # {units}
+  goal: {goal}  # m, tip position where quintic, line and goal go
+  path_size: {path_size}  # m, of a circle and the like
+  natural_frequency: {natural_frequency}  # rad/s, of its controller
+  settling_band: {settling_band}  # m, on each axis
+"""
+
+
+def robot_name(examination: Examination) -> str:
+    """Return the name under which the robot is chosen: its own, of lower-case letters, digits and underscores."""
+    return re.sub(r"\W+", "_", examination.name.lower(), flags=re.ASCII).strip("_") or "arm"
+
+
+def write_folder(examination: Examination, folder: Path) -> list[Path]:
+    """Write `robot/NAME.yaml` and `robots/NAME.urdf`.
+
+    Raises:
+        RunnerError: if something bars the arm, one of the files is there already, or they cannot be written.
+    """
+    model, start = examination.model, examination.start
+    if model is None or start is None:
+        raise RunnerError("--write: nothing was written: first mend what is refused above")
+    name = robot_name(examination)
+    yaml = _ROBOT.format(
+        name=name,
+        joints=model.nq,
+        source=examination.source.name,
+        tip=examination.tip,
+        home=_list(start.home),
+        units=" ".join(dict.fromkeys(model.joint_units)) if len(set(model.joint_units)) == 1 else
+        ", ".join(model.joint_units),
+        goal=_list(start.goal),
+        path_size=_digits(0.05 * model.reach),
+        natural_frequency=start.natural_frequency,
+        settling_band=_digits(0.002 * model.reach),
+    )  # fmt: skip
+    files = {folder / "robot" / f"{name}.yaml": yaml, folder / "robots" / f"{name}.urdf": examination.urdf + "\n"}
+    there = [str(path) for path in files if path.exists()]
+    if there:
+        raise RunnerError(f"--write: {', '.join(there)} is there already; choose another folder, or remove it")
+    try:
+        for path, text in files.items():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise RunnerError(f"--write: {error.filename} cannot be written: {error.strerror}") from error
+    return list(files)
+
+
+def _list(values: FloatArray) -> str:
+    return f"[{', '.join(repr(float(value)) for value in values)}]"
+
+
+def _digits(value: float) -> float:
+    return float(f"{value:.2g}")

@@ -1,0 +1,102 @@
+"""The joints of an arm: their kinds and their limits."""
+
+import math
+import xml.etree.ElementTree as ET
+from collections.abc import Collection
+
+from runner.doctor.finding import Finding
+from runner.robots.tree import UrdfTree, moves
+
+_NO_LIMIT = "1e6"  # what the runner takes for none
+
+
+def check_joints(tree: UrdfTree, tip: str) -> list[Finding]:
+    """Return what is wrong with the joints of an arm, and mend in place what can be without a choice.
+
+    Joints that move and do not lie between base and tip are fixed: the runner takes serial arms.
+    """
+    way = tree.way(tip)
+    findings = [_fix(name, joint) for name, joint in tree.joints.items() if moves(joint) and name not in way]
+    for name in way:
+        if moves(tree.joints[name]):
+            findings += _check_joint(name, tree.joints[name])
+    lost = [name for name in way if _lost(tree.joints[name])]
+    if lost:
+        text = f"damping or friction of {', '.join(lost)}: PyBullet takes the damping, Pinocchio neither"
+        findings.append(Finding("note", "dynamics", text, "the runner leaves both out, so that the engines agree"))
+    fixed = sum(not moves(joint) for joint in tree.joints.values()) - len(_beside(findings))
+    if fixed:
+        findings.append(Finding("note", "fixed joints", f"{fixed}: each rides on the link before it"))
+    return findings
+
+
+def _fix(name: str, joint: ET.Element) -> Finding:
+    joint.set("type", "fixed")
+    for tag in ("mimic", "limit", "dynamics", "axis"):
+        for element in joint.findall(tag):
+            joint.remove(element)
+    return Finding("finding", f"joint '{name}'", "it moves beside the way to the tip", "make it fixed, at zero", True)
+
+
+def _beside(findings: Collection[Finding]) -> list[Finding]:
+    return [finding for finding in findings if finding.mend == "make it fixed, at zero"]
+
+
+def _check_joint(name: str, joint: ET.Element) -> list[Finding]:
+    place, kind = f"joint '{name}'", joint.get("type", "")
+    findings = []
+    if kind not in ("revolute", "continuous", "prismatic"):
+        return [Finding("refused", place, f"it is {kind or 'of no type'}", "allowed: revolute, prismatic or fixed")]
+    if joint.find("mimic") is not None:
+        return [
+            Finding(
+                "refused", place, "it mimics another joint, and PyBullet and Pinocchio let it move freely",
+                "make it fixed, or take its <mimic> out",
+            )
+        ]  # fmt: skip
+    limit = joint.find("limit")
+    if limit is None:
+        limit = ET.SubElement(joint, "limit")
+    if kind == "continuous":
+        joint.set("type", "revolute")
+        limit.attrib.update(lower=f"-{_NO_LIMIT}", upper=_NO_LIMIT)
+        text = "continuous: Pinocchio gives it two coordinates (nq = nv + 1), PyBullet one"
+        findings.append(Finding("finding", place, text, "make it revolute with wide limits", True))
+    findings += _check_positions(place, joint, limit)
+    findings += [finding for key in ("effort", "velocity") for finding in _check_limit(place, limit, key, joint)]
+    return findings
+
+
+def _lost(joint: ET.Element) -> bool:
+    """Tell whether a joint has damping or friction, which the runner leaves out."""
+    dynamics = joint.find("dynamics")
+    return any(_number(dynamics, key) > 0.0 for key in ("damping", "friction"))
+
+
+def _check_positions(place: str, joint: ET.Element, limit: ET.Element) -> list[Finding]:
+    lower, upper = _number(limit, "lower"), _number(limit, "upper")
+    if lower < upper:
+        return []
+    said = "no position limits" if math.isnan(lower) or math.isnan(upper) else f"limits from {lower:g} to {upper:g}"
+    if joint.get("type") == "prismatic":
+        return [Finding("refused", place, f"it slides, with {said}", "give lower and upper, in m")]
+    limit.attrib.update(lower=f"-{_NO_LIMIT}", upper=_NO_LIMIT)
+    return [Finding("finding", place, said, "give lower and upper, in rad; wide ones where there are none", True)]
+
+
+def _check_limit(place: str, limit: ET.Element, key: str, joint: ET.Element) -> list[Finding]:
+    value = _number(limit, key)
+    if value > 0.0:
+        return []
+    limit.set(key, _NO_LIMIT)
+    slides = joint.get("type") == "prismatic"
+    unit = {"effort": "N" if slides else "N m", "velocity": "m/s" if slides else "rad/s"}[key]
+    said = f"no {key} limit" if math.isnan(value) else f"{key} limit {value:g}, with which it could not move"
+    return [Finding("finding", place, said, f"give that of the data sheet, in {unit}; {_NO_LIMIT} for none", True)]
+
+
+def _number(element: ET.Element | None, key: str) -> float:
+    try:
+        return math.nan if element is None else float(element.get(key, "nan"))
+    except ValueError:
+        return math.nan

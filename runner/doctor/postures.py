@@ -1,0 +1,100 @@
+"""What an arm's postures are good for: what gravity asks there, where they are singular, where the tip comes."""
+
+import numpy as np
+
+from runner.doctor.finding import Finding
+from runner.robots.model import FloatArray, RobotModel
+from runner.robots.task_space import task_directions
+from runner.robots.workspace import analyse
+
+_SINGULAR = 0.1  # of the reach: the smallest singular value below which controllers damp
+
+
+def check_gravity(model: RobotModel, postures: FloatArray) -> list[Finding]:
+    """Return the joints that cannot hold the arm against gravity in every one of some postures, shape (N, nq)."""
+    largest = np.abs([model.gravity_torque(q) for q in postures]).max(axis=0)
+    findings = []
+    for name, need, effort, unit in zip(
+        model.joint_names, largest, model.effort_limits, model.joint_units, strict=True
+    ):
+        torque = "N" if unit == "m" else "N m"
+        if need > effort:
+            text = f"gravity asks for up to {need:.3g} {torque}, and its effort limit is {effort:.3g} {torque}"
+            findings.append(Finding("finding", f"joint '{name}'", text, "check masses and effort; or keep it upright"))
+    if not findings:
+        share = largest / model.effort_limits
+        most = int(np.argmax(share if share.any() else largest))
+        unit = "N" if model.slides[most] else "N m"
+        limit = f", {100.0 * share[most]:.2g} % of its effort limit" if share[most] else ", and has no effort limit"
+        text = f"joint '{model.joint_names[most]}' bears most: up to {largest[most]:.3g} {unit}{limit}"
+        findings.append(Finding("note", "gravity", text))
+    return findings
+
+
+def check_mass_matrix(model: RobotModel, postures: FloatArray) -> list[Finding]:
+    """Return whether the mass matrix is positive definite in some postures, shape (N, nq)."""
+    least = min(float(np.linalg.eigvalsh(_scaled(model.mass_matrix(q)))[0]) for q in postures)
+    if least > 1e-9:
+        return []
+    text = f"the mass matrix is singular (smallest eigenvalue {least:.1e} of its scaled form): joints move no mass"
+    return [Finding("refused", "mass matrix", text, "give the links behind every joint a mass and an inertia")]
+
+
+def _scaled(M: FloatArray) -> FloatArray:
+    size = np.sqrt(np.maximum(np.diagonal(M), 1e-300))
+    return np.asarray(M / np.outer(size, size))
+
+
+def check_tasks(model: RobotModel) -> list[Finding]:
+    """Return which tasks the arm has joints enough for."""
+    position, pose = (len(task_directions(model, turned)) for turned in (False, True))
+    if not position:
+        text = f"no joint moves '{model.tip_name}' from its place: the axes pass through it"
+        return [Finding("refused", "tip", text, "choose another by --tip, or add a link at the tool centre point")]
+    if position > model.nq:
+        text = f"{model.nq} joints move the tip in {position} directions, not independently: no controller of ours fits"
+        return [Finding("finding", "tasks", text, "choose another tip by --tip, or bring a controller of your own")]
+    where = {3: "in 3 directions", 2: "in a plane", 1: "along a line"}[position]
+    turned = f"a pose has {pose} dimensions" + ("" if pose <= model.nq else ", more than there are joints")
+    spare = f" with {model.nq - position} to spare" if model.nq > position else ""
+    return [Finding("note", "tasks", f"{model.nq} joints{spare} move the tip {where}; {turned}")]
+
+
+def smallest_singular_values(model: RobotModel, postures: FloatArray, pose: bool) -> FloatArray:
+    """Return the smallest singular value of the task's Jacobian at postures, shape (N, nq) to (N,), in m.
+
+    Turns count as the way that they move a point a reach away, and so do slides against turns.
+    """
+    directions = task_directions(model, pose)
+    rows = np.where(directions[:, :3].any(axis=1), 1.0, model.reach)
+    columns = np.where(model.slides, model.reach, 1.0)
+    J = [rows[:, None] * (directions @ model.tip_jacobian(q)[: directions.shape[1]]) * columns for q in postures]
+    return np.asarray(np.linalg.svd(np.array(J), compute_uv=False)[:, -1])
+
+
+def describe_singular(model: RobotModel, postures: FloatArray) -> list[Finding]:
+    """Return how much of some postures, shape (N, nq), is nearly singular for the tip's position."""
+    if model.nq < len(task_directions(model, pose=False)):
+        return []
+    smallest = smallest_singular_values(model, postures, pose=False)
+    worst = postures[int(smallest.argmin())]
+    if smallest.max() < 1e-9 * model.reach:
+        text = "the tip's position is singular in every posture: a joint's axis passes through it"
+        return [Finding("finding", "singular postures", text, "choose another tip by --tip, or add a link at the tool")]
+    share = float((smallest < _SINGULAR * model.reach).mean())
+    text = (
+        f"{100.0 * share:.0f} % of all postures are singular for the tip's position, or nearly so; the nearest found "
+        f"is q = {np.round(worst, 2).tolist()}"
+    )
+    return [Finding("note", "singular postures", text, "keep paths away, or singularity_damping above 0")]
+
+
+def describe_workspace(model: RobotModel, generator: np.random.Generator) -> list[Finding]:
+    """Return between which distances from its first joint the tip can be."""
+    found = analyse(model, 200, generator)
+    low, high = found.tips[:, 2].min(), found.tips[:, 2].max()
+    text = (
+        f"the tip comes {found.inner:.3g} to {found.outer:.3g} m from the first joint at "
+        f"{np.round(model.shoulder, 3).tolist()} m, and was seen at heights from {low:.3g} to {high:.3g} m"
+    )
+    return [Finding("note", "workspace", text)]

@@ -1,0 +1,76 @@
+"""The doctor's examination of a robot as a report, with the robot drawn."""
+
+import datetime
+
+import numpy as np
+
+from runner.doctor.examination import Examination
+from runner.provenance import versions
+from runner.reporting.bodies import playback_bodies
+from runner.reporting.document import Document, Notice, Playback, Provenance, Section, Table
+from runner.reporting.drawings import arm_motion
+from runner.reporting.quantities import number
+from runner.robots.model import FloatArray, RobotModel
+
+_SWING = 0.3  # rad, or share of the travel, by which each joint is shown
+_FRAMES = 24  # for each joint
+_SECONDS = 1.5  # for each joint
+
+
+def doctor_document(found: Examination) -> Document:
+    """Return the report on an examination."""
+    counts = {grade: sum(f.grade == grade for f in found.findings) for grade in ("refused", "finding", "note")}
+    verdict = "cannot be taken as it is" if counts["refused"] else "needs mending" if counts["finding"] else "fits"
+    sections = [Section("Findings", (_findings(found),))]
+    if found.model is not None and found.start is not None:
+        drawn = _swings(found, found.model, found.start.home)
+        sections = [Section("The robot", (drawn,)), *sections, Section("Its joints", (_joints(found.model),))]
+    else:
+        notice = Notice("failure", "No model", "The robot cannot be built until what is refused below is mended.")
+        sections = [Section("The robot", (notice,)), *sections]
+    rows = [("file", found.source.name), *versions().items()]
+    return Document(
+        title=f"Robot {found.name}",
+        subtitle=f"{found.source.name}, tip {found.tip}",
+        abstract=f"It {verdict}: {counts['refused']} refused, {counts['finding']} findings, {counts['note']} notes.",
+        sections=[*sections, Section("Made with", (Provenance(rows),))],
+        date=datetime.datetime.now(datetime.UTC).date().isoformat(),
+    )
+
+
+def _findings(found: Examination) -> Table:
+    rows = [
+        [each.grade, *(text.replace("$", "$$") for text in (each.place, each.text, each.mend)), _yes(each.mended)]
+        for each in found.findings
+    ]
+    return Table("What was found, with the mend.", ["", "where", "what", "mend", "--write does it"], rows)
+
+
+def _yes(value: bool) -> str:
+    return "yes" if value else ""
+
+
+def _swings(found: Examination, model: RobotModel, home: FloatArray) -> Playback:
+    """Return each joint in turn, swung about home."""
+    swing = np.where(model.slides, _SWING * np.ptp(model.usual_range, axis=0), _SWING)
+    wave = np.sin(np.linspace(0.0, 2.0 * np.pi, _FRAMES, endpoint=False))
+    q = np.concatenate([home + np.outer(wave, row) for row in np.diag(swing)])
+    q = np.clip(q, *model.position_limits)
+    times = np.arange(len(q)) * _SECONDS / _FRAMES
+    bodies = playback_bodies(found.urdf, model, q)
+    still = arm_motion(model, home[None], [0.0])
+    caption = (
+        "At the home proposed, and each joint in turn, swung about it; links without simple shapes are drawn as bones."
+    )
+    return Playback(caption, times, bodies, model.tip_positions(q), None, still)
+
+
+def _joints(model: RobotModel) -> Table:
+    lower, upper = model.position_limits
+    limits = zip(lower, upper, model.velocity_limits, model.effort_limits, strict=True)
+    rows = []
+    for name, unit, values in zip(model.joint_names, model.joint_units, limits, strict=True):
+        cells = [number(value) if np.isfinite(value) else "none" for value in values]
+        rows.append([name.replace("$", "$$"), "slides" if unit == "m" else "turns", *cells])
+    header = ["joint", "", "lower (rad, m)", "upper (rad, m)", "speed (rad/s, m/s)", "effort (N m, N)"]
+    return Table("Joints and their limits.", header, rows, (2, 3, 4, 5))

@@ -1,0 +1,50 @@
+"""In which directions an arm can move its tip, and about which it can turn it: what a task may ask of it."""
+
+from functools import lru_cache
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from runner.robots.model import FloatArray, RobotModel
+
+_POSTURES = 20  # random ones, which together show every direction
+_NONE = 1e-9  # of the largest singular value: a direction in which nothing moves
+
+
+@lru_cache(maxsize=16)
+def task_directions(model: RobotModel, pose: bool) -> FloatArray:
+    """Return the directions, fixed in the base frame, in which joints can move an arm's tip from any of its postures.
+
+    A spatial arm has all three, and the answer is the identity. The tip of an arm whose axes are parallel stays in a
+    plane, and a task can ask for two; that of a SCARA turns about one axis alone, so that its pose has four.
+
+    Args:
+        model: The arm.
+        pose: Whether the tip is to be turned, too.
+
+    Returns:
+        Unit directions, shape (k, 3): of the tip's velocity; for a pose, shape (k, 6), with those of its angular
+        velocity below. A task's Jacobian is their product with the tip's.
+    """
+    lower, upper = model.usual_range
+    postures = np.random.default_rng(0).uniform(lower, upper, (_POSTURES, model.nq))
+    columns = np.hstack([model.tip_jacobian(q) for q in postures])
+    linear = _span(columns[:3])
+    directions = np.array(block_diag(linear, _span(columns[3:])) if pose else linear)
+    directions.flags.writeable = False
+    return directions
+
+
+def distance_beside(model: RobotModel, points: FloatArray) -> FloatArray:
+    """Return how far points, shape (N, 3), lie beside the plane or line that holds the tip, shape (N,), in m."""
+    directions = task_directions(model, pose=False)
+    away = points - model.tip_position(np.mean(model.usual_range, axis=0))
+    return np.asarray(np.linalg.norm(away - away @ directions.T @ directions, axis=1))
+
+
+def _span(vectors: FloatArray) -> FloatArray:
+    """Return unit vectors that span the columns of a matrix, shape (3, N) to (k, 3); along the axes where these do."""
+    left, sizes, _ = np.linalg.svd(vectors, full_matrices=False)
+    basis = left[:, sizes > max(_NONE * sizes[0], 1e-12)]
+    axes = np.eye(3)[np.linalg.norm(basis, axis=1) > 1e-6]
+    return axes if len(axes) == basis.shape[1] else np.asarray(basis.T)

@@ -1,0 +1,136 @@
+"""The tree of links and joints that a URDF file describes: read safely, and refused where it is none."""
+
+import xml.etree.ElementTree as ET
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from runner.errors import ConfigError, nearest
+
+_XACRO = "{http://www.ros.org/wiki/xacro}"
+
+
+@dataclass(frozen=True)
+class UrdfTree:
+    """A URDF whose links hang on one root.
+
+    Attributes:
+        robot: The root element of its XML.
+        links: Its links by name.
+        joints: Its joints by name.
+        root: Name of the link that nothing bears.
+    """
+
+    robot: ET.Element
+    links: dict[str, ET.Element]
+    joints: dict[str, ET.Element]
+    root: str
+
+    @property
+    def bearers(self) -> dict[str, str]:
+        """Name of the joint that bears each link but the root."""
+        return {end_of(joint, "child"): name for name, joint in self.joints.items()}
+
+    @property
+    def ends(self) -> list[str]:
+        """Links that bear nothing, in the file's order."""
+        bearing = {end_of(joint, "parent") for joint in self.joints.values()}
+        return [name for name in self.links if name not in bearing]
+
+    def way(self, link: str) -> list[str]:
+        """Return the joints from the root to a link, in order."""
+        bearers, way = self.bearers, []
+        while link != self.root:
+            way.append(bearers[link])
+            link = end_of(self.joints[way[-1]], "parent")
+        return way[::-1]
+
+
+def end_of(joint: ET.Element, role: str) -> str:
+    """Return the link at an end of a joint; role is "parent" or "child"."""
+    element = joint.find(role)
+    return "" if element is None else element.get("link", "")
+
+
+def moves(joint: ET.Element) -> bool:
+    """Tell whether a joint is of a kind that moves."""
+    return joint.get("type") != "fixed"
+
+
+def read_tree(path: Path) -> UrdfTree:
+    """Read a URDF file.
+
+    Raises:
+        ConfigError: if it is no URDF, holds a document type or macros, or its links do not form one tree.
+    """
+    robot = _parse(path)
+    links = {link.get("name", ""): link for link in robot.findall("link")}
+    if robot.tag != "robot" or not links:
+        raise ConfigError([f"robot.urdf: {path} is no URDF: it needs a <robot> with links"])
+    if path.suffix == ".xacro" or any(element.tag.startswith(_XACRO) for element in robot.iter()):
+        raise ConfigError(
+            [f"robot.urdf: {path} holds xacro macros; make a URDF of it first: xacro FILE > {path.stem}.urdf"]
+        )
+    joints = {joint.get("name", ""): joint for joint in robot.findall("joint")}
+    problems = [*_repeated(robot), *_loose_ends(links, joints)]
+    children = Counter(end_of(joint, "child") for joint in joints.values())
+    problems += [f"link '{name}' is borne by {count} joints" for name, count in children.items() if count > 1]
+    roots = [name for name in links if name not in children]
+    if not roots:
+        problems.append("its joints run in a circle, and no link is the base")
+    elif len(roots) > 1:
+        problems.append(f"it holds several trees, with the bases {', '.join(roots)}; join them by a fixed joint")
+    if not problems:
+        tree = UrdfTree(robot, links, joints, roots[0])
+        circling = _circling(tree)
+        if not circling:
+            return tree
+        problems.append(f"the links {', '.join(circling)} run in a circle, apart from the base '{roots[0]}'")
+    raise ConfigError(f"robot.urdf: {path}: {problem}; allowed: one tree of links" for problem in problems)
+
+
+class _NoDoctype(ET.TreeBuilder):
+    """Refuses a document type at its first word: a URDF has none, and entities can grow without end."""
+
+    def doctype(self, name: str, pubid: str | None, system: str | None) -> None:
+        raise ET.ParseError("it has a document type (<!DOCTYPE>), which a URDF has not; remove it")
+
+
+def _parse(path: Path) -> ET.Element:
+    try:
+        text = path.read_text(encoding="utf-8")
+        return ET.fromstring(text, parser=ET.XMLParser(target=_NoDoctype()))  # noqa: S314 - no entities, see there
+    except (ET.ParseError, ValueError) as error:
+        hint = "; xacro macros? Make a URDF of it first" if "unbound prefix" in str(error) else ""
+        raise ConfigError([f"robot.urdf: {path} is no XML: {error}{hint}"]) from error
+    except OSError as error:
+        raise ConfigError([f"robot.urdf: {path} cannot be read: {error.strerror}"]) from error
+
+
+def _repeated(robot: ET.Element) -> list[str]:
+    found = []
+    for kind in ("link", "joint"):
+        names = Counter(element.get("name", "") for element in robot.findall(kind))
+        found += [f"{count} {kind}s have the name '{name}'" for name, count in names.items() if count > 1]
+        found += [f"a {kind} has no name" for name in names if not name]
+    return found
+
+
+def _loose_ends(links: dict[str, ET.Element], joints: dict[str, ET.Element]) -> list[str]:
+    return [
+        f"joint '{name}' has a {role} '{end_of(joint, role)}', which is no link{nearest(end_of(joint, role), links)}"
+        for name, joint in joints.items()
+        for role in ("parent", "child")
+        if end_of(joint, role) not in links
+    ]
+
+
+def _circling(tree: UrdfTree) -> Sequence[str]:
+    """Return the links that do not hang on the root."""
+    hanging, grown = {tree.root}, True
+    while grown:
+        more = {end_of(j, "child") for j in tree.joints.values() if end_of(j, "parent") in hanging} - hanging
+        hanging |= more
+        grown = bool(more)
+    return [name for name in tree.links if name not in hanging]

@@ -1,0 +1,115 @@
+import time
+
+import numpy as np
+import pytest
+import strangers
+
+import runner
+
+KUKA = strangers.DATA / "kuka_iiwa/model.urdf"
+
+
+def test_from_a_stranger_s_urdf_to_a_report_in_three_commands(cli):
+    examined = cli("doctor", KUKA, "--write", "mine")
+    assert examined.code == 1
+    assert examined.out.splitlines()[-2:] == ["runner --config-dir mine robot=lbr_iiwa", "mine"]
+    ran = cli("--config-dir", "mine", "robot=lbr_iiwa", "duration=0.2")
+    assert ran.code == 0
+    assert runner.open_run(ran.folder).metrics["max_tracking_error"]["median"] < 1e-4
+    assert cli("report", ran.folder, "--html").code == 0
+
+
+def test_what_was_written_fits(cli):
+    for name, (path, tip) in strangers.SHIPPED.items():
+        given = ["--tip", tip] if tip else []
+        written = cli("doctor", strangers.DATA / path, *given, "--write", name)
+        assert written.code in (0, 1)
+        (urdf,) = (written.folder / "robots").iterdir()
+        again = cli("doctor", urdf, *given)
+        assert again.code == 0, again.out
+
+
+def test_every_file_of_pybullet_runs_or_is_refused_with_the_reason(cli):
+    files = [path for path in sorted(strangers.DATA.rglob("*.urdf")) if not {"random_urdfs", "lego"} & set(path.parts)]
+    assert len(files) > 90
+    fit = set()
+    for path in files:
+        ending = cli("doctor", path)
+        assert ending.code in (0, 1, 2)
+        if ending.code == 2:
+            assert ending.err or "refused" in ending.out, path
+        else:
+            fit.add(path.relative_to(strangers.DATA).as_posix())
+    assert {"kuka_iiwa/model.urdf", "xarm/xarm6_robot.urdf", "pendulum5.urdf", "cartpole.urdf"} <= fit
+
+
+def test_a_seven_joint_arm_with_meshes_takes_less_than_five_seconds(cli):
+    before = time.process_time()
+    cli("doctor", KUKA)
+    assert time.process_time() - before < 5.0
+
+
+def test_the_page_shows_robot_and_findings(cli, tmp_path):
+    ending = cli("doctor", KUKA, "--html", tmp_path / "page")
+    assert ending.out.splitlines()[-1] == str(tmp_path / "page")
+    page = (tmp_path / "page/report.html").read_text()
+    assert "__VISER_EMBED_DATA__" in page
+    assert "inertia but no mass" in page
+
+
+def test_nothing_is_overwritten(cli):
+    cli("doctor", KUKA, "--write", "mine")
+    ending = cli("doctor", KUKA, "--write", "mine")
+    assert ending.code == 2
+    assert "is there already; choose another folder, or remove it" in ending.err
+
+
+def test_what_is_barred_is_not_written(cli):
+    ending = cli("doctor", strangers.DATA / "cube_no_rotation.urdf", "--write", "mine")
+    assert ending.code == 2
+    assert "first mend what is refused above" in ending.err
+
+
+@pytest.mark.parametrize(("arguments", "said"), [(("none.urdf",), "no file none.urdf"), ((), "required: ROBOT.urdf")])
+def test_bad_input(cli, arguments, said):
+    ending = cli("doctor", *arguments)
+    assert ending.code == 2
+    assert said in ending.err
+
+
+@pytest.mark.parametrize("name", strangers.STRANGERS)
+@pytest.mark.parametrize("controller", ["operational_space", "computed_torque", "differential_inverse_kinematics",
+                                        "whole_body"])  # fmt: skip
+def test_controllers_lead_strangers(simulated_stranger, name, controller):
+    trace = simulated_stranger(name, f"controller={controller}")
+    assert trace.failure is None
+    assert np.abs(trace.error).max() < 1e-3 * strangers.examined(name).model.reach
+
+
+@pytest.fixture(scope="module")
+def simulated_stranger():
+    from runner.assembly import assemble, make_encoders
+    from runner.simulation import simulate
+
+    def make(name, *overrides):
+        config = strangers.config(name, *overrides, "trajectory.duration=1", "duration=0.6")
+        loop = assemble(config)
+        try:
+            return simulate(loop, make_encoders(config, loop, 0))
+        finally:
+            loop.plant.close()
+
+    return make
+
+
+@pytest.mark.parametrize("name", ["crane", "planar_two", "mixed"])
+def test_the_plants_agree_on_strangers(simulated_stranger, name):
+    bullet, rk4 = (simulated_stranger(name, f"plant={plant}") for plant in ("bullet", "rk4"))
+    np.testing.assert_allclose(bullet.tip, rk4.tip, rtol=0, atol=1e-5 * strangers.examined(name).model.reach)
+
+
+def test_columns_of_joints_that_slide_are_in_metres(cli):
+    strangers.robot("crane")
+    run = runner.run("robot=crane", "duration=0.1", config_dirs=[strangers.folder()])
+    assert [run.units[name] for name in ("q1", "q3", "dq3", "tau2", "tau3")] == ["rad", "m", "m/s", "N m", "N"]
+    assert run.metrics["peak_joint_force"]["unit"] == "N"

@@ -1,0 +1,95 @@
+import pytest
+import strangers
+
+from runner.errors import ConfigError
+from runner.robots import read_urdf
+from runner.robots.tree import read_tree
+
+LINKS = '<link name="a"/><link name="b"/><link name="c"/>'
+
+
+def joint(name, parent, child, kind="revolute"):
+    return f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/></joint>'
+
+
+@pytest.fixture
+def read(tmp_path):
+    def make(text, name="arm.urdf"):
+        path = tmp_path / name
+        path.write_text(text)
+        return read_tree(path)
+
+    return make
+
+
+def test_a_tree_knows_its_root_its_ends_and_the_ways_to_links(read):
+    joints = joint("q", "a", "b") + joint("r", "a", "c", "fixed")
+    tree = read(f'<robot name="x">{LINKS}{joints}<transmission><joint name="q"/></transmission></robot>')
+    assert (tree.root, tree.ends, tree.way("b"), tree.way("a")) == ("a", ["b", "c"], ["q"], [])
+
+
+@pytest.mark.parametrize(
+    ("joints", "problem"),
+    [
+        (joint("q", "a", "b") + joint("r", "b", "c") + joint("s", "c", "a"), "joints run in a circle, and no link is"),
+        (joint("q", "b", "c") + joint("r", "c", "b"), "the links b, c run in a circle, apart from the base 'a'"),
+        (joint("q", "a", "b"), "it holds several trees, with the bases a, c; join them by a fixed joint"),
+        (joint("q", "a", "b") + joint("r", "c", "b"), "link 'b' is borne by 2 joints"),
+        (joint("q", "a", "b") + joint("q", "b", "c"), "2 joints have the name 'q'"),
+        (
+            joint("q", "a", "bb") + joint("r", "a", "c"),
+            r"joint 'q' has a child 'bb', which is no link \(did you mean b",
+        ),
+    ],
+)
+def test_what_is_no_tree(read, joints, problem):
+    with pytest.raises(ConfigError, match=problem):
+        read(f'<robot name="x">{LINKS}{joints}</robot>')
+
+
+def test_entities_that_grow_are_refused_before_they_do(read):
+    doctype = '<!DOCTYPE x [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]>'
+    with pytest.raises(ConfigError, match=r"document type \(<!DOCTYPE>\), which a URDF has not; remove it"):
+        read(f'{doctype}<robot name="&b;">{LINKS}</robot>')
+
+
+@pytest.mark.parametrize("head", ['<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="x">', '<robot name="x">'])
+def test_xacro_is_no_urdf(read, head):
+    with pytest.raises(ConfigError, match=r"[Mm]ake a URDF of it first"):
+        read(f'{head}<xacro:property name="r" value="1"/>{LINKS}</robot>')
+
+
+def test_a_folder_cannot_be_read(tmp_path):
+    with pytest.raises(ConfigError, match="cannot be read: Is a directory"):
+        read_tree(tmp_path)
+
+
+def test_a_branched_arm_is_no_robot_of_a_config(tmp_path):
+    text = strangers.chain("arm", [("revolute", strangers.X), ("revolute", strangers.Y)])
+    branch = strangers.link("side", 1.0, 0.1) + joint("q9", "l0", "side").replace(
+        "</joint>", '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>'
+    )
+    (tmp_path / "arm.urdf").write_text(text.replace("</robot>", branch + "</robot>"))
+    with pytest.raises(ConfigError, match=r"branches: q9 move beside q1, q2; allowed: a serial arm"):
+        read_urdf(tmp_path / "arm.urdf", {})
+
+
+def test_a_mimicking_joint_is_refused(tmp_path):
+    text = strangers.chain("arm", [("revolute", strangers.X), ("revolute", strangers.Y)])
+    text = text.replace('<child link="l2"/>', '<child link="l2"/><mimic joint="q1"/>')
+    (tmp_path / "arm.urdf").write_text(text)
+    with pytest.raises(ConfigError, match=r"joint 'q2' in .* mimics another"):
+        read_urdf(tmp_path / "arm.urdf", {})
+
+
+def test_meshes_are_left_out_and_other_shapes_kept(tmp_path):
+    text = strangers.chain("arm", [("revolute", strangers.X)])
+    shapes = "".join(
+        f"<{role}><geometry>{shape}</geometry></{role}>"
+        for role in ("visual", "collision")
+        for shape in ('<mesh filename="package://nowhere/a.stl"/>', '<sphere radius="0.1"/>')
+    )
+    (tmp_path / "arm.urdf").write_text(text.replace('<link name="l1">', f'<link name="l1">{shapes}'))
+    kept = read_urdf(tmp_path / "arm.urdf", {})
+    assert "mesh" not in kept
+    assert kept.count("<sphere") == 2

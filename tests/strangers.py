@@ -1,0 +1,105 @@
+"""Arms that we do not ship, as somebody who has a URDF and the doctor gets them."""
+
+import functools
+import os
+import tempfile
+from pathlib import Path
+
+import pybullet_data
+
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.doctor.config_folder import robot_name, write_folder
+from runner.doctor.examination import examine
+
+DATA = Path(pybullet_data.getDataPath())
+
+SHIPPED = {
+    "kuka": ("kuka_iiwa/model.urdf", None),
+    "xarm6": ("xarm/xarm6_robot.urdf", None),
+    "xarm6_gripper": ("xarm/xarm6_with_gripper.urdf", "link6"),
+    "panda": ("franka_panda/panda.urdf", "panda_grasptarget"),
+    "planar_two": ("TwoJointRobot_w_fixedJoints.urdf", None),
+    "pendulum": ("pendulum5.urdf", None),
+}
+"""Arms of the pybullet package, with the tip to name where there are several ends."""
+
+
+def link(name, mass, length):
+    across, along = mass * length**2 / 12.0, mass * length**2 / 100.0
+    inertia = f'<inertia ixx="{across}" ixy="0" ixz="0" iyy="{across}" iyz="0" izz="{along}"/>'
+    origin = f'<origin xyz="0 0 {length / 2}"/>'
+    return f'<link name="{name}"><inertial>{origin}<mass value="{mass}"/>{inertia}</inertial></link>'
+
+
+def joint(number, kind, axis, height, limits):
+    lower, upper = limits
+    return (
+        f'<joint name="q{number + 1}" type="{kind}"><parent link="l{number}"/><child link="l{number + 1}"/>'
+        f'<origin xyz="0 0 {height}"/><axis xyz="{axis}"/>'
+        f'<limit lower="{lower}" upper="{upper}" effort="2000" velocity="20"/></joint>'
+    )
+
+
+def chain(name, kinds, length=0.3, mass=2.0, tip=(0.05, 0.0, 0.25)):
+    """A URDF of joints given as (kind, axis), each a length above the one before, and a tip on the last link."""
+    reach = {"revolute": (-2.8, 2.8), "prismatic": (-0.4, 0.4)}
+    joints = [joint(i, kind, axis, length * (i > 0), reach[kind]) for i, (kind, axis) in enumerate(kinds)]
+    links = [link("l0", 5.0, length), *(link(f"l{i + 1}", mass, length) for i in range(len(kinds)))]
+    end = (
+        '<link name="tip"><inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/>'
+        f'</inertial></link><joint name="end" type="fixed"><parent link="l{len(kinds)}"/><child link="tip"/>'
+        f'<origin xyz="{tip[0]} {tip[1]} {tip[2]}"/></joint>'
+    )
+    lines = "\n".join([*links, *joints, end])
+    return f'<robot name="{name}">\n{lines}\n</robot>'
+
+
+X, Y, Z = "1 0 0", "0 1 0", "0 0 1"
+MADE = {
+    "scara": chain("scara", [("prismatic", Z), *3 * [("revolute", Z)]], tip=(0.3, 0.0, 0.0)).replace(
+        '<origin xyz="0 0 0.3"/><axis', '<origin xyz="0.3 0 0"/><axis'
+    ),
+    "gantry": chain("gantry", [("prismatic", X), ("prismatic", Y), ("prismatic", Z)]),
+    "crane": chain("crane", [("revolute", Z), ("revolute", Y), ("prismatic", Z)]),
+    "mixed": chain("mixed", [("prismatic", X), *[("revolute", axis) for axis in (Z, Y, X, Y, Z, Y)]]),
+    "slide_and_turn": chain("slide_and_turn", [("prismatic", X), ("revolute", Y)]),
+    "snake": chain("snake", [("revolute", (X, Y, Z)[i % 3]) for i in range(30)], length=0.06, mass=0.2),
+}
+"""Arms with sliding joints, in a plane, and of 30 joints."""
+
+STRANGERS = (*SHIPPED, *MADE)
+
+
+@functools.cache
+def folder() -> Path:
+    """A config folder with all of them, as the doctor writes it; made once in a process."""
+    place = tempfile.TemporaryDirectory()
+    _KEPT.append(place)
+    return Path(place.name)
+
+
+_KEPT: list[tempfile.TemporaryDirectory] = []
+
+
+@functools.cache
+def examined(name):
+    """The doctor's examination of a stranger."""
+    if name in SHIPPED:
+        path, tip = SHIPPED[name]
+        return examine(DATA / path, tip)
+    path = folder() / f"{os.getpid()}_{name}.urdf"
+    path.write_text(MADE[name])
+    return examine(path, None)
+
+
+@functools.cache
+def robot(name) -> str:
+    """The name under which a stranger stands in the config folder."""
+    write_folder(examined(name), folder())
+    return robot_name(examined(name))
+
+
+def config(name, *overrides):
+    """The checked config of a run of a stranger."""
+    return validate(compose([f"robot={robot(name)}", *overrides], [folder()]).resolved, [folder()])

@@ -1,0 +1,162 @@
+import json
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+
+from runner import plugins
+from runner.errors import RunnerError
+
+SPRING = '''\
+"""A spring in every joint that pulls it home."""
+
+from typing import Literal
+
+from pydantic import PositiveFloat
+
+from runner.controllers import Loop
+from runner.registry import StrictModel
+
+
+class SpringConfig(StrictModel):
+    kind: Literal["spring"]
+    period: PositiveFloat
+    stiffness: PositiveFloat
+
+
+class Spring:
+    def __init__(self, model, home, stiffness):
+        self.model, self.home, self.stiffness = model, home, stiffness
+
+    def reset(self):
+        pass
+
+    def torque(self, time, q, dq, reference):
+        return self.stiffness * (self.home - q) - 2.0 * dq + self.model.gravity_torque(q)
+
+
+CONFIG = SpringConfig
+
+
+def build(config, robot):
+    law = Spring(robot.model, robot.home, config.stiffness)
+    return (Loop("arm", slice(0, robot.model.nq), config.period, law),)
+'''
+COMMAND = ("--config-dir", "mine", "robot=macro", "controller=spring", "duration=0.1")
+PLUGIN = ("--plugin", "controller=mine/spring.py")
+
+
+@pytest.fixture
+def mine(tmp_path, monkeypatch):
+    """A folder of one's own with a module and the config that chooses it, and no part named yet."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("RUNNER_PLUGINS", raising=False)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    (tmp_path / "mine/controller").mkdir(parents=True)
+    (tmp_path / "mine/spring.py").write_text(SPRING)
+    (tmp_path / "mine/controller/spring.yaml").write_text("kind: spring\nperiod: 0.01\nstiffness: 50.0\n")
+    yield tmp_path
+    os.environ.pop("RUNNER_PLUGINS", None)
+    sys.modules.pop("spring", None)
+
+
+def runner(*arguments):
+    return subprocess.run([sys.executable, "-m", "runner", *arguments], capture_output=True, text=True, check=False)
+
+
+def folder(ending):
+    return ending.stdout.splitlines()[-1]
+
+
+def test_a_module_named_on_the_command_line_runs_and_is_recorded(mine):
+    ending = runner(*PLUGIN, *COMMAND)
+    assert (ending.returncode, ending.stderr) == (0, "")
+    found = json.loads((mine / folder(ending) / "metrics.json").read_text())["provenance"]
+    assert list(found["plugins"]) == ["controller=mine/spring.py"]
+    assert found["command"] == (
+        "runner --plugin controller=mine/spring.py --config-dir mine robot=macro controller=spring duration=0.1"
+    )
+
+
+def test_its_source_decides_about_the_runs_name(mine):
+    first = runner(*PLUGIN, *COMMAND)
+    assert folder(runner(*PLUGIN, *COMMAND)) == folder(first)
+    (mine / "mine/spring.py").write_text(SPRING.replace("2.0 * dq", "3.0 * dq"))
+    assert folder(runner(*PLUGIN, *COMMAND)) != folder(first)
+
+
+def test_a_config_cannot_name_a_module(mine):
+    ending = runner(*COMMAND)
+    assert ending.returncode == 2
+    assert "controller.kind: 'spring' is unknown" in ending.stderr
+
+
+def test_every_command_takes_it_and_wherever_it_stands(mine):
+    assert runner(*COMMAND, "--plugin=controller=mine/spring.py").returncode == 0
+    assert runner("list", *PLUGIN, "controllers", "--config-dir", "mine").returncode == 0
+
+
+def test_a_module_by_name_is_found_where_python_looks(mine, monkeypatch):
+    monkeypatch.syspath_prepend(mine / "mine")
+    plugins.use_plugins(["controller=spring"])
+    assert next((point.name, point.value) for point in plugins.added("controller")) == ("spring", "spring")
+    assert plugins.added("trajectory") == plugins._installed("runner.trajectory", tuple(sys.path))
+    assert plugins.named() == ["controller=spring"]
+
+
+def test_worker_processes_inherit_it(mine):
+    plugins.use_plugins(["controller=mine/spring.py"])
+    script = "from runner.controllers import CONTROLLERS; print('spring' in CONTROLLERS.names())"
+    assert subprocess.run([sys.executable, "-c", script], capture_output=True, text=True).stdout == "True\n"
+
+
+def test_a_sweep_takes_it(mine):
+    ending = runner("-m", *PLUGIN, *COMMAND, "controller.stiffness=20,40")
+    assert ending.returncode == 0, ending.stderr
+    assert len(list((mine / "outputs/runs").iterdir())) == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "mine/spring.py",
+            r"must be GROUP=MODULE, as in controller=mine/spring.py; groups: calibration, controller, environment",
+        ),
+        ("controler=mine/spring.py", r"did you mean controller\?"),
+        ("controller=", r"must be GROUP=MODULE"),
+        ("controller=mine/sprung.py", r"no file mine/sprung.py"),
+        ("controller=mine.sprung", r"no module mine.sprung"),
+        ("controller=json.py", r"Python has another module json, .*; rename yours"),
+    ],
+)
+def test_what_cannot_be_found_is_said(mine, text, message):
+    (mine / "json.py").touch()
+    with pytest.raises(RunnerError, match=message):
+        plugins.use_plugins([text])
+
+
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("import nowhere", r"ModuleNotFoundError: No module named 'nowhere' \(spring.py, line 1"),
+        ("def torque(:", r"SyntaxError: invalid syntax \(spring.py, line 1\)"),
+        ("CONFIG = {}", r"needs CONFIG, a class derived from"),
+    ],
+)
+def test_a_module_that_cannot_be_used_is_told_with_its_place(mine, source, message):
+    (mine / "mine/spring.py").write_text(source + "\n")
+    ending = runner(*PLUGIN, *COMMAND)
+    assert ending.returncode == 2
+    assert len(ending.stderr.splitlines()) <= 3
+    assert re.search(message, ending.stderr), ending.stderr
+
+
+def test_the_source_of_a_package_is_all_of_it(tmp_path, monkeypatch):
+    for name in ("__init__.py", "law.py", "deep/helper.py"):
+        (tmp_path / "house" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "house" / name).touch()
+    monkeypatch.syspath_prepend(tmp_path)
+    assert [path.name for path in plugins.source_files("house.law")] == ["__init__.py", "helper.py", "law.py"]

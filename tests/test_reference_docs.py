@@ -1,0 +1,31 @@
+from typing import Annotated, Literal
+
+import pytest
+from pydantic import Field, NonNegativeInt, PositiveFloat
+
+from bench.allowed_values import describe
+from bench.make_reference_docs import PAGE, reference_text
+from runner.config.per_stage import TorquePerStage
+
+
+def test_the_reference_is_what_the_models_say():
+    assert PAGE.read_text() == reference_text(), "stale: run `python -m bench.make_reference_docs`"
+
+
+@pytest.mark.parametrize(
+    ("annotation", "words"),
+    [
+        (float, "number"),
+        (PositiveFloat, "number above 0"),
+        (NonNegativeInt, "whole number of 0 or more"),
+        (bool, "`true`, `false`"),
+        (float | None, "number, or `null`"),
+        (Literal["a", "b"], "`a`, `b`"),
+        (Annotated[list[PositiveFloat], Field(min_length=3, max_length=3)], "list of 3 (number above 0)"),
+        (Annotated[list[float], Field(min_length=1)], "list of 1 or more (number)"),
+        (dict[str, PositiveFloat], "by name: number above 0"),
+        (TorquePerStage | None, "number above 0, or a list with one for each joint, by stage, or `null`"),
+    ],
+)
+def test_a_type_is_told_in_words(annotation, words):
+    assert describe(annotation) == words
