@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from runner.calibration_job import calibrate
     from runner.execution import run
-    from runner.store import Calibration, Run, open_run
+    from runner.store import Calibration, Run, Sweep, open_run, open_sweep
 
-__all__ = ["Calibration", "Run", "calibrate", "open_run", "run"]
+__all__ = ["Calibration", "Run", "Sweep", "calibrate", "open_run", "open_sweep", "run"]
 
 
 def __getattr__(name: str) -> Any:
@@ -20,7 +20,7 @@ def __getattr__(name: str) -> Any:
         from runner.calibration_job import calibrate
 
         return calibrate
-    if name in ("Calibration", "Run", "open_run"):
+    if name in ("Calibration", "Run", "Sweep", "open_run", "open_sweep"):
         from runner import store
 
         return getattr(store, name)

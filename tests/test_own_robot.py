@@ -92,29 +92,28 @@ def test_a_report_with_the_motion_is_made_of_the_sweep(place, sweep):
     assert page.count('<figure class="playback">') == 2
 
 
-def test_a_part_that_goes_wrong_is_told_with_its_place_and_the_sweep_goes_on(place):
+@pytest.mark.parametrize(
+    ("name", "fault", "said"),
+    [
+        ("faulty", "return torque / 0.0 if self.config.natural_frequency > 50.0 else torque", "GravityPD.torque ("),
+        ("endless", "while self.config.natural_frequency > 50.0:\n            pass\n        return torque", "2 s ("),
+    ],
+)
+def test_a_part_that_goes_wrong_is_told_with_its_place_and_the_sweep_goes_on(place, name, fault, said):
     source = (EXAMPLE / "gravity_pd.py").read_text()
-    (place[0] / "faulty.py").write_text(
-        source.replace("gravity_pd", "faulty").replace(
-            "        return torque\n",
-            "        return torque / 0.0 if self.config.natural_frequency > 50.0 else torque\n",
-        )
+    faulty = source.replace("gravity_pd", name).replace("        return torque\n", f"        {fault}\n")
+    (place[0] / f"{name}.py").write_text(faulty)
+    (place[0] / "controller" / f"{name}.yaml").write_text(
+        (EXAMPLE / "controller" / "gravity_pd.yaml").read_text().replace("gravity_pd", name)
     )
-    (place[0] / "controller" / "faulty.yaml").write_text(
-        (EXAMPLE / "controller" / "gravity_pd.yaml").read_text().replace("gravity_pd", "faulty")
-    )
-    parts = ["--plugin", "controller=faulty.py", *PARTS[2:]]
+    parts = ["--plugin", f"controller={name}.py", *PARTS[2:], "sweep.time_limit=2", "duration=0.2"]
     ending = call(
-        place, "runner", "-m", *parts, "robot=lamp", "controller=faulty", "controller.natural_frequency=60,20"
+        place, "runner", "-m", *parts, "robot=lamp", f"controller={name}", "controller.natural_frequency=60,20"
     )
     assert ending.returncode == 1
-    assert "GravityPD.torque (faulty.py, line " in ending.stderr
-    statuses = [
-        run.status
-        for run in map(runner.open_run, (place[0] / "outputs" / "runs").iterdir())
-        if run.config["controller"]["kind"] == "faulty"
-    ]
-    assert sorted(statuses) == ["failed", "ok"]
+    assert f"{said}{name}.py, line " in ending.stderr
+    statuses = [run.status for run in runner.open_sweep(place[0] / ending.stdout.splitlines()[-1]).runs()]
+    assert statuses == ["failed", "ok"]
 
 
 def test_the_controller_is_short():

@@ -16,12 +16,14 @@ from runner.config.compose import Composed
 from runner.config.validation import validate
 from runner.simulation import simulate
 from runner.store.atomic import write_atomically
+from runner.sweep.deadline import TimeLimitError, deadline
 from runner.sweep.plan import Plan
 from runner.sweep.status import NOTE
 
 _EVERY = 2.0  # s between two notes of the progress
 _PROBES = 3  # cells that the first estimate is made from
 _PROBED_TICKS = 50
+_PROBED_WITHIN = 2.0  # s; what takes longer is told when its run is made
 _FIXED = 0.010  # s that a run takes beside its ticks
 
 
@@ -65,14 +67,16 @@ def estimate(plan: Plan, cells: Sequence[int], workers: int) -> float:
 def _probe(composed: Composed) -> float:
     config = validate(composed.resolved, composed.config_dirs)
     whole = assemble(config)
+    part = replace(whole, ticks=min(whole.ticks, _PROBED_TICKS))
     try:
-        part = replace(whole, ticks=min(whole.ticks, _PROBED_TICKS))
-        encoders = make_encoders(config, part, 0)
-        simulate(part, encoders)
-        start = time.perf_counter()
-        simulate(part, make_encoders(config, part, 0))
+        with deadline(_PROBED_WITHIN):
+            simulate(part, make_encoders(config, part, 0))
+            start = time.perf_counter()
+            simulate(part, make_encoders(config, part, 0))
         per_tick = (time.perf_counter() - start) / (part.ticks + 1)
         return _FIXED + per_tick * whole.ticks * config.settings.repetitions
+    except TimeLimitError:
+        return config.sweep.time_limit or _PROBED_WITHIN
     except Exception:  # an error of a part is stored when its run is made
         return _FIXED
     finally:
