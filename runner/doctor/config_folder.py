@@ -3,6 +3,8 @@
 import re
 from pathlib import Path
 
+import yaml
+
 from runner.doctor.examination import Examination
 from runner.errors import RunnerError
 from runner.robots.model import FloatArray
@@ -41,11 +43,11 @@ def write_folder(examination: Examination, folder: Path) -> list[Path]:
     if model is None or start is None:
         raise RunnerError("--write: nothing was written: first mend what is refused above")
     name = robot_name(examination)
-    yaml = _ROBOT.format(
+    text = _ROBOT.format(
         name=name,
         joints=model.nq,
-        source=examination.source.name,
-        tip=examination.tip,
+        source=" ".join(examination.source.name.split()),
+        tip=yaml.safe_dump(examination.tip).removesuffix("...\n").strip(),
         home=_list(start.home),
         units=" ".join(dict.fromkeys(model.joint_units)) if len(set(model.joint_units)) == 1 else
         ", ".join(model.joint_units),
@@ -54,14 +56,14 @@ def write_folder(examination: Examination, folder: Path) -> list[Path]:
         natural_frequency=start.natural_frequency,
         settling_band=_digits(0.002 * model.reach),
     )  # fmt: skip
-    files = {folder / "robot" / f"{name}.yaml": yaml, folder / "robots" / f"{name}.urdf": examination.urdf + "\n"}
+    files = {folder / "robot" / f"{name}.yaml": text, folder / "robots" / f"{name}.urdf": examination.urdf + "\n"}
     there = [str(path) for path in files if path.exists()]
     if there:
         raise RunnerError(f"--write: {', '.join(there)} is there already; choose another folder, or remove it")
     try:
-        for path, text in files.items():
+        for path, content in files.items():
             path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8")
+            path.write_text(content, encoding="utf-8")
     except OSError as error:
         raise RunnerError(f"--write: {error.filename} cannot be written: {error.strerror}") from error
     return list(files)

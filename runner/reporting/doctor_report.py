@@ -1,7 +1,5 @@
 """The doctor's examination of a robot as a report, with the robot drawn."""
 
-import datetime
-
 import numpy as np
 
 from runner.doctor.examination import Examination
@@ -32,9 +30,9 @@ def doctor_document(found: Examination) -> Document:
     return Document(
         title=f"Robot {found.name}",
         subtitle=f"{found.source.name}, tip {found.tip}",
-        abstract=f"It {verdict}: {counts['refused']} refused, {counts['finding']} findings, {counts['note']} notes.",
+        abstract=f"It {verdict} (refused {counts['refused']}, findings {counts['finding']}, notes {counts['note']}).",
         sections=[*sections, Section("Made with", (Provenance(rows),))],
-        date=datetime.datetime.now(datetime.UTC).date().isoformat(),
+        date="",
     )
 
 

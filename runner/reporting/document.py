@@ -418,7 +418,7 @@ class Document:
         subtitle: One line below it.
         abstract: The report in a few sentences; inline mathematics as in Text.
         sections: The chapters.
-        date: Date of the newest run behind it, ISO format, so that a report remade is the same.
+        date: Date of the newest run behind it, ISO format, so that a report remade is the same; empty where none is.
     """
 
     title: str
