@@ -46,7 +46,7 @@
     });
     const metrics = data.metrics.map((metric, index) => {
       const values = unpack(data.values[index]);
-      const unit = metric.unit === "1" ? "" : metric.unit;
+      const unit = metric.unit;
       return {
         name: metric.name, label: unit ? `${metric.name} (${unit})` : metric.name, names: null,
         number: (run) => values[run], text: (run) => [number(values[run]), unit].join(" ").trim(),

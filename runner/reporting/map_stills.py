@@ -79,7 +79,7 @@ def _draw_map(axes: Axes, panel: Map, block: Maps, colors: Normalize, size: tupl
     failed_rows, failed_columns = np.nonzero(panel.failed)
     axes.plot(failed_columns, failed_rows, "x", color=palette.color(OVERLAY), markersize=6, markeredgewidth=1.5)
     if prints_values(panel, block):
-        _print_values(axes, panel, values, colors)
+        _print_values(axes, panel, block, values, colors)
     named = [(line, series.name) for line, series in zip(axes.lines, panel.lines, strict=False) if series.name]
     if named:
         legend = axes.legend(
@@ -95,9 +95,9 @@ def _draw_map(axes: Axes, panel: Map, block: Maps, colors: Normalize, size: tupl
             literal(text, cut(name, size[0] / _CHARACTER))
 
 
-def _print_values(axes: Axes, panel: Map, shades: FloatArray, colors: Normalize) -> None:
+def _print_values(axes: Axes, panel: Map, block: Maps, shades: FloatArray, colors: Normalize) -> None:
     """Print the value of each cell, in white where the cell is dark."""
-    for row, texts in enumerate(printed_values(panel)):
+    for row, texts in enumerate(printed_values(panel, block)):
         for column, value in enumerate(texts):
             bright = np.isnan(shades[row, column]) or colors(float(shades[row, column])) > _BRIGHT
             text = axes.text(column, row, "", ha="center", va="center", fontsize=5.5)

@@ -6,7 +6,7 @@ import numpy as np
 
 from runner.reporting.curves import named_places, neutral
 from runner.reporting.document import FloatArray, Map, Maps
-from runner.reporting.quantities import number
+from runner.reporting.quantities import digits_between, number
 
 Json = dict[str, Any]
 
@@ -44,7 +44,9 @@ def scale_marks(block: Maps) -> tuple[list[float], list[str]]:
     """Return where the scale of colours is marked, as scaled, and with which values."""
     low, high = value_range(block)
     places = np.linspace(low, high, 5 if high > low else 1)
-    return places.tolist(), [number(float(10.0**place if block.log else place)) for place in places]
+    values = 10.0**places if block.log else places
+    digits = digits_between(values[0], values[-1])
+    return places.tolist(), [number(float(value), digits) for value in values]
 
 
 def _map(panel: Map, block: Maps, low: float, high: float) -> Json:
@@ -73,7 +75,7 @@ def _map(panel: Map, block: Maps, low: float, high: float) -> Json:
     elif max(panel.values.shape) <= MOST_PARTED:
         drawn |= {"xgap": 1, "ygap": 1}
     if prints_values(panel, block):
-        drawn |= {"text": printed_values(panel), "texttemplate": "%{text}"}
+        drawn |= {"text": printed_values(panel, block), "texttemplate": "%{text}"}
     if panel.hints:
         drawn |= {"hovertext": _by_rows([neutral(hint) for hint in panel.hints], len(columns)), "hoverinfo": "text"}
     if panel.runs:
@@ -119,10 +121,12 @@ def prints_values(panel: Map, block: Maps) -> bool:
     return not panel.contours and beside * len(panel.x_names) <= _MOST_PRINTED
 
 
-def printed_values(panel: Map) -> list[list[str]]:
+def printed_values(panel: Map, block: Maps) -> list[list[str]]:
     """Return the value that is printed into each cell; nothing into an empty one, nor where a cross stands."""
+    low, high = value_range(block)
+    digits = digits_between(10.0**low, 10.0**high) if block.log else digits_between(low, high)
     return [
-        ["" if np.isnan(value) or failed else number(float(value)) if np.isfinite(value) else "never"
+        ["" if np.isnan(value) or failed else number(float(value), digits) if np.isfinite(value) else "never"
          for value, failed in zip(*row, strict=True)]
         for row in zip(panel.values, panel.failed, strict=True)
     ]  # fmt: skip

@@ -1,5 +1,6 @@
 """Numbers as a reader expects them: three digits, a power of ten where it helps, and the unit."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -22,9 +23,25 @@ def number(value: float | None, digits: int = 3) -> str:
     return f"{mantissa}·10{str(int(exponent)).translate(_SUPERSCRIPT)}"
 
 
+def unit_text(unit: str) -> str:
+    """Return a unit as it is set: m/s² for m/s^2, nothing for 1."""
+    return _UNITS.get(unit, unit)
+
+
 def quantity(value: float | None, unit: str, digits: int = 3) -> str:
     """Return a number with its unit."""
-    return f"{number(value, digits)} {_UNITS.get(unit, unit)}".strip()
+    return f"{number(value, digits)} {unit_text(unit)}".strip()
+
+
+def labelled(name: str, unit: str) -> str:
+    """Return a name with its unit, as on the axis of a figure."""
+    return name if unit == "1" else f"{name} ({unit_text(unit)})"
+
+
+def digits_between(low: float, high: float) -> int:
+    """Return how many digits tell numbers apart that lie between two: three, and more where these are close."""
+    largest = max(abs(low), abs(high))
+    return 3 if high <= low else min(12, max(3, 2 - math.floor(math.log10((high - low) / largest))))
 
 
 def spread(metric: Mapping[str, Any]) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 
 from runner.reporting.document import RunList
 from runner.reporting.markup import plain
-from runner.reporting.quantities import number
+from runner.reporting.quantities import labelled, number, unit_text
 
 Json = dict[str, Any]
 
@@ -22,7 +22,7 @@ def run_list_spec(block: RunList) -> Json:
     return {
         "axes": [{"name": plain(name), "values": [plain(value) for value in values]} for name, values in block.axes],
         "levels": [column.tolist() for column in block.levels.T],
-        "metrics": [{"name": plain(name), "unit": plain(unit)} for name, unit in block.metrics],
+        "metrics": [{"name": plain(name), "unit": plain(unit_text(unit))} for name, unit in block.metrics],
         "values": [_packed(column) for column in block.values.T],
         "hashes": list(block.hashes),
         "failures": [plain(failure) for failure in block.failures],
@@ -35,7 +35,7 @@ def run_list_spec(block: RunList) -> Json:
 def table_header(block: RunList) -> list[str]:
     """Return the titles of the table's columns."""
     axes = [name for name, _ in block.axes]
-    metrics = [f"{name} ({unit})" if unit != "1" else name for name, unit in block.metrics[:SHOWN]]
+    metrics = [labelled(name, unit) for name, unit in block.metrics[:SHOWN]]
     return [text.replace("$", "$$") for text in ("run", *axes, "status", *metrics)]
 
 

@@ -1,6 +1,6 @@
 import pytest
 
-from runner.reporting.quantities import number, quantity, spread
+from runner.reporting.quantities import digits_between, labelled, number, quantity, spread
 
 
 @pytest.mark.parametrize(
@@ -57,3 +57,15 @@ def test_a_missing_value_keeps_its_unit():
 )
 def test_spread_tells_the_range_over_the_repetitions(values, median, low, high, text):
     assert spread({"unit": "s", "values": values, "median": median, "min": low, "max": high}) == text
+
+
+@pytest.mark.parametrize(("unit", "text"), [("1", "x"), ("m", "x (m)"), ("N^2 m^2 s", "x (N² m² s)")])
+def test_a_label_carries_the_unit(unit, text):
+    assert labelled("x", unit) == text
+
+
+@pytest.mark.parametrize(("low", "high"), [(371.1, 372.3), (0.5, 0.5), (1e-4, 2.0), (-3.0, -2.999), (0.0, 5.0)])
+def test_so_many_digits_tell_values_apart_that_lie_between_two(low, high):
+    places = [low + part * (high - low) for part in (0.0, 0.25, 0.5, 0.75, 1.0)]
+    texts = [number(place, digits_between(low, high)) for place in places]
+    assert len(set(texts)) == len(set(places))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.errors import RunnerError, nearest
-from runner.reporting.quantities import quantity
+from runner.reporting.quantities import labelled, quantity
 from runner.statistics import EffectAnalysis, axis_effects
 from runner.sweep.measurements import Axis, FloatArray, Measurements
 
@@ -82,8 +82,7 @@ class Subject:
 
     def label(self, metric: str) -> str:
         """Return the name of a metric with its unit, as on the axis of a figure."""
-        unit = self.measurements.units[metric]
-        return metric if unit == "1" else f"{metric} ({unit})"
+        return labelled(metric, self.measurements.units[metric])
 
     def cell_name(self, cell: int, separator: str = ", ") -> str:
         """Return the values of a cell on all axes, such as "noise.position=0.001, torque_limits.max=20"."""

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from runner.reporting.document import FloatArray
-from runner.reporting.quantities import number, quantity
+from runner.reporting.quantities import labelled, number, quantity
 from runner.tuning.key import Key
 from runner.tuning.objective import Objective
 from runner.tuning.study import Tuning
@@ -83,7 +83,7 @@ class Subject:
 
 def label(objective: Objective) -> str:
     """Return the name of an objective's metric with its unit, as on the axis of a figure."""
-    return objective.metric if objective.unit == "1" else f"{objective.metric} ({objective.unit})"
+    return labelled(objective.metric, objective.unit)
 
 
 def key_value(value: float) -> str:
