@@ -26,8 +26,10 @@ def find_urdf(name: str, config_dirs: Sequence[Path] = ()) -> Path:
         config_dirs: Config folders of the user's; each is searched itself and in its sub-folder `robots`.
 
     Raises:
-        ConfigError: if no such file exists; names the places searched.
+        ConfigError: if no such file exists, which names the places searched, or a name leads out of these.
     """
+    if ".." in Path(name).parts:
+        raise ConfigError([f"robot.urdf: '{name}' leads out of its folder; put the file there, or give its whole path"])
     places = [place for folder in config_dirs for place in (folder / "robots", folder)] + [robots_dir()]
     candidates = [Path(name)] if Path(name).is_absolute() else [place / name for place in places]
     for candidate in candidates:

@@ -69,8 +69,9 @@ def read_tree(path: Path) -> UrdfTree:
     if robot.tag != "robot" or not links:
         raise ConfigError([f"robot.urdf: {path} is no URDF: it needs a <robot> with links"])
     if path.suffix == ".xacro" or any(element.tag.startswith(_XACRO) for element in robot.iter()):
+        made = f"{path.stem}{'_made' if path.suffix == '.urdf' else ''}.urdf"
         raise ConfigError(
-            [f"robot.urdf: {path} holds xacro macros; make a URDF of it first: xacro FILE > {path.stem}.urdf"]
+            [f"robot.urdf: {path} holds xacro macros; make a URDF of it first: xacro {path.name} > {made}"]
         )
     joints = {joint.get("name", ""): joint for joint in robot.findall("joint")}
     problems = [*_repeated(robot), *_loose_ends(links, joints)]

@@ -76,6 +76,14 @@ def test_a_file_that_is_nowhere(tmp_path):
         assert str(place) in text
 
 
+@pytest.mark.parametrize("name", ["../arm.urdf", "arms/../../arm.urdf"])
+def test_a_name_that_leads_out_of_its_folder_is_refused_though_the_file_exists(tmp_path, name):
+    (tmp_path / "mine" / "arms").mkdir(parents=True)
+    (tmp_path / "arm.urdf").write_text("<robot/>")
+    with pytest.raises(ConfigError, match=r"robot\.urdf: '.*' leads out of its folder; put the file there"):
+        find_urdf(name, [tmp_path / "mine"])
+
+
 @pytest.mark.parametrize("name", ["macro", "mini"])
 def test_without_masses_nothing_changes(name):
     path = find_urdf(f"{name}.urdf")
