@@ -30,8 +30,8 @@ runner: config-driven experiments for robot-arm control, with reports
                                                  --gravity
   runner doctor ROBOT.urdf [--tip FRAME] [--write DIR] [--html DIR]
                                                  does a robot of yours fit, what to mend, and a config to start from
-  runner list [robots|controllers|trajectories|experiments|plants|noise|presets|torque_limits|calibrations|metrics|
-               claims|references]
+  runner list [robots|controllers|trajectories|experiments|plants|environments|wrist_sensors|mismatch|noise|presets|
+               torque_limits|calibrations|metrics|claims|references]
 
   runner --cfg job [OVERRIDES]                   show the composed config without running it
   runner --config-dir DIR OVERRIDES              take YAML and URDFs from your own folder, too
@@ -40,9 +40,9 @@ runner: config-driven experiments for robot-arm control, with reports
   runner --hydra-help                            all flags of Hydra
   eval "$(runner -sc install=bash)"              tab completion (also fish, zsh)
 
-Groups: robot, controller, trajectory, plant, noise, torque_limits, preset, experiment. A value is set by its dotted
-key, as in controller.period=0.005; `runner --cfg job` shows all keys. Exit codes: 0 good, 1 a run failed or a
-check fell short, 2 bad input.
+Groups: robot, controller, trajectory, plant, environment, wrist_sensor, mismatch, noise, torque_limits, preset,
+experiment. A value is set by its dotted key, as in controller.period=0.005; `runner --cfg job` shows all keys. Exit
+codes: 0 good, 1 a run failed or a check fell short, 2 bad input.
 """
 COMMANDS = (
     "reproduce", "report", "table", "status", "tune", "check", "diff", "calibrate", "audit", "doctor", "list",

@@ -18,8 +18,8 @@ class FrictionConfig(StrictModel):
     """Config of joint friction; a value for every joint or one for each.
 
     Attributes:
-        viscous: Torque per speed, in N m s/rad.
-        coulomb: Torque against any motion, and up to which a joint at rest stays so, in N m.
+        viscous: Torque per speed, in N m s/rad; N s/m where a joint slides.
+        coulomb: Torque against any motion, and up to which a joint at rest stays so, in N m; N where it slides.
     """
 
     viscous: NonNegativePerJoint

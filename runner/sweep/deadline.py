@@ -6,7 +6,7 @@ import os
 import threading
 from collections.abc import Iterator
 
-_STUCK = 10.0  # s after the limit, until a worker process that cannot be interrupted is ended
+STUCK = 10.0  # s after the limit, until a worker process that cannot be interrupted is ended
 
 
 class TimeLimitError(BaseException):
@@ -32,7 +32,7 @@ def deadline(seconds: float | None) -> Iterator[None]:
             if not ended.is_set():
                 error = ctypes.py_object(TimeLimitError)
                 ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident or 0), error)
-        if not ended.wait(_STUCK) and thread is not threading.main_thread():
+        if not ended.wait(STUCK) and thread is not threading.main_thread():
             os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()

@@ -14,6 +14,7 @@ from runner.config.validation import validate
 from runner.errors import RunnerError
 from runner.store.identity import source_digest
 from runner.store.shards import outcome, shard_path, write_shard
+from runner.sweep.deadline import STUCK
 from runner.sweep.queue import Queue
 from runner.sweep.work import Chunk, Report, cut_short, work, write_log
 
@@ -103,7 +104,10 @@ def _give_up(chunk: Chunk) -> Report:
     """Store that the one run of a chunk was cut short, as it brings every worker down."""
     name, composed = chunk.runs[0]
     config = validate(composed.resolved, composed.config_dirs)
-    run = cut_short(name, config, composed, chunk.rules, f"its worker process died {_DEATHS + 1} times")
+    reason = f"its worker process died {_DEATHS + 1} times"
+    if chunk.rules.time_limit is not None:
+        reason += f", of itself or as it could not be interrupted for {STUCK:g} s after sweep.time_limit"
+    run = cut_short(name, config, composed, chunk.rules, reason)
     write_log(run, chunk.rules)
     write_shard(shard_path(chunk.rules.outputs, chunk.name), [run])
     return Report([outcome(run)], "", 0.0)
