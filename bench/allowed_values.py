@@ -33,14 +33,6 @@ def describe(annotation: Any, metadata: list[Any] | tuple[Any, ...] = ()) -> str
     return _plain(annotation, metadata)
 
 
-def nested_model(annotation: Any) -> type[StrictModel] | None:
-    """Return the model of a key that is a group of keys, null aside; None for any other."""
-    for part in (annotation, *get_args(annotation)):
-        if isinstance(part, type) and issubclass(part, StrictModel):
-            return part
-    return None
-
-
 def _list(item: Any, metadata: list[Any] | tuple[Any, ...]) -> str:
     bounds = {name: value for entry in metadata for name, value in _bounds(entry, ("min_length", "max_length"))}
     shortest, longest = bounds.get("min_length"), bounds.get("max_length")

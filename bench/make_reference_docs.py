@@ -15,10 +15,11 @@ from unittest.mock import patch
 
 import yaml
 
-from bench.allowed_values import describe, nested_model
+from bench.allowed_values import describe
 from runner.calibration.procedures import CALIBRATIONS
 from runner.cli import COMMANDS
 from runner.config.calibration import CalibrationSettings
+from runner.config.meanings import meanings, nested_model
 from runner.config.noise import NoiseConfig
 from runner.config.options import group_options
 from runner.config.preset import PresetConfig
@@ -128,7 +129,7 @@ def _cell(text: str) -> str:
 
 
 def _rows(group: str, model: type[StrictModel], defaults: Mapping[str, Any]) -> Iterator[tuple[str, str, str, str]]:
-    meanings = _meanings(model)
+    said = meanings(model)
     for name, field in model.model_fields.items():
         key = f"{group}.{name}" if group else name
         inner = nested_model(field.annotation)
@@ -137,7 +138,7 @@ def _rows(group: str, model: type[StrictModel], defaults: Mapping[str, Any]) -> 
             yield from _rows(key, inner, given)
             continue
         default = f"`{_inline(given)}`" if name in defaults else "must be given"
-        yield f"`{key}`", _null(meanings[name]), describe(field.annotation, field.metadata), default
+        yield f"`{key}`", _null(said[name]), describe(field.annotation, field.metadata), default
         if inner is not None and given is None:
             yield from _rows(key, inner, {})
 
@@ -149,16 +150,6 @@ def _inline(value: Any) -> str:
 def _null(text: str) -> str:
     """Return a docstring's words with None as YAML writes it."""
     return re.sub(r"\bNone\b", "`null`", text)
-
-
-def _meanings(model: type[StrictModel]) -> dict[str, str]:
-    """Return what the docstrings of a model and its bases say of its keys."""
-    found: dict[str, str] = {}
-    for base in reversed(model.__mro__):
-        text = inspect.cleandoc(base.__doc__ or "").partition("Attributes:\n")[2]
-        entries = re.findall(r"^    (\w+): (.+?)(?=^    \w|\Z)", text, re.M | re.S)
-        found |= {name: " ".join(meaning.split()) for name, meaning in entries}
-    return found
 
 
 def _metrics() -> Iterator[str]:

@@ -44,7 +44,7 @@ _PLAIN: dict[str, type[StrictModel]] = {
     "preset": PresetConfig,
     "sweep": SweepConfig,
 }
-_GROUPS: dict[str, Registry | type[StrictModel]] = {**_KINDS, **_PLAIN}
+GROUPS: dict[str, Registry | type[StrictModel]] = {**_KINDS, **_PLAIN}
 _SETTINGS = tuple(RunSettings.model_fields)
 
 
@@ -69,7 +69,7 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
 
     collect(lambda: _check_groups(resolved))
     settings = collect(lambda: parse("", RunSettings, {key: resolved.get(key) for key in _SETTINGS}))
-    parts = {group: collect(partial(parse_group, group, kind, resolved)) for group, kind in _GROUPS.items()}
+    parts = {group: collect(partial(parse_group, group, kind, resolved)) for group, kind in GROUPS.items()}
     robot, plant, controller, trajectory = (parts[g] for g in ("robot", "plant", "controller", "trajectory"))
     arm, timing, delay = None, None, None
     if robot is not None:

@@ -3,7 +3,7 @@
 import math
 
 from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
-from runner.reporting.sweep.subject import Subject, value_names
+from runner.reporting.sweep.subject import Subject, axis_label, value_names
 from runner.statistics import SMALLEST_SAMPLE
 
 _MOST_VALUES = 12
@@ -22,7 +22,7 @@ def section(subject: Subject, command: str) -> Section:
     for axis in subject.axes:
         names = value_names(axis)
         shown = names if len(names) <= _MOST_VALUES else [*names[: _MOST_VALUES - 2], "...", names[-1]]
-        rows.append([axis.name, str(len(names)), ", ".join(shown)])
+        rows.append([axis_label(axis), str(len(names)), ", ".join(shown)])
     blocks: list[Block] = []
     cells = len(measurements.hashes)
     if rows:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from runner.reporting.document import Curves, Panel, Series
-from runner.reporting.sweep.subject import Subject, spans_decades, value_name, value_names
+from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_name, value_names
 from runner.statistics import median_interval
 from runner.sweep.measurements import Axis, FloatArray
 
@@ -56,4 +56,4 @@ def axis_panel(title: str, axis: Axis, y_label: str, series: list[Series], y: Fl
     """Return a panel over one axis of the sweep, logarithmic where its values, or the ordinates, span decades."""
     names = value_names(axis) if axis.numbers is None else ()
     x_log = axis.numbers is not None and spans_decades(axis.numbers)
-    return Panel(title, axis.name, y_label, series, x_log, spans_decades(y), x_names=names)
+    return Panel(title, axis_label(axis), y_label, series, x_log, spans_decades(y), x_names=names)

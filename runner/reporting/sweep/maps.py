@@ -7,7 +7,7 @@ import numpy as np
 
 from runner.reporting.document import Block, Map, Maps, Section, Text
 from runner.reporting.sweep import theory
-from runner.reporting.sweep.subject import Subject, spans_decades, value_name, value_names
+from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_name, value_names
 from runner.sweep.measurements import Axis, FloatArray
 
 _FEWEST_FOR_CONTOURS = 3
@@ -81,8 +81,8 @@ def _map(subject: Subject, metric: str, x: Axis, y: Axis, cells: Sequence[int], 
     pointed = [some[0] for some in members] if single and len(medians) <= _MOST_POINTED else []
     return Map(
         title,
-        x.name,
-        y.name,
+        axis_label(x),
+        axis_label(y),
         value_names(x),
         value_names(y),
         values,

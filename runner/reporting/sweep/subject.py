@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.config.meanings import key_unit
 from runner.errors import RunnerError, nearest
 from runner.reporting.quantities import labelled, quantity
 from runner.statistics import EffectAnalysis, axis_effects
@@ -102,6 +103,11 @@ class Subject:
     def hashes(self, cells: Sequence[int]) -> list[str]:
         """Return the hashes of some cells' runs."""
         return [self.measurements.hashes[cell] for cell in cells]
+
+
+def axis_label(axis: Axis) -> str:
+    """Return the key of an axis with its unit, as on the axis of a figure."""
+    return labelled(axis.name, key_unit(axis.name))
 
 
 def choose(measurements: Measurements, wanted: Sequence[str] = ()) -> Subject:

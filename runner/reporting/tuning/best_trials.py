@@ -6,7 +6,7 @@ from runner.metrics.summary import units
 from runner.reporting.document import Block, Origin, Section, Table
 from runner.reporting.figures import playback, torque_and_error
 from runner.reporting.quantities import spread
-from runner.reporting.tuning.subject import Subject, key_value, literal
+from runner.reporting.tuning.subject import Subject, key_label, key_value, literal
 from runner.store import Run
 from runner.tuning.objective import Objective
 
@@ -30,7 +30,7 @@ def section(subject: Subject, runs: Mapping[int, Run], commands: Mapping[int, st
 def _trial(subject: Subject, trial: int, objectives: Sequence[Objective], run: Run, command: str) -> Section:
     params = subject.trials[trial].params
     rows = [
-        literal([key.name, key_value(params[key.name]), f"{key_value(key.low)} to {key_value(key.high)}"])
+        literal([key_label(key), key_value(params[key.name]), f"{key_value(key.low)} to {key_value(key.high)}"])
         for key in subject.keys
     ]
     goals = [objective.metric for objective in subject.objectives]

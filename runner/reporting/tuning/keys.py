@@ -4,7 +4,7 @@ import numpy as np
 
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.sweep.subject import spans_decades
-from runner.reporting.tuning.subject import Subject, label, literal
+from runner.reporting.tuning.subject import Subject, key_label, label, literal
 from runner.tuning.sampler import importances
 
 
@@ -22,7 +22,9 @@ def section(subject: Subject) -> Section:
                 Series("trials", x, y, "points", hints=hints, runs=runs),
                 Series("best", x[best], y[best], "points", hints=best_hints, runs=best_runs),
             ]
-            panels.append(Panel("", key.name, label(objective), series, key.log, spans_decades(y), (key.low, key.high)))
+            panels.append(
+                Panel("", key_label(key), label(objective), series, key.log, spans_decades(y), (key.low, key.high))
+            )
     return Section("Keys", [Curves("Good trials over the range of each key.", panels), _importance(subject)])
 
 

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
+from runner.config.meanings import key_unit
 from runner.reporting.document import Document, FloatArray, Notice, Origin, Provenance, RunList, Section, Table, Text
 from runner.reporting.tuning import best_trials, front, history, keys
-from runner.reporting.tuning.subject import Subject, key_value, literal
+from runner.reporting.tuning.subject import Subject, key_label, key_value, literal
 from runner.store import Sweep, open_run
 from runner.sweep.measurements import Measurements, measure
 from runner.tuning.study import Tuning
@@ -71,7 +72,7 @@ def _goals(subject: Subject) -> str:
 def _what(subject: Subject) -> Section:
     rows = [
         [
-            key.name,
+            key_label(key),
             key_value(key.low),
             key_value(key.high),
             "logarithmic" if key.log else "linear",
@@ -115,7 +116,10 @@ def _all_runs(subject: Subject, sweep: Sweep, made: list[int], measurements: Mea
     others = [name for name in measurements.values if name not in goals]
     columns: list[tuple[str, str, Sequence[float] | FloatArray]] = [("trial", "1", made)]
     columns += [(name, measurements.units[name], measurements.medians(name)) for name in goals]
-    columns += [(key.name, "1", [subject.trials[place].params[key.name] for place in made]) for key in subject.keys]
+    columns += [
+        (key.name, key_unit(key.name), [subject.trials[place].params[key.name] for place in made])
+        for key in subject.keys
+    ]
     columns += [(name, measurements.units[name], measurements.medians(name)) for name in others]
     values = np.column_stack([np.array(column, dtype=float) for *_, column in columns])
     address = os.path.relpath(sweep.outputs / "runs", folder)

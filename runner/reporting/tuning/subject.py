@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from runner.config.meanings import key_unit
 from runner.reporting.document import FloatArray
 from runner.reporting.quantities import labelled, number, quantity
 from runner.tuning.key import Key
@@ -84,6 +85,11 @@ class Subject:
 def label(objective: Objective) -> str:
     """Return the name of an objective's metric with its unit, as on the axis of a figure."""
     return labelled(objective.metric, objective.unit)
+
+
+def key_label(key: Key) -> str:
+    """Return the name of a key with its unit, as on the axis of a figure."""
+    return labelled(key.name, key_unit(key.name))
 
 
 def key_value(value: float) -> str:

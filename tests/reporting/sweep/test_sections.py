@@ -19,7 +19,7 @@ def three_axes():
 def test_axes_are_told_with_their_values_and_the_command():
     made = axes.section(two_axes(), "runner -m noise.position=1e-4,1e-3,1e-2")
     (table,) = blocks(made, Table)
-    assert table.rows[1] == ["torque_limits.max", "4", "20, 40, 60, 80"]
+    assert table.rows[1] == ["torque_limits.max (N m)", "4", "20, 40, 60, 80"]
     assert table.origin.command.startswith("runner -m")
     assert not blocks(made, Notice)
     assert "12 cells, every combination" in blocks(made, Text)[0].text

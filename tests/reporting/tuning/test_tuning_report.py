@@ -71,7 +71,7 @@ def test_the_report_has_its_parts(tuning):
     assert made.title == "Tuning to minimize peak_torque and maximize rms_torque"
     (table,) = blocks(section(made, "What was tuned"), Table)
     assert table.origin.command == "runner tune ..."
-    assert table.rows[0] == ["controller.natural_frequency", "5", "80", "logarithmic", "any"]
+    assert table.rows[0] == ["controller.natural_frequency (rad/s)", "5", "80", "logarithmic", "any"]
     for best in section(made, "Best in each objective").sections:
         assert len(blocks(best, Playback)) == 1
 
