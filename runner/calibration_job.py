@@ -1,6 +1,5 @@
 """One calibration job: check a composed config, repeat the calibration, store what it found; or find it stored."""
 
-import shlex
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
@@ -89,16 +88,11 @@ def judge(outcomes: Sequence[Outcome]) -> dict[str, Any] | None:
 
 def _provenance(config: CalibrationConfig, composed: Composed, outcomes: Sequence[Outcome]) -> dict[str, Any]:
     notices = next((outcome.notices for outcome in outcomes if outcome.notices), ())
-    kept = [override for override in composed.overrides if not override.startswith("outputs=")]
     return {
-        "date": time.strftime("%Y-%m-%d", time.gmtime()),
-        "command": shlex.join(["runner", "calibrate", *kept]),
+        **provenance.made(composed, "calibrate"),
         "choices": {group: choice for group, choice in composed.choices.items() if group in config.resolved},
         "flange": config.arm.flange,
         "joints": list(config.arm.model.joint_names),
         "seed": config.settings.seed,
         "warnings": [*config.robot.warnings, *notices],
-        "commit": provenance.commit(),
-        "versions": provenance.versions(),
-        "machine": provenance.machine(),
     }

@@ -1,7 +1,5 @@
 """One job: check a composed config, simulate its repetitions, store the result; or find it stored already."""
 
-import os
-import shlex
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from runner import plugins, provenance, store
+from runner import provenance, store
 from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
 from runner.config.compose import Composed, compose
 from runner.config.run import RunConfig
@@ -103,19 +101,10 @@ def _notices(closed: ClosedLoop, wrist: ForceTorqueSensor | None) -> list[str]:
     return told + ([] if wrist is None else wrist.overloads())
 
 
-def _command(composed: Composed) -> str:
-    """Return the command that makes the run, folders relative to where it was given."""
-    added = [word for text in plugins.named() for word in ("--plugin", text)]
-    own = [word for folder in composed.config_dirs for word in ("--config-dir", os.path.relpath(folder))]
-    return shlex.join(["runner", *added, *own, *(o for o in composed.overrides if not o.startswith("outputs="))])
-
-
 def job_provenance(config: RunConfig, composed: Composed, notices: Sequence[str] = ()) -> dict[str, object]:
-    """Return where a run comes from: command, choices, time steps, seed, commit, versions, machine."""
+    """Return where a run comes from: what made it, choices, time steps, seed, warnings."""
     return {
-        "date": time.strftime("%Y-%m-%d", time.gmtime()),
-        "command": _command(composed),
-        "plugins": plugins.digests(),
+        **provenance.made(composed),
         "choices": dict(composed.choices),
         "plant_step": config.step,
         "steps_per_tick": config.steps_per_tick,
@@ -124,7 +113,4 @@ def job_provenance(config: RunConfig, composed: Composed, notices: Sequence[str]
         "joints": list(config.arm.model.joint_names),
         "seed": config.settings.seed,
         "warnings": [*config.robot.warnings, *notices],
-        "commit": provenance.commit(),
-        "versions": provenance.versions(),
-        "machine": provenance.machine(),
     }

@@ -1,14 +1,47 @@
-"""Where a result comes from: commit, versions, machine."""
+"""Where a result comes from: command, commit, versions, machine."""
 
+import os
 import platform
+import shlex
 import subprocess
+import time
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from runner import plugins
 from runner.paths import package_dir
 
+if TYPE_CHECKING:
+    from runner.config.compose import Composed
+
 _LIBRARIES = ("arm-control-runner", "pybullet", "pin", "numpy", "scipy", "hydra-core")
+
+
+def made(composed: "Composed", *subcommand: str) -> dict[str, Any]:
+    """Return what made a result: date, command, digests of plug-ins, commit, versions, machine.
+
+    Args:
+        composed: The config that was composed.
+        subcommand: The words behind `runner`; none for a run.
+    """
+    return {
+        "date": time.strftime("%Y-%m-%d", time.gmtime()),
+        "command": command(composed, *subcommand),
+        "plugins": plugins.digests(),
+        "commit": commit(),
+        "versions": versions(),
+        "machine": machine(),
+    }
+
+
+def command(composed: "Composed", *subcommand: str) -> str:
+    """Return the command that does what was composed, folders relative to where it was given."""
+    added = [word for text in plugins.named() for word in ("--plugin", text)]
+    own = [word for folder in composed.config_dirs for word in ("--config-dir", os.path.relpath(folder))]
+    kept = [override for override in composed.overrides if not override.startswith("outputs=")]
+    return shlex.join(["runner", *added, *subcommand, *own, *kept])
 
 
 @cache

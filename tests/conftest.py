@@ -147,6 +147,22 @@ def hand_made_trace() -> Callable[..., Trace]:
     return make
 
 
+@pytest.fixture
+def simulated_runs(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Names of the runs that are simulated."""
+    from runner.sweep import work
+
+    names: list[str] = []
+    make = work._make
+
+    def note(name, *others):
+        names.append(name)
+        return make(name, *others)
+
+    monkeypatch.setattr(work, "_make", note)
+    return names
+
+
 @dataclass(frozen=True)
 class Ending:
     """How a command line ended: exit code, and what it printed."""

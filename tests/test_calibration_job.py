@@ -1,12 +1,14 @@
 """A calibration as a job: stored once, whole or not at all, and read back."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
 
-from runner import calibrate, calibration_job
+from runner import calibrate, calibration_job, plugins, provenance
+from runner.config.compose import compose
 from runner.errors import StoreError
 from runner.store import open_calibration
 
@@ -37,11 +39,23 @@ def test_another_config_is_another_calibration(job, change):
     assert job("calibration=gravity", change).hash != job("calibration=gravity").hash
 
 
-def test_a_damaged_one_is_carried_out_again(job):
+def test_the_command_names_ones_own_parts_and_folders(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("mine").mkdir()
+    monkeypatch.setattr(plugins, "named", lambda: ["calibration=mine/own.py"])
+    composed = compose(("seed=1", "outputs=else"), [Path("mine")], root="calibrate")
+    assert provenance.command(composed, "calibrate") == (
+        "runner --plugin calibration=mine/own.py calibrate --config-dir mine seed=1"
+    )
+
+
+@pytest.mark.parametrize("name", ["result.json", "config.yaml", "robot.urdf"])
+def test_a_damaged_one_is_carried_out_again(job, name):
     first = job()
-    path = first.folder / "result.json"
-    path.write_text(path.read_text()[:100])
+    urdf, path = first.urdf, first.folder / name
+    path.write_text(path.read_text()[:100]) if name == "result.json" else path.unlink()
     again = job()
+    assert again.urdf == urdf
     assert {**again.record, "timing": None} == {**first.record, "timing": None}
 
 

@@ -14,7 +14,7 @@ from runner.config.compose import quiet_environment
 from runner.errors import RunnerError, nearest
 
 if TYPE_CHECKING:
-    from runner.reporting.thesis.plan import Job
+    from runner.reporting.job import Job
     from runner.store import Calibration, Run
 
 _PROCESSES = 2

@@ -1,6 +1,6 @@
 """Config of a calibration: what is checked, and what is read of the composed whole."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Annotated, Any
@@ -12,7 +12,7 @@ from runner.calibration import Tool
 from runner.calibration.procedures import CALIBRATIONS, Bench, Procedure
 from runner.config.arms import build_robot
 from runner.config.compose import Composed
-from runner.config.parsing import parse, parse_group
+from runner.config.parsing import attempt, parse, parse_group
 from runner.config.robot import OneArmConfig, RobotConfig
 from runner.errors import ConfigError, nearest
 from runner.registry import Registry, StrictModel
@@ -71,14 +71,7 @@ def validate_calibration(composed: Composed) -> CalibrationConfig:
         ConfigError: with every problem found: dotted key, value found, values allowed, nearest valid name.
     """
     problems: list[str] = []
-
-    def collect(check: Callable[[], Any]) -> Any:
-        try:
-            return check()
-        except ConfigError as error:
-            problems.extend(error.problems)
-            return None
-
+    collect = partial(attempt, problems)
     collect(lambda: _check_keys(composed))
     resolved = {key: value for key, value in composed.resolved.items() if key in _KEYS}
     settings = collect(

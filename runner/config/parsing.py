@@ -1,6 +1,6 @@
-"""Checking one group of a composed config against its model."""
+"""Checking one group of a composed config against its model, and gathering problems."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from pydantic import ValidationError
@@ -9,6 +9,15 @@ from runner.config.messages import describe
 from runner.config.robot import StagedRobotConfig
 from runner.errors import ConfigError
 from runner.registry import Registry, StrictModel
+
+
+def attempt(problems: list[str], check: Callable[[], Any]) -> Any:
+    """Return what a check returns; where it raises ConfigError, add its problems to others and return None."""
+    try:
+        return check()
+    except ConfigError as error:
+        problems.extend(error.problems)
+        return None
 
 
 def parse_group(group: str, kinds: Registry | type[StrictModel], resolved: Mapping[str, Any]) -> StrictModel:

@@ -1,6 +1,6 @@
 """Checking a composed config: every problem is found before one message lists them all."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -9,7 +9,7 @@ import numpy as np
 
 from runner.config.arms import build_robot
 from runner.config.noise import NoiseConfig
-from runner.config.parsing import parse, parse_group
+from runner.config.parsing import attempt, parse, parse_group
 from runner.config.per_joint import expand
 from runner.config.per_stage import by_stage
 from runner.config.preset import PresetConfig
@@ -59,14 +59,7 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
         ConfigError: with every problem found: dotted key, value found, values allowed, nearest valid name.
     """
     problems: list[str] = []
-
-    def collect(check: Callable[[], Any]) -> Any:
-        try:
-            return check()
-        except ConfigError as error:
-            problems.extend(error.problems)
-            return None
-
+    collect = partial(attempt, problems)
     collect(lambda: _check_groups(resolved))
     settings = collect(lambda: parse("", RunSettings, {key: resolved.get(key) for key in _SETTINGS}))
     parts = {group: collect(partial(parse_group, group, kind, resolved)) for group, kind in GROUPS.items()}

@@ -58,20 +58,9 @@ def operational_space_graph(
         Edge("encoders", "position", "$q$ measured", leave="bottom", enter="right"),
         Edge("position", "position_error", "$x$", "-", leave="left", enter="bottom"),
     ]
-    if derivatives:
-        nodes.append(Node("velocity_error", "sum", "", 1.3, -1.0))
-        edges += [
-            Edge("reference", "F*", r"$\ddot{x}_d$", "+"),
-            Edge("reference", "velocity_error", r"$\dot{x}_d$", "+"),
-            Edge("velocity", "velocity_error", r"$\dot{x}$", "-", leave="left", enter="top"),
-            Edge("velocity_error", "k_v"),
-            Edge("k_v", "F*", sign="+", enter="top"),
-        ]
-    else:
-        edges += [
-            Edge("velocity", "k_v", r"$\dot{x}$", leave="left", enter="top"),
-            Edge("k_v", "F*", sign="-", enter="top"),
-        ]
+    damping_nodes, damping_edges = damping(derivatives)
+    nodes += damping_nodes
+    edges += damping_edges
     if gravity_compensation:
         nodes.append(Node("p", "block", r"$\hat{p}(x)$", 4.6, 1.0))
         edges += [
@@ -84,3 +73,23 @@ def operational_space_graph(
     else:
         edges.append(Edge("J^T", "arm", r"$\tau$"))
     return ControlGraph(tuple(nodes), tuple(edges))
+
+
+def damping(derivatives: bool) -> tuple[list[Node], list[Edge]]:
+    r"""Return the way of the tip's velocity to F*, through k_v.
+
+    Args:
+        derivatives: Whether \dot x_d is taken from it, and \ddot x_d goes to F*.
+    """
+    if not derivatives:
+        return [], [
+            Edge("velocity", "k_v", r"$\dot{x}$", leave="left", enter="top"),
+            Edge("k_v", "F*", sign="-", enter="top"),
+        ]
+    return [Node("velocity_error", "sum", "", 1.3, -1.0)], [
+        Edge("reference", "F*", r"$\ddot{x}_d$", "+"),
+        Edge("reference", "velocity_error", r"$\dot{x}_d$", "+"),
+        Edge("velocity", "velocity_error", r"$\dot{x}$", "-", leave="left", enter="top"),
+        Edge("velocity_error", "k_v"),
+        Edge("k_v", "F*", sign="+", enter="top"),
+    ]

@@ -1,6 +1,7 @@
 """The block graph of whole-body control of a redundant arm (thesis figure 5.2)."""
 
 from runner.controllers.graph import ControlGraph, Edge, Node
+from runner.controllers.operational_space_graph import damping
 
 _TASK, _TORQUE = 1.1, 3.2  # columns from F* to the task's and to the torques' summing point
 
@@ -118,21 +119,8 @@ def _task(
         ]
     else:
         edges.append(Edge("k_p", "F*", sign="+", enter="bottom"))
-    if derivatives:
-        nodes.append(Node("velocity_error", "sum", "", 1.3, -1.0))
-        edges += [
-            Edge("reference", "F*", r"$\ddot{x}_d$", "+"),
-            Edge("reference", "velocity_error", r"$\dot{x}_d$", "+"),
-            Edge("velocity", "velocity_error", r"$\dot{x}$", "-", leave="left", enter="top"),
-            Edge("velocity_error", "k_v"),
-            Edge("k_v", "F*", sign="+", enter="top"),
-        ]
-    else:
-        edges += [
-            Edge("velocity", "k_v", r"$\dot{x}$", leave="left", enter="top"),
-            Edge("k_v", "F*", sign="-", enter="top"),
-        ]
-    return nodes, edges
+    damping_nodes, damping_edges = damping(derivatives)
+    return nodes + damping_nodes, edges + damping_edges
 
 
 def _posture(torque: float, bottom: float, all_joints: bool) -> tuple[list[Node], list[Edge]]:

@@ -6,15 +6,11 @@ from typing import Literal
 
 import numpy as np
 import pinocchio as pin
-from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.errors import ConfigError
-from runner.plants.decoupled import assemble_plant
-from runner.plants.friction import FrictionConfig
+from runner.plants.decoupled import TorquePlantConfig, assemble_plant
 from runner.plants.plant import FloatArray, Plant
 from runner.plants.quiet import quiet_stderr
-from runner.plants.servo import ServoConfig
-from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.tool_link import TOOL_MOUNT
@@ -29,26 +25,15 @@ _idle: dict[str, tuple[int, int]] = {}
 _NO_SPEED_LIMIT = 1e12
 
 
-class BulletConfig(StrictModel):
+class BulletConfig(TorquePlantConfig):
     """Config of the PyBullet plant.
 
     Attributes:
         kind: Its name in the registry.
         step: Integration step, in s; None is a tenth of the fastest controller period, a quarter with several stages.
-        dynamics: Whether stages that ride on each other act on each other; see assemble_plant.
-        wrist_rotation: Whether the carrier turns the rider's base; see assemble_plant.
-        friction: Friction in the joints.
-        command_delay: Time from a controller's command until it acts, in s.
-        servo: The joints' position servos, where the controller commands joint positions.
     """
 
     kind: Literal["bullet"]
-    step: PositiveFloat | None
-    dynamics: Literal["coupled", "decoupled"]
-    wrist_rotation: Literal["real", "parallel"]
-    friction: FrictionConfig
-    command_delay: NonNegativeFloat
-    servo: ServoConfig
 
 
 class Bullet:

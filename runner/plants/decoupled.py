@@ -1,39 +1,45 @@
 """Stages simulated each with its own dynamics, as the thesis did it."""
 
 from collections.abc import Callable, Sequence
-from typing import Protocol
+from typing import Literal
 
 import numpy as np
+from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.config.per_joint import expand
 from runner.errors import ConfigError
 from runner.plants.friction import FrictionConfig, rub
 from runner.plants.plant import FloatArray, Plant
+from runner.plants.servo import ServoConfig
+from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, StageBase
 
 
-class StagedPlantConfig(Protocol):
-    """What a plant's config says of several stages."""
+class TorquePlantConfig(StrictModel):
+    """What the configs of plants have in common that integrate the motion under torques.
 
-    @property
-    def dynamics(self) -> str:
-        """Either "coupled" or "decoupled"."""
-        ...
+    Attributes:
+        kind: Its name in the registry.
+        step: Integration step, in s; None is chosen by the plant.
+        dynamics: Whether stages that ride on each other act on each other; see assemble_plant.
+        wrist_rotation: Whether the carrier turns the rider's base; see assemble_plant.
+        friction: Friction in the joints.
+        command_delay: Time from a controller's command until it acts, in s.
+        servo: The joints' position servos, where the controller commands joint positions.
+    """
 
-    @property
-    def wrist_rotation(self) -> str:
-        """Either "real" or "parallel"."""
-        ...
-
-    @property
-    def friction(self) -> FrictionConfig:
-        """Friction in the joints."""
-        ...
+    kind: str
+    step: PositiveFloat | None
+    dynamics: Literal["coupled", "decoupled"]
+    wrist_rotation: Literal["real", "parallel"]
+    friction: FrictionConfig
+    command_delay: NonNegativeFloat
+    servo: ServoConfig
 
 
 def assemble_plant(
-    config: StagedPlantConfig, robot: Robot, tick: float, make: Callable[[str, RobotModel], Plant]
+    config: TorquePlantConfig, robot: Robot, tick: float, make: Callable[[str, RobotModel], Plant]
 ) -> Plant:
     """Make a plant for a robot: of the whole, or of its stages each for itself.
 

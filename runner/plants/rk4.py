@@ -4,37 +4,22 @@ from typing import Literal
 
 import numpy as np
 import pinocchio as pin
-from pydantic import NonNegativeFloat, PositiveFloat
 
-from runner.plants.decoupled import assemble_plant
-from runner.plants.friction import FrictionConfig
+from runner.plants.decoupled import TorquePlantConfig, assemble_plant
 from runner.plants.plant import FloatArray, Plant
-from runner.plants.servo import ServoConfig
-from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 
 
-class Rk4Config(StrictModel):
+class Rk4Config(TorquePlantConfig):
     """Config of the Runge-Kutta plant.
 
     Attributes:
         kind: Its name in the registry.
         step: Integration step, in s; None is the fastest controller period.
-        dynamics: Whether stages that ride on each other act on each other; see assemble_plant.
-        wrist_rotation: Whether the carrier turns the rider's base; see assemble_plant.
-        friction: Friction in the joints.
-        command_delay: Time from a controller's command until it acts, in s.
-        servo: The joints' position servos, where the controller commands joint positions.
     """
 
     kind: Literal["rk4"]
-    step: PositiveFloat | None
-    dynamics: Literal["coupled", "decoupled"]
-    wrist_rotation: Literal["real", "parallel"]
-    friction: FrictionConfig
-    command_delay: NonNegativeFloat
-    servo: ServoConfig
 
 
 class Rk4:

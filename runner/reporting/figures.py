@@ -7,16 +7,16 @@ from runner.reporting.bodies import playback_bodies
 from runner.reporting.document import Curves, Origin, Panel, Playback, Series
 from runner.reporting.drawings import arm_motion
 from runner.robots import RobotModel
-from runner.store import Run
+from runner.store import Calibration, Run
 
 AXES = ("x", "y", "z")
 _STILLS = 6  # instants in the still picture of a motion
 
 
-def origin(run: Run, number: str = "") -> Origin:
-    """Return where a figure of a run comes from: the command that made the run, and its commit."""
-    commit = str(run.provenance["commit"] or "")
-    return Origin(number, str(run.provenance["command"]), commit[:12] + commit[40:])
+def origin(job: Run | Calibration, number: str = "") -> Origin:
+    """Return where a figure of a run or calibration comes from: the command that made it, and its commit."""
+    commit = str(job.provenance["commit"] or "")
+    return Origin(number, str(job.provenance["command"]), commit[:12] + commit[40:])
 
 
 def model_of(run: Run) -> RobotModel:

@@ -44,7 +44,15 @@ class Chapter:
 
 def chapters(document: Document) -> list[Chapter]:
     """Return all sections of a document in reading order, numbered."""
-    return list(_number(document.sections, ""))
+    return list(numbered(document.sections))
+
+
+def numbered(sections: Sequence[Section], prefix: str = "") -> Iterator[Chapter]:
+    """Yield sections and those below them in reading order, numbered from 1 behind a prefix such as "2."."""
+    for index, section in enumerate(sections, start=1):
+        number = f"{prefix}{index}"
+        yield Chapter(number, number.count(".") + 1, section)
+        yield from numbered(section.sections, number + ".")
 
 
 def blocks(document: Document) -> Iterator[Block]:
@@ -65,13 +73,6 @@ def formulas(document: Document) -> tuple[list[str], list[str]]:
         for text in _texts(block):
             inline.update(dict.fromkeys(_math(text)))
     return list(displayed), list(inline)
-
-
-def _number(sections: Sequence[Section], prefix: str) -> Iterator[Chapter]:
-    for index, section in enumerate(sections, start=1):
-        number = f"{prefix}{index}"
-        yield Chapter(number, number.count(".") + 1, section)
-        yield from _number(section.sections, number + ".")
 
 
 def _math(text: str) -> list[str]:

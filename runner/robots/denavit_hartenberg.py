@@ -4,9 +4,9 @@ The standard (distal) one is the thesis' (section 3.1, eq. 3.2) and is found fro
 (proximal) one is Craig's, which the Meca500 report uses.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 import numpy as np
 
@@ -49,10 +49,11 @@ def transform(row: DenavitHartenbergRow, q: float) -> FloatArray:
 
 def frames(rows: Sequence[DenavitHartenbergRow], q: FloatArray) -> FloatArray:
     """Return frames 0 to n in the base frame at joint positions q, shape (n + 1, 4, 4) (thesis eq. 3.1)."""
-    poses = [np.eye(4)]
-    for row, q_i in zip(rows, q, strict=True):
-        poses.append(poses[-1] @ transform(row, float(q_i)))
-    return np.array(poses)
+    return _chained(transform(row, float(q_i)) for row, q_i in zip(rows, q, strict=True))
+
+
+def _chained(transforms: Iterable[FloatArray]) -> FloatArray:
+    return np.array(list(accumulate(transforms, np.matmul, initial=np.eye(4))))
 
 
 @dataclass(frozen=True)
@@ -88,10 +89,7 @@ def modified_transform(row: ModifiedRow, q: float) -> FloatArray:
 
 def modified_frames(rows: Sequence[ModifiedRow], q: FloatArray) -> FloatArray:
     """Return frames 0 to n in frame 0 at joint positions q, shape (n + 1, 4, 4)."""
-    poses = [np.eye(4)]
-    for row, q_i in zip(rows, q, strict=True):
-        poses.append(poses[-1] @ modified_transform(row, float(q_i)))
-    return np.array(poses)
+    return _chained(modified_transform(row, float(q_i)) for row, q_i in zip(rows, q, strict=True))
 
 
 def modified_jacobian(rows: Sequence[ModifiedRow], q: FloatArray) -> FloatArray:

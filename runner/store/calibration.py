@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from runner.errors import StoreError
 from runner.store.atomic import write_atomically
+from runner.store.stored import Stored, read_job
 
 SCHEMA = 1
 _NEEDED = ("estimates", "truth", "errors", "deviations", "measures", "consistency", "postures", "provenance")
@@ -19,42 +20,8 @@ Table = Literal["estimates", "errors", "deviations", "measures"]
 
 
 @dataclass(frozen=True)
-class Calibration:
-    """A stored calibration.
-
-    Attributes:
-        folder: Its folder.
-        config: Its resolved config.
-        record: The content of result.json.
-    """
-
-    folder: Path
-    config: Mapping[str, Any]
-    record: Mapping[str, Any]
-
-    @property
-    def hash(self) -> str:
-        """Its content hash, the folder's name."""
-        return self.folder.name
-
-    @property
-    def urdf(self) -> str:
-        """The URDF's text of the arm with its tool.
-
-        Raises:
-            StoreError: if the file is missing or damaged.
-        """
-        path = self.folder / "robot.urdf"
-        try:
-            return path.read_text()
-        except (OSError, UnicodeDecodeError) as error:
-            raise StoreError(f"cannot read {path}: {error}") from error
-
-    @property
-    def provenance(self) -> Mapping[str, Any]:
-        """Commit, versions, machine, seed, command, warnings."""
-        provenance: Mapping[str, Any] = self.record["provenance"]
-        return provenance
+class Calibration(Stored):
+    """A stored calibration; its record is the content of result.json."""
 
     @property
     def truth(self) -> Mapping[str, float]:
@@ -87,7 +54,8 @@ class Calibration:
 def find_calibration(outputs: Path, name: str) -> Calibration | None:
     """Return the calibration of that hash, or None when it is missing, unfinished or damaged."""
     try:
-        return open_calibration(outputs / "calibrations" / name)
+        calibration = open_calibration(outputs / "calibrations" / name)
+        return calibration if calibration.urdf else None
     except StoreError:
         return None
 
@@ -98,14 +66,11 @@ def open_calibration(folder: Path) -> Calibration:
     Raises:
         StoreError: if the folder is none, or damaged.
     """
-    path = folder / "result.json"
-    try:
-        record = json.loads(path.read_text())
-        config = yaml.safe_load((folder / "config.yaml").read_text())
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError, yaml.YAMLError) as error:
-        raise StoreError(f"cannot read the calibration in {folder}: {' '.join(str(error).split())}") from error
+    record, config = read_job(folder, "result.json", "calibration")
     if not isinstance(record, dict) or record.get("schema") != SCHEMA or any(key not in record for key in _NEEDED):
-        raise StoreError(f"{path} is no calibration's result: it needs schema {SCHEMA}, {', '.join(_NEEDED)}")
+        raise StoreError(
+            f"{folder / 'result.json'} is no calibration's result: it needs schema {SCHEMA}, {', '.join(_NEEDED)}"
+        )
     return Calibration(folder, config, record)
 
 

@@ -1,15 +1,13 @@
 """Reading a stored run."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import yaml
-
 from runner.errors import StoreError
+from runner.store.stored import Stored, read_job
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -19,23 +17,8 @@ _NEEDED = {"schema": int, "status": str, "metrics": dict, "provenance": dict, "r
 
 
 @dataclass(frozen=True)
-class Run:
-    """A stored run.
-
-    Attributes:
-        folder: Its folder.
-        config: Its resolved config.
-        record: The content of metrics.json.
-    """
-
-    folder: Path
-    config: Mapping[str, Any]
-    record: Mapping[str, Any]
-
-    @property
-    def hash(self) -> str:
-        """Its content hash, the folder's name."""
-        return self.folder.name
+class Run(Stored):
+    """A stored run; its record is the content of metrics.json."""
 
     def made_by(self, command: str) -> "Run":
         """Return this run with another command that makes it, as equal configs can be reached in several ways."""
@@ -62,25 +45,6 @@ class Run:
         """Metrics by name: unit, median, min, max and values of each repetition."""
         metrics: Mapping[str, Mapping[str, Any]] = self.record["metrics"]
         return metrics
-
-    @property
-    def provenance(self) -> Mapping[str, Any]:
-        """Commit, versions, machine, seed, command, plant step."""
-        provenance: Mapping[str, Any] = self.record["provenance"]
-        return provenance
-
-    @cached_property
-    def urdf(self) -> str:
-        """The URDF's text that was simulated.
-
-        Raises:
-            StoreError: if the file is missing or damaged.
-        """
-        path = self.folder / "robot.urdf"
-        try:
-            return path.read_text()
-        except (OSError, UnicodeDecodeError) as error:
-            raise StoreError(f"cannot read {path}: {error}; run it again to mend it") from error
 
     @cached_property
     def trace(self) -> "pd.DataFrame":
@@ -142,11 +106,7 @@ def open_run(folder: Path) -> Run:
         raise StoreError(
             f"{folder} is {what}: it has no metrics.json; `runner OVERRIDES` makes a run and prints its folder"
         )
-    try:
-        record = json.loads(record_path.read_text())
-        config = yaml.load((folder / "config.yaml").read_text(), yaml.CSafeLoader)
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError, yaml.YAMLError) as error:
-        raise StoreError(f"cannot read the run in {folder}: {' '.join(str(error).split())}") from error
+    record, config = read_job(folder, "metrics.json", "run")
     if not isinstance(config, dict):
         raise StoreError(f"{folder / 'config.yaml'} holds no config")
     if isinstance(record, dict) and record.get("schema", SCHEMA) != SCHEMA:

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from pydantic import PositiveFloat, PositiveInt, ValidationInfo, field_validator
+from pydantic import PositiveFloat, PositiveInt
 
 from runner.registry import StrictModel
 from runner.trajectories.closed_figure import ClosedFigure, Easing
 from runner.trajectories.trajectory import FloatArray, Trajectory
-from runner.trajectories.vectors import Direction, Point, check_perpendicular, plane_axes
+from runner.trajectories.vectors import Direction, InPlane, Point, plane_axes
 
 
 class CircleConfig(StrictModel):
@@ -30,15 +30,10 @@ class CircleConfig(StrictModel):
     start: Point | None
     radius: PositiveFloat
     normal: Direction
-    centre_direction: Direction
+    centre_direction: InPlane
     turns: PositiveInt
     easing: Easing
     duration: PositiveFloat
-
-    @field_validator("centre_direction")
-    @classmethod
-    def _check_plane(cls, value: list[float], info: ValidationInfo) -> list[float]:
-        return check_perpendicular(value, info.data["normal"]) if "normal" in info.data else value
 
 
 @dataclass(frozen=True)

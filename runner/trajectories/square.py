@@ -4,13 +4,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from pydantic import PositiveFloat, ValidationInfo, field_validator
+from pydantic import PositiveFloat
 
 from runner.registry import StrictModel
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.segment import distance_to_segment
 from runner.trajectories.trajectory import FloatArray, Trajectory
-from runner.trajectories.vectors import Direction, Point, check_perpendicular, plane_axes
+from runner.trajectories.vectors import Direction, InPlane, Point, plane_axes
 
 
 class SquareConfig(StrictModel):
@@ -29,13 +29,8 @@ class SquareConfig(StrictModel):
     start: Point | None
     half_edge: PositiveFloat
     normal: Direction
-    edge_direction: Direction
+    edge_direction: InPlane
     duration: PositiveFloat
-
-    @field_validator("edge_direction")
-    @classmethod
-    def _check_plane(cls, value: list[float], info: ValidationInfo) -> list[float]:
-        return check_perpendicular(value, info.data["normal"]) if "normal" in info.data else value
 
 
 @dataclass(frozen=True)

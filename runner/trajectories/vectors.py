@@ -3,7 +3,7 @@
 from typing import Annotated
 
 import numpy as np
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, ValidationInfo
 
 from runner.trajectories.trajectory import FloatArray
 
@@ -14,10 +14,6 @@ def _check_direction(value: list[float]) -> list[float]:
     if np.linalg.norm(value) == 0.0:
         raise ValueError("must have a direction, so not all zero")
     return value
-
-
-Point = Annotated[list[float], Field(min_length=3, max_length=3)]
-Direction = Annotated[Point, AfterValidator(_check_direction)]
 
 
 def check_perpendicular(value: list[float], normal: list[float]) -> list[float]:
@@ -32,6 +28,16 @@ def check_perpendicular(value: list[float], normal: list[float]) -> list[float]:
         angle = float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
         raise ValueError(f"must be perpendicular to normal {normal}, which is {angle:.4g} deg away")
     return value
+
+
+def _check_in_plane(value: list[float], info: ValidationInfo) -> list[float]:
+    return check_perpendicular(value, info.data["normal"]) if "normal" in info.data else value
+
+
+Point = Annotated[list[float], Field(min_length=3, max_length=3)]
+Direction = Annotated[Point, AfterValidator(_check_direction)]
+InPlane = Annotated[Direction, AfterValidator(_check_in_plane)]
+"""A direction in the plane of the field `normal`, which stands before it."""
 
 
 def plane_axes(normal: list[float], direction: list[float]) -> tuple[FloatArray, FloatArray]:

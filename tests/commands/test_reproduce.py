@@ -6,8 +6,8 @@ from runner.audit.audit import audit
 from runner.audit.entry import parts
 from runner.audit.verdict import VERDICTS
 from runner.commands.reproduce import WORKS
+from runner.reporting.job import Job
 from runner.reporting.run_report import run_document
-from runner.reporting.thesis.plan import Job
 
 
 @pytest.fixture

@@ -6,12 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from study_sections import blocks, unfinished_texts
 
 from runner import calibrate, run
 from runner.calibration import REST, GravityCalibration, Tool, WrenchCompensation
 from runner.calibration.tool_centre_point import identify_tool_centre_point
 from runner.reporting import formulas
-from runner.reporting.document import Curves, Document, Notice, Table, Text
+from runner.reporting.document import Curves, Document, Table
 from runner.reporting.meca500.calibration_plan import calibration_jobs, name_of
 from runner.reporting.meca500.calibration_studies import consistency_notice, fit, found_error, predicted_error, refusal
 from runner.reporting.meca500.gravity import gravity_section
@@ -61,25 +62,6 @@ def sections(calibrations, weighed):
     )
 
 
-def blocks(section):
-    yield from section.blocks
-    for below in section.sections:
-        yield from blocks(below)
-
-
-def texts(section):
-    for block in blocks(section):
-        match block:
-            case Notice():
-                yield from (block.title, block.text)
-            case Text():
-                yield block.text
-            case Table():
-                yield from (block.caption, *block.header, *(cell for row in block.rows for cell in row))
-            case Curves():
-                yield block.caption
-
-
 def table(section, caption):
     return next(block for block in blocks(section) if isinstance(block, Table) and block.caption.startswith(caption))
 
@@ -87,8 +69,8 @@ def table(section, caption):
 def test_every_section_builds(sections):
     assert formulas.faulty(Document("Calibrations", "", "", sections, "2026-01-01")) == []
     for section in sections:
-        found = list(texts(section))
-        assert not [t for t in found if "None" in t or "nan" in t.split() or "{" in t]
+        refused = "condition numbers inf (force)"  # is a finding here
+        assert not [text for text in unfinished_texts(section) if not text.startswith(refused)]
 
 
 def test_every_table_and_figure_carries_its_command(sections):

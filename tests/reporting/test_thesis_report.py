@@ -9,8 +9,9 @@ from runner import run
 from runner.reporting import outline
 from runner.reporting.document import Claim, Curves, Picture, Table, Text
 from runner.reporting.formulas import faulty
+from runner.reporting.job import PRESETS
 from runner.reporting.render import write_report
-from runner.reporting.thesis.plan import PRESETS, plan
+from runner.reporting.thesis.plan import plan
 from runner.reporting.thesis.report import thesis_document
 
 ONCE = (

@@ -1,17 +1,17 @@
 """Every study builds from short runs, and from runs of which some or all have failed."""
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
-from functools import partial
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
+from study_sections import every_run, texts, unfinished_texts, whatever_has_failed
 
 from runner import store
 from runner.execution import run
 from runner.reporting import formulas
-from runner.reporting.document import Curves, Document, Notice, Section, Table, Text
+from runner.reporting.document import Document, Section, Table
 from runner.reporting.figures import torque_and_error
+from runner.reporting.job import PRESETS
 from runner.reporting.thesis import dynamics_benchmark
 from runner.reporting.thesis.checklist import checklist_section
 from runner.reporting.thesis.combined_plan import combined_jobs
@@ -40,15 +40,14 @@ SECTIONS = (
     dynamics_cost_section,
 )
 FIGURES = ("figure_5_3", "figure_5_8", "figure_5_10", "figure_5_12", "figure_5_13", "macro_alone", "macro_alone_goal")
-FAILURE = {"reason": "diverged: for this test", "time": 0.01, "joint": "q1", "repetition": 0}
 
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
     """Every run of the plan, cut to a moment; runs that differ in nothing else are made once."""
     outputs = tmp_path_factory.mktemp("outputs")
-    jobs = {name: overrides for name, (overrides, _) in combined_jobs().items()}
-    jobs |= {f"{f}/{p}": (f"experiment=thesis/{f}", f"preset={p}") for f in FIGURES for p in ("as_reported", "sound")}
+    jobs = {name: job.overrides for name, job in combined_jobs().items()}
+    jobs |= {f"{f}/{p}": (f"experiment=thesis/{f}", f"preset={p}") for f in FIGURES for p in PRESETS}
     jobs["figure_4_4/sound"] = ("experiment=thesis/figure_4_4",)
     short = ("repetitions=1", "duration=0.08", f"outputs={outputs}")
     return {
@@ -56,49 +55,17 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
     }
 
 
-def failed(run: Run) -> Run:
-    record = {**run.record, "status": "failed", "failure": FAILURE, "metrics": {}}
-    return replace(run, record=record)
-
-
 def document(sections: list[Section]) -> Document:
     return Document("Studies", "", "", sections, "2026-01-01")
 
 
-def texts(section: Section) -> Iterator[str]:
-    for block in section.blocks:
-        match block:
-            case Notice():
-                yield from (block.title, block.text)
-            case Text():
-                yield block.text
-            case Table():
-                yield from (block.caption, *block.header, *(cell for row in block.rows for cell in row))
-            case Curves():
-                yield block.caption
-    for below in section.sections:
-        yield from texts(below)
-
-
-def every_run(runs: Mapping[str, Run]) -> dict[str, Run]:
-    return {name: failed(run) for name, run in runs.items()}
-
-
-def every_third(runs: Mapping[str, Run], offset: int) -> dict[str, Run]:
-    return {name: failed(run) if i % 3 == offset else run for i, (name, run) in enumerate(runs.items())}
-
-
-@pytest.mark.parametrize(
-    "spoil",
-    [dict, every_run, *(partial(every_third, offset=offset) for offset in range(3))],
-    ids=["none", "all", "third 0", "third 1", "third 2"],
-)
+@whatever_has_failed
 def test_every_section_builds_whatever_has_failed(runs: dict[str, Run], spoil: Callable[..., dict[str, Run]]) -> None:
     sections = [build(spoil(runs)) for build in SECTIONS]
     assert formulas.faulty(document(sections)) == []
     for section in sections:
         assert section.blocks
-        assert not [text for text in texts(section) if "None" in text or "nan" in text.split() or "{" in text]
+        assert not unfinished_texts(section)
 
 
 @pytest.mark.parametrize("build", [s for s in SECTIONS if s not in (questions_section, dynamics_cost_section)])

@@ -8,8 +8,8 @@ from runner import run
 from runner.reporting import outline
 from runner.reporting.document import Claim, Curves, Notice, Picture, Playback, Section, Table, Text
 from runner.reporting.formulas import faulty
+from runner.reporting.job import PRESETS
 from runner.reporting.render import write_report
-from runner.reporting.thesis.plan import PRESETS
 from runner.reporting.xarm7.plan import STEPS, plan
 from runner.reporting.xarm7.report import xarm7_document
 from runner.reporting.xarm7.studies_plan import studies_jobs

@@ -1,16 +1,15 @@
 """The studies of the xArm7 report build from short runs and failed ones, and their closed forms are right."""
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
-from functools import partial
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 import pytest
+from study_sections import every_run, texts, unfinished_texts, whatever_has_failed
 
 from runner.execution import run
 from runner.reporting import formulas
-from runner.reporting.document import Curves, Document, Notice, Section, Table, Text
+from runner.reporting.document import Document, Section
 from runner.reporting.xarm7.null_space import BOUND, null_space_section, standing
 from runner.reporting.xarm7.null_space_cycles import drifts
 from runner.reporting.xarm7.payload import largest_payloads, payload_section, stretched
@@ -31,7 +30,6 @@ SECTIONS = (
     payload_section,
     torque_level_section,
 )
-FAILURE = {"reason": "diverged: for this test", "time": 0.01, "joint": "q1", "repetition": 0}
 Make = Callable[[str], Run]
 
 
@@ -41,8 +39,8 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
     outputs = tmp_path_factory.mktemp("outputs")
     short = ("duration=0.08", f"outputs={outputs}")
     return {
-        name: run(*(o for o in overrides if not o.startswith("duration=")), *short)
-        for name, (overrides, _) in studies_jobs().items()
+        name: run(*(o for o in job.overrides if not o.startswith("duration=")), *short)
+        for name, job in studies_jobs().items()
     }
 
 
@@ -50,47 +48,16 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
 def planned(tmp_path_factory: pytest.TempPathFactory) -> Make:
     """Make a run of the plan, as it is planned."""
     outputs = tmp_path_factory.mktemp("outputs")
-    return lambda name: run(*studies_jobs()[name][0], f"outputs={outputs}")
+    return lambda name: run(*studies_jobs()[name].overrides, f"outputs={outputs}")
 
 
-def failed(run: Run) -> Run:
-    return replace(run, record={**run.record, "status": "failed", "failure": FAILURE, "metrics": {}})
-
-
-def texts(section: Section) -> Iterator[str]:
-    for block in section.blocks:
-        match block:
-            case Notice():
-                yield from (block.title, block.text)
-            case Text():
-                yield block.text
-            case Table():
-                yield from (block.caption, *block.header, *(cell for row in block.rows for cell in row))
-            case Curves():
-                yield block.caption
-    for below in section.sections:
-        yield from texts(below)
-
-
-def every_run(runs: Mapping[str, Run]) -> dict[str, Run]:
-    return {name: failed(run) for name, run in runs.items()}
-
-
-def every_third(runs: Mapping[str, Run], offset: int) -> dict[str, Run]:
-    return {name: failed(run) if i % 3 == offset else run for i, (name, run) in enumerate(runs.items())}
-
-
-@pytest.mark.parametrize(
-    "spoil",
-    [dict, every_run, *(partial(every_third, offset=offset) for offset in range(3))],
-    ids=["none", "all", "third 0", "third 1", "third 2"],
-)
+@whatever_has_failed
 def test_every_section_builds_whatever_has_failed(runs: dict[str, Run], spoil: Callable[..., dict[str, Run]]) -> None:
     sections = [build(spoil(runs)) for build in SECTIONS]
     assert formulas.faulty(Document("Studies", "", "", sections, "2026-01-01")) == []
     for section in sections:
         assert section.blocks
-        assert not [t for t in texts(section) if "None" in t or {"nan", "inf"} & set(t.split()) or "{" in t]
+        assert not unfinished_texts(section)
 
 
 @pytest.mark.parametrize("build", SECTIONS)
@@ -175,7 +142,7 @@ def test_the_torques_asked_for_are_linear_in_the_payload(planned: Make) -> None:
     names = [f"tau{joint}" for joint in range(1, 8)]
     light, heavy = (planned(f"payload/0.643/asked/{mass}").trace[names].to_numpy() for mass in (0, 5))
     outputs = planned("payload/0.643/asked/0").folder.parent.parent
-    between = run(*studies_jobs()["payload/0.643/asked/0"][0][:-1], "robot.payload.mass=2", f"outputs={outputs}")
+    between = run(*studies_jobs()["payload/0.643/asked/0"].overrides[:-1], "robot.payload.mass=2", f"outputs={outputs}")
     np.testing.assert_allclose(between.trace[names].to_numpy(), light + 0.4 * (heavy - light), atol=1e-9)
 
 

@@ -23,43 +23,29 @@ DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "trajectory=quintic
 PERIODS = "controller.period=0.01,0.06"  # the second one diverges
 
 
-@pytest.fixture
-def made(monkeypatch):
-    """Names of the runs that are simulated."""
-    names = []
-    make = work._make
-
-    def note(name, *others):
-        names.append(name)
-        return make(name, *others)
-
-    monkeypatch.setattr(work, "_make", note)
-    return names
-
-
 def runs(ended):
     return list(store.open_sweep(ended.folder).runs())
 
 
-def test_what_is_stored_is_not_made_again(sweep, made):
+def test_what_is_stored_is_not_made_again(sweep, simulated_runs):
     first = sweep("seed=0,1")
-    assert len(made) == 2
+    assert len(simulated_runs) == 2
     second = sweep("seed=0,1")
-    assert len(made) == 2
+    assert len(simulated_runs) == 2
     assert second == first
     assert [run.config["seed"] for run in runs(sweep("seed=0,1,2"))] == [0, 1, 2]
-    assert len(made) == 3
+    assert len(simulated_runs) == 3
 
 
-def test_cells_of_one_config_are_one_run(sweep, made):
+def test_cells_of_one_config_are_one_run(sweep, simulated_runs):
     ended = sweep("seed=1,1", "preset=sound")
-    assert len(made) == 1
+    assert len(simulated_runs) == 1
     assert len(runs(ended)) == 2
 
 
 @pytest.mark.parametrize("damage", ["metrics.json", "trace.parquet", "config.yaml", "robot.urdf"])
 @pytest.mark.parametrize("how", ["gone", "half"])
-def test_a_half_written_run_is_made_again(sweep, made, damage, how):
+def test_a_half_written_run_is_made_again(sweep, simulated_runs, damage, how):
     ended = sweep("seed=0,1")
     path = runs(ended)[1].folder / damage
     whole = path.read_bytes()
@@ -67,29 +53,29 @@ def test_a_half_written_run_is_made_again(sweep, made, damage, how):
         whole[: len(whole) // 2 if damage in ("metrics.json", "trace.parquet") else 0]
     )
     sweep("seed=0,1")
-    assert len(made) == 3
+    assert len(simulated_runs) == 3
     assert path.stat().st_size == pytest.approx(len(whole), abs=100)  # times have other digits
 
 
-def test_a_failed_run_is_made_again_only_when_asked(sweep, made):
+def test_a_failed_run_is_made_again_only_when_asked(sweep, simulated_runs):
     first = sweep(*DIVERGES, PERIODS)
-    assert len(made) == 2
+    assert len(simulated_runs) == 2
     ((overrides, why, where),) = first.failures
     assert overrides[-1] == "controller.period=0.06"
     assert why.startswith("failed in repetition 0 at t = 0.6 s (q1): diverged")
     assert json.loads(where.read_text())["status"] == "failed"
     assert sweep(*DIVERGES, PERIODS).failures == first.failures
-    assert len(made) == 2
+    assert len(simulated_runs) == 2
     assert sweep(*DIVERGES, PERIODS, "sweep.retry=failed").failures[0][1] == why
-    assert len(made) == 3
+    assert len(simulated_runs) == 3
 
 
-def test_a_sweep_may_stop_at_the_first_failure_and_go_on_later(sweep, made):
+def test_a_sweep_may_stop_at_the_first_failure_and_go_on_later(sweep, simulated_runs):
     overrides = (*DIVERGES, "controller.period=0.06,0.01,0.02,0.005")
     ended = sweep(*overrides, "sweep.on_failure=stop")
-    assert (len(made), len(ended.failures), ended.left) == (1, 1, 3)
+    assert (len(simulated_runs), len(ended.failures), ended.left) == (1, 1, 3)
     ended = sweep(*overrides)
-    assert (len(made), len(ended.failures), ended.left) == (4, 1, 0)
+    assert (len(simulated_runs), len(ended.failures), ended.left) == (4, 1, 0)
 
 
 @pytest.mark.parametrize(("policy", "folders"), [("all", 3), ("failed", 1), ("never", 0)])
@@ -120,16 +106,16 @@ def test_one_in_a_hundred_is_sampled(tmp_path):
     assert all(rules.keeps_trace(f"{n:024x}", True) for n in range(20))
 
 
-def test_a_run_in_a_shard_counts_unless_its_trace_is_wanted(sweep, made):
+def test_a_run_in_a_shard_counts_unless_its_trace_is_wanted(sweep, simulated_runs):
     sweep("seed=0,1", "sweep.trace=never")
     sweep("seed=0,1", "sweep.trace=never")
-    assert len(made) == 2
+    assert len(simulated_runs) == 2
     ended = sweep("seed=0,1", "sweep.trace=all")
-    assert len(made) == 4
+    assert len(simulated_runs) == 4
     assert all(len(run.trace) > 1 for run in runs(ended))
 
 
-def test_a_run_that_takes_too_long_is_cut_short(sweep, made):
+def test_a_run_that_takes_too_long_is_cut_short(sweep, simulated_runs):
     start = time.monotonic()
     ended = sweep("duration=1e4,0.05", "sweep.time_limit=0.3", "sweep.attempts=2")
     assert time.monotonic() - start < 20
@@ -140,10 +126,10 @@ def test_a_run_that_takes_too_long_is_cut_short(sweep, made):
     long, short = runs(ended)
     assert (long.status, long.metrics, short.status) == ("failed", {}, "ok")
     assert sweep("duration=1e4,0.05", "sweep.time_limit=0.3").failures == ended.failures
-    assert len(made) == 2  # it is not tried again
+    assert len(simulated_runs) == 2  # it is not tried again
 
 
-def test_an_error_of_a_part_is_a_failed_run_with_its_traceback(sweep, monkeypatch, made):
+def test_an_error_of_a_part_is_a_failed_run_with_its_traceback(sweep, monkeypatch, simulated_runs):
     calls = []
 
     def fall_over(self, *_):
@@ -164,19 +150,19 @@ def test_an_error_of_a_part_is_a_failed_run_with_its_traceback(sweep, monkeypatc
     assert sweep("seed=0,1", "sweep.retry=failed", "sweep.attempts=3").failures == []
 
 
-def test_an_invalid_cell_is_named_before_anything_starts(sweep, tmp_path, made):
+def test_an_invalid_cell_is_named_before_anything_starts(sweep, tmp_path, simulated_runs):
     with pytest.raises(ConfigError) as raised:
         sweep("noise.position=1e-4,-1,1e-3", "seed=0,1")
     (problem,) = raised.value.problems
     assert problem.endswith("noise.position=-1 seed=0] and 1 other cells: noise.position: must be 0 or more; found -1")
     assert "nothing was started" in str(raised.value)
-    assert (made, list(tmp_path.iterdir())) == ([], [])
+    assert (simulated_runs, list(tmp_path.iterdir())) == ([], [])
 
 
-def test_a_problem_that_only_assembly_shows_is_named_before_anything_starts(sweep, made):
+def test_a_problem_that_only_assembly_shows_is_named_before_anything_starts(sweep, simulated_runs):
     with pytest.raises(ConfigError, match=r"plant\.wrist_rotation: parallel leaves"):
         sweep("robot=combined,macro", "plant.wrist_rotation=parallel", "controller.wrist_rotation=real")
-    assert made == []
+    assert simulated_runs == []
 
 
 def test_many_problems_are_counted(sweep):
@@ -210,7 +196,7 @@ def test_a_second_sweep_says_that_the_first_is_at_work(sweep, monkeypatch):
 
 
 @pytest.mark.parametrize("trace", ["all", "never"])
-def test_a_full_disk_stops_the_sweep_which_goes_on_later(sweep, made, monkeypatch, tmp_path, trace):
+def test_a_full_disk_stops_the_sweep_which_goes_on_later(sweep, simulated_runs, monkeypatch, tmp_path, trace):
     fsync, calls = os.fsync, []
 
     def fill_up(file):

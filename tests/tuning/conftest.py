@@ -24,19 +24,3 @@ def tuned(tmp_path: Path) -> Callable[..., Tuning]:
         )
 
     return make
-
-
-@pytest.fixture
-def simulated_runs(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Names of the runs that are simulated."""
-    from runner.sweep import work
-
-    names: list[str] = []
-    make = work._make
-
-    def note(name, *others):
-        names.append(name)
-        return make(name, *others)
-
-    monkeypatch.setattr(work, "_make", note)
-    return names

@@ -5,19 +5,13 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from runner.errors import ConfigError
-from runner.reporting.document import FloatArray, Notice, Origin, Panel, Series
+from runner.reporting.document import FloatArray, Notice, Panel, Series
 from runner.reporting.meca500.calibration_plan import name_of
 from runner.reporting.quantities import number, quantity
 from runner.robots import RobotModel
 from runner.store import Calibration
 
 Calibrations = Mapping[str, Calibration]
-
-
-def calibration_origin(calibration: Calibration, place: str = "") -> Origin:
-    """Return where a figure comes from: the command that made the calibration, and its commit."""
-    commit = str(calibration.provenance["commit"] or "")
-    return Origin(place, str(calibration.provenance["command"]), commit[:12] + commit[40:])
 
 
 def flange_of(calibration: Calibration) -> RobotModel:

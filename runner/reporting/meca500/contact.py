@@ -11,7 +11,7 @@ from runner.reporting.meca500.servo_compliance import servo_compliance
 from runner.reporting.meca500.signals import wrenches
 from runner.reporting.meca500.step_response import law_of
 from runner.reporting.quantities import number, quantity
-from runner.reporting.thesis.studies import clock
+from runner.reporting.run_values import clock
 from runner.store import Run
 
 

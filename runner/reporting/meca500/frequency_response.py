@@ -13,7 +13,7 @@ from runner.reporting.meca500.servo_compliance import servo_compliance
 from runner.reporting.meca500.signals import displacement
 from runner.reporting.meca500.step_response import law_of
 from runner.reporting.quantities import number
-from runner.reporting.thesis.studies import clock
+from runner.reporting.run_values import clock
 from runner.store import Run
 
 _SETTLED = 0.6  # s, by which the transient has faded to 1e-4

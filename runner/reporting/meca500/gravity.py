@@ -10,7 +10,6 @@ from runner.reporting.figures import columns, joint_columns, origin
 from runner.reporting.meca500.calibration_plan import NOISES, SAMPLES, name_of
 from runner.reporting.meca500.calibration_studies import (
     Calibrations,
-    calibration_origin,
     consistency_notice,
     error_curves,
     flange_of,
@@ -123,7 +122,7 @@ def _parameters(base: Calibration, exact: Calibration) -> Table:
         ["value", "unit", "true", "found", "interval", "error", "predicted", "held", "without noise"],
         rows,
         (2, 3, 4, 5, 6, 7, 8),
-        calibration_origin(base),
+        origin(base),
     )
 
 
@@ -136,7 +135,7 @@ def _noise_curves(calibrations: Calibrations) -> Curves:
             error_curves(calibrations, {"gravity/samples": SAMPLES}, "readings averaged", "angle (rad)", "theta"),
         ),
         3,
-        calibration_origin(calibrations["gravity/base"]),
+        origin(calibrations["gravity/base"]),
     )
 
 

@@ -3,7 +3,8 @@
 import numpy as np
 
 from runner.reporting.document import FloatArray, Section, Table, Text
-from runner.reporting.meca500.calibration_studies import calibration_origin, flange_of
+from runner.reporting.figures import origin
+from runner.reporting.meca500.calibration_studies import flange_of
 from runner.reporting.meca500.gravity_printed import (
     force_step,
     swapped_moment_step,
@@ -46,7 +47,7 @@ def misprints_section(exact: Calibration) -> Section:
                     _wrong_bias(truth),
                     _theta(truth),
                 ],
-                origin=calibration_origin(exact),
+                origin=origin(exact),
             ),
             _angles(exact, truth, orientations, gravity),
         ),
@@ -113,7 +114,7 @@ def _angles(exact: Calibration, truth: FloatArray, orientations: FloatArray, gra
         ["true $theta$", "arc cosine", "arc sine", "two arguments"],
         rows,
         (0, 1, 2, 3),
-        calibration_origin(exact),
+        origin(exact),
     )
 
 

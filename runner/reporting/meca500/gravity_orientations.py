@@ -5,11 +5,11 @@ import pinocchio as pin
 
 from runner.calibration.orientations import check_orientations
 from runner.reporting.document import Curves, FloatArray, Formula, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.figures import origin
 from runner.reporting.meca500.calibration_plan import CHOICES, ORIENTATIONS, WEIGHING_SPREADS, name_of
 from runner.reporting.meca500.calibration_studies import (
     CONSISTENCY_HEADER,
     Calibrations,
-    calibration_origin,
     consistency_cells,
     found_error,
     predicted_error,
@@ -52,7 +52,7 @@ def orientations_section(calibrations: Calibrations) -> Section:
                 ],
                 _rows(calibrations),
                 (1, 2, 3, 4, 5, 6, 7, 8, 9),
-                calibration_origin(base),
+                origin(base),
             ),
             _curves(calibrations),
             _finding(calibrations),
@@ -100,7 +100,7 @@ def _curves(calibrations: Calibrations) -> Curves:
             Panel("Mass", "orientations", "error (g)", errors, x_log=True, y_log=True),
         ),
         2,
-        calibration_origin(calibrations["gravity/base"]),
+        origin(calibrations["gravity/base"]),
     )
 
 

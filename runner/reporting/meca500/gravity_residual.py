@@ -4,7 +4,8 @@ import numpy as np
 
 from runner.calibration.procedures.gravity import even_postures
 from runner.reporting.document import Curves, FloatArray, Notice, Panel, Section, Series, Table, Text
-from runner.reporting.meca500.calibration_studies import calibration_origin, flange_of
+from runner.reporting.figures import origin
+from runner.reporting.meca500.calibration_studies import flange_of
 from runner.reporting.quantities import number
 from runner.store import Calibration
 
@@ -62,7 +63,7 @@ def residual_section(base: Calibration) -> Section:
                 ["taken off", "force, rms (N)", "force, largest (N)", "moment, rms (N m)", "moment, largest (N m)"],
                 rows,
                 (1, 2, 3, 4),
-                calibration_origin(base),
+                origin(base),
             ),
             _curves(base, orientations, norms["identified tool and biases"]),
             Notice(
@@ -90,4 +91,4 @@ def _curves(base: Calibration, orientations: FloatArray, norms: FloatArray) -> C
             Series("95th percentile", tilt[order], high, "points"),
         ]
         panels.append(Panel(title, "flange's z axis from straight down (deg)", f"left over ({unit})", series))
-    return Curves("What compensation leaves in each orientation.", panels, 2, calibration_origin(base))
+    return Curves("What compensation leaves in each orientation.", panels, 2, origin(base))

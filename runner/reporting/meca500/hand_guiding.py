@@ -8,7 +8,7 @@ from runner.reporting.document import Curves, Notice, Panel, Section, Series, Te
 from runner.reporting.figures import AXES, columns, origin, playback
 from runner.reporting.meca500.signals import turns, wrenches
 from runner.reporting.quantities import quantity
-from runner.reporting.thesis.studies import clock
+from runner.reporting.run_values import clock
 from runner.store import Run
 
 _CASES = {"hand/ideal": "exact sensor and joints", "hand/lab": "Mini40 and joint servos"}

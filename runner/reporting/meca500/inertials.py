@@ -9,7 +9,7 @@ from runner.reporting.document import FloatArray, Notice, Section, Table, Text
 from runner.reporting.figures import joint_columns, model_of, origin
 from runner.reporting.meca500.plan import INERTIALS
 from runner.reporting.quantities import number, quantity
-from runner.reporting.thesis.studies import apart, median
+from runner.reporting.run_values import apart, median
 from runner.store import Run
 
 _COUNT = 1000

@@ -8,7 +8,7 @@ from runner.reporting.document import Curves, Notice, Panel, Section, Series, Ta
 from runner.reporting.figures import joint_columns, model_of, origin
 from runner.reporting.meca500.plan import LIMITS
 from runner.reporting.quantities import number
-from runner.reporting.thesis.studies import clock
+from runner.reporting.run_values import clock
 from runner.store import Run
 
 _TITLES = {

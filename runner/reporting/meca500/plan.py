@@ -6,7 +6,7 @@ import numpy as np
 
 from runner.controllers.admittance_filter import AXES, Admittance
 from runner.controllers.admittance_stability import stiffest_wall
-from runner.reporting.thesis.plan import Job
+from runner.reporting.job import Job, Jobs, longest_first
 from runner.robots import RobotModel, find_urdf, read_urdf
 
 REPORTED = 0.0167  # s, between two reports of the real controller
@@ -53,17 +53,16 @@ def law() -> Admittance:
     return Admittance(mass, damping, stiffness)
 
 
-def plan() -> dict[str, Job]:
+def plan() -> Jobs:
     """Return every run by name, the longest first."""
-    jobs = {**_free_space(), **_contact(), **_guiding(), **_arm()}
-    return dict(sorted(jobs.items(), key=lambda item: -item[1].ticks))
+    return longest_first({**_free_space(), **_contact(), **_guiding(), **_arm()})
 
 
 def _job(experiment: str, overrides: tuple[str, ...], ticks: int) -> Job:
     return Job((f"experiment=meca500/{experiment}", *overrides), ticks + 500)
 
 
-def _free_space() -> dict[str, Job]:
+def _free_space() -> Jobs:
     jobs = {}
     for case, overrides in STEP_CASES.items():
         for index, axis in enumerate(AXES):
@@ -80,7 +79,7 @@ def _free_space() -> dict[str, Job]:
     return jobs
 
 
-def _contact() -> dict[str, Job]:
+def _contact() -> Jobs:
     jobs = {}
     for plant, overrides in PLANTS.items():
         for stiffness, damping in WALLS.items():
@@ -102,7 +101,7 @@ def _contact() -> dict[str, Job]:
     return jobs
 
 
-def _guiding() -> dict[str, Job]:
+def _guiding() -> Jobs:
     jobs = {
         "hand/ideal": _job("hand", (), 3500),
         "hand/lab": _job("hand", (*_SERVO, "wrist_sensor=mini40"), 5000),
@@ -110,7 +109,7 @@ def _guiding() -> dict[str, Job]:
     return jobs | {f"limit/{name}": _job(name, (), 2500) for name in LIMITS}
 
 
-def _arm() -> dict[str, Job]:
+def _arm() -> Jobs:
     jobs = {}
     for number, home in enumerate(_homes(ORIENTATIONS)):
         posture = f"robot.home={home.round(6).tolist()}".replace(" ", "")

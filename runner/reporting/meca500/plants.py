@@ -7,7 +7,7 @@ from runner.reporting.figures import origin
 from runner.reporting.meca500.plan import STEPS
 from runner.reporting.plant_agreement import describe_agreement, disagreement
 from runner.reporting.quantities import number
-from runner.reporting.thesis.studies import apart, clock
+from runner.reporting.run_values import apart, clock
 from runner.store import Run
 
 

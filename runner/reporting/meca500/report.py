@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from runner.reporting.document import Document, Section, Text
+from runner.reporting.document import Document, Section
 from runner.reporting.meca500.at_the_tip import at_the_tip_section
-from runner.reporting.meca500.checklist import checklist_section
+from runner.reporting.meca500.checklist import CHECKLIST
 from runner.reporting.meca500.contact import contact_section
 from runner.reporting.meca500.frequency_response import frequency_response_section
 from runner.reporting.meca500.gravity import gravity_section
@@ -20,7 +20,7 @@ from runner.reporting.meca500.step_response import step_response_section
 from runner.reporting.meca500.tool_centre_point import tool_centre_point_section
 from runner.reporting.meca500.tool_direction import tool_direction_section
 from runner.reporting.meca500.wrist_sensor import wrist_sensor_section
-from runner.reporting.run_report import provenance
+from runner.reporting.work_report import work_document
 from runner.store import Calibration, Run
 
 
@@ -31,42 +31,7 @@ def meca500_document(runs: Mapping[str, Run], calibrations: Mapping[str, Calibra
         runs: The stored runs of `plan()`, by name.
         calibrations: The stored calibrations of `calibration_jobs()`, by name.
     """
-    sections = (
-        statements_section(runs),
-        source_section(runs),
-        kinematics_section(runs),
-        inertials_section(runs),
-        wrist_sensor_section(runs),
-        Section(
-            "Where the tool is",
-            sections=(tool_centre_point_section(calibrations), tool_direction_section(calibrations)),
-        ),
-        gravity_section(calibrations, runs),
-        Section(
-            "Admittance control",
-            sections=(
-                step_response_section(runs),
-                frequency_response_section(runs),
-                at_the_tip_section(runs),
-                contact_section(runs),
-                stability_map_section(runs),
-                hand_guiding_section(runs),
-                limits_section(runs),
-            ),
-        ),
-        plants_section(runs),
-        Section(
-            "Provenance",
-            (
-                Text(
-                    f"{len(runs)} runs and {len(calibrations)} calibrations lie behind this report, stored under "
-                    "outputs/runs and outputs/calibrations."
-                ),
-                provenance(list(runs.values())),
-            ),
-        ),
-    )
-    return Document(
+    return work_document(
         title="Meca500: Kinematics and Force Control",
         subtitle="A report on a small arm for dental work, in simulation against known truth",
         abstract=(
@@ -75,6 +40,35 @@ def meca500_document(runs: Mapping[str, Run], calibrations: Mapping[str, Calibra
             "and no results; a simulation has what its laboratory lacked, the truth, and every method is judged "
             "against it. Its misprints are put right and shown in numbers."
         ),
-        sections=(*sections, checklist_section(sections)),
-        date=max(str(run.provenance["date"]) for run in runs.values()),
+        chapters=(
+            statements_section(runs),
+            source_section(runs),
+            kinematics_section(runs),
+            inertials_section(runs),
+            wrist_sensor_section(runs),
+            Section(
+                "Where the tool is",
+                sections=(tool_centre_point_section(calibrations), tool_direction_section(calibrations)),
+            ),
+            gravity_section(calibrations, runs),
+            Section(
+                "Admittance control",
+                sections=(
+                    step_response_section(runs),
+                    frequency_response_section(runs),
+                    at_the_tip_section(runs),
+                    contact_section(runs),
+                    stability_map_section(runs),
+                    hand_guiding_section(runs),
+                    limits_section(runs),
+                ),
+            ),
+            plants_section(runs),
+        ),
+        behind=(
+            f"{len(runs)} runs and {len(calibrations)} calibrations lie behind this report, stored under "
+            "outputs/runs and outputs/calibrations."
+        ),
+        runs=runs,
+        checklist=CHECKLIST.section,
     )

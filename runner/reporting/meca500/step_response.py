@@ -12,7 +12,7 @@ from runner.reporting.meca500.plan import FORCE, MOMENT, REPORTED, STEP_CASES
 from runner.reporting.meca500.servo_compliance import servo_compliance
 from runner.reporting.meca500.signals import displacement
 from runner.reporting.quantities import number, quantity
-from runner.reporting.thesis.studies import clock
+from runner.reporting.run_values import clock
 from runner.store import Run
 
 _CHOSEN = ("kinematic, 1 ms", "kinematic, 16.7 ms", "servo, 1 ms", "servo, 16.7 ms")

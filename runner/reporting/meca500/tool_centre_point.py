@@ -5,11 +5,11 @@ import pinocchio as pin
 
 from runner.calibration import consistency, identify_tool_centre_point, joint_deviation, pose_covariances
 from runner.reporting.document import Block, Curves, FloatArray, Formula, Notice, Section, Table, Text
+from runner.reporting.figures import origin
 from runner.reporting.meca500.calibration_plan import POSES, REPEATABILITIES, SPREADS, name_of
 from runner.reporting.meca500.calibration_studies import (
     CONSISTENCY_HEADER,
     Calibrations,
-    calibration_origin,
     consistency_cells,
     consistency_notice,
     error_curves,
@@ -60,7 +60,7 @@ def tool_centre_point_section(calibrations: Calibrations) -> Section:
             ["varied", "value", "error (µm)", "predicted (µm)", "condition", "smallest σ", *CONSISTENCY_HEADER],
             _rows(calibrations),
             (1, 2, 3, 4, 5, 6, 7),
-            calibration_origin(base),
+            origin(base),
         ),
         _curves(calibrations),
         _finding(calibrations),
@@ -111,7 +111,7 @@ def _curves(calibrations: Calibrations) -> Curves:
             error_curves(calibrations, {f"{_KIND}/spread": SPREADS}, "spread (rad)", y_label),
         ),
         3,
-        calibration_origin(calibrations[f"{_KIND}/base"]),
+        origin(calibrations[f"{_KIND}/base"]),
     )
 
 

@@ -4,11 +4,11 @@ import numpy as np
 
 from runner.calibration.tool_direction import alignment, alignment_angles
 from runner.reporting.document import Block, Curves, Formula, Notice, Section, Table, Text
+from runner.reporting.figures import origin
 from runner.reporting.meca500.calibration_plan import DIRECTION_POSES, DIRECTION_REPEATABILITIES, SHORTER, name_of
 from runner.reporting.meca500.calibration_studies import (
     CONSISTENCY_HEADER,
     Calibrations,
-    calibration_origin,
     consistency_cells,
     consistency_notice,
     error_curves,
@@ -51,7 +51,7 @@ def tool_direction_section(calibrations: Calibrations) -> Section:
             ["varied", "value", "error (mrad)", "predicted (mrad)", *CONSISTENCY_HEADER],
             _rows(calibrations),
             (1, 2, 3, 4, 5),
-            calibration_origin(base),
+            origin(base),
         ),
         Curves(
             "Error of the tool's direction over what the tools differ by, and over the arm's repeatability.",
@@ -65,7 +65,7 @@ def tool_direction_section(calibrations: Calibrations) -> Section:
                 ),
             ),
             2,
-            calibration_origin(base),
+            origin(base),
         ),
         _finding(calibrations),
         consistency_notice(calibrations, _KIND),

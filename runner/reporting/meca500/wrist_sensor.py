@@ -12,7 +12,7 @@ from runner.reporting.meca500.plan import ORIENTATIONS, SWINGS
 from runner.reporting.meca500.signals import displacement, wrenches
 from runner.reporting.meca500.step_response import law_of
 from runner.reporting.quantities import number, quantity
-from runner.reporting.thesis.studies import median, values
+from runner.reporting.run_values import median, values
 from runner.sensing.force_torque import AXES as SENSOR_AXES
 from runner.sensing.force_torque import ForceTorqueConfig
 from runner.sensing.wrench import wrench_transform

@@ -9,9 +9,9 @@ from runner.controllers.operational_space_graph import operational_space_graph
 from runner.reporting.document import Block, Curves, Formula, Picture, Section, Table, Text
 from runner.reporting.drawings import block_diagram, frame_assignment
 from runner.reporting.figures import model_of, origin, torque_and_error
+from runner.reporting.job import PRESETS
 from runner.reporting.plant_agreement import describe_agreement
 from runner.reporting.quantities import spread
-from runner.reporting.thesis.plan import PRESETS
 from runner.robots.closed_form import compare
 from runner.robots.denavit_hartenberg import DenavitHartenbergRow, denavit_hartenberg
 from runner.store import Run

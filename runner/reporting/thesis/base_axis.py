@@ -8,8 +8,9 @@ from runner.claims import load_claims
 from runner.reporting.document import Curves, Notice, Panel, Picture, Section, Series, Text
 from runner.reporting.drawings import top_view
 from runner.reporting.figures import columns, model_of, origin
+from runner.reporting.job import PRESETS
 from runner.reporting.quantities import number
-from runner.reporting.thesis.plan import DURATIONS, PRESETS, TORQUE_DURATIONS, TRACKED
+from runner.reporting.thesis.plan import DURATIONS, TORQUE_DURATIONS, TRACKED
 from runner.store import Run
 
 

@@ -8,9 +8,9 @@ from runner.reporting.document import Block, Formula, Picture, Section, Table, T
 from runner.reporting.drawings import block_diagram, control_steps, frame_assignment
 from runner.reporting.figures import desired_motion, model_of, origin, playback
 from runner.reporting.figures_staged import macro_mini_targets, staged_torque_and_error
+from runner.reporting.job import PRESETS
 from runner.reporting.quantities import spread
 from runner.reporting.thesis.arm import dh_cells, reproduced
-from runner.reporting.thesis.plan import PRESETS
 from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.store import Run
 

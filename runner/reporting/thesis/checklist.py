@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from runner.reporting import outline
-from runner.reporting.document import Claim, Document, Formula, Notice, Provenance, Section, Table, Text
+from runner.reporting.document import Claim, Formula, Notice, Provenance, Section, Table, Text
 
 _SIMULATED, _DRAWN, _FOREIGN, _LOST = "reproduced", "drawn anew", "not ours", "lost"
 _PHOTOGRAPH = "a photograph from the literature"
@@ -94,7 +94,7 @@ def checklist_section(sections: Sequence[Section]) -> Section:
 def _places(sections: Sequence[Section]) -> dict[str, str]:
     """Return the section in which each number of the thesis stands first."""
     places: dict[str, str] = {}
-    for chapter in outline.chapters(Document("", "", "", sections, "")):
+    for chapter in outline.numbered(sections):
         for block in chapter.section.blocks:
             if not isinstance(block, Text | Notice | Formula | Claim | Provenance) and block.origin.number:
                 places.setdefault(block.origin.number.lower(), f"§{chapter.number}")

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 from runner.claims import FACTOR, PublishedClaim, judge, load_claims
 from runner.reporting.document import Block, Claim, Finding, Section, Table, Text
+from runner.reporting.job import PRESETS
 from runner.reporting.quantities import number, quantity, spread
-from runner.reporting.thesis.plan import PRESETS
 from runner.store import Run
 
 

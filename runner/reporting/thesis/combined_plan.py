@@ -1,5 +1,7 @@
 """The runs behind what the thesis could not show of the combined arm."""
 
+from runner.reporting.job import PRESETS, Job, Jobs
+
 METHODS = ("one_way", "two_way", "independent", "mini_held", "whole_body")
 MOTIONS = ("goal", "quintic")
 DYNAMICS = ("coupled", "decoupled")
@@ -44,14 +46,13 @@ COMPARED_RATES = {
     ),
     "two_way, 10 ms and 1 ms": ("controller.coupling=two_way",),
 }
-Jobs = dict[str, tuple[tuple[str, ...], int]]
 _STAGED = {"goal": "experiment=thesis/figure_5_8", "quintic": "experiment=thesis/figure_5_12"}
 _ONCE = ("repetitions=1", "noise=none")
 _BULLET_STEP = "plant.step=0.00025"
 
 
 def combined_jobs() -> Jobs:
-    """Return overrides and control ticks of every run by name."""
+    """Return every run by name."""
     return {
         **_coupling(),
         **_masses(),
@@ -65,7 +66,7 @@ def combined_jobs() -> Jobs:
 
 def _coupling() -> Jobs:
     jobs = {
-        f"coupling/{motion}/{method}/{dynamics}": (
+        f"coupling/{motion}/{method}/{dynamics}": Job(
             (*_method(motion, method), *_ONCE, f"plant.dynamics={dynamics}"),
             6000,
         )
@@ -74,11 +75,11 @@ def _coupling() -> Jobs:
         for dynamics in DYNAMICS
     }
     for motion in MOTIONS:
-        jobs[f"coupling/{motion}/noise"] = ((_STAGED[motion], "repetitions=3"), 18000)
+        jobs[f"coupling/{motion}/noise"] = Job((_STAGED[motion], "repetitions=3"), 18000)
     for mass in VANISHING:
         for dynamics in DYNAMICS:
             overrides = (_STAGED["quintic"], *_ONCE, "plant=rk4", f"plant.dynamics={dynamics}", *_mini_mass(2 * mass))
-            jobs[f"vanishing/{mass}/{dynamics}"] = (overrides, 6000)
+            jobs[f"vanishing/{mass}/{dynamics}"] = Job(overrides, 6000)
     return jobs
 
 
@@ -94,7 +95,7 @@ def _mini_mass(mass: float) -> tuple[str, ...]:
 
 def _masses() -> Jobs:
     return {
-        f"mass/{mass}/{payload}": (
+        f"mass/{mass}/{payload}": Job(
             (_STAGED["quintic"], *_ONCE, *_mini_mass(mass), f"controller.payload={payload}"),
             6000,
         )
@@ -109,14 +110,14 @@ def _sampling() -> Jobs:
     for dynamics in DYNAMICS:
         for h in MACRO_PERIODS:
             own: tuple[str, ...] = ("plant=rk4", f"controller.period.macro={h:g}")
-            jobs[f"stage_sampling/macro/{dynamics}/{h}"] = ((*step, *own, f"plant.dynamics={dynamics}"), 3000)
+            jobs[f"stage_sampling/macro/{dynamics}/{h}"] = Job((*step, *own, f"plant.dynamics={dynamics}"), 3000)
         for h in MINI_PERIODS:
             own = ("plant=rk4", *_mini_period(h))
-            jobs[f"stage_sampling/mini/{dynamics}/{h}"] = ((*step, *own, f"plant.dynamics={dynamics}"), 1500)
+            jobs[f"stage_sampling/mini/{dynamics}/{h}"] = Job((*step, *own, f"plant.dynamics={dynamics}"), 1500)
         for steps, periods in EULER_PERIODS.items():
             for h in periods:
                 own = (f"plant.step={h / steps:.9g}", *_mini_period(h))
-                jobs[f"stage_sampling/euler{steps}/{dynamics}/{h}"] = (
+                jobs[f"stage_sampling/euler{steps}/{dynamics}/{h}"] = Job(
                     (*step, *own, f"plant.dynamics={dynamics}"),
                     1500,
                 )
@@ -134,19 +135,19 @@ def _shapes() -> Jobs:
         for target in TARGETS:
             for motion in MOTIONS:
                 own = (_STAGED[motion], *_ONCE, *overrides, f"controller.macro_target={target}")
-                jobs[f"folding/{case}/{target}/{motion}"] = (own, 6000)
+                jobs[f"folding/{case}/{target}/{motion}"] = Job(own, 6000)
     for case, overrides in STRETCHING.items():
         two_way = (_STAGED["goal"], *_ONCE, *overrides, "controller.coupling=two_way", "duration=8")
-        jobs[f"stretch/{case}"] = (two_way, 12000)
-    for preset in ("as_reported", "sound"):
+        jobs[f"stretch/{case}"] = Job(two_way, 12000)
+    for preset in PRESETS:
         overrides = (_STAGED["quintic"], *_ONCE, f"preset={preset}", "controller.coupling=two_way")
-        jobs[f"stretch/quintic/{preset}"] = (overrides, 6000)
+        jobs[f"stretch/quintic/{preset}"] = Job(overrides, 6000)
     return jobs
 
 
 def _references() -> Jobs:
     return {
-        f"reference/{noise}/{velocity}/{t_f}": (
+        f"reference/{noise}/{velocity}/{t_f}": Job(
             (
                 _STAGED["quintic"],
                 "repetitions=1",
@@ -167,12 +168,12 @@ def _turns() -> Jobs:
     jobs: Jobs = {}
     for schedule in SCHEDULES:
         own = (*_ONCE, f"controller.schedule={schedule}")
-        for preset in ("as_reported", "sound"):
+        for preset in PRESETS:
             for motion in MOTIONS:
-                jobs[f"turns/{preset}/{motion}/{schedule}"] = ((_STAGED[motion], *own, f"preset={preset}"), 6000)
+                jobs[f"turns/{preset}/{motion}/{schedule}"] = Job((_STAGED[motion], *own, f"preset={preset}"), 6000)
         for t_f in TURN_DURATIONS:
             overrides = (_STAGED["quintic"], *own, f"trajectory.duration={t_f}")
-            jobs[f"turns/{t_f}/{schedule}"] = (overrides, int(1500 * (t_f + 1.0)))
+            jobs[f"turns/{t_f}/{schedule}"] = Job(overrides, int(1500 * (t_f + 1.0)))
     return jobs
 
 
@@ -181,13 +182,13 @@ def _whole_body() -> Jobs:
     for rate, overrides in COMPARED_RATES.items():
         for motion in MOTIONS:
             base = (f"trajectory={motion}",) if "experiment=thesis/whole_body" in overrides else (_STAGED[motion],)
-            jobs[f"whole_body/{motion}/{rate}"] = ((*base, *overrides, "repetitions=3", _BULLET_STEP), 15000)
+            jobs[f"whole_body/{motion}/{rate}"] = Job((*base, *overrides, "repetitions=3", _BULLET_STEP), 15000)
     for speed in TIP_SPEEDS:
         overrides = ("experiment=thesis/whole_body", "trajectory=goal", f"controller.max_tip_speed={speed:g}")
-        jobs[f"whole_body/speed/{speed}"] = ((*overrides, "repetitions=3"), 18000)
+        jobs[f"whole_body/speed/{speed}"] = Job((*overrides, "repetitions=3"), 18000)
     slow = ("experiment=thesis/whole_body", "controller.period=0.01", f"trajectory.duration={SLOW_DURATION:g}")
-    jobs["whole_body/slow"] = ((*slow, "repetitions=1", _BULLET_STEP), 10500)
+    jobs["whole_body/slow"] = Job((*slow, "repetitions=1", _BULLET_STEP), 10500)
     for coupling in ("one_way", "mini_held"):
         overrides = (_STAGED["quintic"], f"controller.coupling={coupling}", "controller.payload=known")
-        jobs[f"rest/{coupling}"] = ((*overrides, "repetitions=3"), 18000)
+        jobs[f"rest/{coupling}"] = Job((*overrides, "repetitions=3"), 18000)
     return jobs

@@ -7,8 +7,9 @@ import numpy as np
 from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import origin
 from runner.reporting.quantities import number, quantity
+from runner.reporting.run_values import apart, cell, clock, failures, median
 from runner.reporting.thesis.combined_plan import METHODS, MOTIONS
-from runner.reporting.thesis.studies import apart, cell, clock, failures, largest, median, settled
+from runner.reporting.thesis.studies import largest, settled
 from runner.reporting.thesis.vanishing_mass import vanishing_section
 from runner.store import Run
 

@@ -7,8 +7,9 @@ import numpy as np
 from runner.reporting.document import Block, Curves, Formula, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import origin
 from runner.reporting.quantities import number, quantity
+from runner.reporting.run_values import cell, clock, failures
 from runner.reporting.thesis.combined_plan import FOLDING, MOTIONS, TARGETS
-from runner.reporting.thesis.studies import cell, clock, extension, failures, mini_dexterity
+from runner.reporting.thesis.studies import extension, mini_dexterity
 from runner.store import Run
 
 _CASES = ("sound", "as_reported")

@@ -7,8 +7,8 @@ import numpy as np
 from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import origin
 from runner.reporting.quantities import number, quantity
+from runner.reporting.run_values import cell, failures, median, values
 from runner.reporting.thesis.combined_plan import MASSES, NOMINAL_MASS, PAYLOADS
-from runner.reporting.thesis.studies import cell, failures, median, values
 from runner.store import Run
 
 _FACTOR = 10.0  # of the tip error of the thesis' own Mini

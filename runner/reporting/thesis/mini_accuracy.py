@@ -8,7 +8,8 @@ from runner.claims import load_claims
 from runner.reporting.document import Notice
 from runner.reporting.figures import joint_columns, model_of
 from runner.reporting.quantities import number, quantity
-from runner.reporting.thesis.studies import median, ratio
+from runner.reporting.run_values import median
+from runner.reporting.thesis.studies import ratio
 from runner.store import Run
 
 _NO_GAIN = 0.8  # of the Macro's own error: only a smaller share counts as a gain

@@ -1,10 +1,8 @@
 """Which runs the thesis report needs: a name for each, and the overrides that make it."""
 
-from dataclasses import dataclass
-
+from runner.reporting.job import PRESETS, Job, Jobs, longest_first
 from runner.reporting.thesis.combined_plan import combined_jobs
 
-PRESETS = ("as_reported", "sound")
 FIGURES = (
     "figure_3_5",
     "figure_3_6",
@@ -35,22 +33,9 @@ SAMPLING = (0.5, 0.8, 0.95, 1.05)  # omega_n h on the Runge-Kutta plant
 ARMS = ("macro", "mini")
 
 
-@dataclass(frozen=True)
-class Job:
-    """A run that the report needs.
-
-    Attributes:
-        overrides: The overrides that make it.
-        ticks: Control ticks that it takes, roughly, for the estimate of what is left.
-    """
-
-    overrides: tuple[str, ...]
-    ticks: int
-
-
-def plan() -> dict[str, Job]:
+def plan() -> Jobs:
     """Return every run by name, the longest first."""
-    jobs: dict[str, Job] = {}
+    jobs: Jobs = {}
 
     def add(name: str, *overrides: str, ticks: int = 400) -> None:
         jobs[name] = Job(overrides, ticks)
@@ -71,8 +56,7 @@ def plan() -> dict[str, Job]:
             add(f"{name}/{preset}", *base, ticks=6000 * repetitions)  # six joints take half as long again
             if name in ("figure_5_8", "figure_5_10", "figure_5_12", "figure_5_13"):
                 add(f"{name}/{preset}/rk4", *base, "plant=rk4", "repetitions=1", ticks=6000)
-    for name, (overrides, ticks) in combined_jobs().items():
-        add(name, *overrides, ticks=ticks)
+    jobs |= combined_jobs()
     for arm in ARMS:
         ticks = 4000 if arm == "mini" else 400
         add(f"gravity_term/{arm}", "experiment=thesis/gravity_term", f"robot={arm}", ticks=ticks)
@@ -88,4 +72,4 @@ def plan() -> dict[str, Job]:
     for w in SAMPLING:
         add(f"sampling/{w}", "experiment=thesis/sampling", f"controller.period={w / 30.0:.6g}")
     add("singular", "experiment=thesis/singular")
-    return dict(sorted(jobs.items(), key=lambda item: -item[1].ticks))
+    return longest_first(jobs)

@@ -4,15 +4,15 @@ from collections.abc import Mapping
 
 from runner.reporting.document import Block, Notice, Section, Table, Text
 from runner.reporting.figures import origin
+from runner.reporting.job import PRESETS
 from runner.reporting.quantities import number, quantity
+from runner.reporting.run_values import cell, median
 from runner.reporting.thesis.combined_plan import NOMINAL_MASS
 from runner.reporting.thesis.mass_ratio import breaking_masses
 from runner.reporting.thesis.mini_accuracy import mini_accuracy
-from runner.reporting.thesis.studies import cell, median, ratio
+from runner.reporting.thesis.studies import ratio
 from runner.reporting.thesis.whole_body import fastest_method_3, fastest_speed
 from runner.store import Run
-
-_PRESETS = ("as_reported", "sound")
 
 
 def questions_section(runs: Mapping[str, Run]) -> Section:
@@ -67,7 +67,7 @@ _TRACKING = {"one-way": "figure_5_12", "two-way": "figure_5_13", "independent": 
 
 def _independent(runs: Mapping[str, Run]) -> Notice:
     pairs = {
-        p: [median(runs[f"{f}/{p}"], "max_tracking_error") for f in ("figure_5_3", "figure_5_12")] for p in _PRESETS
+        p: [median(runs[f"{f}/{p}"], "max_tracking_error") for f in ("figure_5_3", "figure_5_12")] for p in PRESETS
     }
     independent, coupled = pairs["sound"]
     better = independent is not None and coupled is not None and coupled < independent
@@ -88,7 +88,7 @@ def _independent(runs: Mapping[str, Run]) -> Notice:
 
 def _effectiveness(runs: Mapping[str, Run]) -> list[Block]:
     rows = []
-    for preset in _PRESETS:
+    for preset in PRESETS:
         for name, goal, track in (
             ("Macro alone (its end point)", "macro_alone_goal", "macro_alone"),
             ("one-way", "figure_5_8", "figure_5_12"),
@@ -126,7 +126,7 @@ def _effectiveness(runs: Mapping[str, Run]) -> list[Block]:
 
 def _summary(runs: Mapping[str, Run]) -> str:
     sentences = []
-    for preset in _PRESETS:
+    for preset in PRESETS:
         alone = median(runs[f"macro_alone/{preset}"], "macro_max_tracking_error")
         pairs = [
             (name, median(runs[f"{_TRACKING[name]}/{preset}"], "max_tracking_error")) for name in ("one-way", "two-way")
@@ -137,7 +137,7 @@ def _summary(runs: Mapping[str, Run]) -> str:
             else f"not better with {name} coupling"
             for name, tip in pairs
         )
-        sentences.append(f"with preset {preset} tracking is {found}{'.' if preset == _PRESETS[-1] else ';'}")
+        sentences.append(f"with preset {preset} tracking is {found}{'.' if preset == PRESETS[-1] else ';'}")
     return " ".join(("Measured against the Macro's end point with the Mini held still:", *sentences))
 
 
@@ -149,7 +149,7 @@ def _together(runs: Mapping[str, Run]) -> Notice:
             median(runs[f"figure_5_8/{preset}"], "settling_time"),
             median(runs[f"macro_alone_goal/{preset}"], "macro_settling_time"),
         )
-        for preset in _PRESETS
+        for preset in PRESETS
     }
     settling = "; ".join(
         f"{number(one)} against {number(other)} s ({preset}: {_faster(one, other)})"

@@ -7,8 +7,9 @@ import numpy as np
 from runner.reporting.document import Block, Curves, Formula, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, origin
 from runner.reporting.quantities import number
+from runner.reporting.run_values import cell, clock, failures, median, values
 from runner.reporting.thesis.combined_plan import NOISES, REFERENCE_DURATIONS, VELOCITIES
-from runner.reporting.thesis.studies import cell, clock, failures, largest, median, ratio, values, wrist_rotations
+from runner.reporting.thesis.studies import largest, ratio, wrist_rotations
 from runner.store import Run
 
 _NOISY = {"none": "no noise", "thesis": "thesis noise"}

@@ -2,8 +2,7 @@
 
 from collections.abc import Mapping
 
-from runner.reporting.document import Document, Section, Text
-from runner.reporting.run_report import provenance
+from runner.reporting.document import Document, Section
 from runner.reporting.thesis.base_axis import base_axis_section, duration_section
 from runner.reporting.thesis.chapter2 import chapter2
 from runner.reporting.thesis.chapter3 import chapter3
@@ -23,6 +22,7 @@ from runner.reporting.thesis.stage_sampling import stage_sampling_section
 from runner.reporting.thesis.stretch import stretch_section
 from runner.reporting.thesis.turns import turns_section
 from runner.reporting.thesis.whole_body import whole_body_section
+from runner.reporting.work_report import work_document
 from runner.store import Run
 
 
@@ -32,28 +32,7 @@ def thesis_document(runs: Mapping[str, Run]) -> Document:
     Args:
         runs: The stored runs of `plan()`, by name.
     """
-    sections = (
-        claims_section(runs),
-        questions_section(runs),
-        chapter2(runs),
-        chapter3(runs),
-        chapter4(runs),
-        chapter5(runs),
-        _explanations(runs),
-        _beyond(runs),
-        _trust(runs),
-        Section(
-            "Provenance",
-            (
-                Text(
-                    f"{len(runs)} runs lie behind this report, each stored with its config, trace and metrics under "
-                    "outputs/runs. Figures show repetition 0; numbers are medians over the repetitions."
-                ),
-                provenance(list(runs.values())),
-            ),
-        ),
-    )
-    return Document(
+    return work_document(
         title="Control of a Macro-Mini Robotic Manipulator",
         subtitle="The thesis (National University of Singapore, 2008), reproduced",
         abstract=(
@@ -63,8 +42,23 @@ def thesis_document(runs: Mapping[str, Run]) -> Document:
             "simulated each for itself; with the full equations (preset sound) steady-state and tracking errors "
             "fall by one to three powers of ten."
         ),
-        sections=(*sections, checklist_section(sections)),
-        date=max(str(run.provenance["date"]) for run in runs.values()),
+        chapters=(
+            claims_section(runs),
+            questions_section(runs),
+            chapter2(runs),
+            chapter3(runs),
+            chapter4(runs),
+            chapter5(runs),
+            _explanations(runs),
+            _beyond(runs),
+            _trust(runs),
+        ),
+        behind=(
+            f"{len(runs)} runs lie behind this report, each stored with its config, trace and metrics under "
+            "outputs/runs. Figures show repetition 0; numbers are medians over the repetitions."
+        ),
+        runs=runs,
+        checklist=checklist_section,
     )
 
 

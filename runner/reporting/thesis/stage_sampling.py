@@ -7,8 +7,8 @@ import numpy as np
 from runner.reporting.document import Block, Curves, FloatArray, Formula, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, origin
 from runner.reporting.quantities import number
+from runner.reporting.run_values import clock, failures
 from runner.reporting.thesis.combined_plan import DYNAMICS, EULER_PERIODS, MACRO_PERIODS, MINI_PERIODS
-from runner.reporting.thesis.studies import clock, failures
 from runner.store import Run
 
 _SHOWN = (MINI_PERIODS[2], MINI_PERIODS[4], MINI_PERIODS[5])

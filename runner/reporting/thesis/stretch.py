@@ -6,13 +6,14 @@ import numpy as np
 
 from runner.reporting.document import Block, Curves, Formula, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, origin
+from runner.reporting.job import PRESETS
 from runner.reporting.quantities import number, quantity
+from runner.reporting.run_values import cell, clock, failures
 from runner.reporting.thesis.combined_plan import STRETCHING
 from runner.reporting.thesis.left_out_gravity import missing_acceleration
-from runner.reporting.thesis.studies import cell, clock, extension, failures, rest_of_way
+from runner.reporting.thesis.studies import extension, rest_of_way
 from runner.store import Run
 
-_PRESETS = ("as_reported", "sound")
 _SETTLED = 1e-3  # m, of the tip error, from where on the drift is measured
 _LONGEST = 0.5  # s, over which it is measured, before the reach is lost
 
@@ -131,7 +132,7 @@ def _quintic_curves(runs: Mapping[str, Run], reach: float) -> Curves:
     for title, measure in (("Distance to the target |x_d − x_E|", rest_of_way), ("Stretch of the Mini |p|", extension)):
         series = [
             Series(preset, clock(runs[f"stretch/quintic/{preset}"]), measure(runs[f"stretch/quintic/{preset}"]))
-            for preset in _PRESETS
+            for preset in PRESETS
         ]
         t = clock(runs["stretch/quintic/sound"])
         series.append(Series("reach", t, np.full(len(t), reach), "dotted"))

@@ -6,12 +6,12 @@ import numpy as np
 
 from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, origin
+from runner.reporting.job import PRESETS
 from runner.reporting.quantities import number, quantity
+from runner.reporting.run_values import cell, clock, failures, median
 from runner.reporting.thesis.combined_plan import SCHEDULES, TURN_DURATIONS
-from runner.reporting.thesis.studies import cell, clock, failures, median, ratio, settled
+from runner.reporting.thesis.studies import ratio, settled
 from runner.store import Run
-
-_PRESETS = ("as_reported", "sound")
 
 
 def turns_section(runs: Mapping[str, Run]) -> Section:
@@ -19,7 +19,7 @@ def turns_section(runs: Mapping[str, Run]) -> Section:
     ours = {name: run for name, run in runs.items() if name.startswith("turns/")}
     rows = [
         [preset, schedule, settled(goal), cell(goal, "steady_state_error"), *_tracking_cells(track)]
-        for preset in _PRESETS
+        for preset in PRESETS
         for schedule in SCHEDULES
         for goal, track in [[runs[f"turns/{preset}/{motion}/{schedule}"] for motion in ("goal", "quintic")]]
     ]
@@ -83,7 +83,7 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
 def _finding(runs: Mapping[str, Run]) -> Notice:
     errors = {
         preset: [median(runs[f"turns/{preset}/quintic/{schedule}"], "max_tracking_error") for schedule in SCHEDULES]
-        for preset in _PRESETS
+        for preset in PRESETS
     }
     both, turns = errors["sound"]
     damaged = both is not None and (turns is None or turns > 10.0 * both)

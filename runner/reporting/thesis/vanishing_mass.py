@@ -9,8 +9,9 @@ import pinocchio as pin
 from runner.reporting.document import Block, Curves, FloatArray, Panel, Section, Series, Table, Text
 from runner.reporting.figures import joint_columns, model_of, origin
 from runner.reporting.quantities import number, quantity
+from runner.reporting.run_values import clock, failures
 from runner.reporting.thesis.combined_plan import VANISHING
-from runner.reporting.thesis.studies import clock, failures, largest
+from runner.reporting.thesis.studies import largest
 from runner.store import Run
 
 _MINI = slice(3, 6)

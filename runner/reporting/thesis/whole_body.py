@@ -7,8 +7,9 @@ import numpy as np
 from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, origin
 from runner.reporting.quantities import number, quantity
+from runner.reporting.run_values import cell, clock, failures, median
 from runner.reporting.thesis.combined_plan import COMPARED_RATES, SLOW_DURATION, TIP_SPEEDS
-from runner.reporting.thesis.studies import cell, clock, failures, median, settled
+from runner.reporting.thesis.studies import settled
 from runner.store import Run
 
 _METHOD_3 = tuple(rate for rate in COMPARED_RATES if not rate.startswith("whole body"))

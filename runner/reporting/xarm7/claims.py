@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from runner.claims import PublishedClaim, judge_motion, load_claims
 from runner.reporting.document import Claim, Finding, Section, Table, Text
 from runner.reporting.figures import columns
+from runner.reporting.job import PRESETS
 from runner.reporting.quantities import quantity
-from runner.reporting.thesis.plan import PRESETS
 from runner.store import Run
 
 

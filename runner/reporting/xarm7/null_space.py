@@ -8,7 +8,7 @@ import numpy as np
 from runner.reporting.document import Block, Curves, FloatArray, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, joint_columns, model_of, origin
 from runner.reporting.quantities import number, quantity
-from runner.reporting.thesis.studies import clock, failures, median
+from runner.reporting.run_values import clock, failures, median
 from runner.reporting.xarm7.null_space_cycles import cycles_section
 from runner.reporting.xarm7.null_space_manipulability import manipulability_section
 from runner.reporting.xarm7.studies_plan import FASTEST_RATE, RULES, SPEEDS

@@ -7,7 +7,7 @@ import numpy as np
 from runner.reporting.document import Block, Curves, FloatArray, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import joint_columns, origin
 from runner.reporting.quantities import number, quantity
-from runner.reporting.thesis.studies import cell, failures
+from runner.reporting.run_values import cell, failures
 from runner.reporting.xarm7.studies import rate, smallest_margin
 from runner.reporting.xarm7.studies_plan import CYCLE, CYCLES, NULL_SPACE_TASKS, PATHS
 from runner.store import Run

@@ -8,7 +8,7 @@ from runner.controllers.null_space import manipulability
 from runner.reporting.document import Block, Curves, FloatArray, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, joint_columns, model_of, origin
 from runner.reporting.quantities import number
-from runner.reporting.thesis.studies import cell, clock, failures
+from runner.reporting.run_values import cell, clock, failures
 from runner.reporting.xarm7.studies import smallest_margin
 from runner.reporting.xarm7.studies_plan import CLIMB_CYCLE, CLIMB_CYCLES, SOUGHT, TASKS
 from runner.reporting.xarm7.why_it_failed import ROWS

@@ -9,7 +9,7 @@ from scipy.optimize import minimize
 from runner.reporting.document import Block, Curves, FloatArray, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import joint_columns, model_of, origin
 from runner.reporting.quantities import number, quantity
-from runner.reporting.thesis.studies import cell, failures, median, values
+from runner.reporting.run_values import cell, failures, median, values
 from runner.reporting.xarm7.studies import first_saturation, lost_at, rate
 from runner.reporting.xarm7.studies_plan import ASKED_PAYLOADS, PAYLOADS, XS
 from runner.robots import RobotModel

@@ -1,6 +1,6 @@
 """Which runs the xArm7 report needs: a name for each, and the overrides that make it."""
 
-from runner.reporting.thesis.plan import PRESETS, Job
+from runner.reporting.job import PRESETS, Job, Jobs, longest_first
 from runner.reporting.xarm7.studies_plan import studies_jobs
 
 EXPERIMENTS = ("three_joints", "round_posture", "seven_joints", "seven_joints_pose", "as_printed")
@@ -10,7 +10,7 @@ _SERVO_TICKS = 3000  # of 5 s, in ticks of the kinematic plant that take as long
 _HALF = "duration=5"  # s, half a period: from A to B
 
 
-def plan() -> dict[str, Job]:
+def plan() -> Jobs:
     """Return every run by name, the longest first."""
     jobs = {
         f"{name}/{preset}": Job((f"experiment=xarm7/{name}", f"preset={preset}"), _TICKS)
@@ -23,5 +23,4 @@ def plan() -> dict[str, Job]:
         for step in STEPS:
             overrides = (*servo, "plant=bullet", f"plant.step={step}")
             jobs[f"servo/{preset}/{step}"] = Job(overrides, _SERVO_TICKS)
-    jobs |= {name: Job(overrides, ticks) for name, (overrides, ticks) in studies_jobs().items()}
-    return dict(sorted(jobs.items(), key=lambda item: -item[1].ticks))
+    return longest_first(jobs | studies_jobs())

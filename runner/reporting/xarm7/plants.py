@@ -6,9 +6,9 @@ import numpy as np
 
 from runner.reporting.document import Curves, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, origin
+from runner.reporting.job import PRESETS
 from runner.reporting.plant_agreement import describe_agreement, disagreement
 from runner.reporting.quantities import number
-from runner.reporting.thesis.plan import PRESETS
 from runner.reporting.xarm7.plan import STEPS
 from runner.store import Run
 

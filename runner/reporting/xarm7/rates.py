@@ -6,9 +6,10 @@ import numpy as np
 
 from runner.reporting.document import Block, Curves, Formula, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import origin
+from runner.reporting.job import PRESETS
 from runner.reporting.quantities import number, quantity
-from runner.reporting.thesis.studies import cell, failures, median, values
-from runner.reporting.xarm7.studies_plan import PLANTS, PRESETS, RATES
+from runner.reporting.run_values import cell, failures, median, values
+from runner.reporting.xarm7.studies_plan import PLANTS, RATES
 from runner.store import Run
 
 _MAKERS = (100, 250)  # Hz, recommended and allowed

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from runner.reporting.document import Document, Section, Text
-from runner.reporting.run_report import provenance
-from runner.reporting.xarm7.checklist import checklist_section
+from runner.reporting.document import Document, Section
+from runner.reporting.work_report import work_document
+from runner.reporting.xarm7.checklist import CHECKLIST
 from runner.reporting.xarm7.claims import claims_section
 from runner.reporting.xarm7.kinematics import kinematics_section
 from runner.reporting.xarm7.null_space import null_space_section
@@ -26,27 +26,7 @@ def xarm7_document(runs: Mapping[str, Run]) -> Document:
     Args:
         runs: The stored runs of `plan()`, by name.
     """
-    sections = (
-        claims_section(runs),
-        source_section(runs),
-        kinematics_section(runs),
-        three_joints_section(runs),
-        why_it_failed_section(runs),
-        seven_joints_section(runs),
-        _beyond(runs),
-        plants_section(runs),
-        Section(
-            "Provenance",
-            (
-                Text(
-                    f"{len({run.hash for run in runs.values()})} runs lie behind this report, each stored with its "
-                    "config, trace and metrics under outputs/runs."
-                ),
-                provenance(list(runs.values())),
-            ),
-        ),
-    )
-    return Document(
+    return work_document(
         title="Robotic Manipulator: Path Planning",
         subtitle="The xArm7 report (National Technical University of Athens, 2024), reproduced and made to work",
         abstract=(
@@ -56,8 +36,22 @@ def xarm7_document(runs: Mapping[str, Run]) -> Document:
             "not exist and the printed Jacobian is wrong. Here it works, and the report goes on to what it could "
             "not show."
         ),
-        sections=(*sections, checklist_section(sections)),
-        date=max(str(run.provenance["date"]) for run in runs.values()),
+        chapters=(
+            claims_section(runs),
+            source_section(runs),
+            kinematics_section(runs),
+            three_joints_section(runs),
+            why_it_failed_section(runs),
+            seven_joints_section(runs),
+            _beyond(runs),
+            plants_section(runs),
+        ),
+        behind=(
+            f"{len({run.hash for run in runs.values()})} runs lie behind this report, each stored with its "
+            "config, trace and metrics under outputs/runs."
+        ),
+        runs=runs,
+        checklist=CHECKLIST.section,
     )
 
 

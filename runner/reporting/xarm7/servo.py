@@ -7,7 +7,7 @@ import numpy as np
 from runner.reporting.document import Block, Curves, Formula, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, joint_columns, model_of, origin
 from runner.reporting.quantities import number, quantity
-from runner.reporting.thesis.studies import cell, failures, median, values
+from runner.reporting.run_values import cell, failures, median, values
 from runner.reporting.xarm7.studies import rate
 from runner.reporting.xarm7.studies_plan import FEEDBACKS, GRAVITY_COMPENSATION, STIFFNESSES
 from runner.store import Run

@@ -7,8 +7,8 @@ import pinocchio as pin
 
 from runner.reporting.document import Curves, Formula, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, joint_columns, model_of, origin, playback
+from runner.reporting.job import PRESETS
 from runner.reporting.quantities import number, quantity
-from runner.reporting.thesis.plan import PRESETS
 from runner.reporting.xarm7.studies import smallest_margin
 from runner.reporting.xarm7.three_joints import tip_curves
 from runner.store import Run

@@ -1,5 +1,7 @@
 """The runs behind why the xArm7 report's second part failed, and what its seven joints can do."""
 
+from runner.reporting.job import PRESETS, Job, Jobs
+
 TASKS = ("position", "pose")
 # The report's errors, each of which can be put right: which of them a case keeps.
 ERRORS = {
@@ -22,7 +24,6 @@ SOUGHT = ("posture", "manipulability")
 CLIMB_CYCLES = 3  # of the line with either
 CLIMB_CYCLE = 5.0  # s
 RATES = (25, 50, 100, 250)  # Hz
-PRESETS = ("as_reported", "sound")
 PLANTS = ("kinematic", "bullet")
 STIFFNESSES = (300.0, 1500.0, 7500.0)  # N m/rad
 GRAVITY_COMPENSATION = ("true", "false")
@@ -32,7 +33,6 @@ ASKED_PAYLOADS = (0.0, 5.0)  # kg, on joints that go where they are told
 PAYLOADS = (0.0, 3.0, 3.5, 5.0)  # kg
 LAWS = ("operational_space", "computed_torque")
 TORQUE_PAYLOADS = (0.0, 3.0, 3.05, 3.1, 3.5)  # kg
-Jobs = dict[str, tuple[tuple[str, ...], int]]
 _ROBOT = "robot=xarm7"
 _SERVO = ("plant=bullet", "plant.step=0.001")
 _HALF = "duration=5"  # s, half a period: from A to B
@@ -41,7 +41,7 @@ _MIDDLE = "[0.643,0,0.1508]"  # m, half way between A and B
 
 
 def studies_jobs() -> Jobs:
-    """Return overrides and control ticks of every run by name."""
+    """Return every run by name."""
     return {
         **_printed(),
         **_null_space(),
@@ -59,10 +59,10 @@ def _printed() -> Jobs:
         for case, errors in ERRORS.items():
             law = (_ROBOT, "controller=xarm7_as_printed", f"controller.task={task}", "controller.feedforward=true")
             values = [f"controller.{key}={'printed' if key in errors else 'right'}" for key in ERRORS["as printed"]]
-            jobs[f"printed/{task}/{case}"] = ((*law, *values), 1000)
+            jobs[f"printed/{task}/{case}"] = Job((*law, *values), 1000)
             if "inverse" not in errors:
-                jobs[f"printed/{task}/{case}/fed back"] = ((*law, *values, f"controller.gain={GAIN:g}"), 1000)
-        jobs[f"printed/{task}/working"] = ((_ROBOT, f"controller.task={task}"), 1500)
+                jobs[f"printed/{task}/{case}/fed back"] = Job((*law, *values, f"controller.gain={GAIN:g}"), 1000)
+        jobs[f"printed/{task}/working"] = Job((_ROBOT, f"controller.task={task}"), 1500)
     return jobs
 
 
@@ -80,10 +80,10 @@ def _null_space() -> Jobs:
     for rule in RULES:
         for speed in SPEEDS:
             own = (f"controller.integration={rule}", f"controller.null_space.max_speed={speed:g}")
-            jobs[f"null_space/{rule}/{speed}"] = ((*standing, *own), 400)
+            jobs[f"null_space/{rule}/{speed}"] = Job((*standing, *own), 400)
     fastest = (*standing, "controller.integration=rk4", f"controller.null_space.max_speed={SPEEDS[-1]:g}")
-    jobs["null_space/fastest rate"] = ((*fastest, f"controller.period={1.0 / FASTEST_RATE:g}"), 1000)
-    jobs["null_space/servo"] = ((*fastest, *_SERVO), 1500)
+    jobs["null_space/fastest rate"] = Job((*fastest, f"controller.period={1.0 / FASTEST_RATE:g}"), 1000)
+    jobs["null_space/servo"] = Job((*fastest, *_SERVO), 1500)
     return jobs
 
 
@@ -94,19 +94,19 @@ def _cycles() -> Jobs:
         for task in NULL_SPACE_TASKS:
             own = (f"controller.null_space.task={task}", "controller.null_space.gain=5")
             times = (f"trajectory.duration={CYCLE:g}", f"duration={CYCLES * CYCLE:g}")
-            jobs[f"cycles/{path}/{task}"] = ((_ROBOT, *overrides, *own, *times), 2000)
+            jobs[f"cycles/{path}/{task}"] = Job((_ROBOT, *overrides, *own, *times), 2000)
     climb = (f"trajectory.duration={CLIMB_CYCLE:g}", f"duration={CLIMB_CYCLES * CLIMB_CYCLE:g}")
     for task in TASKS:
         for sought in SOUGHT:
             law = (f"controller.task={task}", f"controller.null_space.task={sought}", "controller.null_space.gain=20")
-            jobs[f"climb/{task}/{sought}"] = ((_ROBOT, *law, *climb), 2000)
+            jobs[f"climb/{task}/{sought}"] = Job((_ROBOT, *law, *climb), 2000)
     return jobs
 
 
 def _rates() -> Jobs:
     plants = {"kinematic": ((), 12), "bullet": (_SERVO, 3)}
     return {
-        f"rates/{plant}/{preset}/{rate}": (
+        f"rates/{plant}/{preset}/{rate}": Job(
             (_ROBOT, *overrides, f"preset={preset}", f"controller.period={1.0 / rate:g}", _HALF),
             600 + cost * rate,
         )
@@ -118,7 +118,7 @@ def _rates() -> Jobs:
 
 def _stiffness() -> Jobs:
     return {
-        f"stiffness/{stiffness:g}/{compensation}/{feedback}": (
+        f"stiffness/{stiffness:g}/{compensation}/{feedback}": Job(
             (
                 _ROBOT,
                 *_SERVO,
@@ -141,9 +141,9 @@ def _payload() -> Jobs:
     for x in XS:
         line = (_ROBOT, f"robot.start=[{x},-0.2,0.1508]", f"robot.goal=[{x},0.2,0.1508]", _HALF)
         for mass in ASKED_PAYLOADS:
-            jobs[f"payload/{x}/asked/{mass:g}"] = ((*line, f"robot.payload.mass={mass:g}"), 1000)
+            jobs[f"payload/{x}/asked/{mass:g}"] = Job((*line, f"robot.payload.mass={mass:g}"), 1000)
         for mass in PAYLOADS:
-            jobs[f"payload/{x}/{mass:g}"] = ((*line, *_SERVO, f"robot.payload.mass={mass:g}"), 2000)
+            jobs[f"payload/{x}/{mass:g}"] = Job((*line, *_SERVO, f"robot.payload.mass={mass:g}"), 2000)
     return jobs
 
 
@@ -152,6 +152,6 @@ def _torque() -> Jobs:
     for law in LAWS:
         base = (_ROBOT, f"controller={law}", "plant=bullet")
         for mass in TORQUE_PAYLOADS:
-            jobs[f"torque/{law}/{mass:g}"] = ((*base, f"robot.payload.mass={mass:g}"), 1500)
-        jobs[f"torque/{law}/pose"] = ((*base, "controller.task=pose"), 1500)
+            jobs[f"torque/{law}/{mass:g}"] = Job((*base, f"robot.payload.mass={mass:g}"), 1500)
+        jobs[f"torque/{law}/pose"] = Job((*base, "controller.task=pose"), 1500)
     return jobs

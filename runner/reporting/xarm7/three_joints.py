@@ -7,8 +7,8 @@ import numpy as np
 from runner.reporting.document import Block, Curves, Formula, Notice, Panel, Picture, Section, Series, Table, Text
 from runner.reporting.drawings import arm_motion
 from runner.reporting.figures import columns, joint_columns, model_of, origin, playback
+from runner.reporting.job import PRESETS
 from runner.reporting.quantities import number, quantity
-from runner.reporting.thesis.plan import PRESETS
 from runner.reporting.xarm7.studies import smallest_margin
 from runner.robots.three_joint import MOVING
 from runner.store import Run

@@ -7,7 +7,7 @@ import numpy as np
 from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import joint_columns, model_of, origin
 from runner.reporting.quantities import quantity
-from runner.reporting.thesis.studies import cell, clock, failures, median, values
+from runner.reporting.run_values import cell, clock, failures, median, values
 from runner.reporting.xarm7.studies import error_norm, first_saturation, smallest_margin
 from runner.reporting.xarm7.studies_plan import LAWS, TORQUE_PAYLOADS
 from runner.store import Run

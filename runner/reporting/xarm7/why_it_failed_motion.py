@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, origin
 from runner.reporting.quantities import number, quantity
-from runner.reporting.thesis.studies import cell, clock, median
+from runner.reporting.run_values import cell, clock, median
 from runner.reporting.xarm7.studies import error_norm, smallest_margin
 from runner.reporting.xarm7.studies_plan import ERRORS, GAIN, TASKS
 from runner.store import Run

@@ -1,0 +1,55 @@
+"""What the sections of all works read from stored runs, of which some may have failed."""
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from runner.reporting.document import Block, FloatArray, Notice
+from runner.reporting.figures import columns
+from runner.reporting.quantities import number
+from runner.store import Run
+
+
+def median(run: Run, metric: str) -> float | None:
+    """Return the median of a metric; None where the run failed or the metric has no value."""
+    stored = run.metrics.get(metric)
+    return None if stored is None or stored["median"] is None else float(stored["median"])
+
+
+def cell(run: Run, metric: str, digits: int = 3) -> str:
+    """Return the median of a metric for a table: "failed" for a failed run, a dash for a value that is missing."""
+    return "failed" if run.status == "failed" else number(median(run, metric), digits)
+
+
+def values(runs: Iterable[Run], metric: str) -> FloatArray:
+    """Return the medians of a metric, NaN where there is none."""
+    return np.array([np.nan if (m := median(run, metric)) is None else m for run in runs])
+
+
+def clock(run: Run) -> FloatArray:
+    """Return the times of a trace's rows, in s."""
+    times: FloatArray = run.trace["t"].to_numpy()
+    return times
+
+
+def apart(first: Run, second: Run, signal: str) -> FloatArray:
+    """Return the distance between a tip signal of two runs at their common ticks, shape (T,), in m."""
+    rows = min(len(first.trace), len(second.trace))
+    difference = columns(first.trace[:rows], signal) - columns(second.trace[:rows], signal)
+    distance: FloatArray = np.linalg.norm(difference, axis=1)
+    return distance
+
+
+def failures(runs: Mapping[str, Run]) -> list[Block]:
+    """Return a notice that names each failed run with its failure; nothing where none failed."""
+    reasons: dict[str, list[str]] = {}
+    for name, run in runs.items():
+        if run.failure is not None:
+            joint = f", {run.failure['joint']}" if run.failure["joint"] else ""
+            where = f"{name.partition('/')[2]} (at {run.failure['time']:.4g} s{joint})"
+            reasons.setdefault(str(run.failure["reason"]), []).append(where)
+    if not reasons:
+        return []
+    count = sum(map(len, reasons.values()))
+    text = ". ".join(f"{reason}: {'; '.join(names)}" for reason, names in reasons.items())
+    return [Notice("failure", f"{count} of {len(runs)} runs failed", f"{text[0].upper()}{text[1:]}.")]
