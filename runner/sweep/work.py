@@ -5,6 +5,7 @@ import threading
 import time
 import traceback
 from collections.abc import Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -103,24 +104,42 @@ def work(chunk: Chunk) -> Report:
     quiet_environment()
     start = time.perf_counter()
     outcomes: list[store.Outcome] = []
-    traceless: list[ShardRun] = []
     trouble = ""
-    with _one_at_a_time:
+    with _one_at_a_time, ThreadPoolExecutor(1) as disk:
         try:
             _check_folder(chunk.rules)
-            known = find_in_shard(chunk)
-            for name, composed in chunk.runs:
-                end = known.get(name) or store.find_outcome(chunk.rules.outputs, name)
-                if end is None or not (name in known or chunk.rules.accepts(end)):
-                    end = _make(name, composed, chunk.rules, traceless)
-                outcomes.append(end)
-                if end.failure and chunk.rules.stop_at_failure:
-                    break
-            if traceless:
-                write_shard(shard_path(chunk.rules.outputs, chunk.name), traceless)
+            _make_all(chunk, disk, outcomes)
         except StoreError as error:
             trouble = str(error)
     return Report(outcomes, trouble, time.perf_counter() - start)
+
+
+def _make_all(chunk: Chunk, disk: Executor, outcomes: list[store.Outcome]) -> None:
+    """Make the runs of a chunk; while one is simulated, the one before is written, as the disk takes its time."""
+    rules, known = chunk.rules, find_in_shard(chunk)
+    traceless: list[ShardRun] = []
+    written: Future[store.Run] | None = None
+    for name, composed in chunk.runs:
+        end = known.get(name) or store.find_outcome(rules.outputs, name)
+        if end is not None and (name in known or rules.accepts(end)):
+            outcomes.append(end)
+            failed = bool(end.failure)
+        else:
+            made = _make(name, composed, rules)
+            failed = bool(made.failure)
+            if isinstance(made, ShardRun):
+                traceless.append(made)
+                outcomes.append(outcome(made))
+            else:
+                if written is not None:
+                    outcomes.append(outcome(written.result()))
+                written = disk.submit(store.write_run, rules.outputs, name, made)
+        if failed and rules.stop_at_failure:
+            break
+    if written is not None:
+        outcomes.append(outcome(written.result()))
+    if traceless:
+        write_shard(shard_path(rules.outputs, chunk.name), traceless)
 
 
 def find_in_shard(chunk: Chunk) -> dict[str, store.Outcome]:
@@ -138,8 +157,8 @@ def _check_folder(rules: Rules) -> None:
         raise StoreError(f"a worker does not see {rules.sweep}; outputs must be a folder that all workers share")
 
 
-def _make(name: str, composed: Composed, rules: Rules, traceless: list[ShardRun]) -> store.Outcome:
-    """Simulate one run; store it in its folder, or add it to those without trace."""
+def _make(name: str, composed: Composed, rules: Rules) -> store.RunResult | ShardRun:
+    """Simulate one run; return what is to be stored, in a folder of its own or in a shard."""
     config = validate(composed.resolved, composed.config_dirs)
     if store.run_hash(composed.resolved, config.arm.urdf) != name:
         raise StoreError("a worker has other source code or libraries than the command; install the same version there")
@@ -150,13 +169,12 @@ def _make(name: str, composed: Composed, rules: Rules, traceless: list[ShardRun]
     if result is None:
         run = cut_short(name, config, composed, rules, reason)
     elif rules.keeps_trace(name, result.failure is not None):
-        return outcome(store.write_run(rules.outputs, name, result))
+        return result
     else:
         run = ShardRun(rules.outputs / "runs" / name, composed.resolved, make_record(result), config.arm.urdf)
     if run.failure:
         write_log(run, rules, details)
-    traceless.append(run)
-    return outcome(run)
+    return run
 
 
 def _try(config: RunConfig, composed: Composed, limit: float | None) -> tuple[store.RunResult | None, str, str]:
