@@ -1,3 +1,4 @@
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -27,6 +28,14 @@ settings.load_profile("runner")
 
 def read_thesis_urdf(name: str) -> str:
     return read_urdf(find_urdf(f"{name}.urdf"), {})
+
+
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Lets commands that a test starts hear Ctrl-C; a shell that started the tests in the background ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 @pytest.fixture(scope="session")

@@ -190,6 +190,7 @@ def test_two_processes_may_make_the_same_run_at_once(tmp_path):
     assert [entry.name for entry in folder.parent.rglob("*") if entry.name.startswith(".")] == []
 
 
+@pytest.mark.usefixtures("interruptible")
 def test_interrupting_leaves_no_half_written_run(tmp_path):
     process = start("robot=mini", "repetitions=10000", cwd=tmp_path)
     deadline = time.monotonic() + 60

@@ -94,6 +94,7 @@ def alive(group):
     return count
 
 
+@pytest.mark.usefixtures("interruptible")
 def test_an_interrupt_ends_all_processes_and_says_how_to_go_on(tmp_path):
     command = [sys.executable, "-m", "runner", "-m", "robot=macro", "plant=rk4", "seed=range(0,2000)"]
     process = subprocess.Popen(command, cwd=tmp_path, stdout=-1, stderr=-1, text=True, start_new_session=True)
