@@ -9,7 +9,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from runner.errors import RunnerError, nearest
+from runner.errors import RunnerError, nearest, told, user_place
 
 HELP = """\
 runner: config-driven experiments for robot-arm control, with reports
@@ -73,6 +73,11 @@ def dispatch(arguments: Sequence[str]) -> int:
         return 2
     except MemoryError as error:
         print(f"runner: not enough memory: {error}; shorten the run or ask for fewer repetitions", file=sys.stderr)
+        return 2
+    except Exception as error:
+        if not user_place(error):  # a fault of ours: its whole trace is of use
+            raise
+        print(f"runner: a part of yours failed: {told(error)}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("runner: interrupted; finished runs are stored, the same command goes on from there", file=sys.stderr)

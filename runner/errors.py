@@ -61,14 +61,24 @@ def told(error: Exception) -> str:
     text = traceback.format_exception_only(error)[-1].strip()
     if isinstance(error, SyntaxError):
         return f"{text} ({Path(error.filename or '?').name}, line {error.lineno})"
-    place = user_place(error)
+    frames = _frames(error)
+    place = user_place(error) or (_place(frames[0]) if frames else "")  # that of a part which is installed as a package
     return f"{text} ({place})" if place else text
 
 
 def user_place(error: BaseException) -> str:
-    """Return the innermost place in the user's own source where an error arose, or an empty text."""
-    ours = str(Path(__file__).resolve().parent)
+    """Return the innermost place in the user's own files where an error arose, or an empty text."""
     libraries = tuple(sysconfig.get_paths()[name] for name in ("purelib", "platlib", "stdlib"))
-    others = (ours, "<frozen", *libraries)
-    own = [frame for frame in traceback.extract_tb(error.__traceback__) if not frame.filename.startswith(others)]
-    return f"{Path(own[-1].filename).name}, line {own[-1].lineno}, in {own[-1].name}" if own else ""
+    own = [frame for frame in _frames(error) if not frame.filename.startswith(libraries)]
+    return _place(own[-1]) if own else ""
+
+
+def _frames(error: BaseException) -> list[traceback.FrameSummary]:
+    """Return where an error passed outside of this package."""
+    ours = str(Path(__file__).resolve().parent)
+    frames = traceback.extract_tb(error.__traceback__)
+    return [frame for frame in frames if not frame.filename.startswith((ours, "<frozen"))]
+
+
+def _place(frame: traceback.FrameSummary) -> str:
+    return f"{Path(frame.filename).name}, line {frame.lineno}, in {frame.name}"

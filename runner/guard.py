@@ -19,15 +19,15 @@ def is_ours(part: object) -> bool:
     return name.startswith("runner.")
 
 
-def watch_law(controller: Any, law: Callable[..., FloatArray], joints: int) -> Callable[..., FloatArray]:
-    """Return a control law that ends the run as a failure where it gives no answer that joints can take.
+def watch(part: object, law: Callable[..., FloatArray], size: int) -> Callable[..., FloatArray]:
+    """Return a law that ends the run as a failure where it raises, or gives no finite numbers of its size.
 
     Args:
-        controller: Whose law it is; one of ours is returned as it is.
-        law: Its `torque` or `joint_positions`.
-        joints: Number of joints that it commands.
+        part: Whose law it is, a controller or an environment; one of ours is returned as it is.
+        law: Its `torque`, `joint_positions` or `wrench`, which takes the time first.
+        size: How many numbers it gives.
     """
-    if is_ours(controller):
+    if is_ours(part):
         return law
 
     def watched(time: float, *measured: FloatArray) -> FloatArray:
@@ -37,7 +37,7 @@ def watch_law(controller: Any, law: Callable[..., FloatArray], joints: int) -> C
             raise
         except Exception as error:
             raise SimulationError(told(error), time) from error
-        fault = _fault(answer, (joints,))
+        fault = _fault(answer, (size,))
         if fault:
             raise SimulationError(f"{_place(law)} gave {fault}", time)
         return np.array(answer, dtype=np.float64)  # clipping at limits must not reach into the user's own array

@@ -9,7 +9,7 @@ import numpy as np
 
 from runner.controllers import Loop
 from runner.errors import SimulationError
-from runner.guard import reset, watch_law
+from runner.guard import reset, watch
 from runner.interaction import Interaction, Touch
 from runner.plants import Plant, PositionPlant, innermost
 from runner.robots.robot import Robot, end_points
@@ -105,9 +105,9 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
             clock[k] = now()
             q_rows[k] = q = plant.q
             dq_rows[k] = dq = plant.dq
-            if touch is not None:
-                load = touch.update(k, times[k], q, dq, moved)
             try:
+                if touch is not None:
+                    load = touch.update(k, times[k], q, dq, moved)
                 for every, measure, law, joints, limits in loops:
                     if k % every == 0:
                         asked = law(times[k], *measure(k // every, q, dq), desired[k])
@@ -175,7 +175,7 @@ def _reset(loop: Loop, closed: ClosedLoop) -> Callable[..., FloatArray]:
     else:
         reset(controller, closed.q_start)
         law = controller.joint_positions
-    return watch_law(controller, law, loop.joints.stop - loop.joints.start)
+    return watch(controller, law, loop.joints.stop - loop.joints.start)
 
 
 def _find_divergence(q: FloatArray, dq: FloatArray, until: int) -> tuple[int, int] | None:

@@ -7,10 +7,11 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from runner.assembly import assemble, make_encoders, metric_context
+from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
 from runner.controllers import Loop
 from runner.errors import ConfigError
-from runner.guard import WatchedPlant, check_trajectory, reset, watch_law
+from runner.guard import WatchedPlant, check_trajectory, reset, watch
+from runner.interaction import Interaction
 from runner.metrics import evaluate, summary
 from runner.simulation import simulate
 
@@ -33,10 +34,10 @@ class Law:
     [
         (lambda: 1 / 0, r"ZeroDivisionError: division by zero \(test_guard.py, line \d+, in <lambda>\)"),
         (lambda: np.zeros(3) @ np.zeros(4), r"ValueError: matmul.* \(test_guard.py, line \d+, in <lambda>\)"),
-        (lambda: np.zeros(2), r"Law.torque \(test_guard.py, line 27\) gave an array of shape \(2,\); .* shape \(3,\)"),
+        (lambda: np.zeros(2), r"Law.torque \(test_guard.py, line \d+\) gave an array of shape \(2,\); .* shape \(3,\)"),
         (lambda: 0.0, r"Law.torque .* gave 0.0; it must be an array of shape \(3,\)"),
         (lambda: np.zeros((3, 1)), r"gave an array of shape \(3, 1\)"),
-        (lambda: [0.0, np.nan, 0.0], r"Law.torque \(test_guard.py, line 27\) gave nan at index \[1\]; .* finite"),
+        (lambda: [0.0, np.nan, 0.0], r"Law.torque \(test_guard.py, line \d+\) gave nan at index \[1\]; .* finite"),
         (lambda: np.array([0.0, 0.0, np.inf]), r"gave inf at index \[2\]"),
         (lambda: None, r"Law.torque .* gave None; it must be"),
         (lambda: "no torque", r"gave 'no torque'; it must be an array of shape \(3,\)"),
@@ -49,6 +50,38 @@ def test_a_law_that_goes_wrong_is_a_failure_that_names_the_place(checked_config,
     assert trace.failure is not None
     assert trace.failure.time == pytest.approx(0.05)
     assert len(trace.t) == 6
+    assert re.search(reason, trace.failure.reason), trace.failure.reason
+
+
+class Wind:
+    """An environment of the user's that goes wrong at t = 0.05 s."""
+
+    def __init__(self, answer):
+        self.answer = answer
+
+    def reset(self, tip):
+        pass
+
+    def wrench(self, time, tip, velocity):
+        return self.answer() if time >= 0.05 else np.zeros(6)
+
+
+@pytest.mark.parametrize(
+    ("answer", "reason"),
+    [
+        (lambda: 1 / 0, r"ZeroDivisionError: division by zero \(test_guard.py, line \d+, in <lambda>\)"),
+        (
+            lambda: np.zeros(3),
+            r"Wind.wrench \(test_guard.py, line \d+\) gave an array of shape \(3,\); .* \(6,\)",
+        ),
+        (lambda: np.full(6, np.nan), r"Wind.wrench .* gave nan at index \[0\]; it must be finite"),
+    ],
+)
+def test_an_environment_that_goes_wrong_is_one_too(checked_config, closed_loop, answer, reason):
+    config, loop = checked_config("robot=macro", "duration=0.2"), closed_loop("robot=macro", "duration=0.2")
+    loop = replace(loop, interaction=Interaction(loop.robot, Wind(answer), loop.tick))
+    trace = simulate(loop, make_encoders(config, loop, 0), make_wrist_sensor(config, loop, 0))
+    assert trace.failure.time == pytest.approx(0.05)
     assert re.search(reason, trace.failure.reason), trace.failure.reason
 
 
@@ -94,14 +127,14 @@ def test_a_reset_that_raises_is_told_with_its_place():
 def test_limits_do_not_reach_into_the_users_own_array():
     own = np.array([1.0, 2.0, 3.0])
     law = Law(lambda: own)
-    answer = watch_law(law, law.torque, 3)(1.0, None, None, None)
+    answer = watch(law, law.torque, 3)(1.0, None, None, None)
     answer[:] = 0.0
     assert own.tolist() == [1.0, 2.0, 3.0]
 
 
 def test_our_own_laws_are_not_watched(checked_config):
     controller = assemble(checked_config("robot=macro", "plant=rk4")).loops[0].controller
-    assert watch_law(controller, controller.torque, 3) == controller.torque
+    assert watch(controller, controller.torque, 3) == controller.torque
 
 
 @dataclass

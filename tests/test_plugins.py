@@ -93,6 +93,17 @@ def test_a_config_cannot_name_a_module(mine):
     assert "controller.kind: 'spring' is unknown" in ending.stderr
 
 
+def test_what_raises_outside_of_the_loop_is_told_with_its_place(mine):
+    (mine / "mine/spring.py").write_text(
+        SPRING + "\n\ndef start_posture(config, robot, start):\n    return config.postur\n"
+    )
+    ending = runner(*PLUGIN, *COMMAND)
+    assert ending.returncode == 2
+    line = len(SPRING.splitlines()) + 4
+    assert ending.stderr.startswith("runner: a part of yours failed: AttributeError: 'SpringConfig' object")
+    assert ending.stderr.endswith(f"(spring.py, line {line}, in start_posture)\n")
+
+
 def test_every_command_takes_it_and_wherever_it_stands(mine):
     assert runner(*COMMAND, "--plugin=controller=mine/spring.py").returncode == 0
     assert runner("list", *PLUGIN, "controllers", "--config-dir", "mine").returncode == 0

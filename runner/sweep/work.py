@@ -186,7 +186,9 @@ def _try(config: RunConfig, composed: Composed, limit: float | None) -> tuple[st
         place = user_place(error)
         return None, f"no result within sweep.time_limit, {limit:g} s{f' ({place})' if place else ''}", ""
     except Exception as error:
-        return None, f"{type(error).__name__}: {error}", traceback.format_exc()
+        place = user_place(error)
+        reason = f"{type(error).__name__}: {error}{f' ({place})' if place else ''}"
+        return None, reason, traceback.format_exc()
 
 
 def cut_short(name: str, config: RunConfig, composed: Composed, rules: Rules, reason: str) -> ShardRun:
