@@ -6,6 +6,7 @@ import sys
 import textwrap
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 
@@ -379,6 +380,20 @@ def test_the_pages_name_the_groups_of_entry_points_and_the_folders():
 
 def test_the_page_on_metrics_shows_one_that_works():
     assert textwrap.indent(METRIC, "    ").rstrip() in DOCS.joinpath("metric.md").read_text()
+
+
+def test_the_page_on_environments_shows_one_that_works(tmp_path):
+    shown = DOCS.joinpath("environment.md").read_text().partition("YAML file:\n")[2].partition("`wrench` gives")[0]
+    (tmp_path / "mine" / "environment").mkdir(parents=True)
+    (tmp_path / "mine/water.py").write_text(textwrap.dedent(shown))
+    (tmp_path / "mine/environment/water.yaml").write_text("kind: water\ndrag: 20.0\nlift: 5.0\n")
+    words = "--plugin environment=mine/water.py --config-dir mine robot=macro trajectory=quintic environment=water"
+    command = [sys.executable, "-m", "runner", *words.split(), "duration=0.5"]
+    ending = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert ending.returncode == 0, ending.stderr
+    trace = runner.open_run(tmp_path / ending.stdout.strip()).trace
+    drag = 5.0 - 20.0 * np.gradient(trace["tip_z"], trace["t"], edge_order=2)
+    np.testing.assert_allclose(trace["external_force_z"], drag, atol=0.2)
 
 
 @pytest.mark.parametrize("page", sorted([*DOCS.glob("*.md"), *DOCS.parent.glob("*.md")]), ids=lambda page: page.name)
