@@ -197,7 +197,10 @@ def test_interrupting_leaves_no_half_written_run(tmp_path):
     while not (tmp_path / "outputs").exists() and time.monotonic() < deadline:
         time.sleep(0.05)
     process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
+    try:
+        out, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
     assert (process.returncode, out) == (130, "")
     assert err.startswith("runner: interrupted")
     assert list(tmp_path.rglob("metrics.json")) == []

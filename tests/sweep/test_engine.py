@@ -102,7 +102,10 @@ def test_an_interrupt_ends_all_processes_and_says_how_to_go_on(tmp_path):
         assert process.poll() is None
         time.sleep(0.02)
     os.killpg(process.pid, signal.SIGINT)  # as Ctrl-C does: to the workers, too
-    out, err = process.communicate(timeout=60)
+    try:
+        out, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
     assert (process.returncode, out) == (130, "")
     assert err.splitlines()[2:] == [
         "runner: interrupted; finished runs are stored, the same command goes on from there"
