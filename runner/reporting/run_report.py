@@ -1,5 +1,6 @@
 """A report on any stored runs: what was run, what came out, and where it comes from."""
 
+import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -72,8 +73,9 @@ def _metrics(run: Run) -> Table:
         [name, quantity(m["median"], m["unit"]), quantity(m["min"], m["unit"]), quantity(m["max"], m["unit"])]
         for name, m in run.metrics.items()
     ]
+    count = run.record["repetitions"]
     return Table(
-        f"Metrics over {run.record['repetitions']} repetitions.",
+        "Metrics of one repetition." if count == 1 else f"Metrics over {count} repetitions.",
         ["metric", "median", "smallest", "largest"],
         [[_literal(cell) for cell in row] for row in rows],
         (1, 2, 3),
@@ -81,7 +83,7 @@ def _metrics(run: Run) -> Table:
 
 
 def _config(run: Run) -> Table:
-    rows = [[_literal(key), _literal(str(value))] for key, value in _flatten(run.config).items() if key != "outputs"]
+    rows = [[_literal(key), _literal(_yaml(value))] for key, value in _flatten(run.config).items() if key != "outputs"]
     return Table("Config, all values.", ["key", "value"], rows)
 
 
@@ -124,6 +126,11 @@ def _flatten(value: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
         else:
             flat[f"{prefix}{key}"] = item
     return flat
+
+
+def _yaml(value: Any) -> str:
+    """Return a value as it is given in YAML or on the command line."""
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
 
 
 def _literal(text: str) -> str:
