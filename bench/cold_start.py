@@ -8,9 +8,13 @@ import time
 from pathlib import Path
 from statistics import median
 
+import pybullet_data
+
 REPEATS = 7
 TARGET = 0.5  # s, for what only tells and computes nothing
+DOCTOR_TARGET = 5.0  # s, for an arm of seven joints with meshes
 _RUNNER = str(Path(sys.executable).parent / "runner")
+_KUKA = str(Path(pybullet_data.getDataPath()) / "kuka_iiwa" / "model_free_base.urdf")
 _COMPLETE = {"COMP_LINE": "runner robot=m", "COMP_POINT": "14"}
 
 
@@ -27,6 +31,7 @@ def main() -> bool:
                 _judge("runner --help", _repeat(folder, "--help")),
                 _judge("runner list robots", _repeat(folder, "list", "robots")),
                 _judge("completion of robot=m", _repeat(folder, "-sc", "query=bash", environment=_COMPLETE)),
+                _judge("runner doctor, KUKA iiwa", _repeat(folder, "doctor", _KUKA), DOCTOR_TARGET),
             ]
         )
 
@@ -43,6 +48,6 @@ def _time(folder: Path, *arguments: str, environment: dict[str, str] | None = No
     return time.perf_counter() - start
 
 
-def _judge(what: str, seconds: float) -> bool:
-    print(f"  {what:34} {seconds:5.2f} s  target {TARGET:g}: {'met' if seconds <= TARGET else 'MISSED'}")
-    return seconds <= TARGET
+def _judge(what: str, seconds: float, target: float = TARGET) -> bool:
+    print(f"  {what:34} {seconds:5.2f} s  target {target:g}: {'met' if seconds <= target else 'MISSED'}")
+    return seconds <= target
