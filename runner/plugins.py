@@ -34,7 +34,7 @@ def use_plugins(given: Sequence[str]) -> None:
     Raises:
         RunnerError: for a group that does not exist, or a module that cannot be found.
     """
-    lines = os.environ.get(_VARIABLE, "").splitlines()
+    lines = list(in_use())
     for text in given:
         group, _, module = text.partition("=")
         if group not in GROUPS or not module:
@@ -52,10 +52,15 @@ def use_plugins(given: Sequence[str]) -> None:
     os.environ[_VARIABLE] = "\n".join(lines)
 
 
+def in_use() -> tuple[str, ...]:
+    """Return the parts named on the command line, as `use_plugins` takes them; files by their whole paths."""
+    return tuple(os.environ.get(_VARIABLE, "").splitlines())
+
+
 def named() -> list[str]:
     """Return the parts named on the command line, as it takes them; files relative to the working directory."""
     found = []
-    for line in os.environ.get(_VARIABLE, "").splitlines():
+    for line in in_use():
         group, _, module = line.partition("=")
         found.append(f"{group}={os.path.relpath(module) if _is_file(module) else module}")
     return found
@@ -66,8 +71,7 @@ def added(group: str) -> tuple[EntryPoint, ...]:
 
     Installed packages are read once for each `sys.path`, as that takes half a millisecond and is asked in every run.
     """
-    lines = os.environ.get(_VARIABLE, "").splitlines()
-    of_command_line = [_point(line) for line in lines if line.partition("=")[0] == group]
+    of_command_line = [_point(line) for line in in_use() if line.partition("=")[0] == group]
     return (*of_command_line, *_installed(f"runner.{group}", tuple(sys.path)))
 
 

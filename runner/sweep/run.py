@@ -9,6 +9,7 @@ from pathlib import Path
 from runner import store
 from runner.config.sweep import SweepConfig
 from runner.errors import ConfigError, StoreError
+from runner.plugins import in_use
 from runner.store.atomic import remove_leftovers
 from runner.sweep.engine import in_process, local_client, on_cluster, remote_client
 from runner.sweep.lock import at_work
@@ -91,6 +92,7 @@ def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
     automatic: TraceKeeping = "all" if runs <= _ALL_TRACES_UP_TO else "sample"
     folder = folder.resolve()
     return Rules(
+        plugins=in_use(),
         outputs=folder.parent.parent,
         sweep=folder,
         trace=automatic if settings.trace == "auto" else settings.trace,

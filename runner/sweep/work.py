@@ -14,8 +14,9 @@ from runner import store
 from runner.config.compose import Composed, quiet_environment
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.errors import StoreError, user_place
+from runner.errors import RunnerError, StoreError, user_place
 from runner.execution import job_provenance, simulate_job
+from runner.plugins import use_plugins
 from runner.store.atomic import write_atomically
 from runner.store.shards import ShardRun, outcome, read_outcomes, shard_path, write_shard
 from runner.store.writing import cut_short_record, make_record
@@ -32,6 +33,7 @@ class Rules:
     """How the runs of a sweep are made and kept.
 
     Attributes:
+        plugins: The user's parts that the command line named.
         outputs: The outputs folder, absolute: every worker must see it.
         sweep: The sweep's folder, absolute.
         trace: Which runs keep their trace.
@@ -41,6 +43,7 @@ class Rules:
         time_limit: Longest wall-clock time of a run, in s; None for no limit.
     """
 
+    plugins: Sequence[str]
     outputs: Path
     sweep: Path
     trace: TraceKeeping
@@ -107,9 +110,10 @@ def work(chunk: Chunk) -> Report:
     trouble = ""
     with _one_at_a_time, ThreadPoolExecutor(1) as disk:
         try:
+            use_plugins(chunk.rules.plugins)
             _check_folder(chunk.rules)
             _make_all(chunk, disk, outcomes)
-        except StoreError as error:
+        except RunnerError as error:
             trouble = str(error)
     return Report(outcomes, trouble, time.perf_counter() - start)
 

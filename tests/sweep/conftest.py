@@ -1,4 +1,4 @@
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
@@ -13,8 +13,12 @@ SHORT = ("robot=macro", "duration=0.05")
 def sweep(tmp_path: Path) -> Callable[..., Ended]:
     """Make a sweep of short Macro runs in this process, or as `engine` says."""
 
-    def make(*overrides: str, engine: Engine = Engine(0, None)) -> Ended:  # noqa: B008 - it cannot be changed
-        plan = plan_sweep([*SHORT, f"outputs={tmp_path}/outputs", *overrides])
+    def make(
+        *overrides: str,
+        engine: Engine = Engine(0, None),  # noqa: B008 - it cannot be changed
+        config_dirs: Sequence[Path] = (),
+    ) -> Ended:
+        plan = plan_sweep([*SHORT, f"outputs={tmp_path}/outputs", *overrides], config_dirs)
         return run_sweep(plan, engine, "runner -m ...")
 
     return make

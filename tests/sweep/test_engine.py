@@ -14,6 +14,7 @@ import pytest
 
 from runner import store
 from runner.errors import RunnerError
+from runner.plugins import use_plugins
 from runner.store.identity import source_digest
 from runner.sweep.run import Engine
 
@@ -69,6 +70,41 @@ def test_a_running_cluster_gives_it_too_though_a_worker_is_killed(sweep, expecte
     killer.join()
     assert results(ended) == expected
     assert processes[2].poll() is None
+
+
+PULL = """\
+import numpy as np
+
+from runner.registry import StrictModel
+
+
+class CONFIG(StrictModel):
+    kind: str
+
+
+class Pull:
+    def reset(self, tip):
+        pass
+
+    def wrench(self, time, tip, velocity):
+        return np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+
+
+def build(config):
+    return Pull()
+"""
+
+
+def test_workers_of_a_cluster_take_the_parts_that_the_command_names(sweep, scheduler, tmp_path, monkeypatch):
+    (tmp_path / "mine/environment").mkdir(parents=True)
+    (tmp_path / "mine/environment/pull.yaml").write_text("kind: pull\n")
+    (tmp_path / "mine/pull.py").write_text(PULL)
+    monkeypatch.setenv("RUNNER_PLUGINS", "")
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    use_plugins([f"environment={tmp_path}/mine/pull.py"])
+    grid = ("environment=pull", "duration=0.1", "seed=0,1")
+    ended = sweep(*grid, engine=Engine(0, scheduler[0]), config_dirs=[tmp_path / "mine"])
+    assert [run.status for run in store.open_sweep(ended.folder).runs()] == ["ok", "ok"]
 
 
 def test_a_scheduler_that_is_lost_is_said(sweep, scheduler, tmp_path):

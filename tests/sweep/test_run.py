@@ -3,6 +3,7 @@
 import errno
 import json
 import os
+import re
 import shutil
 import socket
 import subprocess
@@ -100,7 +101,7 @@ def test_traces_are_kept_as_asked_and_metrics_always(sweep, tmp_path, policy, fo
 
 
 def test_one_in_a_hundred_is_sampled(tmp_path):
-    rules = work.Rules(tmp_path, tmp_path, "sample", True, False, 1, None)
+    rules = work.Rules((), tmp_path, tmp_path, "sample", True, False, 1, None)
     kept = sum(rules.keeps_trace(f"{np.random.default_rng(n).bytes(12).hex()}", False) for n in range(5000))
     assert 30 <= kept <= 70
     assert all(rules.keeps_trace(f"{n:024x}", True) for n in range(20))
@@ -143,7 +144,7 @@ def test_an_error_of_a_part_is_a_failed_run_with_its_traceback(sweep, monkeypatc
     monkeypatch.setattr("runner.sweep.run.estimate", lambda *_: 1.0)
     ended = sweep("seed=0,1")
     ((_, why, log),) = ended.failures
-    assert why == "cut short: RuntimeError: a bug"
+    assert re.fullmatch(r"cut short: RuntimeError: a bug \(test_run.py, line \d+, in fall_over\)", why)
     assert "Traceback" in log.read_text()
     assert "in fall_over" in log.read_text()
     calls.clear()

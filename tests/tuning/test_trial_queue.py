@@ -21,7 +21,7 @@ def queue(tmp_path):
     store.prepare(tmp_path)
     folder = tmp_path / "tunings" / "one"
     study.write(folder, [])
-    rules = Rules(tmp_path, folder, "all", True, False, 1, None)
+    rules = Rules((), tmp_path, folder, "all", True, False, 1, None)
     return TrialQueue(study, Journal(folder / "journal.log", keys, goals), Composer(()), rules, 5, 0)
 
 
