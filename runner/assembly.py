@@ -86,7 +86,8 @@ def _believe(config: RunConfig, repetition: int) -> Robot:
 
 def _check_path_reach(config: RunConfig, trajectory: Trajectory) -> None:
     model, times = config.arm.model, np.linspace(0.0, trajectory.duration, 1001)
-    distance = np.linalg.norm(trajectory.sample(times)[:, 0] - model.shoulder, axis=1)
+    path = trajectory.sample(times)[:, 0]
+    distance = np.linalg.norm(path - model.shoulder, axis=1)
     row = int(distance.argmax())
     if distance[row] > model.reach * (1.0 + 1e-12):
         raise ConfigError(
@@ -96,7 +97,7 @@ def _check_path_reach(config: RunConfig, trajectory: Trajectory) -> None:
                 "start elsewhere"
             ]
         )
-    beside = distance_beside(model, trajectory.sample(times)[:, 0])
+    beside = distance_beside(model, path)
     row = int(beside.argmax())
     if beside[row] > _BESIDE * model.reach:
         raise ConfigError(

@@ -65,8 +65,8 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
     At each of its ticks a loop reads the encoders of every joint afresh, asks its controller, and its torques are
     clipped joint by joint and held until its next tick, while the plant advances. They act, and stand in the trace, by
     the delay later; the first act from the start. The last row holds the final state, with the torques that would act
-    from there. Joint positions are handed on as they are; the torques are then the plant's, and
-    the last row repeats those of the last tick.
+    from there. Joint positions are handed on as they are; the torques are then the plant's, and the last row repeats
+    those of the last tick.
 
     Args:
         closed: The control loops; plant and controllers are reset here.
