@@ -12,6 +12,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from runner.config.compose import force, from_hydra, quiet_environment
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.no_code import code_refused
 from runner.paths import conf_dir
 
 if TYPE_CHECKING:
@@ -62,7 +63,8 @@ def main(arguments: Sequence[str]) -> int:
     sys.argv = ["runner", *(arguments if completing else force(arguments))]
     try:
         # The absolute path works from a console script and from a wheel, where a relative one does not.
-        hydra.main(version_base="1.3", config_path=str(conf_dir()), config_name="config")(task)()
+        with code_refused():
+            hydra.main(version_base="1.3", config_path=str(conf_dir()), config_name="config")(task)()
     except COMPOSITION_ERRORS as error:
         raise explain(error, _config_dirs(arguments)) from None
     if task.error is not None:
