@@ -12,7 +12,7 @@ from omegaconf import DictConfig
 
 
 class RunnerSweeper(Sweeper):
-    """Hands a sweep's command line to `runner.sweep`, which composes, checks and makes its runs.
+    """Hands a sweep's command line to `runner.sweeps`, which composes, checks and makes its runs.
 
     Args:
         workers: Number of processes on this machine; 0 for the process itself.
@@ -34,8 +34,8 @@ class RunnerSweeper(Sweeper):
         self._task.sweep(lambda: self._make(arguments))
 
     def _make(self, arguments: list[str]) -> Any:
-        from runner.sweep.plan import Plan
-        from runner.sweep.run import Engine, run_sweep
+        from runner.sweeps.plan import Plan
+        from runner.sweeps.run import Engine, run_sweep
 
         def load(options: list[str]) -> DictConfig:
             return self._loader.load_sweep_config(self._config, options)

@@ -159,7 +159,7 @@ def hand_made_trace() -> Callable[..., Trace]:
 @pytest.fixture
 def simulated_runs(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Names of the runs that are simulated."""
-    from runner.sweep import work
+    from runner.sweeps import work
 
     names: list[str] = []
     make = work._make

@@ -17,7 +17,7 @@ from runner.paths import conf_dir
 
 if TYPE_CHECKING:
     from runner.store import Run
-    from runner.sweep.run import Ended
+    from runner.sweeps.run import Ended
 
 _FAILURES_SHOWN = 20
 

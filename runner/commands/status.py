@@ -14,7 +14,7 @@ def main(arguments: Sequence[str]) -> int:
     options = parser.parse_args(arguments)
     quiet_environment()
     from runner.store import open_sweep
-    from runner.sweep.status import find_status, in_words
+    from runner.sweeps.status import find_status, in_words
 
     sweep = open_sweep(options.folder)
     status = find_status(sweep)

@@ -14,8 +14,8 @@ def main(arguments: Sequence[str]) -> int:
     options = parser.parse_args(arguments)
     quiet_environment()
     from runner import store
-    from runner.sweep.measurements import measure
-    from runner.sweep.table import write_table
+    from runner.sweeps.measurements import measure
+    from runner.sweeps.table import write_table
 
     sweep = store.open_sweep(options.folder)
     frame = write_table(measure(sweep.overrides, sweep.runs()), options.folder)

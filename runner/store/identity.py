@@ -12,9 +12,11 @@ from runner.plugins import GROUPS, added, source_files
 
 # These say where and under which name a run is kept, not what is simulated.
 _LEFT_OUT = ("outputs", "preset", "sweep")
-# Rooms that come after a stored run: a changed template or claim leaves the physics as it is.
-_NOT_PHYSICS = (
-    "audit", "claims", "commands", "doctor", "references", "reporting", "statistics", "store", "sweep", "tuning",
+# The rooms and modules of the physics: what a run's result follows from. All others leave it as it is.
+_PHYSICS = (
+    "assembly.py", "calibration", "calibration_job.py", "config", "controllers", "environments", "execution.py",
+    "feasibility.py", "guard.py", "interaction.py", "metrics", "plants", "registry.py", "robots", "sensing",
+    "simulation.py", "trace.py", "trajectories",
 )  # fmt: skip
 
 
@@ -22,7 +24,7 @@ def run_hash(resolved: Mapping[str, Any], urdf: str) -> str:
     """Return the name of a run's folder: SHA-256 over all that its result follows from.
 
     That is the resolved config (without outputs, sweep, and preset, whose values the groups have taken), the URDF's
-    text, the source of the rooms below the store and of the user's parts, and the versions of PyBullet and Pinocchio.
+    text, the source of the physics and of the user's parts, and the versions of PyBullet and Pinocchio.
     """
     content = {
         "config": simulated_part(resolved),
@@ -46,11 +48,11 @@ def _engines() -> dict[str, str]:
 
 @cache
 def source_digest() -> str:
-    """Return a digest of our source that decides about results."""
+    """Return a digest of the source of the physics, ours."""
     digest = hashlib.sha256()
     root = package_dir()
     for path in sorted(root.rglob("*.py")):
-        if path.relative_to(root).parts[0] not in (*_NOT_PHYSICS, "cli.py", "__main__.py"):
+        if path.relative_to(root).parts[0] in _PHYSICS:
             digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()
 

@@ -11,7 +11,7 @@ from omegaconf import DictConfig
 
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.paths import conf_dir
-from runner.sweep.plan import Plan
+from runner.sweeps.plan import Plan
 
 
 class Composer:

@@ -8,8 +8,8 @@ from runner import store
 from runner.config.compose import Composed
 from runner.config.validation import validate
 from runner.errors import ConfigError
-from runner.sweep.queue import Queue
-from runner.sweep.work import Chunk, Report, Rules
+from runner.sweeps.queue import Queue
+from runner.sweeps.work import Chunk, Report, Rules
 from runner.tuning.composer import Composer
 from runner.tuning.journal import Journal
 from runner.tuning.sampler import propose

@@ -13,9 +13,9 @@ from runner.config.compose import force
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.options import groups
 from runner.errors import ConfigError, StoreError
-from runner.sweep.lock import at_work
-from runner.sweep.plan import Checked, Plan
-from runner.sweep.run import Engine, clean, make_rules, make_runs
+from runner.sweeps.lock import at_work
+from runner.sweeps.plan import Checked, Plan
+from runner.sweeps.run import Engine, clean, make_rules, make_runs
 from runner.tuning.composer import Composer
 from runner.tuning.journal import Journal
 from runner.tuning.key import RANGES, Key, read_key

@@ -3,8 +3,8 @@ import shutil
 import pytest
 
 from runner.store import open_runs
-from runner.sweep.lock import at_work
-from runner.sweep.status import in_words
+from runner.sweeps.lock import at_work
+from runner.sweeps.status import in_words
 
 SWEEP = ("-m", "hydra.sweeper.workers=0", "robot=macro", "duration=0.05", "seed=0,1,2")
 

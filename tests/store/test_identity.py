@@ -3,6 +3,7 @@ import json
 import pytest
 
 from runner.config.compose import compose
+from runner.paths import package_dir
 from runner.store import identity, run_hash, simulated_part
 
 CONFIG = {"seed": 0, "controller": {"period": 0.01, "kind": "a"}, "outputs": "x", "preset": {"feedforward": True}}
@@ -60,7 +61,8 @@ def test_the_engines_versions_count(monkeypatch):
 
 
 def test_the_source_counts_but_not_that_of_reports_and_commands(monkeypatch, tmp_path):
-    for name in ("simulation.py", "controllers/law.py", "reporting/page.py", "commands/run.py", "cli.py"):
+    others = ("reporting/page.py", "commands/run.py", "cli.py", "a_new_room/part.py")
+    for name in ("simulation.py", "controllers/law.py", *others):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("1")
     monkeypatch.setattr(identity, "package_dir", lambda: tmp_path)
@@ -70,7 +72,7 @@ def test_the_source_counts_but_not_that_of_reports_and_commands(monkeypatch, tmp
         return identity.source_digest()
 
     before = digest()
-    for name in ("reporting/page.py", "commands/run.py", "cli.py"):
+    for name in others:
         (tmp_path / name).write_text("2")
     assert digest() == before
     (tmp_path / "controllers/law.py").write_text("2")
@@ -78,6 +80,17 @@ def test_the_source_counts_but_not_that_of_reports_and_commands(monkeypatch, tmp
     before = digest()
     (tmp_path / "controllers/law.py").rename(tmp_path / "controllers/rule.py")
     assert digest() != before
+
+
+def test_every_room_is_physics_or_known_not_to_be():
+    """A new room belongs to one of the two lists; what decides about results must count in the hash."""
+    after_the_run = {
+        "audit", "claims", "cli.py", "commands", "doctor", "errors.py", "paths.py", "plugins.py", "provenance.py",
+        "references", "reporting", "statistics", "store", "sweeps", "tuning", "__init__.py", "__main__.py",
+    }  # fmt: skip
+    rooms = {path.name for path in package_dir().iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()}
+    assert set(identity._PHYSICS) | after_the_run == rooms
+    assert not set(identity._PHYSICS) & after_the_run
 
 
 def test_the_simulated_part_leaves_out_what_does_not_count():

@@ -4,7 +4,7 @@ import pytest
 from short_runs import SHORT
 
 from runner import store
-from runner.sweep.work import Rules, work
+from runner.sweeps.work import Rules, work
 from runner.tuning.composer import Composer
 from runner.tuning.journal import Journal
 from runner.tuning.key import Key

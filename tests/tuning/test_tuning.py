@@ -14,7 +14,7 @@ from short_runs import DAMPING, FREQUENCY, SHORT
 
 from runner import store
 from runner.errors import ConfigError, RunnerError, StoreError
-from runner.sweep.lock import at_work
+from runner.sweeps.lock import at_work
 from runner.tuning.study import journal_path, open_tuning
 
 DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "duration=1")

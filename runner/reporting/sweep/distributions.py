@@ -4,7 +4,7 @@ import numpy as np
 
 from runner.reporting.document import Block, Curves, Panel, Section, Series
 from runner.reporting.sweep.subject import Subject, spans_decades, value_name
-from runner.sweep.measurements import Axis, FloatArray
+from runner.sweeps.measurements import Axis, FloatArray
 
 _MOST_LINES = 8
 

@@ -7,7 +7,7 @@ from runner.reporting.quantities import number
 from runner.reporting.sweep.intervals import axis_panel, cells_with_intervals, places
 from runner.reporting.sweep.subject import Subject
 from runner.statistics import EffectAnalysis
-from runner.sweep.measurements import Axis
+from runner.sweeps.measurements import Axis
 
 
 def section(subject: Subject) -> Section:

@@ -5,7 +5,7 @@ import numpy as np
 from runner.reporting.document import Curves, Panel, Series
 from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_name, value_names
 from runner.statistics import median_interval
-from runner.sweep.measurements import Axis, FloatArray
+from runner.sweeps.measurements import Axis, FloatArray
 
 _MOST_LINES = 6
 _MOST_INTERVALS = 60

@@ -8,7 +8,7 @@ import numpy as np
 from runner.reporting.document import Block, Map, Maps, Section, Text
 from runner.reporting.sweep import theory
 from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_name, value_names
-from runner.sweep.measurements import Axis, FloatArray
+from runner.sweeps.measurements import Axis, FloatArray
 
 _FEWEST_FOR_CONTOURS = 3
 _MOST_MULTIPLES = 9

@@ -10,7 +10,7 @@ from runner.reporting.document import Document, Provenance, RunList, Section, Te
 from runner.reporting.sweep import axes, distributions, effects, extremes, failures, maps, tradeoff
 from runner.reporting.sweep.subject import Subject, choose, value_names
 from runner.store import Sweep
-from runner.sweep.measurements import measure
+from runner.sweeps.measurements import measure
 
 MOST_RUNS = 5000
 """Runs that the list of a report holds; of more, the best and the worst."""

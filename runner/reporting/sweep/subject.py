@@ -12,7 +12,7 @@ from runner.config.meanings import key_unit
 from runner.errors import RunnerError, nearest
 from runner.reporting.quantities import labelled, quantity
 from runner.statistics import EffectAnalysis, axis_effects
-from runner.sweep.measurements import Axis, FloatArray, Measurements
+from runner.sweeps.measurements import Axis, FloatArray, Measurements
 
 MOST_METRICS = 4
 """Metrics that a report compares when nobody has named any."""

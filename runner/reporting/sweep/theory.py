@@ -3,7 +3,7 @@
 import numpy as np
 
 from runner.reporting.document import Block, Formula, Series, Text
-from runner.sweep.measurements import Axis, FloatArray
+from runner.sweeps.measurements import Axis, FloatArray
 
 _FREQUENCY, _PERIOD = "controller.natural_frequency", "controller.period"
 _POINTS = 400

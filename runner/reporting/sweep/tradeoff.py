@@ -7,7 +7,7 @@ import numpy as np
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.quantities import quantity
 from runner.reporting.sweep.subject import COSTS, Subject, spans_decades
-from runner.sweep.measurements import FloatArray
+from runner.sweeps.measurements import FloatArray
 
 _MOST_ROWS = 12
 

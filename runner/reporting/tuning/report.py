@@ -12,7 +12,7 @@ from runner.reporting.document import Document, FloatArray, Notice, Origin, Prov
 from runner.reporting.tuning import best_trials, front, history, keys
 from runner.reporting.tuning.subject import Subject, key_label, key_value, literal
 from runner.store import Sweep, open_run
-from runner.sweep.measurements import Measurements, measure
+from runner.sweeps.measurements import Measurements, measure
 from runner.tuning.study import Tuning
 
 _MOST_FAILURES = 40

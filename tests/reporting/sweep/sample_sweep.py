@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 
 from runner.reporting.sweep.subject import Subject, choose
-from runner.sweep.measurements import Axis, Measurements
+from runner.sweeps.measurements import Axis, Measurements
 
 
 def measurements(axes, metrics, failed=()):

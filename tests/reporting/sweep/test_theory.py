@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from runner.reporting.sweep.theory import explained, lines
-from runner.sweep.measurements import Axis
+from runner.sweeps.measurements import Axis
 
 
 def axis(name, values):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from runner.store import Run
-from runner.sweep.measurements import measure
+from runner.sweeps.measurements import measure
 
 
 def stored(name, metrics, status="ok"):

@@ -16,7 +16,7 @@ from runner import store
 from runner.errors import RunnerError
 from runner.plugins import use_plugins
 from runner.store.identity import source_digest
-from runner.sweep.run import Engine
+from runner.sweeps.run import Engine
 
 GRID = ("noise=thesis", "robot=macro,mini", "plant=rk4,bullet", "seed=range(0,4)", "repetitions=2", "duration=0.3")
 

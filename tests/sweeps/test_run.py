@@ -16,9 +16,9 @@ import pytest
 from runner import store
 from runner.controllers.operational_space import OperationalSpace
 from runner.errors import ConfigError, RunnerError, StoreError
-from runner.sweep import work
-from runner.sweep.plan import plan_sweep
-from runner.sweep.run import Engine
+from runner.sweeps import work
+from runner.sweeps.plan import plan_sweep
+from runner.sweeps.run import Engine
 
 DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "trajectory=quintic", "duration=1")
 PERIODS = "controller.period=0.01,0.06"  # the second one diverges
@@ -141,7 +141,7 @@ def test_an_error_of_a_part_is_a_failed_run_with_its_traceback(sweep, monkeypatc
 
     torque = OperationalSpace.torque
     monkeypatch.setattr(OperationalSpace, "torque", fall_over)
-    monkeypatch.setattr("runner.sweep.run.estimate", lambda *_: 1.0)
+    monkeypatch.setattr("runner.sweeps.run.estimate", lambda *_: 1.0)
     ended = sweep("seed=0,1")
     ((_, why, log),) = ended.failures
     assert re.fullmatch(r"cut short: RuntimeError: a bug \(test_run.py, line \d+, in fall_over\)", why)
@@ -241,13 +241,13 @@ def test_a_number_of_workers_that_is_none_is_said(workers):
 
 
 def test_a_scheduler_that_does_not_answer_is_named(sweep, monkeypatch):
-    monkeypatch.setattr("runner.sweep.engine._ANSWER_WITHIN", 0.5)
+    monkeypatch.setattr("runner.sweeps.engine._ANSWER_WITHIN", 0.5)
     with pytest.raises(RunnerError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9; start one with `dask"):
         sweep("seed=0,1", engine=Engine(2, "tcp://127.0.0.1:9"))
 
 
 def test_more_than_some_thousand_runs_are_sampled(sweep, monkeypatch, tmp_path):
-    monkeypatch.setattr("runner.sweep.run._ALL_TRACES_UP_TO", 4)
+    monkeypatch.setattr("runner.sweeps.run._ALL_TRACES_UP_TO", 4)
     sweep("seed=range(0,4)")
     assert len([*(tmp_path / "outputs" / "runs").iterdir()]) == 4
     ended = sweep("seed=range(10,30)")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from runner.store.atomic import write_atomically
-from runner.sweep.measurements import FloatArray, Measurements
+from runner.sweeps.measurements import FloatArray, Measurements
 
 if TYPE_CHECKING:
     import pandas as pd

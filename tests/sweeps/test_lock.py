@@ -4,11 +4,11 @@ import sys
 import pytest
 
 from runner.errors import RunnerError
-from runner.sweep import lock
-from runner.sweep.lock import at_work, is_at_work
+from runner.sweeps import lock
+from runner.sweeps.lock import at_work, is_at_work
 
 HOLDS = (
-    "import sys, time; from pathlib import Path; from runner.sweep.lock import at_work; \n"
+    "import sys, time; from pathlib import Path; from runner.sweeps.lock import at_work; \n"
     "with at_work(Path(sys.argv[1])): print('held', flush=True); time.sleep(60)"
 )
 

@@ -24,8 +24,8 @@ from runner.config.sweep import SweepConfig
 from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.paths import conf_dir
-from runner.sweep.swept import parse_sweep
-from runner.sweep.template import Template
+from runner.sweeps.swept import parse_sweep
+from runner.sweeps.template import Template
 
 _PROBLEMS_SHOWN = 20
 

@@ -14,9 +14,9 @@ from runner.config.validation import validate
 from runner.errors import RunnerError
 from runner.store.identity import source_digest
 from runner.store.shards import outcome, shard_path, write_shard
-from runner.sweep.deadline import STUCK
-from runner.sweep.queue import Queue
-from runner.sweep.work import Chunk, Report, cut_short, work, write_log
+from runner.sweeps.deadline import STUCK
+from runner.sweeps.queue import Queue
+from runner.sweeps.work import Chunk, Report, cut_short, work, write_log
 
 _DEATHS = 3  # of workers over one run, until it is taken for their cause
 _ANSWER_WITHIN = 10.0  # s, for a scheduler and its workers
@@ -150,7 +150,7 @@ def local_client(workers: int, scratch: Path) -> Iterator[Any]:
                 dashboard_address="127.0.0.1:0",  # none is installed, but its port is opened
                 memory_limit=0,
                 local_directory=str(scratch),
-                preload="runner.sweep.work",  # for its dask_setup
+                preload="runner.sweeps.work",  # for its dask_setup
                 silence_logs=logging.CRITICAL,
             ) as cluster,
             Client(cluster) as client,

@@ -17,7 +17,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from runner.config.compose import Composed, from_hydra
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
-from runner.sweep.swept import SweptKey
+from runner.sweeps.swept import SweptKey
 
 Place = tuple[str, ...]  # of a value in a config, such as ("noise", "position")
 Changes = Mapping[Place, Any]

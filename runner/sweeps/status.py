@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from runner import store
-from runner.sweep.lock import is_at_work
+from runner.sweeps.lock import is_at_work
 
 NOTE = "progress.json"
 

@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from runner.sweep.deadline import TimeLimitError, deadline
+from runner.sweeps.deadline import TimeLimitError, deadline
 
 
 def spin(seconds):

@@ -20,7 +20,7 @@ from runner.plugins import use_plugins
 from runner.store.atomic import write_atomically
 from runner.store.shards import ShardRun, outcome, read_outcomes, shard_path, write_shard
 from runner.store.writing import cut_short_record, make_record
-from runner.sweep.deadline import TimeLimitError, deadline
+from runner.sweeps.deadline import TimeLimitError, deadline
 
 TraceKeeping = Literal["all", "sample", "failed", "never"]
 

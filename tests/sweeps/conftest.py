@@ -3,8 +3,8 @@ from pathlib import Path
 
 import pytest
 
-from runner.sweep.plan import plan_sweep
-from runner.sweep.run import Ended, Engine, run_sweep
+from runner.sweeps.plan import plan_sweep
+from runner.sweeps.run import Ended, Engine, run_sweep
 
 SHORT = ("robot=macro", "duration=0.05")
 

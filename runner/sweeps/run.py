@@ -11,13 +11,13 @@ from runner.config.sweep import SweepConfig
 from runner.errors import ConfigError, StoreError
 from runner.plugins import in_use
 from runner.store.atomic import remove_leftovers
-from runner.sweep.engine import in_process, local_client, on_cluster, remote_client
-from runner.sweep.lock import at_work
-from runner.sweep.plan import Plan
-from runner.sweep.progress import Progress, estimate
-from runner.sweep.queue import Queue
-from runner.sweep.status import in_words
-from runner.sweep.work import Report, Rules, TraceKeeping
+from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
+from runner.sweeps.lock import at_work
+from runner.sweeps.plan import Plan
+from runner.sweeps.progress import Progress, estimate
+from runner.sweeps.queue import Queue
+from runner.sweeps.status import in_words
+from runner.sweeps.work import Report, Rules, TraceKeeping
 
 _ALL_TRACES_UP_TO = 3000  # runs; with more, sweep.trace=auto is sample
 

@@ -16,9 +16,9 @@ from runner.config.compose import Composed
 from runner.config.validation import validate
 from runner.simulation import simulate
 from runner.store.atomic import write_atomically
-from runner.sweep.deadline import TimeLimitError, deadline
-from runner.sweep.plan import Plan
-from runner.sweep.status import NOTE
+from runner.sweeps.deadline import TimeLimitError, deadline
+from runner.sweeps.plan import Plan
+from runner.sweeps.status import NOTE
 
 _EVERY = 2.0  # s between two notes of the progress
 _PROBES = 3  # cells that the first estimate is made from

@@ -5,8 +5,8 @@ import pytest
 
 from runner import run
 from runner.store import write_sweep
-from runner.sweep.measurements import Axis, Measurements
-from runner.sweep.table import table, write_table
+from runner.sweeps.measurements import Axis, Measurements
+from runner.sweeps.table import table, write_table
 
 
 @pytest.fixture

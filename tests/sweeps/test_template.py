@@ -6,7 +6,7 @@ import pytest
 
 from runner.config.compose import compose
 from runner.errors import ConfigError
-from runner.sweep.plan import plan_sweep
+from runner.sweeps.plan import plan_sweep
 
 INDEPENDENT = [
     ("robot=macro,mini", "noise.position=1e-4,1e-3", "controller.period=0.01,0.02"),

@@ -7,7 +7,7 @@ from typing import Protocol
 
 from runner import store
 from runner.config.compose import Composed
-from runner.sweep.work import Chunk, Report, Rules, find_in_shard
+from runner.sweeps.work import Chunk, Report, Rules, find_in_shard
 
 _SECONDS_PER_CHUNK = 1.0  # long against the 5 ms that a chunk costs, short against a sweep
 _LARGEST = 500
