@@ -14,7 +14,7 @@ from runner.environments import ENVIRONMENTS, Environment
 from runner.environments.wall import Wall
 from runner.errors import ConfigError
 from runner.feasibility import check_path
-from runner.guard import WatchedPlant, check_trajectory, is_ours
+from runner.guard.faults import find_fault
 from runner.interaction import Interaction
 from runner.metrics import MetricContext
 from runner.plants import PLANTS, Plant, PositionPlant, innermost
@@ -50,9 +50,9 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
     arm, home = config.arm, config.arm.home
     parallel = config.parallel
     at_home = end_points(arm, home[None], parallel)[-1, 0]
-    start = at_home if config.trajectory.start is None else np.array(config.trajectory.start)
+    asked = getattr(config.trajectory, "start", None)
+    start = at_home if asked is None else np.array(asked)
     trajectory = TRAJECTORIES.build(config.trajectory, start)
-    check_trajectory(trajectory)
     _check_path_reach(config, trajectory)
     limits, q_start = _limits(config), _start_posture(config, trajectory.start)
     if CONTROLLERS.follows_paths(config.controller.kind):
@@ -108,18 +108,13 @@ def _check_path_reach(config: RunConfig, trajectory: Trajectory) -> None:
         )
 
 
-def _build_plant(config: RunConfig, *args: Any) -> Any:
-    plant = PLANTS.build(config.plant, config.arm, *args)
-    return plant if is_ours(innermost(plant)) else WatchedPlant(plant)
-
-
 def _make_plant(config: RunConfig, believed: Robot, limits: FloatArray) -> Plant | PositionPlant:
     arm = config.arm
     plant: Plant | PositionPlant
     if PLANTS.commands(config.plant.kind) == "position":
-        plant = _build_plant(config, config.tick, round(config.controller.period / config.tick))
+        plant = PLANTS.build(config.plant, arm, config.tick, round(config.controller.period / config.tick))
         return plant
-    plant = _build_plant(config, config.step, config.steps_per_tick)
+    plant = PLANTS.build(config.plant, arm, config.step, config.steps_per_tick)
     if config.commands == "torque":
         return plant
     every = round(config.controller.period / config.tick)
@@ -140,7 +135,7 @@ def _make_interaction(
             environment.reset(start)
             ball = tool.tip_radius * environment.normal  # it is the ball's centre that is led
             wall = environment.config
-            within.add_wall(environment.point - ball, environment.normal, wall.stiffness, wall.damping)
+            within.add_wall(environment.point - ball, environment.normal.copy(), wall.stiffness, wall.damping)
             environment = None
     elif environment is None and not any(loop.feels for loop in loops):
         return None
@@ -179,7 +174,10 @@ def _start_posture(config: RunConfig, start: FloatArray) -> FloatArray:
     except np.linalg.LinAlgError as error:
         raise ConfigError([f"trajectory.start: {error}"]) from error
     if wanted is not None:
-        return wanted
+        fault = find_fault(wanted, arm.home.shape)
+        if fault:
+            raise ConfigError([f"controller.kind: start_posture of '{config.controller.kind}' gave {fault}"])
+        return np.array(wanted, dtype=np.float64)
     home = end_points(arm, arm.home[None], config.parallel)[:, 0]
     if np.array_equal(start, home[-1]):
         return arm.home

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,8 @@ from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_c
 from runner.config.compose import Composed, compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.metrics import evaluate, summarize
+from runner.errors import SimulationError
+from runner.metrics import MetricContext, evaluate, summarize
 from runner.sensing import ForceTorqueSensor
 from runner.simulation import ClosedLoop, simulate
 from runner.store.writing import timing
@@ -72,12 +74,12 @@ def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
                 last, loop = loop, assemble(config, repetition)
                 last.plant.close()
             encoders, wrist = make_encoders(config, loop, repetition), make_wrist_sensor(config, loop, repetition)
-            trace = simulate(loop, encoders, wrist)
+            trace, measured = _judge(simulate(loop, encoders, wrist), context, told)
             notices = notices or _notices(loop, wrist)
             first = trace if first is None else first
             if trace.failure is not None and failure is None:
                 failure = (repetition, trace.failure)
-            metrics.append(evaluate(trace, context, told))
+            metrics.append(measured)
             ticks.append(trace.tick_seconds)
     finally:
         loop.plant.close()
@@ -92,6 +94,14 @@ def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
         timing=timing(np.concatenate(ticks), time.perf_counter() - wall, time.process_time() - cpu),
         provenance=job_provenance(config, composed, [*notices, *dict.fromkeys(told)]),
     )
+
+
+def _judge(trace: Trace, context: MetricContext, told: list[str]) -> tuple[Trace, dict[str, float | None]]:
+    """Return a trace and its metrics; where a part of the user's spoils these, the trace with that as its failure."""
+    try:
+        return trace, evaluate(trace, context, told)
+    except SimulationError as error:
+        return replace(trace, failure=Failure(error.reason, float(trace.t[-1]))), {}
 
 
 def _notices(closed: ClosedLoop, wrist: ForceTorqueSensor | None) -> list[str]:

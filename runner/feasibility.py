@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from runner.controllers import CONTROLLERS
-from runner.errors import ConfigError
+from runner.errors import ConfigError, SimulationError
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.task_space import task_directions
@@ -36,7 +36,10 @@ def check_path(controller: Any, robot: Robot, trajectory: Trajectory, q_start: F
     if not trajectory.tracked:
         return
     times: FloatArray = np.arange(math.floor(trajectory.duration / controller.period) + 1) * controller.period
-    q, stuck = _roll_out(controller, _without_speed_limits(robot), trajectory.sample(times), q_start)
+    try:
+        q, stuck = _roll_out(controller, _without_speed_limits(robot), trajectory.sample(times), q_start)
+    except SimulationError:  # of a part of the user's: the run itself ends there, and says so
+        return
     problem = (
         _find_end(times, q, stuck)
         or _find_stop(robot.model, trajectory, times, q, tolerance)

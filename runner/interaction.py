@@ -9,7 +9,6 @@ import pinocchio as pin
 
 from runner.controllers.controller import FeelingController
 from runner.environments import Environment
-from runner.guard import watch
 from runner.robots.robot import Robot
 from runner.robots.tool_link import find_tool, holding_wrench
 from runner.sensing.force_torque import ForceTorqueSensor
@@ -35,7 +34,6 @@ class Interaction:
         self._model = pin.Model(robot.model.pin_model)
         self._data = self._model.createData()
         self._environment = environment
-        self._wrench = None if environment is None else watch(environment, environment.wrench, 6)
         self._tick = tick
         self._tip = robot.model.tip_frame
         self._flange = self._model.getFrameId(robot.flange)
@@ -76,8 +74,8 @@ class Interaction:
         tip = pin.updateFramePlacement(model, data, self._tip)
         J = pin.getFrameJacobian(model, data, self._tip, pin.LOCAL_WORLD_ALIGNED)
         applied = np.zeros(6)
-        if self._wrench is not None:
-            applied = self._wrench(time, tip.translation.copy(), J[:3] @ dq)
+        if self._environment is not None:
+            applied = self._environment.wrench(time, tip.translation.copy(), J[:3] @ dq)
         self.external[:] = applied + contact
         self.external[3:] -= np.cross(tip.translation, contact[:3])
         self.load[:] = self._load_on_flange(tip)

@@ -5,7 +5,8 @@ used, and offers `CONFIG`, the pydantic model of its config group, and `build`, 
 kinds of their own: see runner/plugins.py.
 """
 
-from collections.abc import Mapping
+import copy
+from collections.abc import Callable, Mapping
 from types import ModuleType
 from typing import Any, Literal
 
@@ -27,11 +28,13 @@ class Registry:
     Args:
         group: Name of the config group, such as "controller".
         modules: Module name of each kind.
+        watch: Makes what is watched of what a module of the user's built, given this and what `build` was given.
     """
 
-    def __init__(self, group: str, modules: Mapping[str, str]) -> None:
+    def __init__(self, group: str, modules: Mapping[str, str], watch: Callable[..., Any] | None = None) -> None:
         self.group = group
         self._modules = dict(modules)
+        self._watch = watch
 
     def names(self) -> list[str]:
         """Return the known kinds, those of the user's included, sorted."""
@@ -57,16 +60,19 @@ class Registry:
     def build(self, config: Any, *args: Any) -> Any:
         """Make the object that a validated config describes; `args` are what every kind of this group gets.
 
+        A module of the user's gets copies of them, and what it builds is watched.
+
         Raises:
             ConfigError: where a part of the user's raises anything; names the place.
         """
-        module = self._module(config.kind)
-        try:
-            return module.build(config, *args)
-        except Exception as error:
-            if module.__name__.startswith("runner.") or isinstance(error, RunnerError):
-                raise
-            raise ConfigError([f"{self.group}.kind: '{config.kind}' cannot be built: {told(error)}"]) from error
+        if self.is_ours(config.kind):
+            return self._module(config.kind).build(config, *args)
+        built = self._ask_theirs("build", config, *args)
+        return built if self._watch is None else self._watch(built, config, *args)
+
+    def is_ours(self, kind: str) -> bool:
+        """Tell whether a kind comes with this package, where no watching is needed."""
+        return self._module(kind).__name__.startswith("runner.")
 
     def commands(self, kind: str) -> Literal["torque", "position"]:
         """Return what a kind of controller gives, or a kind of plant takes: "torque" or "position" of the joints."""
@@ -80,12 +86,23 @@ class Registry:
     def start_posture(self, config: Any, *args: Any) -> Any:
         """Return where the arm stands at a trajectory's start, or None where the controller's kind has no wish."""
         choose = getattr(self._module(config.kind), "start_posture", None)
-        return None if choose is None else choose(config, *args)
+        if choose is None:
+            return None
+        return choose(config, *args) if self.is_ours(config.kind) else self._ask_theirs("start_posture", config, *args)
 
     def default_step(self, kind: str, tick: float, stages: int) -> float:
         """Return the step that a kind of plant takes when its config names none, in s."""
         step: float = self._module(kind).default_step(tick, stages)
         return step
+
+    def _ask_theirs(self, name: str, config: Any, *args: Any) -> Any:
+        """Return what a function of a module of the user's gives, which is handed copies alone."""
+        try:
+            return getattr(self._module(config.kind), name)(*copy.deepcopy((config, *args)))
+        except RunnerError:
+            raise
+        except Exception as error:
+            raise ConfigError([f"{self.group}.kind: '{config.kind}' cannot be built: {told(error)}"]) from error
 
     def _module(self, kind: str) -> ModuleType:
         modules = self._modules if kind in self._modules else self._plugins()

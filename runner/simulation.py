@@ -9,7 +9,6 @@ import numpy as np
 
 from runner.controllers import Loop
 from runner.errors import SimulationError
-from runner.guard import reset, watch
 from runner.interaction import Interaction, Touch
 from runner.plants import Plant, PositionPlant, innermost
 from runner.robots.robot import Robot, end_points
@@ -78,30 +77,34 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
     """
     n, nq = closed.ticks, closed.robot.model.nq
     times: FloatArray = np.arange(n + 1, dtype=np.float64) * closed.tick
-    desired = closed.trajectory.sample(times)
+    desired: FloatArray = np.zeros((n + 1, 3, 3))
     q_rows, dq_rows, tau_rows, held_rows = (np.zeros((n + 1, nq)) for _ in range(4))
     clock = np.zeros(n + 1, dtype=np.int64)
     plant: Any = closed.plant  # a Plant or PositionPlant, as `commands` says
     now = time.perf_counter_ns
     positions = closed.commands == "position"
     held = closed.q_start.copy() if positions else np.zeros(nq)
-    laws = [_reset(loop, closed) for loop in closed.loops]
-    loops = [
-        (closed.every(loop), sensor.measure, law, loop.joints, closed.limits[loop.joints])
-        for loop, sensor, law in zip(closed.loops, encoders, laws, strict=True)
-    ]
     touch, moved = None, innermost(plant)
-    if closed.interaction is not None and wrist is not None:
-        feeling: Any = [loop.controller for loop in closed.loops if loop.feels]
-        touch = Touch(closed.interaction, wrist, feeling, closed.q_start, n + 1)
     load: FloatArray | None = None
     limited = not positions and bool(np.isfinite(closed.limits).any())
-
-    plant.reset(closed.q_start, np.zeros(nq))
     failure = None
     rows = n + 1
+    q_rows[0] = closed.q_start
+    try:
+        desired[:] = closed.trajectory.sample(times)
+        laws = [_reset(loop, closed) for loop in closed.loops]
+        loops = [
+            (closed.every(loop), sensor.measure, law, loop.joints, closed.limits[loop.joints])
+            for loop, sensor, law in zip(closed.loops, encoders, laws, strict=True)
+        ]
+        if closed.interaction is not None and wrist is not None:
+            feeling: Any = [loop.controller for loop in closed.loops if loop.feels]
+            touch = Touch(closed.interaction, wrist, feeling, closed.q_start, n + 1)
+        plant.reset(closed.q_start, np.zeros(nq))
+    except SimulationError as error:
+        failure, rows = Failure(error.reason, 0.0), 1
     with np.errstate(over="ignore", invalid="ignore"):  # a diverging run ends as a failure, not as a warning
-        for k in range(n + 1):
+        for k in range(n + 1 if failure is None else 0):
             clock[k] = now()
             q_rows[k] = q = plant.q
             dq_rows[k] = dq = plant.dq
@@ -169,13 +172,14 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
 def _reset(loop: Loop, closed: ClosedLoop) -> Callable[..., FloatArray]:
     """Reset a loop's controller, and return its law."""
     controller: Any = loop.controller  # one or the other, as `commands` says
+    law: Callable[..., FloatArray]
     if closed.commands == "torque":
-        reset(controller)
-        law: Callable[..., FloatArray] = controller.torque
+        controller.reset()
+        law = controller.torque
     else:
-        reset(controller, closed.q_start)
+        controller.reset(closed.q_start)
         law = controller.joint_positions
-    return watch(controller, law, loop.joints.stop - loop.joints.start)
+    return law
 
 
 def _find_divergence(q: FloatArray, dq: FloatArray, until: int) -> tuple[int, int] | None:

@@ -100,8 +100,17 @@ def test_what_raises_outside_of_the_loop_is_told_with_its_place(mine):
     ending = runner(*PLUGIN, *COMMAND)
     assert ending.returncode == 2
     line = len(SPRING.splitlines()) + 4
-    assert ending.stderr.startswith("runner: a part of yours failed: AttributeError: 'SpringConfig' object")
+    assert "controller.kind: 'spring' cannot be built: AttributeError: 'SpringConfig' object" in ending.stderr
     assert ending.stderr.endswith(f"(spring.py, line {line}, in start_posture)\n")
+
+
+def test_so_is_what_its_config_model_raises(mine):
+    check = "    @field_validator('period')\n    def check(cls, period):\n        return {}[period]\n"
+    text = SPRING.replace("    stiffness: PositiveFloat\n", f"    stiffness: PositiveFloat\n\n{check}")
+    (mine / "mine/spring.py").write_text(text.replace("import PositiveFloat", "import PositiveFloat, field_validator"))
+    ending = runner(*PLUGIN, *COMMAND)
+    assert ending.returncode == 2
+    assert re.match(r"runner: a part of yours failed: KeyError: 0.01 \(spring.py, line \d+, in check\)", ending.stderr)
 
 
 def test_every_command_takes_it_and_wherever_it_stands(mine):

@@ -2,6 +2,7 @@ import sys
 import types
 from importlib.metadata import EntryPoint
 
+import numpy as np
 import pytest
 from pydantic import ValidationError
 
@@ -20,6 +21,7 @@ def parts(monkeypatch):
     """A registry with one kind of its own and one of another package."""
     for name in ("own", "foreign"):
         module = types.ModuleType(f"some_{name}")
+        module.__name__ = "runner.some_own" if name == "own" else "some_foreign"
         module.CONFIG, module.build = Config, lambda config, *args, name=name: (name, config.size, *args)
         module.default_step = lambda tick, stages: tick / 10 / stages
         monkeypatch.setitem(sys.modules, f"some_{name}", module)
@@ -56,6 +58,20 @@ def test_a_module_without_a_config_model_is_refused(parts):
     sys.modules["some_foreign"].CONFIG = dict
     with pytest.raises(ConfigError, match=r"module some_foreign of 'foreign' needs CONFIG, a class derived from"):
         parts.config_model("foreign")
+
+
+def test_a_kind_of_the_users_gets_copies_and_is_watched(parts):
+    parts = Registry("part", {"own": "some_own"}, watch=lambda built, config, *args: ("watched", built, *args))
+    arm = np.zeros(3)
+
+    def build(config, arm):
+        arm[:] = 1.0
+        return "part"
+
+    sys.modules["some_foreign"].build = build
+    assert parts.build(Config(kind="foreign", size=2.0), arm) == ("watched", "part", arm)
+    assert not arm.any()
+    assert parts.build(Config(kind="own", size=2.0), arm)[2] is arm
 
 
 def test_what_a_kind_of_the_users_raises_is_told_with_its_place(parts):

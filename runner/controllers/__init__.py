@@ -1,6 +1,7 @@
 """Control laws: from time, measurement and reference to joint torques or positions."""
 
 from runner.controllers.controller import Controller, Loop, PositionController
+from runner.guard import watch_loops
 from runner.registry import Registry
 
 CONTROLLERS = Registry(
@@ -15,6 +16,7 @@ CONTROLLERS = Registry(
         "whole_body": "runner.controllers.whole_body",
         "xarm7_as_printed": "runner.controllers.xarm7_as_printed",
     },
+    watch=watch_loops,
 )
 
 __all__ = ["CONTROLLERS", "Controller", "Loop", "PositionController"]

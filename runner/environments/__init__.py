@@ -1,6 +1,7 @@
 """What the world does to the tip: pushes, walls, hands."""
 
 from runner.environments.environment import Environment
+from runner.guard import WatchedEnvironment
 from runner.registry import Registry
 
 ENVIRONMENTS = Registry(
@@ -11,6 +12,7 @@ ENVIRONMENTS = Registry(
         "push": "runner.environments.push",
         "wall": "runner.environments.wall",
     },
+    watch=WatchedEnvironment,
 )
 
 __all__ = ["ENVIRONMENTS", "Environment"]

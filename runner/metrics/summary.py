@@ -3,12 +3,11 @@
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from statistics import median
 from types import ModuleType
 
 from runner.errors import ConfigError
-from runner.guard import is_ours, watch_metrics
+from runner.guard import watch_metrics
 from runner.metrics import contact, effort, positioning, reaching, tracking
 from runner.metrics.context import MetricContext
 from runner.plugins import added, load
@@ -68,14 +67,17 @@ def evaluate(trace: Trace, context: MetricContext, notices: list[str] | None = N
         trace: The run's trace.
         context: Its setting.
         notices: Takes what went wrong in metrics of the user's, a text for each.
+
+    Raises:
+        SimulationError: where metrics of the user's try to change the trace, or a trajectory of the user's goes wrong.
     """
     if trace.failure is not None:
         return {}
     told = [] if notices is None else notices
     values: dict[str, float | None] = {}
     for family in families():
-        measured = partial(family.evaluate, trace, context)
-        values |= measured() if is_ours(family) else watch_metrics(family, measured, told)
+        ours = family in _FAMILIES
+        values |= family.evaluate(trace, context) if ours else watch_metrics(family, trace, context, told)
     for index, stage in enumerate(trace.stage_names[:-1]):
         carrier = replace(context, trajectory=Shifted(context.trajectory, trace.offsets[index]))
         for family in (positioning, tracking):

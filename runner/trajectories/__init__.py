@@ -1,5 +1,6 @@
 """Desired motions of the tip."""
 
+from runner.guard import WatchedTrajectory
 from runner.registry import Registry
 from runner.trajectories.trajectory import Trajectory
 
@@ -14,6 +15,7 @@ TRAJECTORIES = Registry(
         "square": "runner.trajectories.square",
         "waypoints": "runner.trajectories.waypoints",
     },
+    watch=WatchedTrajectory,
 )
 
 __all__ = ["TRAJECTORIES", "Trajectory"]

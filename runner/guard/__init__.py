@@ -1,0 +1,22 @@
+"""Watching the user's parts: they can change nothing that they are handed, and what goes wrong is told with its place.
+
+A part of the user's gets copies that cannot be written to, and its answers are checked and copied. What it raises ends
+the run as a failure that names file and line. Parts of this package are not watched.
+"""
+
+from runner.guard.controller import WatchedController, watch_loops
+from runner.guard.environment import WatchedEnvironment
+from runner.guard.metrics import watch_metrics
+from runner.guard.plant import WatchedPlant
+from runner.guard.read_only import read_only
+from runner.guard.trajectory import WatchedTrajectory
+
+__all__ = [
+    "WatchedController",
+    "WatchedEnvironment",
+    "WatchedPlant",
+    "WatchedTrajectory",
+    "read_only",
+    "watch_loops",
+    "watch_metrics",
+]

@@ -1,0 +1,64 @@
+import re
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from runner.assembly import make_encoders, metric_context
+from runner.errors import SimulationError
+from runner.metrics import evaluate, summary
+from runner.simulation import simulate
+
+
+@pytest.mark.parametrize(
+    ("give", "value", "notice"),
+    [
+        (lambda: {"own": 2.0}, 2.0, None),
+        (lambda: {"own": np.float64(2.0)}, 2.0, None),
+        (lambda: {"own": None}, None, None),
+        (lambda: {"own": float("nan")}, None, r"metric own: .*evaluate_own .* gave nan; it must be finite"),
+        (lambda: {"own": np.zeros(2)}, None, r"metric own: .* gave an array of shape \(2,\); it must be a number"),
+        (lambda: {"own": 1 / 0}, None, r"metrics of mine: ZeroDivisionError: .* \(test_metrics.py, line \d+"),
+        (lambda: {"own": 2.0, "other": 1.0}, 2.0, r"metric other: mine.UNITS names no unit for it; it is left out"),
+        (lambda: 3, None, r"metrics of mine: TypeError"),
+    ],
+)
+def test_a_metric_that_goes_wrong_has_no_value_and_the_others_stay(
+    checked_config, closed_loop, monkeypatch, give, value, notice
+):
+    family = ModuleType("mine")
+    family.UNITS = {"own": "m"}
+
+    def evaluate_own(trace, context):
+        return give()
+
+    family.evaluate = evaluate_own
+    monkeypatch.setattr(summary, "families", lambda: (*summary._FAMILIES, family))
+    config = checked_config("robot=macro", "duration=0.1")
+    loop = closed_loop("robot=macro", "duration=0.1")
+    notices = []
+    values = evaluate(simulate(loop, make_encoders(config, loop, 0)), metric_context(config, loop), notices)
+    assert values["own"] == value
+    assert "peak_torque" in values
+    assert "other" not in values
+    assert len(notices) == (notice is not None)
+    if notice is not None:
+        assert re.search(notice, notices[0]), notices[0]
+
+
+@pytest.mark.parametrize("what", ["t", "q", "desired"])
+def test_a_metric_that_changes_the_trace_is_a_failure_that_names_the_place(
+    checked_config, closed_loop, monkeypatch, what
+):
+    family = ModuleType("mine")
+    family.UNITS = {"own": "m"}
+
+    def evaluate_own(trace, context):
+        getattr(trace, what)[:] = 0.0
+
+    family.evaluate = evaluate_own
+    monkeypatch.setattr(summary, "families", lambda: (*summary._FAMILIES, family))
+    config, loop = checked_config("robot=macro", "duration=0.1"), closed_loop("robot=macro", "duration=0.1")
+    trace = simulate(loop, make_encoders(config, loop, 0))
+    with pytest.raises(SimulationError, match=r"metrics of mine: .*read-only \(test_metrics.py, line \d+, in evaluate"):
+        evaluate(trace, metric_context(config, loop))
