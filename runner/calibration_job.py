@@ -1,5 +1,6 @@
 """One calibration job: check a composed config, repeat the calibration, store what it found; or find it stored."""
 
+import sys
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
@@ -38,7 +39,11 @@ def calibrate(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Calibr
     config = validate_calibration(composed)
     outputs = Path(config.settings.outputs)
     name = store.run_hash(config.resolved, config.arm.urdf)
-    stored = store.find_calibration(outputs, name)
+    try:
+        stored = store.find_calibration(outputs, name)
+    except store.DamagedError as error:
+        print(f"runner: {error}; it is made again", file=sys.stderr)
+        stored = None
     if stored is not None:
         return stored
     return store.write_calibration(outputs, name, config.resolved, config.arm.urdf, _carry_out(config, composed))

@@ -1,13 +1,15 @@
 """The door: which command is meant, and how every ending leaves it.
 
-Exit codes: 0 good, 1 a run failed or a check fell short, 2 bad input, 130 interrupted. This module imports little,
-so that help and completion answer at once.
+Exit codes: 0 good, 1 a run failed or a check fell short, 2 bad input, 130 interrupted, 143 terminated. This module
+imports little, so that help and completion answer at once.
 """
 
 import importlib
 import os
+import signal
 import sys
 from collections.abc import Sequence
+from typing import NoReturn
 
 from runner.errors import RunnerError, nearest, told, user_place
 
@@ -23,6 +25,7 @@ runner: config-driven experiments for robot-arm control, with reports
                                                  run what is missing and write the report of a published work
   runner report DIR... [--html] [--pdf]          a report from stored runs or sweeps
   runner table DIR                               a sweep as one table, Parquet and CSV
+  runner verify [DIR]                            is all in an outputs folder as it was written?
   runner check DIR [--reference FILE]            is every metric inside its reference band? --learn a sweep's
   runner diff A B                                two runs side by side: config and metrics
   runner calibrate [OVERRIDES]                   calibrate tool or sensor against the truth: calibration=gravity
@@ -45,12 +48,13 @@ experiment. A value is set by its dotted key, as in controller.period=0.005; `ru
 codes: 0 good, 1 a run failed or a check fell short, 2 bad input.
 """
 COMMANDS = (
-    "reproduce", "report", "table", "status", "tune", "check", "diff", "calibrate", "audit", "doctor", "list",
+    "reproduce", "report", "table", "status", "tune", "verify", "check", "diff", "calibrate", "audit", "doctor", "list",
 )  # fmt: skip
 
 
 def main() -> None:
     """Run the command line and leave the process with its exit code."""
+    signal.signal(signal.SIGTERM, _terminate)
     try:
         code = dispatch(sys.argv[1:])
         sys.stdout.flush()
@@ -62,6 +66,15 @@ def main() -> None:
             print(f"runner: {error}", file=sys.stderr)
             code = 2
     sys.exit(code)
+
+
+class TerminatedError(KeyboardInterrupt):
+    """The process was asked to end (SIGTERM); it ends as when it is interrupted."""
+
+
+def _terminate(*_: object) -> NoReturn:
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # what ends must not be ended once more
+    raise TerminatedError
 
 
 def dispatch(arguments: Sequence[str]) -> int:
@@ -81,9 +94,10 @@ def dispatch(arguments: Sequence[str]) -> int:
             raise
         print(f"runner: a part of yours failed: {told(error)}", file=sys.stderr)
         return 2
-    except KeyboardInterrupt:
-        print("runner: interrupted; finished runs are stored, the same command goes on from there", file=sys.stderr)
-        return 130
+    except KeyboardInterrupt as error:
+        ended, code = ("terminated", 143) if isinstance(error, TerminatedError) else ("interrupted", 130)
+        print(f"runner: {ended}; finished runs are stored, the same command goes on from there", file=sys.stderr)
+        return code
 
 
 def _take_plugins(arguments: Sequence[str]) -> list[str]:

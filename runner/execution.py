@@ -1,5 +1,6 @@
 """One job: check a composed config, simulate its repetitions, store the result; or find it stored already."""
 
+import sys
 import time
 from collections.abc import Sequence
 from dataclasses import replace
@@ -43,7 +44,11 @@ def execute(composed: Composed) -> store.Run:
     config = validate(composed.resolved, composed.config_dirs)
     outputs = Path(config.settings.outputs)
     name = store.run_hash(composed.resolved, config.arm.urdf)
-    stored = store.find_run(outputs, name)
+    try:
+        stored = store.find_run(outputs, name)
+    except store.DamagedError as error:
+        print(f"runner: {error}; it is made again", file=sys.stderr)
+        stored = None
     if stored is not None:
         return stored
     store.prepare(outputs)

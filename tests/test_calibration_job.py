@@ -56,7 +56,8 @@ def test_a_damaged_one_is_carried_out_again(job, name):
     path.write_text(path.read_text()[:100]) if name == "result.json" else path.unlink()
     again = job()
     assert again.urdf == urdf
-    assert {**again.record, "timing": None} == {**first.record, "timing": None}
+    clocked = dict.fromkeys(("timing", "digest"))
+    assert {**again.record, **clocked} == {**first.record, **clocked}
 
 
 def test_estimates_errors_and_truth_belong_together(job):
@@ -103,9 +104,9 @@ def test_another_arm_is_calibrated_with_a_tool_on_it(tmp_path):
 
 
 def test_what_is_no_calibration_is_refused(tmp_path, job):
-    with pytest.raises(StoreError, match="cannot read the calibration in"):
+    with pytest.raises(StoreError, match=r"cannot read .*result\.json: No such file"):
         open_calibration(tmp_path)
     folder = job().folder
     (folder / "result.json").write_text(json.dumps({"schema": 1}))
-    with pytest.raises(StoreError, match="needs schema 1, estimates, truth"):
+    with pytest.raises(StoreError, match=r"it is no calibration's result: estimates, truth, .* missing"):
         open_calibration(folder)

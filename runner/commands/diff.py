@@ -26,7 +26,7 @@ def main(arguments: Sequence[str]) -> int:
     from runner import store
 
     a, b = store.open_run(options.a), store.open_run(options.b)
-    print(f"A  {a.folder}  {a.failure_text or a.status}\nB  {b.folder}  {b.failure_text or b.status}\n")
+    print(f"A  {_headline(a)}\nB  {_headline(b)}\n")
     print(_compare("config", store.simulated_part(a.config), store.simulated_part(b.config)))
     if a.urdf != b.urdf:
         print("  the text of robot.urdf differs")
@@ -34,6 +34,10 @@ def main(arguments: Sequence[str]) -> int:
     print(aligned([["metric", "unit", "A", "B", "B - A", "B / A"], *_metric_rows(a, b)], indent=""))
     print(f"\n{_paired(a, b)}")
     return 0
+
+
+def _headline(run: "Run") -> str:
+    return f"{run.folder}  {run.failure_text or run.status}{'' if run.sealed else '  unsealed: no digests'}"
 
 
 def _compare(name: str, a: Mapping[str, Any], b: Mapping[str, Any]) -> str:

@@ -1,5 +1,6 @@
 """`runner status DIR`: how far a sweep is, from what is stored."""
 
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -18,6 +19,8 @@ def main(arguments: Sequence[str]) -> int:
 
     sweep = open_sweep(options.folder)
     status = find_status(sweep)
+    for damage in status.damage:
+        print(f"runner: {damage}", file=sys.stderr)
     failed = f" ({status.failed} of them failed)" if status.failed else ""
     print(f"{status.done + status.left} runs: {status.done} done{failed}, {status.left} left")
     if status.left and status.at_work:

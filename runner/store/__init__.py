@@ -1,18 +1,21 @@
 """Stored runs: content-addressed folders, written atomically, readable without the simulator."""
 
 from runner.store.calibration import Calibration, find_calibration, open_calibration, write_calibration
+from runner.store.finished import Finished, find_outcome, find_run
 from runner.store.identity import run_hash, simulated_part
 from runner.store.run import Run, is_run, open_run
-from runner.store.shards import Outcome, Shards
+from runner.store.seal import DamagedError
+from runner.store.shards import Outcome
 from runner.store.sweep import Sweep, is_sweep, open_runs, open_sweep, write_sweep
-from runner.store.writing import RunResult, find_outcome, find_run, prepare, write_run
+from runner.store.writing import RunResult, prepare, write_run
 
 __all__ = [
     "Calibration",
+    "DamagedError",
+    "Finished",
     "Outcome",
     "Run",
     "RunResult",
-    "Shards",
     "Sweep",
     "find_calibration",
     "find_outcome",

@@ -1,6 +1,5 @@
 """Calibrations as they are stored: `outputs/calibrations/<hash>/` with config.yaml, robot.urdf and result.json."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,11 +9,10 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
-from runner.errors import StoreError
-from runner.store.atomic import write_atomically
-from runner.store.stored import Stored, read_job
+from runner.store.seal import DamagedError
+from runner.store.stored import MEND, Stored, check_job, read_job, write_job
 
-SCHEMA = 1
+_RECORD = "result.json"
 _NEEDED = ("estimates", "truth", "errors", "deviations", "measures", "consistency", "postures", "provenance")
 Table = Literal["estimates", "errors", "deviations", "measures"]
 
@@ -52,24 +50,29 @@ class Calibration(Stored):
 
 
 def find_calibration(outputs: Path, name: str) -> Calibration | None:
-    """Return the calibration of that hash, or None when it is missing, unfinished or damaged."""
-    try:
-        calibration = open_calibration(outputs / "calibrations" / name)
-        return calibration if calibration.urdf else None
-    except StoreError:
+    """Return the calibration of that hash, or None when there is none that was finished.
+
+    Raises:
+        DamagedError: if it is damaged.
+    """
+    folder = outputs / "calibrations" / name
+    if not (folder / _RECORD).exists():
         return None
+    check_job(folder, _RECORD)
+    return open_calibration(folder)
 
 
 def open_calibration(folder: Path) -> Calibration:
     """Open a stored calibration.
 
     Raises:
-        StoreError: if the folder is none, or damaged.
+        DamagedError: if the folder is none, or damaged.
     """
-    record, config = read_job(folder, "result.json", "calibration")
-    if not isinstance(record, dict) or record.get("schema") != SCHEMA or any(key not in record for key in _NEEDED):
-        raise StoreError(
-            f"{folder / 'result.json'} is no calibration's result: it needs schema {SCHEMA}, {', '.join(_NEEDED)}"
+    record, config = read_job(folder, _RECORD)
+    missing = [key for key in _NEEDED if key not in record]
+    if missing:
+        raise DamagedError(
+            f"cannot read {folder / _RECORD}: it is no calibration's result: {', '.join(missing)} missing; {MEND}"
         )
     return Calibration(folder, config, record)
 
@@ -83,8 +86,6 @@ def write_calibration(
         StoreError: if the disk does not take it.
     """
     folder = outputs / "calibrations" / name
-    write_atomically(folder / "config.yaml", yaml.safe_dump(dict(config), sort_keys=False).encode())
-    write_atomically(folder / "robot.urdf", urdf.encode())
-    content = json.dumps({"schema": SCHEMA, **record}, indent=1, allow_nan=False) + "\n"
-    write_atomically(folder / "result.json", content.encode())
+    text = yaml.safe_dump(dict(config), sort_keys=False)
+    write_job(folder, _RECORD, record, {"config.yaml": text.encode(), "robot.urdf": urdf.encode()})
     return open_calibration(folder)

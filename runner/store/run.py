@@ -7,13 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from runner.errors import StoreError
-from runner.store.stored import Stored, read_job
+from runner.store.record import find_faults
+from runner.store.seal import DamagedError
+from runner.store.stored import MEND, Stored, read_job
 
 if TYPE_CHECKING:
     import pandas as pd
-
-SCHEMA = 1
-_NEEDED = {"schema": int, "status": str, "metrics": dict, "provenance": dict, "repetitions": int}
 
 
 @dataclass(frozen=True)
@@ -51,7 +50,7 @@ class Run(Stored):
         """Signals of repetition 0, a row per tick; `units` tells the columns' units.
 
         Raises:
-            StoreError: if the file is missing or damaged.
+            DamagedError: if the file is missing or damaged.
         """
         frame: pd.DataFrame = self._table.to_pandas()
         return frame
@@ -66,11 +65,12 @@ class Run(Stored):
         import pyarrow
         import pyarrow.parquet
 
-        path = self.folder / "trace.parquet"
+        content = pyarrow.BufferReader(self.read("trace.parquet"))
         try:
-            return pyarrow.parquet.ParquetFile(path).read()  # read_table would import pandas, half a second
+            return pyarrow.parquet.ParquetFile(content).read()  # read_table would import pandas, half a second
         except (OSError, pyarrow.ArrowException) as error:
-            raise StoreError(f"cannot read {path}: {str(error).splitlines()[0]}; run it again to mend it") from error
+            what = str(error).splitlines()[0]
+            raise DamagedError(f"cannot read {self.folder / 'trace.parquet'}: {what}; {MEND}") from error
 
 
 def describe_failure(failure: Mapping[str, Any]) -> str:
@@ -95,7 +95,8 @@ def open_run(folder: Path) -> Run:
     """Open a finished run.
 
     Raises:
-        StoreError: if the folder is no run, or one that was not finished, or is damaged.
+        StoreError: if the folder is no run, or one that was not finished.
+        DamagedError: if it is damaged.
     """
     if not folder.is_dir():
         raise StoreError(f"no folder {folder}")
@@ -106,22 +107,9 @@ def open_run(folder: Path) -> Run:
         raise StoreError(
             f"{folder} is {what}: it has no metrics.json; `runner OVERRIDES` makes a run and prints its folder"
         )
-    record, config = read_job(folder, "metrics.json", "run")
-    if not isinstance(config, dict):
-        raise StoreError(f"{folder / 'config.yaml'} holds no config")
-    if isinstance(record, dict) and record.get("schema", SCHEMA) != SCHEMA:
-        raise StoreError(f"{record_path} has schema {record['schema']!r}; this version reads {SCHEMA}")
-    if not _is_record(record):
-        raise StoreError(
-            f"{record_path} is no metrics file: it needs {', '.join(sorted(_NEEDED))}, as a run writes them"
-        )
-    return Run(folder, config, record)
-
-
-def _is_record(record: Any) -> bool:
-    return (
-        isinstance(record, dict)
-        and all(isinstance(record.get(key), kind) for key, kind in _NEEDED.items())
-        and all(isinstance(metric, dict) and {"unit", "median"} <= set(metric) for metric in record["metrics"].values())
-        and (record["status"] == "ok" or isinstance(record.get("failure"), dict))
-    )
+    record, config = read_job(folder, "metrics.json")
+    run = Run(folder, config, record)
+    faults = "" if run.sealed else find_faults(record)
+    if faults:
+        raise DamagedError(f"cannot read {record_path}: it is no run's record: {faults}; {MEND}")
+    return run

@@ -1,7 +1,8 @@
 """Shards: finished runs of large sweeps that kept no trace, some hundred to a file.
 
-`outputs/shards/NAME.parquet` has a row for each run: its hash, what went wrong, and config, URDF and record as a run's
-folder holds them. A shard is written once and whole; of two rows for one run, that of the later shard counts.
+`outputs/shards/NUMBER-PLACE.DIGEST.parquet` has a row for each run: its hash, what went wrong, and config, URDF and
+record as a run's folder holds them. A shard is written once and whole, and its name holds its content's digest. The
+numbers count the commands that wrote shards, so that the later of two is known without a clock.
 """
 
 import io
@@ -14,9 +15,13 @@ from typing import Any
 
 from runner.errors import StoreError
 from runner.store.atomic import write_atomically
+from runner.store.record import find_faults
 from runner.store.run import Run, describe_failure
+from runner.store.seal import SCHEMA, DamagedError, digest
 
 _COLUMNS = ("run", "failure", "cut_short", "config", "urdf", "record")
+_HEX = 24  # digits of the digest in a name
+_MEND = "remove it, and the sweep's command makes its runs again"
 
 
 @dataclass(frozen=True)
@@ -33,6 +38,11 @@ class Outcome:
     failure: str
     cut_short: bool
 
+    @property
+    def rank(self) -> int:
+        """Which of two outcomes of one run counts, the lower: 0 for a good one, 1 for a failed, 2 for a cut short."""
+        return 2 if self.cut_short else 1 if self.failure else 0
+
 
 @dataclass(frozen=True)
 class ShardRun(Run):
@@ -40,9 +50,16 @@ class ShardRun(Run):
 
     Attributes:
         text: The URDF's text.
+        whole: Whether its shard has a digest.
     """
 
     text: str
+    whole: bool = True
+
+    @property
+    def sealed(self) -> bool:
+        """Whether its shard has a digest; see Stored."""
+        return self.whole
 
     @cached_property
     def urdf(self) -> str:
@@ -63,13 +80,29 @@ def outcome(run: Run) -> Outcome:
     return Outcome(run.hash, describe_failure(failure), failure["time"] is None)
 
 
-def shard_path(outputs: Path, name: str) -> Path:
-    """Return the file of a shard."""
-    return outputs / "shards" / f"{name}.parquet"
+def shard_files(outputs: Path) -> list[Path]:
+    """Return the shards of an outputs folder, later ones last."""
+    return sorted((outputs / "shards").glob("*.parquet"))
 
 
-def write_shard(path: Path, runs: Sequence[ShardRun]) -> None:
-    """Store runs without trace in one file.
+def next_number(outputs: Path) -> int:
+    """Return the number of the next command that writes shards."""
+    numbers = [path.name.partition("-")[0] for path in shard_files(outputs)]
+    return 1 + max((int(number) for number in numbers if number.isdecimal()), default=0)
+
+
+def shard_name(number: int, place: int) -> str:
+    """Return the name of a shard without its digest: of a command's number, and the shard's place in it."""
+    return f"{number:020d}-{place:06d}"
+
+
+def find_shards(outputs: Path, name: str) -> list[Path]:
+    """Return the files of a shard's name: none before it is written."""
+    return sorted((outputs / "shards").glob(f"{name}.*parquet"))
+
+
+def write_shard(outputs: Path, name: str, runs: Sequence[ShardRun]) -> Path:
+    """Store runs without trace in one file, and return it.
 
     Raises:
         StoreError: if the disk does not take it.
@@ -90,56 +123,47 @@ def write_shard(path: Path, runs: Sequence[ShardRun]) -> None:
         pyarrow.array(values, pyarrow.bool_() if name == "cut_short" else pyarrow.string(), from_pandas=False)
         for name, values in columns.items()
     ]
+    table = pyarrow.Table.from_arrays(arrays, names=list(columns)).replace_schema_metadata({"schema": str(SCHEMA)})
     buffer = io.BytesIO()
-    pyarrow.parquet.write_table(pyarrow.Table.from_arrays(arrays, names=list(columns)), buffer, compression="zstd")
-    write_atomically(path, buffer.getvalue())
-
-
-class Shards:
-    """The runs in the shards of an outputs folder.
-
-    Args:
-        outputs: The outputs folder; shards that are added later are not seen.
-
-    Raises:
-        StoreError: if a shard cannot be read.
-    """
-
-    def __init__(self, outputs: Path) -> None:
-        self._outputs = outputs
-        self._found: dict[str, tuple[Path, int, Outcome]] = {}
-        for path in sorted((outputs / "shards").glob("*.parquet")):
-            for row, end in enumerate(read_outcomes(path)):
-                self._found[end.name] = (path, row, end)
-
-    def outcome(self, name: str) -> Outcome | None:
-        """Return how a run ended, or None when no shard has it."""
-        found = self._found.get(name)
-        return None if found is None else found[2]
-
-    def open(self, name: str) -> Run | None:
-        """Open a run, or return None when no shard has it.
-
-        Raises:
-            StoreError: if its shard is damaged.
-        """
-        if name not in self._found:
-            return None
-        path, row, _ = self._found[name]
-        values = _read_rows(path)
-        config, record = (json.loads(values[column][row].as_py()) for column in ("config", "record"))
-        return ShardRun(self._outputs / "runs" / name, config, record, values["urdf"][row].as_py())
+    pyarrow.parquet.write_table(table, buffer, compression="zstd")
+    content = buffer.getvalue()
+    path = outputs / "shards" / f"{name}.{digest(content)[:_HEX]}.parquet"
+    write_atomically(path, content)
+    return path
 
 
 def read_outcomes(path: Path) -> list[Outcome]:
     """Return how the runs of a shard ended, row by row.
 
     Raises:
-        StoreError: if it cannot be read.
+        DamagedError: if it cannot be read, or is not as it was written.
     """
     table = _read(path, _COLUMNS[:3])
     rows = zip(*(table[name].to_pylist() for name in _COLUMNS[:3]), strict=True)
     return [Outcome(name, failure, cut_short) for name, failure, cut_short in rows]
+
+
+def open_row(path: Path, row: int) -> ShardRun:
+    """Open the run in a row of a shard.
+
+    Raises:
+        DamagedError: if it cannot be read, or is not as it was written.
+    """
+    values = _read_rows(path)
+    try:
+        config, record = (json.loads(values[column][row].as_py()) for column in ("config", "record"))
+        fault = "" if is_sealed_shard(path) else find_faults(record)
+    except (ValueError, TypeError, RecursionError) as error:
+        fault = str(error)
+    if fault:
+        raise DamagedError(f"cannot read {path}: row {row} is no run: {fault}; {_MEND}")
+    folder = path.parent.parent / "runs" / values["run"][row].as_py()
+    return ShardRun(folder, config, record, values["urdf"][row].as_py(), whole=is_sealed_shard(path))
+
+
+def is_sealed_shard(path: Path) -> bool:
+    """Tell whether a shard's name holds a digest; those of schema 1 do not."""
+    return path.name.count(".") > 1
 
 
 @lru_cache(maxsize=4)  # runs are read in order, which is nearly the order of the shards
@@ -152,8 +176,15 @@ def _read(path: Path, columns: Sequence[str]) -> Any:
     import pyarrow.parquet
 
     try:
-        return pyarrow.parquet.ParquetFile(path).read(list(columns))
+        content = path.read_bytes()
+        if is_sealed_shard(path) and digest(content)[:_HEX] != path.name.split(".")[1]:
+            raise DamagedError(f"cannot read {path}: it is damaged: its content has another digest than named; {_MEND}")
+        file = pyarrow.parquet.ParquetFile(pyarrow.BufferReader(content))
+        if not is_sealed_shard(path) and b"schema" in (file.schema_arrow.metadata or {}):
+            raise DamagedError(f"cannot read {path}: its name has lost its digest; {_MEND}")
+        table = file.read(list(columns))
     except (OSError, pyarrow.ArrowException) as error:
-        raise StoreError(
-            f"cannot read {path}: {str(error).splitlines()[0]}; remove it, and the sweep's command makes its runs again"
-        ) from error
+        raise DamagedError(f"cannot read {path}: {str(error).splitlines()[0]}; {_MEND}") from error
+    if table.column_names != list(columns):
+        raise DamagedError(f"cannot read {path}: it is no shard: it needs columns {', '.join(columns)}; {_MEND}")
+    return table

@@ -1,6 +1,5 @@
 """What a run and a calibration have in common as they are stored."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,7 +8,10 @@ from typing import Any
 
 import yaml
 
-from runner.errors import StoreError
+from runner.store.atomic import write_atomically
+from runner.store.seal import SCHEMA, DamagedError, digest, is_sealed, read_file, read_json, sealed_json
+
+MEND = "run it again to mend it"
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,11 @@ class Stored:
         return self.folder.name
 
     @property
+    def sealed(self) -> bool:
+        """Whether its files have digests; those of schema 1 have none, and damage to them is not found."""
+        return is_sealed(self.record)
+
+    @property
     def provenance(self) -> Mapping[str, Any]:
         """Commit, versions, machine, seed, command, warnings, and what more its kind of job tells."""
         provenance: Mapping[str, Any] = self.record["provenance"]
@@ -42,30 +49,96 @@ class Stored:
         """The URDF's text that was simulated.
 
         Raises:
-            StoreError: if the file is missing or damaged.
+            DamagedError: if the file is missing or damaged.
         """
-        path = self.folder / "robot.urdf"
-        try:
-            return path.read_text()
-        except (OSError, UnicodeDecodeError) as error:
-            raise StoreError(f"cannot read {path}: {error}; run it again to mend it") from error
+        return decoded(self.folder / "robot.urdf", self.read("robot.urdf"))
+
+    def read(self, name: str) -> bytes:
+        """Return the content of one of its files beside the record.
+
+        Raises:
+            DamagedError: if the file is missing or damaged.
+        """
+        return read_file(self.folder / name, _files(self.record), MEND)
 
 
-def read_job(folder: Path, record: str, what: str) -> tuple[Any, Any]:
-    """Return the contents of a job's record and config, unchecked.
+def write_job(
+    folder: Path, record_name: str, record: Mapping[str, Any], files: Mapping[str, bytes], flushed: str = ""
+) -> dict[str, Any]:
+    """Store a job's files, its record last, whose presence means done; return the record with their digests.
 
     Args:
         folder: The job's folder.
-        record: File name of the record.
-        what: What the job is called, such as "run".
+        record_name: File name of the record.
+        record: What came out.
+        files: Content of its other files by name.
+        flushed: The one of them that is on the disk when this returns; the others a power cut may leave empty.
 
     Raises:
-        StoreError: if one of the files is missing or damaged.
+        StoreError: if the disk does not take them.
+    """
+    for name, content in files.items():
+        write_atomically(folder / name, content, flush=name == flushed)
+    whole = {"files": {name: digest(content) for name, content in files.items()}, **record}
+    write_atomically(folder / record_name, sealed_json(whole))
+    return {"schema": SCHEMA, **whole}
+
+
+def read_job(folder: Path, record_name: str) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return a job's record and config.
+
+    Args:
+        folder: The job's folder.
+        record_name: File name of the record.
+
+    Raises:
+        DamagedError: if one of the files is missing or damaged.
+    """
+    record = _read_record(folder / record_name)
+    path = folder / "config.yaml"
+    text = decoded(path, read_file(path, _files(record), MEND))
+    try:
+        config = yaml.load(text, yaml.CSafeLoader)
+    except yaml.YAMLError as error:
+        raise DamagedError(f"cannot read {path}: it is damaged: {' '.join(str(error).split())}; {MEND}") from error
+    if not isinstance(config, dict):
+        raise DamagedError(f"cannot read {path}: it is damaged: it holds no config; {MEND}")
+    return record, config
+
+
+def check_job(folder: Path, record_name: str) -> dict[str, Any]:
+    """Return a job's record, once the digests of all its files have been found right; quicker than reading them.
+
+    Raises:
+        DamagedError: if one of the files is missing or damaged.
+    """
+    record = _read_record(folder / record_name)
+    files = _files(record)
+    for name in files or ():
+        read_file(folder / name, files, MEND)
+    return record
+
+
+def _read_record(path: Path) -> dict[str, Any]:
+    record = read_json(path, MEND)
+    if is_sealed(record) and not isinstance(record.get("files"), dict):
+        raise DamagedError(f"cannot read {path}: it is no record of a job: it has no digests of its files; {MEND}")
+    return record
+
+
+def _files(record: Mapping[str, Any]) -> Mapping[str, str] | None:
+    """Return the digests of a job's files by name; None where it has none."""
+    files: Mapping[str, str] | None = record.get("files")
+    return files
+
+
+def decoded(path: Path, content: bytes) -> str:
+    """Return a file's content as text.
+
+    Raises:
+        DamagedError: if it is none.
     """
     try:
-        return (
-            json.loads((folder / record).read_text()),
-            yaml.load((folder / "config.yaml").read_text(), yaml.CSafeLoader),
-        )
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError, yaml.YAMLError) as error:
-        raise StoreError(f"cannot read the {what} in {folder}: {' '.join(str(error).split())}") from error
+        return content.decode()
+    except UnicodeDecodeError as error:
+        raise DamagedError(f"cannot read {path}: it is damaged: {error}; {MEND}") from error

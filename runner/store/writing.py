@@ -1,7 +1,6 @@
 """Writing a run: its config, its first trace, and last of all the metrics, whose presence means done."""
 
 import io
-import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -13,11 +12,9 @@ import yaml
 from runner.errors import StoreError
 from runner.metrics import Summary
 from runner.store.atomic import write_atomically
-from runner.store.run import SCHEMA, Run, open_run
-from runner.store.shards import Outcome, outcome
+from runner.store.run import Run
+from runner.store.stored import write_job
 from runner.trace import Failure, Trace
-
-_PARQUET_END = b"PAR1"
 
 
 @dataclass(frozen=True)
@@ -59,33 +56,6 @@ def prepare(outputs: Path) -> None:
     probe.unlink(missing_ok=True)
 
 
-def find_run(outputs: Path, name: str) -> Run | None:
-    """Return the finished run of that hash, or None when it must be simulated: missing, unfinished or damaged."""
-    try:
-        run = open_run(outputs / "runs" / name)
-        _ = run.units  # reads the trace's file
-        return run if run.urdf else None
-    except StoreError:
-        return None
-
-
-def find_outcome(outputs: Path, name: str) -> Outcome | None:
-    """Return how the run of that hash ended, by a look at its folder, or None when it must be simulated.
-
-    Unlike `find_run` it reads the record alone, and of the trace no more than whether its end is there.
-    """
-    folder = outputs / "runs" / name
-    try:
-        record = json.loads((folder / "metrics.json").read_bytes())
-        with (folder / "trace.parquet").open("rb") as trace:
-            trace.seek(-len(_PARQUET_END), io.SEEK_END)
-            whole = trace.read() == _PARQUET_END
-        whole = whole and all((folder / other).stat().st_size > 0 for other in ("config.yaml", "robot.urdf"))
-        return outcome(Run(folder, {}, record)) if whole else None
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        return None
-
-
 def write_run(outputs: Path, name: str, result: RunResult) -> Run:
     """Store a run in a folder of its own.
 
@@ -93,19 +63,19 @@ def write_run(outputs: Path, name: str, result: RunResult) -> Run:
         StoreError: if the disk does not take it.
     """
     folder = outputs / "runs" / name
-    record = make_record(result)
     config = yaml.dump(dict(result.resolved), sort_keys=False, Dumper=yaml.CSafeDumper)
-    write_atomically(folder / "trace.parquet", _parquet(result.trace))
-    write_atomically(folder / "config.yaml", config.encode(), flush=False)
-    write_atomically(folder / "robot.urdf", result.urdf.encode(), flush=False)
-    write_atomically(folder / "metrics.json", (json.dumps(record, indent=1, allow_nan=False) + "\n").encode())
+    files = {
+        "trace.parquet": _parquet(result.trace),
+        "config.yaml": config.encode(),
+        "robot.urdf": result.urdf.encode(),
+    }
+    record = write_job(folder, "metrics.json", make_record(result), files, flushed="trace.parquet")
     return Run(folder, result.resolved, record)
 
 
 def make_record(result: RunResult) -> dict[str, Any]:
-    """Return what metrics.json holds of a run."""
+    """Return what metrics.json holds of a run, but for schema and digests."""
     record: dict[str, Any] = {
-        "schema": SCHEMA,
         "status": "ok" if result.failure is None else "failed",
         "repetitions": result.repetitions,
     }
@@ -122,7 +92,6 @@ def cut_short_record(reason: str, repetitions: int, provenance: Mapping[str, Any
     """Return what is stored of a run that something else than its physics ended."""
     failure = {"reason": reason, "time": None, "joint": None, "repetition": None}
     return {
-        "schema": SCHEMA,
         "status": "failed",
         "repetitions": repetitions,
         "failure": failure,

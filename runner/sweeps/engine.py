@@ -13,7 +13,7 @@ from typing import Any
 from runner.config.validation import validate
 from runner.errors import RunnerError
 from runner.store.identity import source_digest
-from runner.store.shards import outcome, shard_path, write_shard
+from runner.store.shards import outcome, write_shard
 from runner.sweeps.deadline import STUCK
 from runner.sweeps.queue import Queue
 from runner.sweeps.work import Chunk, Report, cut_short, work, write_log
@@ -109,7 +109,7 @@ def _give_up(chunk: Chunk) -> Report:
         reason += f", of itself or as it could not be interrupted for {STUCK:g} s after sweep.time_limit"
     run = cut_short(name, config, composed, chunk.rules, reason)
     write_log(run, chunk.rules)
-    write_shard(shard_path(chunk.rules.outputs, chunk.name), [run])
+    write_shard(chunk.rules.outputs, chunk.name, [run])
     return Report([outcome(run)], "", 0.0)
 
 
@@ -123,12 +123,14 @@ def _hush() -> None:
 def local_client(workers: int, scratch: Path) -> Iterator[Any]:
     """Start a cluster of single-threaded processes on this machine; yield its `distributed.Client`.
 
+    Its parts know each other by a key made for it, so that no other user of the machine can make it run code.
+
     Args:
         workers: Number of processes.
         scratch: Folder for all temporary files of the cluster and of what runs on it; it is removed.
     """
     import dask
-    from distributed import Client, LocalCluster
+    from distributed import Client, LocalCluster, Security
 
     scratch.mkdir(parents=True, exist_ok=True)
     _hush()
@@ -146,6 +148,8 @@ def local_client(workers: int, scratch: Path) -> Iterator[Any]:
             LocalCluster(
                 n_workers=workers,
                 threads_per_worker=1,
+                protocol="tls://",
+                security=Security.temporary(),
                 host="127.0.0.1",
                 dashboard_address="127.0.0.1:0",  # none is installed, but its port is opened
                 memory_limit=0,

@@ -123,6 +123,8 @@ def _made_by(run: Run) -> Iterator[tuple[str, str]]:
     yield "machine", str(record["machine"])
     yield from ((name, str(version)) for name, version in record["versions"].items())
     yield "made on", str(record["date"])
+    if not run.sealed:
+        yield "unsealed", "runs without digests: damage to them is not found"
 
 
 def _values(run: Run) -> dict[str, FloatArray]:

@@ -1,6 +1,5 @@
 """How long a sweep will take: estimated before it starts, and shown while it runs."""
 
-import json
 import sys
 import time
 from collections.abc import Sequence
@@ -16,6 +15,7 @@ from runner.config.compose import Composed
 from runner.config.validation import validate
 from runner.simulation import simulate
 from runner.store.atomic import write_atomically
+from runner.store.seal import sealed_json
 from runner.sweeps.deadline import TimeLimitError, deadline
 from runner.sweeps.plan import Plan
 from runner.sweeps.status import NOTE
@@ -49,7 +49,7 @@ class Progress:
         if self._left < self._total and now - self._noted > _EVERY:
             self._noted = now
             seconds = (now - self._began) / (self._total - self._left)
-            write_atomically(self._folder / NOTE, json.dumps({"seconds_per_run": seconds}).encode())
+            write_atomically(self._folder / NOTE, sealed_json({"seconds_per_run": seconds}))
 
     def __enter__(self) -> Self:
         return self

@@ -1,13 +1,13 @@
 """The runs of a sweep that are still to do, handed out in chunks."""
 
-import time
 from collections import deque
 from collections.abc import Iterable, Sequence
 from typing import Protocol
 
 from runner import store
 from runner.config.compose import Composed
-from runner.sweeps.work import Chunk, Report, Rules, find_in_shard
+from runner.store.shards import next_number, shard_name
+from runner.sweeps.work import Chunk, Report, Rules, find_stored
 
 _SECONDS_PER_CHUNK = 1.0  # long against the 5 ms that a chunk costs, short against a sweep
 _LARGEST = 500
@@ -35,7 +35,7 @@ class Queue:
         self._cells_of, self._names = cells_of, names
         self._left, self._suspects = deque(cells), deque[int]()
         self._cell_of = {names[cell]: cell for cell in self._left}
-        self._begun = f"{time.time_ns():020d}"
+        self._number = next_number(rules.outputs)
         self._handed_out = 0
         self._seconds_per_run: float | None = None
 
@@ -63,11 +63,10 @@ class Queue:
     def give_back(self, chunk: Chunk) -> list[store.Outcome]:
         """Take back a chunk whose workers died: its runs are suspects; return how those ended that are stored."""
         done = []
-        known = find_in_shard(chunk)
+        known = find_stored(chunk)
         for name, _ in chunk.runs:
-            end = known.get(name) or store.find_outcome(self.rules.outputs, name)
-            if end is not None and self.rules.accepts(end):
-                done.append(end)
+            if name in known:
+                done.append(known[name])
             else:
                 self._suspects.append(self._cell_of[name])
         return done
@@ -75,4 +74,4 @@ class Queue:
     def _chunk(self, cells: Sequence[int]) -> Chunk:
         self._handed_out += 1
         runs = [(self._names[cell], self._cells_of.composed(cell)) for cell in cells]
-        return Chunk(f"{self._begun}-{self._handed_out:06d}", self.rules, runs)
+        return Chunk(shard_name(self._number, self._handed_out), self.rules, runs)

@@ -19,6 +19,7 @@ from runner.sweeps.queue import Queue
 from runner.sweeps.status import in_words
 from runner.sweeps.work import Report, Rules, TraceKeeping
 
+_DAMAGE_SHOWN = 10
 _ALL_TRACES_UP_TO = 3000  # runs; with more, sweep.trace=auto is sample
 
 
@@ -105,18 +106,20 @@ def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
 
 def _find_stored(names: Sequence[str], rules: Rules) -> dict[str, store.Outcome]:
     """Return how those runs ended that count as done: one that shall keep its trace only with it."""
-    runs = rules.outputs / "runs"
-    folders = {entry.name for entry in runs.iterdir()}
-    shards = store.Shards(rules.outputs)
+    finished = store.Finished(rules.outputs)
     found = {}
     for name in names:
-        end = store.find_outcome(rules.outputs, name) if name in folders else None
-        if end is None:
-            end = shards.outcome(name)
-            if end is not None and not end.cut_short and rules.keeps_trace(name, bool(end.failure)):
-                continue
+        ends = [finished.in_folder(name)]
+        traceless = finished.in_shard(name)
+        if traceless is not None and (traceless.cut_short or not rules.keeps_trace(name, bool(traceless.failure))):
+            ends.append(traceless)
+        end = min((end for end in ends if end is not None), key=lambda end: end.rank, default=None)
         if end is not None and rules.accepts(end):
             found[name] = end
+    for damage in finished.damage[:_DAMAGE_SHOWN]:
+        _tell(f"{damage}; its runs are made again")
+    if len(finished.damage) > _DAMAGE_SHOWN:
+        _tell(f"and {len(finished.damage) - _DAMAGE_SHOWN} more; `runner verify {rules.outputs}` names them all")
     return found
 
 

@@ -1,13 +1,17 @@
 """How far a sweep is: told from what is stored, and the times noted while it runs."""
 
-import json
+import contextlib
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from runner import store
+from runner.store.seal import read_json
 from runner.sweeps.lock import is_at_work
 
 NOTE = "progress.json"
+_MEND = "a sweep at work writes it again"
 
 
 @dataclass(frozen=True)
@@ -20,6 +24,7 @@ class Status:
         left: Number of runs that are not stored.
         at_work: Whether a sweep is at work in its outputs folder.
         seconds: How long what is left will take at the last pace noted, in s; None where none is.
+        damage: What is damaged of what is stored, a text for each file.
     """
 
     done: int
@@ -27,34 +32,45 @@ class Status:
     left: int
     at_work: bool
     seconds: float | None
+    damage: Sequence[str]
 
 
 def find_status(sweep: store.Sweep) -> Status:
     """Look how far a sweep is.
 
     Raises:
-        StoreError: if a shard of its outputs folder cannot be read.
+        OSError: if its outputs folder cannot be read.
     """
-    shards = store.Shards(sweep.outputs)
+    finished = store.Finished(sweep.outputs)
     names = set(sweep.hashes)
-    ends = [store.find_outcome(sweep.outputs, name) or shards.outcome(name) for name in names]
+    ends = [finished.outcome(name) for name in names]
     stored = [end for end in ends if end is not None]
     left = len(names) - len(stored)
-    pace = _read_pace(sweep.folder)
+    pace = None
+    with contextlib.suppress(store.DamagedError):  # it is written again every few seconds
+        pace = read_pace(sweep.folder)
     return Status(
         done=len(stored),
         failed=sum(bool(end.failure) for end in stored),
         left=left,
         at_work=is_at_work(sweep.outputs),
         seconds=None if pace is None else pace * left,
+        damage=finished.damage,
     )
 
 
-def _read_pace(folder: Path) -> float | None:
-    try:
-        return float(json.loads((folder / NOTE).read_text())["seconds_per_run"])
-    except (OSError, ValueError, KeyError, TypeError):
+def read_pace(folder: Path) -> float | None:
+    """Return the time for a run that a sweep noted last, in s; None where it noted none.
+
+    Raises:
+        DamagedError: if the note is damaged.
+    """
+    if not (folder / NOTE).exists():
         return None
+    pace = read_json(folder / NOTE, _MEND).get("seconds_per_run")
+    if not (isinstance(pace, float) and math.isfinite(pace)):
+        raise store.DamagedError(f"cannot read {folder / NOTE}: it holds no time of a run; {_MEND}")
+    return pace
 
 
 def in_words(seconds: float) -> str:

@@ -1,5 +1,6 @@
 """What a worker does with a chunk of runs: simulate those that are not stored yet, and store them."""
 
+import contextlib
 import signal
 import threading
 import time
@@ -18,7 +19,7 @@ from runner.errors import RunnerError, StoreError, user_place
 from runner.execution import job_provenance, simulate_job
 from runner.plugins import use_plugins
 from runner.store.atomic import write_atomically
-from runner.store.shards import ShardRun, outcome, read_outcomes, shard_path, write_shard
+from runner.store.shards import ShardRun, find_shards, outcome, read_outcomes, write_shard
 from runner.store.writing import cut_short_record, make_record
 from runner.sweeps.deadline import TimeLimitError, deadline
 
@@ -120,14 +121,13 @@ def work(chunk: Chunk) -> Report:
 
 def _make_all(chunk: Chunk, disk: Executor, outcomes: list[store.Outcome]) -> None:
     """Make the runs of a chunk; while one is simulated, the one before is written, as the disk takes its time."""
-    rules, known = chunk.rules, find_in_shard(chunk)
+    rules, known = chunk.rules, find_stored(chunk)
     traceless: list[ShardRun] = []
     written: Future[store.Run] | None = None
     for name, composed in chunk.runs:
-        end = known.get(name) or store.find_outcome(rules.outputs, name)
-        if end is not None and (name in known or rules.accepts(end)):
-            outcomes.append(end)
-            failed = bool(end.failure)
+        if name in known:
+            outcomes.append(known[name])
+            failed = bool(known[name].failure)
         else:
             made = _make(name, composed, rules)
             failed = bool(made.failure)
@@ -143,17 +143,24 @@ def _make_all(chunk: Chunk, disk: Executor, outcomes: list[store.Outcome]) -> No
     if written is not None:
         outcomes.append(outcome(written.result()))
     if traceless:
-        write_shard(shard_path(rules.outputs, chunk.name), traceless)
+        write_shard(rules.outputs, chunk.name, traceless)
 
 
-def find_in_shard(chunk: Chunk) -> dict[str, store.Outcome]:
-    """Return how the runs of a chunk ended that its shard has: none before it is written.
+def find_stored(chunk: Chunk) -> dict[str, store.Outcome]:
+    """Return how the runs of a chunk ended that need not be made: they are in its shard, or count as done.
 
-    Raises:
-        StoreError: if the shard cannot be read.
+    What is damaged is none of them.
     """
-    shard = shard_path(chunk.rules.outputs, chunk.name)
-    return {end.name: end for end in read_outcomes(shard)} if shard.exists() else {}
+    found = {}
+    for name, _ in chunk.runs:
+        with contextlib.suppress(store.DamagedError):
+            end = store.find_outcome(chunk.rules.outputs, name)
+            if end is not None and chunk.rules.accepts(end):
+                found[name] = end
+    for shard in find_shards(chunk.rules.outputs, chunk.name):
+        with contextlib.suppress(store.DamagedError):
+            found |= {end.name: end for end in read_outcomes(shard)}
+    return found
 
 
 def _check_folder(rules: Rules) -> None:

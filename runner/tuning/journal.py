@@ -1,14 +1,18 @@
-"""The trials of a tuning as Optuna's journal: lines of JSON, one for each trial that ended, in order."""
+"""The trials of a tuning as Optuna's journal: a sealed line of JSON for each trial that ended, in order."""
 
-from collections.abc import Sequence
+import json
+import os
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import optuna
 from optuna.storages import JournalStorage
-from optuna.storages.journal import JournalFileBackend, JournalFileOpenLock
+from optuna.storages.journal import BaseJournalBackend
 from optuna.trial import FrozenTrial
 
 from runner.errors import StoreError
+from runner.store.seal import DamagedError, Lines, is_sealed_line
 from runner.tuning.key import Key
 from runner.tuning.objective import Objective
 from runner.tuning.sampler import ended, read_ended
@@ -30,7 +34,8 @@ class Journal:
         history: The same as Optuna keeps them.
 
     Raises:
-        StoreError: if the file is damaged, or the disk does not take it.
+        DamagedError: if the file is damaged.
+        StoreError: if the disk does not take it.
     """
 
     def __init__(self, path: Path, keys: Sequence[Key], objectives: Sequence[Objective]) -> None:
@@ -73,29 +78,52 @@ def read_trials(path: Path) -> list[Trial]:
     return [read_ended(frozen) for frozen in _load(path).get_trials(deepcopy=False)]
 
 
-class _Unlocked(JournalFileOpenLock):
-    """No lock of its own: Optuna's would outlive a process that is killed, by half a minute."""
+def is_sealed_journal(path: Path) -> bool:
+    """Tell whether a journal has digests; one of schema 1 has none."""
+    with path.open(errors="replace") as lines:
+        return is_sealed_line(next(lines, ""))
 
-    def acquire(self) -> bool:
-        """Do nothing."""
-        return True
 
-    def release(self) -> None:
-        """Do nothing."""
+class _SealedLines(BaseJournalBackend):
+    """Where Optuna's storage keeps its log: a file of sealed lines, read once.
+
+    Args:
+        path: The file.
+
+    Raises:
+        ValueError: at a line that is not as it was written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path, self._lines = path, Lines()
+        content = path.read_bytes() if path.exists() else b""
+        self._logs: list[dict[str, Any]] = [json.loads(text) for text in self._lines.read(content)]
+
+    def read_logs(self, log_number_from: int) -> Iterable[dict[str, Any]]:
+        """Return the entries from a number on."""
+        return self._logs[log_number_from:]
+
+    def append_logs(self, logs: list[dict[str, Any]]) -> None:
+        """Add entries, on the disk when this returns."""
+        text = "".join(f"{self._lines.seal(json.dumps(log))}\n" for log in logs)
+        with self._path.open("ab") as file:
+            file.write(text.encode())
+            file.flush()
+            os.fsync(file.fileno())
+        self._logs += logs
 
 
 def _open(path: Path) -> JournalStorage:
     optuna.logging.set_verbosity(optuna.logging.ERROR)
-    return JournalStorage(JournalFileBackend(str(path), _Unlocked(str(path))))
+    return JournalStorage(_SealedLines(path))
 
 
 def _load(path: Path) -> optuna.Study:
     try:
         return optuna.load_study(study_name=_STUDY, storage=_open(path))
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise StoreError(
-            f"cannot read {path}: {type(error).__name__}: {error}; remove it to begin the tuning anew (its runs are "
-            "found again)"
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        raise DamagedError(
+            f"cannot read {path}: it is damaged: {error}; remove it to begin the tuning anew (its runs are found again)"
         ) from error
 
 

@@ -63,8 +63,9 @@ def tune(
     with at_work(checked.outputs):
         folder = study.folder(checked.outputs, checked.names)
         rules = replace(make_rules(checked.settings, folder, trials), trace="all")
-        study.write(folder, [])
+        folder.mkdir(parents=True, exist_ok=True)
         journal = Journal(journal_path(folder), keys, objectives)
+        study.write(folder, journal.trials)
         queue = TrialQueue(study, journal, composer, rules, trials, seed)
         try:
             _work_off(plan, queue, engine, len(journal.trials))

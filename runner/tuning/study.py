@@ -6,14 +6,15 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from runner.errors import StoreError
 from runner.store.atomic import write_atomically
+from runner.store.seal import DamagedError, is_sealed, read_json, sealed_json
+from runner.store.sweep import write_jobs
 from runner.tuning.key import Key
 from runner.tuning.objective import Objective
 from runner.tuning.trial import Trial
 
-_SCHEMA = 1
 _FILE = "tuning.json"
+_MEND = "the tuning's command makes it again"
 
 
 @dataclass(frozen=True)
@@ -56,10 +57,8 @@ class Study:
         Raises:
             StoreError: if the disk does not take it.
         """
-        jobs = [{"overrides": self.trial_overrides(trial), "run": trial.run} for trial in trials if trial.run]
-        for name, content in ((_FILE, asdict(self)), ("sweep.json", {"command": self.command, "jobs": jobs})):
-            text = json.dumps({"schema": _SCHEMA, **content}, indent=1)
-            write_atomically(folder / name, f"{text}\n".encode())
+        write_atomically(folder / _FILE, sealed_json({**asdict(self), "trials": len(trials)}))
+        write_jobs(folder, [(self.trial_overrides(trial), trial.run) for trial in trials if trial.run], self.command)
 
 
 @dataclass(frozen=True)
@@ -70,11 +69,13 @@ class Tuning:
         folder: Its folder.
         study: What is tuned.
         trials: The trials that ended.
+        sealed: Whether its files have digests; those of schema 1 have none.
     """
 
     folder: Path
     study: Study
     trials: Sequence[Trial]
+    sealed: bool = True
 
 
 def journal_path(folder: Path) -> Path:
@@ -91,13 +92,13 @@ def open_tuning(folder: Path) -> Tuning:
     """Open a stored tuning.
 
     Raises:
-        StoreError: if the folder is no tuning or damaged.
+        DamagedError: if the folder is no tuning or damaged.
     """
-    from runner.tuning.journal import read_trials  # Optuna, which `is_tuning` answers without
+    from runner.tuning.journal import is_sealed_journal, read_trials  # Optuna, which `is_tuning` answers without
 
-    path = folder / _FILE
+    path, journal = folder / _FILE, journal_path(folder)
     try:
-        content = json.loads(path.read_text())
+        content = read_json(path, _MEND)
         study = Study(
             overrides=content["overrides"],
             keys=[Key(**key) for key in content["keys"]],
@@ -105,6 +106,11 @@ def open_tuning(folder: Path) -> Tuning:
             at_once=content["at_once"],
             command=content["command"],
         )
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError, KeyError, TypeError) as error:
-        raise StoreError(f"cannot read the tuning in {folder}: {error}") from error
-    return Tuning(folder, study, read_trials(journal_path(folder)))
+    except (KeyError, TypeError) as error:
+        raise DamagedError(
+            f"cannot read {path}: it is no tuning's: {type(error).__name__}: {error}; {_MEND}"
+        ) from error
+    trials, ended = read_trials(journal), content.get("trials", 0)
+    if len(trials) < ended:
+        raise DamagedError(f"cannot read {journal}: it has {len(trials)} of the {ended} trials that ended; {_MEND}")
+    return Tuning(folder, study, trials, is_sealed(content) and is_sealed_journal(journal))

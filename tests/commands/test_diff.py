@@ -2,15 +2,18 @@ import json
 
 import pytest
 
+from runner.store.stored import write_job
+
 SHORT = ("robot=macro", "duration=0.05")
 
 
 def change(folder, edit):
-    """Edit a stored run's record."""
-    path = folder / "metrics.json"
-    record = json.loads(path.read_text())
+    """Edit a stored run's record, digests as they should be."""
+    record = json.loads((folder / "metrics.json").read_text())
     edit(record)
-    path.write_text(json.dumps(record))
+    files = {name: (folder / name).read_bytes() for name in record["files"]}
+    content = {key: value for key, value in record.items() if key not in ("schema", "digest", "files")}
+    write_job(folder, "metrics.json", content, files)
 
 
 def cells(text, name):
@@ -55,9 +58,9 @@ def test_keys_and_metrics_of_one_run_only(cli):
 
 def test_provenance_and_robots_that_differ(cli):
     a, b = cli(*SHORT).folder, cli(*SHORT, "seed=1").folder
+    (b / "robot.urdf").write_text("<robot/>")
     change(b, lambda record: record["provenance"].update(commit="abc", plant_step=5e-4))
     change(b, lambda record: record["provenance"]["versions"].update(pybullet="9.9"))
-    (b / "robot.urdf").write_text("<robot/>")
     out = cli("diff", a, b).out
     assert "  the text of robot.urdf differs\nprovenance differs:\n" in out
     assert cells(out, "commit")[-1] == "abc"

@@ -3,6 +3,7 @@ import shutil
 import pytest
 
 from runner.store import open_runs
+from runner.store.seal import sealed_json
 from runner.sweeps.lock import at_work
 from runner.sweeps.status import in_words
 
@@ -34,7 +35,7 @@ def test_a_sweep_at_work_says_how_long_it_will_take(cli, sweep):
     shutil.rmtree(open_runs(sweep)[0].folder)
     with at_work(sweep.parent.parent):
         assert cli("status", sweep).out == "3 runs: 2 done, 1 left\nat work\n"
-        (sweep / "progress.json").write_text('{"seconds_per_run": 100.0}')
+        (sweep / "progress.json").write_bytes(sealed_json({"seconds_per_run": 100.0}))
         assert cli("status", sweep).out == "3 runs: 2 done, 1 left\nat work, about 2 min to go\n"
 
 
@@ -47,7 +48,7 @@ def test_failed_runs_are_counted_in_shards_too(cli):
 def test_a_folder_that_is_no_sweep(cli, tmp_path):
     ending = cli("status", tmp_path)
     assert ending.code == 2
-    assert "cannot read the sweep in" in ending.err
+    assert "is no sweep: it has no sweep.json" in ending.err
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,14 @@
+import re
+
+import pyarrow
+import pyarrow.parquet
 import pytest
 
 from runner.errors import StoreError
-from runner.store import Outcome, Shards
-from runner.store.shards import ShardRun, read_outcomes, shard_path, write_shard
+from runner.store import Finished, Outcome
+from runner.store.shards import ShardRun, find_shards, next_number, open_row, read_outcomes, shard_name, write_shard
 
-RECORD = {"schema": 1, "status": "ok", "repetitions": 1, "metrics": {"energy": {"unit": "J", "median": 0.1}}}
+RECORD = {"status": "ok", "repetitions": 1, "metrics": {"energy": {"unit": "J", "median": 0.1}}}
 FAILURE = {"reason": "diverged", "time": 0.0, "joint": "q1", "repetition": 2}
 CUT_SHORT = {"reason": "too long", "time": None, "joint": None, "repetition": None}
 
@@ -17,40 +21,88 @@ def make(outputs, name, failure=None, **record):
 
 def test_what_goes_in_comes_out(tmp_path):
     runs = [make(tmp_path, "a"), make(tmp_path, "b", FAILURE), make(tmp_path, "c", CUT_SHORT)]
-    write_shard(shard_path(tmp_path, "s"), runs)
-    shards = Shards(tmp_path)
+    path = write_shard(tmp_path, shard_name(7, 1), runs)
+    finished = Finished(tmp_path)
     for run in runs:
-        found = shards.open(run.hash)
+        found = finished.open(run.hash)
         assert (found.hash, found.config, found.record, found.urdf) == (run.hash, run.config, run.record, run.urdf)
         assert found.folder == tmp_path / "runs" / run.hash
-    assert [shards.outcome(name) for name in "abcd"] == [
+        assert found.sealed
+    assert [finished.outcome(name) for name in "abcd"] == [
         Outcome("a", "", False),
         Outcome("b", "failed in repetition 2 at t = 0 s (q1): diverged", False),
         Outcome("c", "cut short: too long", True),
         None,
     ]
-    assert shards.open("d") is None
-    assert [entry.name for entry in (tmp_path / "shards").iterdir()] == ["s.parquet"]
+    with pytest.raises(StoreError, match="no folder"):
+        finished.open("d")
+    assert list((tmp_path / "shards").iterdir()) == [path]
+    assert path.name.startswith("00000000000000000007-000001.")
+    assert find_shards(tmp_path, shard_name(7, 1)) == [path]
 
 
-def test_a_later_shard_counts(tmp_path):
-    write_shard(shard_path(tmp_path, "2"), [make(tmp_path, "a")])
-    write_shard(shard_path(tmp_path, "1"), [make(tmp_path, "a", CUT_SHORT), make(tmp_path, "b")])
-    assert Shards(tmp_path).outcome("a") == Outcome("a", "", False)
-    assert Shards(tmp_path).open("a").status == "ok"
+def test_shards_are_numbered_without_a_clock(tmp_path):
+    assert next_number(tmp_path) == 1
+    write_shard(tmp_path, shard_name(1, 3), [make(tmp_path, "a")])
+    assert next_number(tmp_path) == 2
+    (tmp_path / "shards" / "01795000000000000000-000001.parquet").touch()  # of the version that took the clock
+    assert next_number(tmp_path) == 1795000000000000001
+    assert shard_name(1795000000000000001, 1) > "01795000000000000000-000001"
+
+
+@pytest.mark.parametrize("numbers", [(1, 2), (2, 1)])
+@pytest.mark.parametrize(
+    ("worse", "better"), [(CUT_SHORT, None), (FAILURE, None), (CUT_SHORT, FAILURE)], ids=["good", "good2", "physics"]
+)
+def test_of_two_outcomes_the_better_counts_whichever_is_later(tmp_path, numbers, worse, better):
+    for number, failure in zip(numbers, (worse, better), strict=True):
+        write_shard(tmp_path, shard_name(number, 1), [make(tmp_path, "a", failure), make(tmp_path, f"b{number}")])
+    assert Finished(tmp_path).open("a").failure == better
+
+
+def test_of_two_alike_the_later_counts(tmp_path):
+    for number in (9, 10):
+        again = {**CUT_SHORT, "reason": f"attempt {number}"}
+        write_shard(tmp_path, shard_name(number, 1), [make(tmp_path, "a", again)])
+    assert Finished(tmp_path).outcome("a").failure == "cut short: attempt 10"
 
 
 def test_a_run_without_trace_says_how_to_get_one(tmp_path):
-    write_shard(shard_path(tmp_path, "s"), [make(tmp_path, "a")])
+    write_shard(tmp_path, "s", [make(tmp_path, "a")])
     with pytest.raises(StoreError, match=r"run a kept no trace \(sweep.trace\); .* with one: runner a"):
-        _ = Shards(tmp_path).open("a").trace
+        _ = Finished(tmp_path).open("a").trace
 
 
-@pytest.mark.parametrize("content", [b"", b"PAR1", b"no parquet at all"])
-def test_a_damaged_shard_is_named_with_the_way_out(tmp_path, content):
-    path = shard_path(tmp_path, "s")
+@pytest.mark.parametrize("content", [b"", b"PAR1", b"no parquet at all", "other"])
+@pytest.mark.parametrize("name", ["s.0123456789.parquet", "s.parquet"])
+def test_a_damaged_shard_is_named_with_the_way_out_and_counts_as_none(tmp_path, name, content):
+    path = tmp_path / "shards" / name
     path.parent.mkdir()
-    path.write_bytes(content)
-    for look in (lambda: Shards(tmp_path), lambda: read_outcomes(path)):
-        with pytest.raises(StoreError, match=r"s\.parquet: .*; remove it, and the sweep's command makes its"):
-            look()
+    if content == "other":
+        pyarrow.parquet.write_table(pyarrow.table({"run": ["a"]}), path)
+    else:
+        path.write_bytes(content)
+    message = rf"{name}: .*; remove it, and the sweep's command makes its"
+    with pytest.raises(StoreError, match=message):
+        read_outcomes(path)
+    finished = Finished(tmp_path)
+    assert finished.outcome("a") is None
+    assert re.search(message, finished.damage[0])
+    with pytest.raises(StoreError, match=message):
+        finished.open("a")
+
+
+def test_a_shard_whose_name_lost_its_digest_is_damaged(tmp_path):
+    path = write_shard(tmp_path, "s", [make(tmp_path, "a")])
+    with pytest.raises(StoreError, match="its name has lost its digest"):
+        read_outcomes(path.rename(path.with_name("s.parquet")))
+
+
+@pytest.mark.parametrize("record", ["{", "[" * 100_000, '{"status": "ok"}', "3"])
+def test_a_row_of_an_unsealed_shard_that_is_no_run_is_named(tmp_path, record):
+    columns = {"run": ["a"], "failure": [""], "cut_short": [False], "config": ["{}"], "urdf": [""], "record": [record]}
+    path = tmp_path / "shards" / "s.parquet"
+    path.parent.mkdir()
+    pyarrow.parquet.write_table(pyarrow.table(columns), path)
+    with pytest.raises(StoreError, match=r"s\.parquet: row 0 is no run: "):
+        open_row(path, 0)

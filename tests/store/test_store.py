@@ -11,7 +11,8 @@ import pytest
 
 import runner
 from runner.errors import StoreError
-from runner.store import find_run, open_run, prepare
+from runner.reporting.run_report import provenance
+from runner.store import DamagedError, find_run, open_run, prepare
 from runner.store.atomic import write_atomically
 
 SHORT = ("robot=macro", "duration=0.05")
@@ -33,8 +34,8 @@ def refuse(code):
 
 def test_the_record_follows_its_schema(run):
     record = json.loads((run.folder / "metrics.json").read_text())
-    assert list(record) == ["schema", "status", "repetitions", "metrics", "timing", "provenance"]
-    assert (record["schema"], record["status"], record["repetitions"]) == (1, "ok", 2)
+    assert list(record) == ["schema", "digest", "files", "status", "repetitions", "metrics", "timing", "provenance"]
+    assert (record["schema"], record["status"], record["repetitions"]) == (2, "ok", 2)
     for metric in record["metrics"].values():
         assert set(metric) == {"unit", "values", "median", "min", "max"}
         assert len(metric["values"]) == 2
@@ -68,16 +69,19 @@ def test_a_copied_run_is_read_elsewhere(run, tmp_path):
     ("name", "content", "message"),
     [
         ("metrics.json", None, "is a run that did not finish: it has no metrics.json"),
-        ("metrics.json", b"", "cannot read the run in"),
-        ("metrics.json", b'{"schema": 1, "sta', "cannot read the run in"),
-        ("metrics.json", b"\xff\xfe\x00\x01", "cannot read the run in"),
-        ("metrics.json", b"[]", "is no metrics file: it needs "),
-        ("metrics.json", b"{}", "is no metrics file: it needs "),
-        ("metrics.json", b'{"schema": 2}', "has schema 2; this version reads 1"),
-        ("config.yaml", None, "cannot read the run in"),
-        ("config.yaml", b"a: [\n", "cannot read the run in"),
-        ("config.yaml", b"\xff\xfe\x00", "cannot read the run in"),
-        ("config.yaml", b"3", "config.yaml holds no config"),
+        ("metrics.json", b"", "metrics.json: it is damaged: Expecting value"),
+        ("metrics.json", b'{"schema": 2, "sta', "metrics.json: it is damaged: Unterminated string"),
+        ("metrics.json", b"\xff\xfe\x00\x01", "metrics.json: it is damaged: "),
+        ("metrics.json", b"[" * 100_000, "metrics.json: it is damaged: maximum recursion depth"),
+        ("metrics.json", b"1" * 6000, "metrics.json: it is damaged: Exceeds the limit"),
+        ("metrics.json", b"[]", "metrics.json: it is damaged: it names no schema"),
+        ("metrics.json", b"{}", "metrics.json: it is damaged: it names no schema"),
+        ("metrics.json", b'{"schema": 1}', "metrics.json: it is no run's record: status: Field required"),
+        ("metrics.json", b'{"schema": 2}', "metrics.json: it is damaged: its content has another digest than it says"),
+        ("metrics.json", b'{"schema": 3}', "metrics.json: it has schema 3; this version reads 1 and 2"),
+        ("config.yaml", None, "config.yaml: No such file or directory; run it again to mend it"),
+        ("config.yaml", b"a: [\n", "config.yaml: it is damaged: its content has another digest than stored"),
+        ("config.yaml", b"3", "config.yaml: it is damaged: its content has another digest than stored"),
     ],
 )
 def test_a_damaged_run_is_said_by_every_command_and_made_again(cli, run, name, content, message):
@@ -89,7 +93,9 @@ def test_a_damaged_run_is_said_by_every_command_and_made_again(cli, run, name, c
         assert (ending.code, ending.out) == (2, "")
         assert message in ending.err
         assert "Traceback" not in ending.err
-    assert cli(*SHORT, "repetitions=2", "noise=thesis").folder == run.folder
+    again = cli(*SHORT, "repetitions=2", "noise=thesis")
+    assert again.folder == run.folder
+    assert ("it is made again" in again.err) == (name != "metrics.json" or content is not None)
     if name == "config.yaml":
         assert path.read_bytes() == good
     assert open_run(run.folder).metrics == run.metrics
@@ -102,13 +108,43 @@ def test_a_damaged_run_is_said_by_every_command_and_made_again(cli, run, name, c
         {"metrics": {"energy": 3}},
         {"metrics": {"energy": {}}},
         {"provenance": []},
+        {"provenance": {}},
         {"status": "failed"},
+        {"status": "fine"},
         {"repetitions": None},
+        {"timing": {"wall_s": "long"}},
     ],
 )
-def test_a_record_of_another_shape_is_no_record(run, edit):
-    (run.folder / "metrics.json").write_text(json.dumps({**run.record, **edit}))
-    with pytest.raises(StoreError, match="is no metrics file"):
+def test_an_unsealed_record_of_another_shape_is_no_record(run, edit):
+    unseal(run)
+    record = json.loads((run.folder / "metrics.json").read_text())
+    assert open_run(run.folder).metrics == run.metrics
+    (run.folder / "metrics.json").write_text(json.dumps({**record, **edit}))
+    with pytest.raises(StoreError, match="it is no run's record: "):
+        open_run(run.folder)
+
+
+def unseal(run):
+    """Make of a stored run what the version before digests wrote."""
+    record = {key: value for key, value in run.record.items() if key not in ("digest", "files")}
+    (run.folder / "metrics.json").write_text(json.dumps({**record, "schema": 1}, indent=1) + "\n")
+
+
+def test_a_run_of_schema_1_is_read_and_marked(cli, run):
+    assert run.sealed
+    unseal(run)
+    old = open_run(run.folder)
+    assert not old.sealed
+    assert old.metrics == run.metrics
+    assert len(old.trace) == 6
+    assert "unsealed: no digests" in cli("diff", run.folder, run.folder).out
+    assert provenance([old]).rows[-3] == ("unsealed", "1 of 1 runs have no digests: damage to them is not found")
+
+
+def test_a_run_of_schema_1_that_has_a_digest_is_damaged(run):
+    record = json.loads((run.folder / "metrics.json").read_text())
+    (run.folder / "metrics.json").write_text(json.dumps({**record, "schema": 1}))
+    with pytest.raises(StoreError, match="its content has another digest than it says"):
         open_run(run.folder)
 
 
@@ -122,7 +158,8 @@ def test_a_damaged_trace_is_said_and_made_again(cli, run, content):
     ending = cli("report", run.folder)
     assert ending.code == 2
     assert "run it again to mend it" in ending.err
-    assert find_run(run.folder.parent.parent, run.hash) is None
+    with pytest.raises(DamagedError, match=r"trace\.parquet"):
+        find_run(run.folder.parent.parent, run.hash)
     assert cli(*SHORT, "repetitions=2", "noise=thesis").folder == run.folder
     assert path.read_bytes() == good
 
@@ -176,9 +213,9 @@ def test_the_metrics_come_last(cli, tmp_path, monkeypatch):
         written.append(path.name)
         write_atomically(path, content, **how)
 
-    monkeypatch.setattr("runner.store.writing.write_atomically", write)
+    monkeypatch.setattr("runner.store.stored.write_atomically", write)
     cli(*SHORT)
-    assert written == [".writable", "trace.parquet", "config.yaml", "robot.urdf", "metrics.json"]
+    assert written == ["trace.parquet", "config.yaml", "robot.urdf", "metrics.json"]
 
 
 def test_writing_over_a_file_keeps_the_old_one_until_the_new_one_is_whole(tmp_path, monkeypatch):

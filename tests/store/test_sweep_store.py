@@ -4,6 +4,8 @@ import pytest
 
 from runner.errors import StoreError
 from runner.store import is_run, is_sweep, open_runs, open_sweep, write_sweep
+from runner.store.shards import ShardRun, write_shard
+from runner.store.stored import write_job
 
 
 @pytest.fixture
@@ -37,19 +39,24 @@ def test_the_same_jobs_are_the_same_sweep(tmp_path):
     assert write_sweep(tmp_path, jobs, "runner -m seed=0,1 hydra.sweeper.workers=0") == folder
     assert write_sweep(tmp_path, jobs[::-1], "") != folder
     assert open_sweep(folder).command == "runner -m seed=0,1 hydra.sweeper.workers=0"
-    assert json.loads((folder / "sweep.json").read_text())["schema"] == 1
+    assert json.loads((folder / "sweep.json").read_text())["schema"] == 2
 
 
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"", "cannot read the sweep in"),
-        (b'{"jobs": [{"overr', "cannot read the sweep in"),
-        (b"\xff\xfe", "cannot read the sweep in"),
-        (b"{}", "is no sweep file: it needs jobs with overrides and run each"),
-        (b"[]", "is no sweep file"),
-        (b'{"jobs": [{"overrides": []}]}', "is no sweep file"),
-        (b'{"jobs": 3}', "is no sweep file"),
+        (b"", "sweep.json: it is damaged: Expecting value"),
+        (b'{"jobs": [{"overr', "sweep.json: it is damaged: Unterminated"),
+        (b"\xff\xfe", "sweep.json: it is damaged: "),
+        (b"{}", "sweep.json: it is damaged: it names no schema"),
+        (b"[]", "sweep.json: it is damaged: it names no schema"),
+        (b'{"schema": 99, "jobs": []}', "it has schema 99; this version reads 1 and 2"),
+        (b'{"schema": 2, "jobs": []}', "its content has another digest than it says"),
+        (b'{"schema": 1}', "it is no sweep's: it needs jobs with overrides and run each"),
+        (b'{"schema": 1, "jobs": [{"overrides": []}]}', "it is no sweep's"),
+        (b'{"schema": 1, "jobs": [{"overrides": [3], "run": "a"}]}', "it is no sweep's"),
+        (b'{"schema": 1, "jobs": 3}', "it is no sweep's"),
+        (b'{"schema": 1, "jobs": [{"overrides": ["a=1"], "run": "a"}]}', "it is of another sweep than its folder is"),
     ],
 )
 def test_a_damaged_sweep_is_said(sweep, content, message):
@@ -66,5 +73,23 @@ def test_a_missing_run_of_a_sweep_is_named(sweep):
 
 
 def test_a_folder_that_is_no_sweep(tmp_path):
-    with pytest.raises(StoreError, match="cannot read the sweep in"):
+    with pytest.raises(StoreError, match=r"is no sweep: it has no sweep.json; `runner -m OVERRIDES` makes one"):
         open_sweep(tmp_path)
+
+
+def test_a_sweep_in_another_sweeps_folder_is_damaged(sweep):
+    other = sweep.rename(sweep.with_name("0" * 24))
+    with pytest.raises(StoreError, match="it is of another sweep than its folder is named after"):
+        open_sweep(other)
+
+
+def test_a_good_run_in_a_shard_counts_before_a_failed_one_with_a_folder(sweep):
+    first = open_runs(sweep)[0]
+    write_shard(
+        first.folder.parent.parent, "1-1", [ShardRun(first.folder, first.config, dict(first.record), "<robot/>")]
+    )
+    assert open_runs(sweep)[0].urdf != "<robot/>"
+    failure = {"reason": "killed", "time": None, "joint": None, "repetition": None}
+    record = {**first.record, "status": "failed", "failure": failure}
+    write_job(first.folder, "metrics.json", {key: record[key] for key in record if key not in ("schema", "digest")}, {})
+    assert open_runs(sweep)[0].urdf == "<robot/>"

@@ -131,21 +131,20 @@ def alive(group):
 
 
 @pytest.mark.usefixtures("interruptible")
-def test_an_interrupt_ends_all_processes_and_says_how_to_go_on(tmp_path):
+@pytest.mark.parametrize(("number", "code", "word"), [("SIGINT", 130, "interrupted"), ("SIGTERM", 143, "terminated")])
+def test_a_signal_ends_all_processes_and_says_how_to_go_on(tmp_path, number, code, word):
     command = [sys.executable, "-m", "runner", "-m", "robot=macro", "plant=rk4", "seed=range(0,2000)"]
     process = subprocess.Popen(command, cwd=tmp_path, stdout=-1, stderr=-1, text=True, start_new_session=True)
     while not list(tmp_path.glob("outputs/runs/*/metrics.json")):
         assert process.poll() is None
         time.sleep(0.02)
-    os.killpg(process.pid, signal.SIGINT)  # as Ctrl-C does: to the workers, too
+    os.killpg(process.pid, signal.Signals[number])  # as Ctrl-C does: to the workers, too
     try:
         out, err = process.communicate(timeout=60)
     finally:
         process.kill()
-    assert (process.returncode, out) == (130, "")
-    assert err.splitlines()[2:] == [
-        "runner: interrupted; finished runs are stored, the same command goes on from there"
-    ]
+    assert (process.returncode, out) == (code, "")
+    assert err.splitlines()[2:] == [f"runner: {word}; finished runs are stored, the same command goes on from there"]
     deadline = time.monotonic() + 20
     while alive(process.pid):
         assert time.monotonic() < deadline

@@ -101,8 +101,8 @@ def test_the_table_of_a_stored_sweep_holds_what_its_runs_hold(cli, tmp_path):
     ("arguments", "message"),
     [
         ((), "the following arguments are required: DIR; usage: runner table"),
-        (("nowhere",), "cannot read the sweep in nowhere"),
-        ((".",), "cannot read the sweep in ."),
+        (("nowhere",), "nowhere is no sweep: it has no sweep.json"),
+        ((".",), ". is no sweep: it has no sweep.json"),
     ],
 )
 def test_bad_input_is_told(cli, arguments, message):

@@ -36,7 +36,29 @@ def test_trials_are_read_as_they_were_written(written):
     assert read_trials(written) == TRIALS
     assert Journal(written, KEYS, GOALS).trials == TRIALS
     assert written.read_bytes() == content
-    assert all(isinstance(json.loads(line), dict) for line in content.splitlines())
+    assert all(isinstance(json.loads(line[33:]), dict) for line in content.splitlines())
+
+
+def test_a_journal_without_digests_is_read(written):
+    lines = [line[33:] for line in written.read_bytes().splitlines()]
+    written.write_bytes(b"\n".join([*lines, b""]))
+    assert read_trials(written) == TRIALS
+
+
+@pytest.mark.parametrize("change", ["swap", "drop", "edit", "unseal"])
+def test_a_line_that_is_not_as_it_was_written_is_told(written, change):
+    lines = written.read_bytes().splitlines()
+    if change == "swap":
+        lines[2], lines[3] = lines[3], lines[2]
+    elif change == "drop":
+        del lines[2]
+    else:
+        lines[2] = lines[2].replace(b"0.3", b"0.4") if change == "edit" else lines[2][33:]
+        assert change == "unseal" or b"0.4" in lines[2]
+    written.write_bytes(b"\n".join([*lines, b""]))
+    message = r"journal\.log: it is damaged: line 3 has another digest than it says; remove"
+    with pytest.raises(StoreError, match=message):
+        read_trials(written)
 
 
 def test_a_journal_that_was_cut_anywhere_goes_on(written):

@@ -1,6 +1,5 @@
 """How long the rigid-body dynamics of chains of mounted arms take: a measurement by the clock, kept in a file."""
 
-import json
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -13,12 +12,13 @@ from runner import provenance
 from runner.config.compose import compose
 from runner.config.robot import StagedRobotConfig
 from runner.config.validation import validate
+from runner.errors import StoreError
 from runner.robots import RobotModel
 from runner.robots.mounting import Mount, mount
 from runner.store.atomic import write_atomically
+from runner.store.seal import read_json, sealed_json
 
 FILE = Path("benchmarks", "dynamics.json")
-SCHEMA = 1
 TERMS = ("mass_matrix", "coriolis_matrix", "gravity", "forward_dynamics")
 _STAGES = 10
 _CALLS, _BLOCKS = 200, 30
@@ -33,22 +33,19 @@ def measure(path: Path) -> None:
     if load(path) is not None:
         return
     record = {
-        "schema": SCHEMA,
         "machine": provenance.machine(),
         "versions": provenance.versions(),
         "rows": [_time(model) for model in _chains()],
     }
-    write_atomically(path, (json.dumps(record, indent=1) + "\n").encode())
+    write_atomically(path, sealed_json(record))
 
 
 def load(path: Path) -> dict[str, Any] | None:
     """Return a stored measurement, times in s by number of joints; None where there is none that can be read."""
     try:
-        record = json.loads(path.read_text())
-        whole = record["schema"] == SCHEMA and all({"joints", *TERMS} <= set(row) for row in record["rows"])
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError, KeyError, TypeError):
+        return read_json(path, "`runner reproduce thesis` measures it again")
+    except StoreError:
         return None
-    return dict(record) if whole and len(record["rows"]) > 1 else None
 
 
 def _chains() -> list[RobotModel]:

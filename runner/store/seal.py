@@ -1,0 +1,150 @@
+"""Digests of stored files: damage is found when a file is read, and never used.
+
+A digest finds accidents: a flipped bit, half a file, an edit. It does not find forgery, as anyone can make one anew. A
+file of schema 1, from before there were digests, is read as it is and called unsealed.
+"""
+
+import hashlib
+import json
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from runner.errors import StoreError
+
+SCHEMA = 2
+"""Of all that is stored: what has it, has digests."""
+
+_UNSEALED = 1  # the schema before that
+_BLANK = "0" * 64
+_DIGEST = re.compile(rb'"digest": "([0-9a-f]{64})"')
+_LINE_HEX = 32
+
+
+class DamagedError(StoreError):
+    """A stored file that is not as it was written."""
+
+
+def digest(content: bytes) -> str:
+    """Return the digest of a file's content: SHA-256."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def sealed_json(content: Mapping[str, Any]) -> bytes:
+    """Return a JSON text of its content, with schema and digest before it; see `sealed`."""
+    return sealed(json.dumps({**head(), **content}, indent=1, allow_nan=False) + "\n")
+
+
+def head() -> dict[str, Any]:
+    """Return what a JSON text that is to be sealed begins with: the schema, and a place for the digest."""
+    return {"schema": SCHEMA, "digest": _BLANK}
+
+
+def sealed(text: str) -> bytes:
+    """Return a JSON text with a digest over all the rest of it in its place."""
+    content = text.encode()
+    return content.replace(_BLANK.encode(), digest(content).encode(), 1)
+
+
+def read_json(path: Path, mend: str) -> dict[str, Any]:
+    """Return what a file of `sealed_json` holds, once its digest has been found right.
+
+    Args:
+        path: The file.
+        mend: What makes it anew, in words.
+
+    Raises:
+        DamagedError: if it is not as it was written, or of another schema; names the file and what makes it anew.
+    """
+    try:
+        content = path.read_bytes()
+        record = json.loads(content)
+    except OSError as error:
+        raise DamagedError(f"cannot read {path}: {error.strerror}; {mend}") from error
+    except (ValueError, RecursionError) as error:
+        raise DamagedError(f"cannot read {path}: it is damaged: {_short(error)}; {mend}") from error
+    schema = record.get("schema") if isinstance(record, dict) else None
+    if schema == _UNSEALED and type(schema) is int and "digest" not in record:
+        return dict(record)
+    if type(schema) is not int:
+        raise DamagedError(f"cannot read {path}: it is damaged: it names no schema; {mend}")
+    if schema > SCHEMA:
+        raise DamagedError(f"cannot read {path}: it has schema {schema}; this version reads 1 and {SCHEMA}; {mend}")
+    if not _is_whole(content):
+        raise DamagedError(f"cannot read {path}: it is damaged: its content has another digest than it says; {mend}")
+    return dict(record)
+
+
+def is_sealed(record: Mapping[str, Any]) -> bool:
+    """Tell whether a record that was read has digests."""
+    return record.get("schema") != _UNSEALED
+
+
+def read_file(path: Path, files: Mapping[str, str] | None, mend: str) -> bytes:
+    """Return the content of a file whose digest stands in the record beside it.
+
+    Args:
+        path: The file.
+        files: Digests by file name; None for a record of schema 1.
+        mend: What makes it anew, in words.
+
+    Raises:
+        DamagedError: if it is missing, or not as it was written.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise DamagedError(f"cannot read {path}: {error.strerror}; {mend}") from error
+    if files is not None and files.get(path.name) != digest(content):
+        raise DamagedError(f"cannot read {path}: it is damaged: its content has another digest than stored; {mend}")
+    return content
+
+
+class Lines:
+    """The chain of digests through a file that grows line by line.
+
+    Each line begins with half of a SHA-256 over the digest of the line before and its own text: a line that is changed,
+    missing or moved is found.
+    """
+
+    def __init__(self) -> None:
+        self._last = ""
+
+    def seal(self, text: str) -> str:
+        """Return the next line, without its end."""
+        self._last = digest(f"{self._last}\n{text}".encode())[:_LINE_HEX]
+        return f"{self._last} {text}"
+
+    def read(self, content: bytes) -> Iterator[str]:
+        """Yield the texts of the lines of a file; a half line at its end, of a writer at work or killed, is none.
+
+        Raises:
+            ValueError: at the first line that is not as it was written.
+        """
+        lines = content.decode().split("\n")[:-1]
+        if lines and not is_sealed_line(lines[0]):
+            yield from lines
+            return
+        for number, line in enumerate(lines, start=1):
+            own = line.partition(" ")[2]
+            if self.seal(own) != line:
+                raise ValueError(f"line {number} has another digest than it says")
+            yield own
+
+
+def is_sealed_line(line: str) -> bool:
+    """Tell whether a line begins with a digest, or, as in a file of schema 1, with its own text."""
+    return not line.startswith("{")
+
+
+def _is_whole(content: bytes) -> bool:
+    found = _DIGEST.search(content)
+    if found is None:
+        return False
+    blank = content[: found.start(1)] + _BLANK.encode() + content[found.end(1) :]
+    return digest(blank).encode() == found[1]
+
+
+def _short(error: Exception) -> str:
+    return " ".join(str(error).split())[:200]
