@@ -10,6 +10,7 @@ import sys
 from collections.abc import Sequence
 
 from runner.errors import RunnerError, nearest, told, user_place
+from runner.texts import one_line
 
 HELP = """\
 runner: config-driven experiments for robot-arm control, with reports
@@ -79,7 +80,7 @@ def dispatch(arguments: Sequence[str]) -> int:
 
         if not (user_place(error) and any(map(added, GROUPS))):  # a fault of ours: its whole trace is of use
             raise
-        print(f"runner: a part of yours failed: {told(error)}", file=sys.stderr)
+        print(one_line(f"runner: a part of yours failed: {told(error)}"), file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("runner: interrupted; finished runs are stored, the same command goes on from there", file=sys.stderr)

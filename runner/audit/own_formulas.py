@@ -13,6 +13,7 @@ from runner.audit.expressions import ExpressionError, parse
 from runner.audit.truth import Elements, FloatArray
 from runner.errors import RunnerError, nearest
 from runner.robots.model import RobotModel
+from runner.texts import quoted
 
 _EQUAL = 1e-9
 
@@ -132,5 +133,5 @@ def _expressions(path: Path, key: str, content: Any) -> dict[str, str]:
         raise RunnerError(f"{path}: '{key}' is a list of names, each with its expression")
     for name, value in content.items():
         if isinstance(value, bool) or not isinstance(value, str | int | float):
-            raise RunnerError(f"{path}: {key}.{name} is {value!r}; allowed: an expression or a number")
+            raise RunnerError(f"{path}: {key}.{name} is {quoted(value)}; allowed: an expression or a number")
     return {name: str(value) for name, value in content.items()}

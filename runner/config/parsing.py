@@ -9,6 +9,7 @@ from runner.config.messages import describe
 from runner.config.robot import StagedRobotConfig
 from runner.errors import ConfigError
 from runner.registry import Registry, StrictModel
+from runner.texts import quoted
 
 
 def attempt(problems: list[str], check: Callable[[], Any]) -> Any:
@@ -33,7 +34,7 @@ def parse_group(group: str, kinds: Registry | type[StrictModel], resolved: Mappi
     """
     value = resolved.get(group)
     if not isinstance(value, Mapping):
-        raise ConfigError([f"{group}: must be a group of keys; found {value!r}"])
+        raise ConfigError([f"{group}: must be a group of keys; found {quoted(value)}"])
     if not isinstance(kinds, Registry):
         staged = group == "robot" and "stages" in value
         return parse(group, StagedRobotConfig if staged else kinds, value)

@@ -15,6 +15,7 @@ from pydantic import Field, NonNegativeFloat, TypeAdapter, ValidationError
 
 from runner.errors import ConfigError, nearest
 from runner.registry import StrictModel
+from runner.texts import quoted
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ def _read_sets(path: Path) -> dict[str, _InertialSet]:
     except ValidationError as error:
         raise ConfigError(
             f"robot.inertials: {path}: {'.'.join(map(str, problem['loc']))}: {problem['msg']}; found "
-            f"{problem['input']!r}"
+            f"{quoted(problem['input'])}"
             for problem in error.errors()
         ) from None
 

@@ -123,6 +123,7 @@ def test_keys_are_forced_and_options_are_not(override, forced):
         ("trajectory.goal=${robot.nope}", "trajectory.goal: Interpolation key 'robot.nope' not found"),
         ("noise.position=[1,", "'noise.position=[1,' is no override: "),
         ("foo", "'foo' is no override: Error parsing override 'foo'"),
+        ("foo\x1b]0;t\x07[", r"'foo\x1b]0;t\x07[' is no override: "),
     ],
 )
 def test_what_does_not_compose_is_said_in_one_line(cli, tmp_path, override, message):
