@@ -10,9 +10,10 @@ import hydra
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig, OmegaConf
 
-from runner.config.compose import force, from_hydra, quiet_environment
+from runner.config.compose import from_hydra, quiet_environment
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.no_code import code_refused
+from runner.config.overrides import force
 from runner.paths import conf_dir
 from runner.texts import one_line
 
