@@ -22,6 +22,7 @@ _NUMBERS = {
     "bool_type": "must be true or false",
     "string_type": "must be a text",
     "string_too_short": "must not be empty",
+    "string_too_long": "must have at most {max_length} characters",
     "list_type": "must be a list of numbers",
     "dict_type": "must be a group of keys",
     "model_type": "must be a group of keys",

@@ -5,6 +5,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from runner.config.magnitudes import absurd
 from runner.config.messages import describe
 from runner.config.robot import StagedRobotConfig
 from runner.errors import ConfigError
@@ -49,6 +50,9 @@ def parse(group: str, model: type[StrictModel], value: Mapping[str, Any]) -> Str
     Raises:
         ConfigError: with every problem found.
     """
+    problems = list(absurd(group, value))
+    if problems:
+        raise ConfigError(problems)
     try:
         return model.model_validate(dict(value))
     except ValidationError as error:
