@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from runner.errors import RunnerError, nearest, told, user_place
+from runner.texts import one_line
 
 HELP = """\
 runner: config-driven experiments for robot-arm control, with reports
@@ -92,7 +93,7 @@ def dispatch(arguments: Sequence[str]) -> int:
 
         if not (user_place(error) and any(map(added, GROUPS))):  # a fault of ours: its whole trace is of use
             raise
-        print(f"runner: a part of yours failed: {told(error)}", file=sys.stderr)
+        print(one_line(f"runner: a part of yours failed: {told(error)}"), file=sys.stderr)
         return 2
     except KeyboardInterrupt as error:
         ended, code = ("terminated", 143) if isinstance(error, TerminatedError) else ("interrupted", 130)

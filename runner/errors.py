@@ -6,16 +6,26 @@ import traceback
 from collections.abc import Iterable
 from pathlib import Path
 
+from runner.texts import VALUE, lines, one_line
+
+_PROBLEMS_SHOWN = 20
+
 
 class RunnerError(Exception):
-    """Base of all errors that a user can mend: the message says what is wrong, what was found and what is allowed."""
+    """Base of all errors that a user can mend: the message says what is wrong, what was found and what is allowed.
+
+    Whatever stands in it of values and names from outside, it is safe to print and no line is longer than one can read.
+    """
+
+    def __init__(self, text: str) -> None:
+        super().__init__(lines(text))
 
 
 class ConfigError(RunnerError):
     """A config that cannot be run; carries one message per problem.
 
     Attributes:
-        problems: One text per problem: dotted key, value found, values allowed.
+        problems: One text per problem: dotted key, value found, values allowed; the message shows the first 20.
     """
 
     def __init__(self, problems: Iterable[str], hint: str = "") -> None:
@@ -23,8 +33,9 @@ class ConfigError(RunnerError):
         self.hint = hint
         count = len(self.problems)
         head = "1 problem in the config:" if count == 1 else f"{count} problems in the config:"
-        lines = [head, *(f"  - {problem}" for problem in self.problems), *([hint] if hint else [])]
-        super().__init__("\n".join(lines))
+        shown = [f"  - {one_line(problem)}" for problem in self.problems[:_PROBLEMS_SHOWN]]
+        more = [f"  and {count - _PROBLEMS_SHOWN} more"] if count > _PROBLEMS_SHOWN else []
+        super().__init__("\n".join([head, *shown, *more, *([hint] if hint else [])]))
 
     def __reduce__(self) -> tuple[type["ConfigError"], tuple[tuple[str, ...], str]]:
         """Come out of a worker process as it went in."""
@@ -52,7 +63,7 @@ class SimulationError(Exception):
 
 def nearest(name: str, allowed: Iterable[str]) -> str:
     """Return " (did you mean X?)" for the nearest allowed name, or an empty text when none is near."""
-    matches = difflib.get_close_matches(name, list(allowed), n=1, cutoff=0.5)
+    matches = difflib.get_close_matches(name, list(allowed), n=1, cutoff=0.5) if len(name) <= VALUE else []
     return f" (did you mean {matches[0]}?)" if matches else ""
 
 

@@ -40,3 +40,19 @@ def test_a_config_error_comes_out_of_a_worker_process_as_it_went_in():
     error = ConfigError(["a.b: must be above 0; found -1", "c: unknown key"], "  2 runs are stored already")
     again = pickle.loads(pickle.dumps(error))
     assert (again.problems, again.hint, str(again)) == (error.problems, error.hint, str(error))
+
+
+def test_messages_are_safe_to_print_whatever_stands_in_them():
+    assert str(RunnerError("no file \x1b[2J\nlook there")) == "no file \\x1b[2J\nlook there"
+    assert str(ConfigError(["a: found 'x\ny'"])) == "1 problem in the config:\n  - a: found 'x\\ny'"
+    assert len(str(StoreError("x" * 1_000_000))) == 2000
+
+
+def test_of_many_problems_the_first_are_shown():
+    error = ConfigError(f"key{number}: unknown key" for number in range(1000))
+    assert len(error.problems) == 1000
+    assert str(error).splitlines()[-2:] == ["  - key19: unknown key", "  and 980 more"]
+
+
+def test_a_name_of_thousands_of_characters_has_no_nearest():
+    assert nearest("m" * 100_000, ["m" * 99_999]) == ""

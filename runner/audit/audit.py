@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from runner.audit.entry import SOURCES, Form, parts
 from runner.audit.truth import resolve
 from runner.audit.verdict import SAMPLES, VERDICTS, Judge, Judged, Verdict
+from runner.texts import table_cell
 
 _COLUMNS = (
     "source",
@@ -63,27 +64,26 @@ def as_csv(judged: Sequence[Judged]) -> str:
     for each in judged:
         entry, measured, second = each.entry, each.measured, each.second
         ways = resolve(entry.truth).ways if entry.truth else ("", "")
-        table.writerow(
-            [
-                each.source,
-                entry.id,
-                entry.number,
-                entry.place,
-                entry.title,
-                each.verdict,
-                f"{measured.largest:.6g}" if measured else "",
-                f"{measured.typical:.6g}" if measured else "",
-                f"{second.largest:.6g}" if second else "",
-                *ways,
-                entry.unit,
-                f"{entry.tolerance:g}",
-                _plain(entry.printed),
-                _plain(entry.repair) if entry.repair else "",
-                entry.repair.why if entry.repair else "",
-                _plain(entry.corrected) if entry.corrected else "",
-                entry.finding,
-            ]
-        )
+        cells = [
+            each.source,
+            entry.id,
+            entry.number,
+            entry.place,
+            entry.title,
+            each.verdict,
+            f"{measured.largest:.6g}" if measured else "",
+            f"{measured.typical:.6g}" if measured else "",
+            f"{second.largest:.6g}" if second else "",
+            *ways,
+            entry.unit,
+            f"{entry.tolerance:g}",
+            _plain(entry.printed),
+            _plain(entry.repair) if entry.repair else "",
+            entry.repair.why if entry.repair else "",
+            _plain(entry.corrected) if entry.corrected else "",
+            entry.finding,
+        ]
+        table.writerow(map(table_cell, cells))
     return stream.getvalue()
 
 

@@ -6,13 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 
 from runner.audit.evaluation import evaluate
 from runner.audit.expressions import ExpressionError, parse
 from runner.audit.truth import Elements, FloatArray
+from runner.config.bounded_yaml import YamlError, read_yaml
 from runner.errors import RunnerError, nearest
 from runner.robots.model import RobotModel
+from runner.texts import quoted
 
 _EQUAL = 1e-9
 
@@ -118,8 +119,8 @@ def _value(path: Path, name: str, text: str, symbols: Mapping[str, FloatArray]) 
 
 def _read(path: Path) -> dict[str, dict[str, str]]:
     try:
-        content: Any = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        content: Any = read_yaml(path.read_text(encoding="utf-8"), path)
+    except (OSError, UnicodeDecodeError, YamlError) as error:
         raise RunnerError(f"{path}: cannot be read as YAML: {error}") from error
     allowed = ("symbols", "elements")
     if not isinstance(content, dict) or "elements" not in content or set(content) - set(allowed):
@@ -132,5 +133,5 @@ def _expressions(path: Path, key: str, content: Any) -> dict[str, str]:
         raise RunnerError(f"{path}: '{key}' is a list of names, each with its expression")
     for name, value in content.items():
         if isinstance(value, bool) or not isinstance(value, str | int | float):
-            raise RunnerError(f"{path}: {key}.{name} is {value!r}; allowed: an expression or a number")
+            raise RunnerError(f"{path}: {key}.{name} is {quoted(value)}; allowed: an expression or a number")
     return {name: str(value) for name, value in content.items()}

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from runner.commands.arguments import Parser
 from runner.commands.columns import aligned, number
 from runner.config.compose import quiet_environment
+from runner.texts import one_line
 
 if TYPE_CHECKING:
     from runner.store import Calibration
@@ -24,7 +25,7 @@ def main(arguments: Sequence[str]) -> int:
 
     done = calibrate(*options.overrides, config_dirs=options.config_dir)
     for warning in done.provenance["warnings"]:
-        print(f"runner: warning: {warning}", file=sys.stderr)
+        print(one_line(f"runner: warning: {warning}"), file=sys.stderr)
     print(_report(done))
     print(done.folder)
     return 0

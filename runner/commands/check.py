@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from runner.commands.arguments import Parser
 from runner.commands.columns import aligned, number
 from runner.config.compose import quiet_environment
+from runner.texts import one_line
 
 if TYPE_CHECKING:
     from runner.references import Band, Finding, Learned, Move, Reference
@@ -84,7 +85,7 @@ def _direction(move: "Move") -> str:
 
 
 def _markdown(rows: "Sequence[Sequence[str]]") -> list[str]:
-    head, *others = ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows]
+    head, *others = ["| " + " | ".join(one_line(cell).replace("|", "\\|") for cell in row) + " |" for row in rows]
     return [head, "|" + "---|" * len(rows[0]), *others]
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from runner.commands.arguments import Parser
 from runner.config.compose import quiet_environment
 from runner.errors import RunnerError
+from runner.texts import one_line
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -29,9 +30,10 @@ def main(arguments: Sequence[str]) -> int:
     from runner.doctor.finding import exit_code
 
     found = examine(options.urdf, options.tip)
-    print(f"{found.name}: {'no arm' if found.model is None else f'{found.model.nq} joints'}, tip '{found.tip}'")
+    joints = "no arm" if found.model is None else f"{found.model.nq} joints"
+    print(one_line(f"{found.name}: {joints}, tip '{found.tip}'"))
     for finding in found.findings:
-        print(finding)
+        print(one_line(str(finding)))
     if options.html is not None:
         from runner.reporting.doctor_report import doctor_document
         from runner.reporting.render import write_report

@@ -11,6 +11,7 @@ from runner.commands.arguments import Parser
 from runner.config.options import described_files, group_options
 from runner.errors import RunnerError, nearest
 from runner.paths import package_dir
+from runner.texts import escaped, one_line
 
 if TYPE_CHECKING:
     from runner.claims import PublishedClaim
@@ -106,7 +107,7 @@ TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {
 def _print_overview(own: Sequence[Path]) -> None:
     width = shutil.get_terminal_size().columns
     for topic, entries in TOPICS.items():
-        names = ", ".join(entries(own)) or "none"
+        names = escaped(", ".join(entries(own))) or "none"
         indent = " " * 15
         print(textwrap.fill(f"{topic:<13}  {names}", width, subsequent_indent=indent, break_on_hyphens=False))
     print("\n`runner list TOPIC` tells more; an option is chosen by its group, as in robot=macro")
@@ -115,4 +116,4 @@ def _print_overview(own: Sequence[Path]) -> None:
 def _print_table(entries: Mapping[str, str]) -> None:
     width = max(map(len, entries), default=0)
     for name, description in entries.items():
-        print(f"{name:<{width}}  {description}".rstrip())
+        print(one_line(f"{name:<{width}}  {description}".rstrip()))

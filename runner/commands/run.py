@@ -10,10 +10,12 @@ import hydra
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig, OmegaConf
 
-from runner.config.compose import force, from_hydra, quiet_environment
+from runner.config.compose import from_hydra, quiet_environment
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.no_code import code_refused
+from runner.config.overrides import force
 from runner.paths import conf_dir
+from runner.texts import one_line
 
 if TYPE_CHECKING:
     from runner.store import Run
@@ -78,9 +80,9 @@ def main(arguments: Sequence[str]) -> int:
 
 def _tell_run(run: "Run") -> int:
     for warning in run.provenance["warnings"]:
-        print(f"runner: warning: {warning}", file=sys.stderr)
+        print(one_line(f"runner: warning: {warning}"), file=sys.stderr)
     if run.failure:
-        print(f"runner: {run.failure_text}", file=sys.stderr)
+        print(one_line(f"runner: {run.failure_text}"), file=sys.stderr)
     print(run.folder)
     return 1 if run.failure else 0
 

@@ -1,8 +1,7 @@
 """Composing a config from the groups in conf/ and a list of overrides, with Hydra."""
 
 import os
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,10 +11,13 @@ from hydra import initialize_config_dir
 from omegaconf import DictConfig, OmegaConf
 
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.options import groups
+from runner.config.no_code import code_refused
+from runner.config.overrides import force
 from runner.config.robot_defaults import complete_stage_arms
 from runner.config.stage_defaults import complete_stages
+from runner.errors import ConfigError
 from runner.paths import conf_dir
+from runner.texts import quoted
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ def compose(overrides: Sequence[str], config_dirs: Sequence[Path] = (), root: st
     """
     search = [f"hydra.searchpath=[{','.join(f'file://{folder.resolve()}' for folder in config_dirs)}]"]
     try:
-        with initialize_config_dir(str(conf_dir()), version_base="1.3", job_name="runner"):
+        with code_refused(), initialize_config_dir(str(conf_dir()), version_base="1.3", job_name="runner"):
             config = hydra_compose(
                 root, [*force(overrides), *(search if config_dirs else [])], return_hydra_config=True
             )
@@ -69,7 +71,7 @@ def from_hydra(
         config_dirs: Config folders of the user's.
 
     Raises:
-        ConfigError: for an interpolation of a key that does not exist.
+        ConfigError: for an interpolation of a key that does not exist, or a key that is no text.
     """
     try:
         raw: Any = OmegaConf.to_container(config, resolve=False)
@@ -80,25 +82,20 @@ def from_hydra(
         resolved: Any = OmegaConf.to_container(own, resolve=True)
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None
+    problems = list(_strange_keys(resolved))
+    if problems:
+        raise ConfigError(problems)
     return Composed(resolved, tuple(overrides), choices, tuple(config_dirs))
 
 
-def force(overrides: Sequence[str]) -> list[str]:
-    """Let overrides of unknown keys compose, so that validation finds them all at once and names the nearest key.
-
-    Hydra alone stops at the first, and suggests to add the key, which no part of the runner would read. The option
-    of a group is quoted where Hydra would take it for a number or null and not name the group.
-    """
-    names = set(groups())
-    forced = []
-    for override in overrides:
-        match = re.match(r"([A-Za-z_][\w.]*)=(.*)", override)
-        if match is not None and match[1] in names and re.match(r"(?i)(null|true|false|[-+.\d][-+.\de]*)$", match[2]):
-            override = f"{match[1]}='{match[2]}'"  # the name of an option, though it looks like a value
-        elif match is not None and match[1] not in names and not match[1].startswith("hydra"):
-            override = f"++{override}"
-        forced.append(override)
-    return forced
+def _strange_keys(value: Any, place: str = "") -> Iterator[str]:
+    """Yield a problem for each key that is no text: no part of the runner has such a key."""
+    if isinstance(value, Mapping):
+        for key, item in value.items():
+            if isinstance(key, str):
+                yield from _strange_keys(item, f"{place}{key}.")
+            else:
+                yield f"{place}{quoted(key)}: the key is no text; put it in quotes, or look for a typing error"
 
 
 def quiet_environment() -> None:

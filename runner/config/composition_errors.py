@@ -8,11 +8,15 @@ from hydra.errors import HydraException, MissingConfigException, OverrideParseEx
 from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
+from runner.config.bounded_yaml import explain_yaml
+from runner.config.no_code import check_file
 from runner.config.options import group_options
 from runner.errors import ConfigError, nearest
+from runner.texts import VALUE, one_line
 
-# What Hydra raises for a config that it cannot compose; the last two for a file that is no text, or no mapping.
-COMPOSITION_ERRORS = (HydraException, OmegaConfBaseException, yaml.YAMLError, ValueError, OSError)
+# What Hydra raises for a config that it cannot compose: ValueError and OSError for a file that is no text, or no
+# mapping; and OmegaConf where a value refers to itself.
+COMPOSITION_ERRORS = (HydraException, OmegaConfBaseException, yaml.YAMLError, ValueError, OSError, RecursionError)
 
 
 def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
@@ -29,25 +33,23 @@ def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
         if known:
             return ConfigError([f"{group}: no '{option}'{nearest(option, known)}; known: {', '.join(known)}"])
     if isinstance(error, OverrideParseException):
-        return ConfigError([f"'{error.override.removeprefix('++')}' is no override: {str(error).splitlines()[0]}"])
+        found = one_line(f"'{error.override.removeprefix('++')}'", VALUE)
+        return ConfigError([f"{found} is no override: {one_line(str(error).splitlines()[0], VALUE)}"])
     if isinstance(error, OmegaConfBaseException) and error.full_key:
         return ConfigError([f"{error.full_key}: {str(error).splitlines()[0]}"])
+    if isinstance(error, RecursionError):
+        return ConfigError(["the config is nested too deeply, or a value refers to itself"])
     text = str(error).replace("++", "").split("\nSee https")[0].split("\nTo append")[0]
     return ConfigError([" ".join(text.split())])
-
-
-def explain_yaml(error: yaml.YAMLError, place: Path | None = None) -> str:
-    """Return file, line, column and problem of what is no YAML; `place` is for a text without a file name."""
-    mark = getattr(error, "problem_mark", None)
-    where = place or (mark and mark.name) or "a YAML file"
-    line = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
-    return f"{where}{line}: {getattr(error, 'problem', None) or error}"
 
 
 def _unreadable(folder: Path) -> Iterator[str]:
     for path in sorted(folder.resolve().rglob("*.yaml")):
         try:
+            check_file(path)
             OmegaConf.load(path)
+        except ConfigError as error:
+            yield from error.problems
         except yaml.YAMLError as error:
             yield explain_yaml(error)
         except UnicodeDecodeError as error:

@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from runner.errors import nearest
 from runner.registry import StrictModel
+from runner.texts import quoted
 
 _NUMBERS = {
     "greater_than": "must be above {gt:g}",
@@ -21,6 +22,7 @@ _NUMBERS = {
     "bool_type": "must be true or false",
     "string_type": "must be a text",
     "string_too_short": "must not be empty",
+    "string_too_long": "must have at most {max_length} characters",
     "list_type": "must be a list of numbers",
     "dict_type": "must be a group of keys",
     "model_type": "must be a group of keys",
@@ -55,11 +57,11 @@ def _explain(model: type[StrictModel], location: list[str], item: dict[str, Any]
         return "missing"
     if kind == "literal_error":
         allowed = re.findall(r"'([^']*)'", context["expected"])
-        return f"found {found!r}{nearest(str(found), allowed)}; allowed: {', '.join(allowed)}"
+        return f"found {quoted(found)}{nearest(str(found), allowed)}; allowed: {', '.join(allowed)}"
     if kind in ("too_short", "too_long"):
         expected = context.get("min_length", context.get("max_length"))
-        return f"must have {expected} values; found {len(found)}: {found!r}"
+        return f"must have {expected} values; found {len(found)}: {quoted(found)}"
     if kind == "value_error":
-        return f"{context['error']}; found {found!r}"
+        return f"{context['error']}; found {quoted(found)}"
     wanted = _NUMBERS.get(kind)
-    return f"{wanted.format(**context) if wanted else item['msg']}; found {found!r}"
+    return f"{wanted.format(**context) if wanted else item['msg']}; found {quoted(found)}"

@@ -1,50 +1,130 @@
-"""No config runs code: Hydra would make whatever some of its own keys name, and a config folder may be a stranger's."""
+"""No config runs code, reads the environment or grows without end: a config folder may be a stranger's.
+
+Hydra would make whatever some of its own keys name, and import the modules that its search path names.
+"""
 
 import contextlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 from hydra._internal.config_loader_impl import ConfigLoaderImpl
+from hydra._internal.config_repository import ConfigRepository
+from hydra._internal.sources_registry import SourcesRegistry
+from hydra.core.config_search_path import ConfigSearchPath
+from hydra.core.plugins import Plugins
+from hydra.plugins.config_source import ConfigResult, ConfigSource
 from omegaconf import DictConfig, OmegaConf
 
+from runner.config.bounded_yaml import CONFIG, YamlError, check_yaml
+from runner.config.interpolation import check_references, refuse_functions
 from runner.errors import ConfigError
+from runner.paths import conf_dir
+from runner.texts import quoted
 
 _NO_LOGGING = {"version": 1, "root": None, "disable_existing_loggers": False}
 _SWEEPER = {"_target_": "hydra_plugins.runner_sweeper.RunnerSweeper", "_recursive_": False}
 _SWEEPER_KEYS = ("workers", "address", "params")
+_HYDRAS_OWN = ("pkg://hydra.conf", "structured://")
 
 
 @contextlib.contextmanager
 def code_refused() -> Iterator[None]:
     """Let Hydra go on only with configs that name no code, whichever file, package or override they come from."""
-    load = ConfigLoaderImpl.load_configuration
+    Plugins.instance()  # registers what reads files, as a class of Hydra's own making
+    files = SourcesRegistry.instance().resolve("file")
+    load, search, read = ConfigLoaderImpl.load_configuration, ConfigRepository.initialize_sources, files.load_config
 
-    def checked(self: ConfigLoaderImpl, *args: Any, **options: Any) -> DictConfig:
-        config = load(self, *args, **options)
+    def checked_load(self: ConfigLoaderImpl, *args: Any, **options: Any) -> DictConfig:
+        try:
+            config = load(self, *args, **options)
+        except (TypeError, KeyError, IndexError, AttributeError, AssertionError, RecursionError) as error:
+            found = f"{type(error).__name__} {error}".strip()
+            raise ConfigError([f"Hydra cannot compose the config: {found}; look at what is unusual in it"]) from error
+        plain: Any = OmegaConf.to_container(config, resolve=False)
+        check_references(plain)
         refuse_code(config)
         return config
 
-    ConfigLoaderImpl.load_configuration = checked  # type: ignore[method-assign]
+    def checked_search(self: ConfigRepository, config_search_path: ConfigSearchPath) -> None:
+        refuse_modules(config_search_path)
+        search(self, config_search_path)
+
+    def checked_read(self: ConfigSource, config_path: str) -> ConfigResult:
+        check_file(Path(self.path) / self._normalize_file_name(config_path))
+        return read(self, config_path)
+
+    with (
+        _replaced(ConfigLoaderImpl, checked_load, "load_configuration"),
+        _replaced(ConfigRepository, checked_search, "initialize_sources"),
+        _replaced(files, checked_read, "load_config"),
+    ):
+        yield
+
+
+@contextlib.contextmanager
+def _replaced(owner: type, function: Callable[..., Any], name: str) -> Iterator[None]:
+    before = getattr(owner, name)
+    setattr(owner, name, function)
     try:
         yield
     finally:
-        ConfigLoaderImpl.load_configuration = load  # type: ignore[method-assign]
+        setattr(owner, name, before)
+
+
+def refuse_modules(search_path: ConfigSearchPath) -> None:
+    """Check that configs are looked for in folders alone: Hydra imports a module to look into it.
+
+    Raises:
+        ConfigError: for anything else in `hydra.searchpath`, and for a folder that does not exist.
+    """
+    for path in (str(element.path) for element in search_path.get_path()):
+        scheme, _, place = path.rpartition("://")
+        if path in _HYDRAS_OWN or (scheme in ("", "file") and Path(place).is_dir()):
+            continue
+        found = "is no folder" if scheme in ("", "file") else "names a module"
+        raise ConfigError(
+            [
+                f"hydra.searchpath: {quoted(path)} {found}; allowed: folders, as in "
+                "hydra.searchpath=[file:///home/me/configs], or simpler --config-dir FOLDER"
+            ]
+        )
+
+
+def check_file(path: Path) -> None:
+    """Check a config file before Hydra reads it; ours need no check.
+
+    Raises:
+        ConfigError: if it is too large or nested too deeply, refers to itself, or calls a function of OmegaConf.
+    """
+    if conf_dir() in path.parents or not path.is_file():
+        return
+    with path.open(encoding="utf-8") as file:
+        text = file.read(CONFIG.characters + 1)
+    try:
+        check_yaml(text, path)
+    except YamlError as error:
+        raise ConfigError([str(error)]) from None
+    refuse_functions(text, str(path))
 
 
 def refuse_code(config: DictConfig) -> None:
     """Check the keys of Hydra's own by which it runs code.
 
-    These make objects (callbacks, sweeper), set what Python starts with (job.env_set) or name classes (logging).
+    These make objects (callbacks, sweeper), set what Python starts with (job.env_set), name classes (logging), or say
+    where Hydra itself writes.
 
     Raises:
         ConfigError: for each that holds something else than ours.
     """
-    bad = [key for key in ("callbacks", "job.env_set") if OmegaConf.select(config.hydra, key)]
+    bad = [key for key in ("callbacks", "job.env_set", "job.chdir", "output_subdir") if _select(config, key)]
     bad += [key for key in ("job_logging", "hydra_logging") if _plain(config.hydra[key]) != _NO_LOGGING]
+    if _select(config, "run.dir") != ".":
+        bad.append("run.dir")
     sweeper = _plain(config.hydra.sweeper)
     params = sweeper.get("params") or {}
     ours = {key: value for key, value in sweeper.items() if key not in _SWEEPER_KEYS} == _SWEEPER
-    if not ours or not isinstance(params, Mapping) or any(isinstance(value, Mapping) for value in params.values()):
+    if not ours or not isinstance(params, Mapping) or any(_is_more_than_a_value(value) for value in params.values()):
         bad.append("sweeper")
     if bad:
         raise ConfigError(
@@ -52,6 +132,23 @@ def refuse_code(config: DictConfig) -> None:
             "hydra.sweeper.workers, .address and .params, whose values are texts or numbers"
             for key in bad
         )
+    address = sweeper["address"]
+    if not isinstance(address, str | None):
+        raise ConfigError(
+            [
+                f"hydra.sweeper.address: must be that of a Dask scheduler, as tcp://127.0.0.1:8786, or null; found "
+                f"{quoted(address)}"
+            ]
+        )
+
+
+def _select(config: DictConfig, key: str) -> Any:
+    return OmegaConf.select(config.hydra, key)
+
+
+def _is_more_than_a_value(value: Any) -> bool:
+    """Tell whether a value of the sweeper's, which becomes an override, is a group or would be resolved once more."""
+    return isinstance(value, Mapping) or "${" in str(value)
 
 
 def _plain(node: Any) -> Any:

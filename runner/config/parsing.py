@@ -5,10 +5,12 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from runner.config.magnitudes import absurd
 from runner.config.messages import describe
 from runner.config.robot import StagedRobotConfig
 from runner.errors import ConfigError
 from runner.registry import Registry, StrictModel
+from runner.texts import quoted
 
 
 def attempt(problems: list[str], check: Callable[[], Any]) -> Any:
@@ -33,7 +35,7 @@ def parse_group(group: str, kinds: Registry | type[StrictModel], resolved: Mappi
     """
     value = resolved.get(group)
     if not isinstance(value, Mapping):
-        raise ConfigError([f"{group}: must be a group of keys; found {value!r}"])
+        raise ConfigError([f"{group}: must be a group of keys; found {quoted(value)}"])
     if not isinstance(kinds, Registry):
         staged = group == "robot" and "stages" in value
         return parse(group, StagedRobotConfig if staged else kinds, value)
@@ -48,6 +50,9 @@ def parse(group: str, model: type[StrictModel], value: Mapping[str, Any]) -> Str
     Raises:
         ConfigError: with every problem found.
     """
+    problems = list(absurd(group, value))
+    if problems:
+        raise ConfigError(problems)
     try:
         return model.model_validate(dict(value))
     except ValidationError as error:

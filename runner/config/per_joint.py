@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.errors import ConfigError
+from runner.texts import quoted
 
 PositivePerJoint = PositiveFloat | list[PositiveFloat]
 NonNegativePerJoint = NonNegativeFloat | list[NonNegativeFloat]
@@ -19,5 +20,7 @@ def expand(key: str, value: float | list[float], joints: Sequence[str]) -> list[
     if not isinstance(value, list):
         return [value] * len(joints)
     if len(value) != len(joints):
-        raise ConfigError([f"{key}: {len(value)} values for {len(joints)} joints ({', '.join(joints)}); found {value}"])
+        raise ConfigError(
+            [f"{key}: {len(value)} values for {len(joints)} joints ({', '.join(joints)}); found {quoted(value)}"]
+        )
     return value

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator
 
 from runner.errors import ConfigError, nearest
+from runner.texts import quoted
 
 
 def _number(value: Any, zero_allowed: bool) -> float:
@@ -59,11 +60,11 @@ def by_stage(key: str, value: Any, stages: Sequence[str]) -> list[Any]:
     names = ", ".join(stages)
     if not isinstance(value, Mapping):
         if len(stages) > 1:
-            raise ConfigError([f"{key}: needs a value for each stage ({names}); found {value!r} for all"])
+            raise ConfigError([f"{key}: needs a value for each stage ({names}); found {quoted(value)} for all"])
         return [value]
     if len(stages) == 1:
         raise ConfigError(
-            [f"{key}: the robot has one stage ({names}) and takes one value; found {dict(value)!r} by stage"]
+            [f"{key}: the robot has one stage ({names}) and takes one value; found {quoted(dict(value))} by stage"]
         )
     problems = [
         f"{key}.{name}: no such stage{nearest(name, stages)}; stages: {names}" for name in value if name not in stages

@@ -8,7 +8,7 @@ from runner.config.per_stage import NonNegativePerStage, PositivePerStage, Torqu
 from runner.registry import StrictModel
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
-Name = Annotated[str, Field(min_length=1)]
+Name = Annotated[str, Field(min_length=1, max_length=200)]
 
 
 class ArmConfig(StrictModel):
@@ -25,7 +25,7 @@ class ArmConfig(StrictModel):
         velocity_limits: Largest speed of joints by name, in rad/s, in place of the URDF's.
     """
 
-    urdf: Name
+    urdf: Annotated[str, Field(min_length=1)]
     tip: Name
     home: list[float]
     inertials: Name | None

@@ -4,9 +4,9 @@ import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-import yaml
 from omegaconf import DictConfig, OmegaConf
 
+from runner.config.bounded_yaml import CONFIG, read_yaml
 from runner.paths import conf_dir
 
 
@@ -36,7 +36,7 @@ def _references(group: str, option: str, config_dirs: Sequence[Path]) -> list[tu
     for folder in (*config_dirs, conf_dir()):
         path = folder / group / f"{option}.yaml"
         if path.is_file():
-            content = yaml.safe_load(path.read_text())
+            content = read_yaml(path.read_text(), path, CONFIG)
             found = [
                 (key, re.fullmatch(r"\$\{([\w.]+)\}", value))
                 for key, value in (content.items() if isinstance(content, Mapping) else ())

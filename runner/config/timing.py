@@ -11,14 +11,15 @@ from runner.plants import PLANTS
 from runner.robots.robot import Robot
 
 _MAX_TICKS = 10_000_000
+_MAX_STEPS = 100_000  # of the plant in a tick
 
 
 def count_steps(arm: Robot, plant: Any, controller: Any) -> tuple[float, float, int]:
     """Return the fastest loop's period, the plant's step, both in s, and the number of steps in that period.
 
     Raises:
-        ConfigError: if a period is no multiple of the fastest one, or that no multiple of the plant's step, or the
-            servo is slower than its commands.
+        ConfigError: if a period is no multiple of the fastest one, or that no multiple of the plant's step or too many
+            of it, or the servo is slower than its commands.
     """
     periods = _periods(arm, controller.period)
     slowest = max(periods.values())
@@ -39,7 +40,11 @@ def count_steps(arm: Robot, plant: Any, controller: Any) -> tuple[float, float, 
         if not _is_multiple(period, tick)
     ]
     steps = max(round(tick / step), 1)
-    if not _is_multiple(tick, step):
+    if steps > _MAX_STEPS:
+        problems.append(
+            f"plant.step: {step:g} s are {steps:.3g} steps in {fastest}, {tick:g} s; allowed: up to {_MAX_STEPS} steps"
+        )
+    elif not _is_multiple(tick, step):
         problems.append(
             f"{fastest}: {tick:g} s is no multiple of plant.step, {step:g} s; "
             f"set plant.step to the period divided by a whole number, such as {tick / steps:g}"
@@ -53,10 +58,14 @@ def count_delay(plant: Any, tick: float) -> int:
     """Return the number of ticks from a command until it acts; a plant whose config has no such key has none.
 
     Raises:
-        ConfigError: if the delay is no multiple of the tick.
+        ConfigError: if the delay is no multiple of the tick, or longer than any run.
     """
     delay: float = getattr(plant, "command_delay", 0.0)
     ticks = round(delay / tick)
+    if ticks > _MAX_TICKS:
+        raise ConfigError(
+            [f"plant.command_delay: {delay:g} s are {ticks:.3g} ticks of {tick:g} s; allowed: up to {_MAX_TICKS:g}"]
+        )
     if delay and not _is_multiple(delay, tick):
         raise ConfigError(
             [

@@ -9,7 +9,7 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
-from runner.config.composition_errors import explain_yaml
+from runner.config.bounded_yaml import Bounds, YamlError, read_yaml
 from runner.config.messages import describe
 from runner.errors import StoreError
 from runner.registry import StrictModel
@@ -17,6 +17,7 @@ from runner.store import Run, Sweep
 from runner.store.atomic import write_atomically
 
 SCHEMA = 1
+_BOUNDS = Bounds(characters=200_000_000, values=5_000_000)  # some 10^5 cells
 _ROUNDING = 1e-6  # of a value: what another machine's rounding may change
 
 
@@ -86,9 +87,9 @@ def load_learned(path: Path) -> Learned | None:
         StoreError: if it cannot be read or is damaged; lists all its problems.
     """
     try:
-        content = yaml.load(path.read_text(), yaml.CSafeLoader)
-    except yaml.YAMLError as error:
-        raise StoreError(f"reference file {explain_yaml(error, path)}") from error
+        content = read_yaml(path.read_text(), path, _BOUNDS)
+    except YamlError as error:
+        raise StoreError(f"reference file {error}") from error
     except (OSError, UnicodeDecodeError) as error:
         raise StoreError(f"cannot read the reference file {path}: {error}") from error
     if not isinstance(content, dict) or "cells" not in content:

@@ -91,10 +91,13 @@ def load_reference(path: Path, name: str | None = None) -> Reference:
         StoreError: if it cannot be read or is no reference; lists all its problems.
     """
     # Read as the configs are: 1e-3 is a number, a key given twice an error.
-    from runner.config.composition_errors import explain_yaml
+    from runner.config.bounded_yaml import STORED, YamlError, check_yaml, explain_yaml
 
     try:
-        content = OmegaConf.to_container(OmegaConf.load(path), resolve=True)
+        check_yaml(path.read_text(encoding="utf-8"), path, STORED)
+        content = OmegaConf.to_container(OmegaConf.load(path), resolve=False)
+    except YamlError as error:
+        raise StoreError(f"reference file {error}") from error
     except yaml.YAMLError as error:
         raise StoreError(f"reference file {explain_yaml(error, path)}") from error
     except (OSError, UnicodeDecodeError, OmegaConfBaseException) as error:

@@ -10,11 +10,12 @@ from typing import Annotated
 
 import numpy as np
 import pinocchio as pin
-import yaml
 from pydantic import Field, NonNegativeFloat, TypeAdapter, ValidationError
 
+from runner.config.bounded_yaml import YamlError, read_yaml
 from runner.errors import ConfigError, nearest
 from runner.registry import StrictModel
+from runner.texts import quoted
 
 
 @dataclass(frozen=True)
@@ -92,13 +93,13 @@ def _read_sets(path: Path) -> dict[str, _InertialSet]:
     if not path.is_file():
         return {}
     try:
-        return _SETS.validate_python(yaml.safe_load(path.read_text()))
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise ConfigError([f"robot.inertials: {path} is no YAML: {error}"]) from error
+        return _SETS.validate_python(read_yaml(path.read_text(), path))
+    except (YamlError, UnicodeDecodeError) as error:
+        raise ConfigError([f"robot.inertials: {path} cannot be read: {error}"]) from error
     except ValidationError as error:
         raise ConfigError(
             f"robot.inertials: {path}: {'.'.join(map(str, problem['loc']))}: {problem['msg']}; found "
-            f"{problem['input']!r}"
+            f"{quoted(problem['input'])}"
             for problem in error.errors()
         ) from None
 

@@ -16,9 +16,11 @@ from tqdm import tqdm
 
 from runner import store
 from runner.assembly import assemble
-from runner.config.compose import Composed, force
+from runner.config.compose import Composed
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.no_code import code_refused
 from runner.config.options import groups
+from runner.config.overrides import force
 from runner.config.run import RunConfig
 from runner.config.sweep import SweepConfig
 from runner.config.validation import validate
@@ -172,11 +174,12 @@ class Plan:
 def plan_sweep(overrides: Sequence[str], config_dirs: Sequence[Path] = ()) -> Plan:
     """Plan what `runner -m OVERRIDES` makes, from Python; see Plan."""
     search = [f"hydra.searchpath=[{','.join(f'file://{folder.resolve()}' for folder in config_dirs)}]"]
-    with initialize_config_dir(str(conf_dir()), version_base="1.3", job_name="runner"):
+    with code_refused(), initialize_config_dir(str(conf_dir()), version_base="1.3", job_name="runner"):
         loader = GlobalHydra.instance().config_loader()
 
     def load(options: list[str]) -> DictConfig:
-        return loader.load_configuration("config", [*(search if config_dirs else []), *options], RunMode.RUN)
+        with code_refused():
+            return loader.load_configuration("config", [*(search if config_dirs else []), *options], RunMode.RUN)
 
     return Plan(overrides, loader, load, config_dirs)
 

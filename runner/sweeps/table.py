@@ -10,6 +10,7 @@ import numpy as np
 
 from runner.store.atomic import write_atomically
 from runner.sweeps.measurements import FloatArray, Measurements
+from runner.texts import table_cell
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -58,7 +59,9 @@ def write_table(measurements: Measurements, folder: Path) -> "pd.DataFrame":
     buffer = io.BytesIO()
     pyarrow.parquet.write_table(arrow.cast(schema), buffer, compression="zstd")
     write_atomically(folder / "table.parquet", buffer.getvalue())
-    write_atomically(folder / "table.csv", frame.to_csv(index=False).encode())
+    texts = frame.select_dtypes(exclude="number").columns
+    safe = frame.assign(**{name: frame[name].map(table_cell) for name in texts}).rename(columns=table_cell)
+    write_atomically(folder / "table.csv", safe.to_csv(index=False).encode())
     return frame
 
 

@@ -10,6 +10,7 @@ from hydra.types import RunMode
 from omegaconf import DictConfig
 
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.no_code import code_refused
 from runner.paths import conf_dir
 from runner.sweeps.plan import Plan
 
@@ -25,7 +26,7 @@ class Composer:
         search = [f"hydra.searchpath=[{','.join(f'file://{folder.resolve()}' for folder in config_dirs)}]"]
         self._search = search if config_dirs else []
         self._config_dirs = config_dirs
-        with initialize_config_dir(str(conf_dir()), version_base="1.3", job_name="runner"):
+        with code_refused(), initialize_config_dir(str(conf_dir()), version_base="1.3", job_name="runner"):
             self._loader = GlobalHydra.instance().config_loader()
         self._compose = cache(self._load)
 
@@ -46,4 +47,5 @@ class Composer:
         return config
 
     def _load(self, overrides: tuple[str, ...]) -> DictConfig:
-        return self._loader.load_configuration("config", [*self._search, *overrides], RunMode.RUN)
+        with code_refused():
+            return self._loader.load_configuration("config", [*self._search, *overrides], RunMode.RUN)

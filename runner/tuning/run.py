@@ -9,9 +9,9 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
 
 from runner import store
-from runner.config.compose import force
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.options import groups
+from runner.config.overrides import force
 from runner.errors import ConfigError, StoreError
 from runner.sweeps.lock import at_work
 from runner.sweeps.plan import Checked, Plan

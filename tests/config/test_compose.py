@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.config.compose import compose, force
+from runner.config.compose import compose
 from runner.config.options import group_options, groups
 from runner.config.validation import validate
 from runner.errors import ConfigError
@@ -97,24 +97,6 @@ def test_what_was_chosen_is_kept():
 
 
 @pytest.mark.parametrize(
-    ("override", "forced"),
-    [
-        ("noise.position=1", "++noise.position=1"),
-        ("seed=3", "++seed=3"),
-        ("robot=macro", "robot=macro"),
-        ("robot=macro,mini", "robot=macro,mini"),
-        ("noise=1", "noise='1'"),
-        ("experiment=null", "experiment='null'"),
-        ("hydra.run.dir=x", "hydra.run.dir=x"),
-        ("+new=1", "+new=1"),
-        ("~noise", "~noise"),
-    ],
-)
-def test_keys_are_forced_and_options_are_not(override, forced):
-    assert force([override]) == [forced]
-
-
-@pytest.mark.parametrize(
     ("override", "message"),
     [
         ("robot=makro", f"robot: no 'makro' (did you mean macro?); known: {', '.join(group_options('robot'))}"),
@@ -123,6 +105,7 @@ def test_keys_are_forced_and_options_are_not(override, forced):
         ("trajectory.goal=${robot.nope}", "trajectory.goal: Interpolation key 'robot.nope' not found"),
         ("noise.position=[1,", "'noise.position=[1,' is no override: "),
         ("foo", "'foo' is no override: Error parsing override 'foo'"),
+        ("foo\x1b]0;t\x07[", r"'foo\x1b]0;t\x07[' is no override: "),
     ],
 )
 def test_what_does_not_compose_is_said_in_one_line(cli, tmp_path, override, message):
@@ -141,7 +124,7 @@ def test_what_does_not_compose_is_said_in_one_line(cli, tmp_path, override, mess
     [
         (
             b"position: 0.0\n  distribution: [\n",
-            "noise/own.yaml, line 2, column 15: mapping values are not allowed here",
+            "noise/own.yaml, line 2, column 15: mapping values are not allowed in this context",
         ),
         (b"position: 0.0\nposition: 1.0\n", "noise/own.yaml, line 2, column 1: found duplicate key position"),
         (b"# \xff\xfe\nposition: 0.0\n", "noise/own.yaml: is no text: 'utf-8' codec can't decode byte 0xff"),
@@ -150,8 +133,31 @@ def test_what_does_not_compose_is_said_in_one_line(cli, tmp_path, override, mess
         (b"position: ${robot.nope}\n", "noise.position: Interpolation key 'robot.nope' not found"),
         (b"defaults: [nope]\nposition: 0.0\n", "noise: no 'nope' (did you mean none?); known: none, own, thesis"),
         (b"", "noise.position: missing"),
+        (b"position: 0.0\n1: 2\n", "noise/own.yaml, line 2: the key '1' is no text"),
+        (b"position: &a [*a]\n", "noise/own.yaml, line 1: *a stands inside of &a"),
+        (b"position: " + b"[" * 900 + b"]" * 900, "noise/own.yaml, line 1: nested deeper than 30 levels"),
+        (b"position: ${oc.env:HOME}\n", "noise/own.yaml, line 1: '${oc.env:HOME}' calls a function"),
+        (b"position: ${noise.velocity}\nvelocity: ${.position}", "noise.position: refers to itself"),
+        (b"# @package " + b"a." * 200 + b"a\nposition: 0.0\n", "nested or referred to deeper than 60 levels"),
+        (b"defaults: [3]\n", "Unsupported type in defaults : int"),
     ],
-    ids=["syntax", "duplicate", "binary", "number", "list", "interpolation", "defaults", "empty"],
+    ids=[
+        "syntax",
+        "duplicate",
+        "binary",
+        "number",
+        "list",
+        "interpolation",
+        "defaults",
+        "empty",
+        "key",
+        "cycle",
+        "deep",
+        "function",
+        "circle",
+        "package",
+        "odd",
+    ],
 )
 @pytest.mark.parametrize("way", ["command line", "python"])
 def test_an_own_file_that_is_no_config_is_named_with_its_line(cli, tmp_path, content, message, way):

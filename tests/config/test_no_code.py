@@ -2,6 +2,9 @@ import json
 
 import pytest
 
+from runner.config.compose import compose
+from runner.errors import ConfigError
+
 HEAD = "# @package _global_\n# A stranger's\n# experiment\n"
 
 
@@ -26,12 +29,13 @@ def stranger(cli, tmp_path):
     ("text", "key"),
     [
         ("hydra: {callbacks: {a: MAKE}}", "callbacks"),
-        ("hydra: {callbacks: {a: '${oc.create:${trap}}'}}\ntrap: 'MAKE'", "callbacks"),
         ("hydra: {sweeper: {params: {seed: MAKE}}}", "sweeper"),
         ("hydra: {sweeper: {_recursive_: true}}", "sweeper"),
         ("hydra: {job_logging: {handlers: {a: {'()': os.mkdir, path: done}}, root: {handlers: [a]}}}", "job_logging"),
         ("hydra: {hydra_logging: {formatters: {a: {'()': os.getcwd}}}}", "hydra_logging"),
         ("hydra: {job: {env_set: {RUNNER_PLUGINS: metric=trap.py}}}", "job.env_set"),
+        ("hydra: {job: {env_copy: [PATH]}}", "job.env_set"),
+        ("hydra: {sweeper: {params: {robot.name: '${x}{oc.env:HOME}'}}}\nx: $", "sweeper"),
     ],
 )
 def test_a_config_that_names_code_is_refused_before_it_runs(stranger, text, key, mode):
@@ -50,3 +54,85 @@ def test_axes_of_an_experiment_stay_free(stranger):
     ending = stranger("hydra: {sweeper: {workers: 0, params: {seed: '0,1'}}}", "-m")
     assert ending.code == 0
     assert "runner: 2 runs" in ending.err
+
+
+@pytest.fixture
+def trap(tmp_path, monkeypatch):
+    """A module that makes the file `done` when it is imported."""
+    folder = tmp_path / "modules"
+    folder.mkdir()
+    (folder / "trap_module.py").write_text(f"open({str(tmp_path / 'done')!r}, 'w')")
+    monkeypatch.syspath_prepend(folder)
+    yield "trap_module"
+    assert not (tmp_path / "done").exists()
+
+
+@pytest.mark.parametrize("scheme", ["pkg", "structured"])
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("robot=macro",),
+        ("-m", "robot=macro", "seed=1,2"),
+        ("tune", "controller.natural_frequency=interval(5,10)", "--minimize", "energy"),
+        ("calibrate",),
+    ],
+)
+def test_a_search_path_imports_nothing(cli, trap, command, scheme):
+    ending = cli(*command, f"hydra.searchpath=[{scheme}://{trap}]")
+    assert (ending.code, ending.out) == (2, "")
+    assert f"hydra.searchpath: '{scheme}://{trap}' names a module; allowed: folders" in ending.err
+
+
+@pytest.mark.parametrize("scheme", ["pkg", "structured"])
+def test_nor_does_that_of_a_stranger_s_primary_config(cli, trap, tmp_path, scheme):
+    own = tmp_path / "theirs"
+    own.mkdir()
+    (own / "mine.yaml").write_text(f"hydra: {{searchpath: ['{scheme}://{trap}']}}\n")
+    ending = cli("--config-dir", own, "--config-name", "mine", "robot=macro")
+    assert ending.code == 2
+    assert f"hydra.searchpath: '{scheme}://{trap}' names a module" in ending.err
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [("output_subdir: there", "output_subdir"), ("run: {dir: there}", "run.dir"), ("job: {chdir: true}", "job.chdir")],
+)
+def test_a_primary_config_does_not_say_where_hydra_writes(cli, tmp_path, text, key):
+    own = tmp_path / "theirs"
+    own.mkdir()
+    (own / "mine.yaml").write_text(f"defaults: [config, _self_]\nhydra: {{{text}}}\n")
+    ending = cli("--config-dir", own, "--config-name", "mine", "robot=macro")
+    assert ending.code == 2
+    assert f"hydra.{key}: a config cannot name code" in ending.err
+    assert [entry.name for entry in tmp_path.iterdir()] == ["theirs"]
+
+
+def test_nor_does_python(trap):
+    with pytest.raises(ConfigError, match=r"hydra\.searchpath: 'pkg://"):
+        compose([f"hydra.searchpath=[pkg://{trap}]"])
+
+
+def test_a_folder_may_stand_in_the_search_path(cli, tmp_path):
+    own = tmp_path / "own" / "noise"
+    own.mkdir(parents=True)
+    (own / "mine.yaml").write_text("position: 0.0\ndistribution: none\nresolution: 0.0\nvelocity: exact\n")
+    assert cli(f"hydra.searchpath=[file://{own.parent}]", "noise=mine", "duration=0.05").code == 0
+    ending = cli(f"hydra.searchpath=[file://{tmp_path}/nowhere]")
+    assert (ending.code, "is no folder; allowed: folders" in ending.err) == (2, True)
+
+
+def test_the_environment_enters_by_the_command_line_alone(cli, stranger, monkeypatch):
+    monkeypatch.setenv("RUNNER_SECRET", "hidden")
+    ending = stranger("robot: {name: '${oc.env:RUNNER_SECRET}'}")
+    assert ending.code == 2
+    assert "trap.yaml, line 4: '${oc.env:RUNNER_SECRET}' calls a function" in ending.err
+    assert "hidden" not in ending.err
+    ending = cli("robot.name=${oc.env:RUNNER_SECRET}", "duration=0.05")
+    assert "name: hidden" in (ending.folder / "config.yaml").read_text()
+
+
+@pytest.mark.parametrize("address", ["3", "[a]", "true"])
+def test_an_address_is_a_text(cli, address):
+    ending = cli("-m", "robot=macro", "seed=1,2", f"hydra.sweeper.address={address}")
+    assert ending.code == 2
+    assert "hydra.sweeper.address: must be that of a Dask scheduler, as tcp://127.0.0.1:8786, or null" in ending.err

@@ -80,6 +80,17 @@ def test_one_problem_is_said_in_one_line(cli, tmp_path, overrides, problem):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_long_value_is_quoted_to_a_line(cli):
+    for override in (
+        f"trajectory.goal=[{','.join(['1'] * 3000)}]",
+        f"noise.velocity={'x' * 15000}",
+        f"{'y' * 15000}=1",
+    ):
+        ending = cli("robot=macro", override)
+        assert ending.code == 2
+        assert len(ending.err) < 3000
+
+
 def test_all_problems_are_said_at_once(cli, tmp_path):
     ending = cli(
         "noise.positon=1",

@@ -116,7 +116,7 @@ def test_a_reference_needs_bands(load, text, message):
         ("schema: [\n", "line 2, column 1: "),
         (b"\xff\xfe\x00", "cannot read the reference file "),
         ("3", "cannot read the reference file "),
-        ("schema: ${nope}\n", "cannot read the reference file "),
+        ("schema: ${nope}\n", "schema: must be 1; found '${nope}'"),
     ],
 )
 def test_what_is_no_yaml_is_said_with_its_line(load, text, message):

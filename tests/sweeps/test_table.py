@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pyarrow.parquet as pq
@@ -110,3 +112,17 @@ def test_bad_input_is_told(cli, arguments, message):
     assert ending.code == 2
     assert message in ending.err
     assert ending.out == ""
+
+
+def test_the_csv_holds_no_formula_and_numbers_stay_numbers(measurements, tmp_path):
+    axes = [
+        Axis("robot.name", ['=HYPERLINK("http://x")', "@SUM(1)"], np.array([0, 1])),
+        Axis("trajectory.goal", [-0.5, 0.25], np.array([0, 1])),
+    ]
+    cells = replace(measurements, axes=axes, failures=["", "-1+1\x1b[2J\nis no number"])
+    write_table(cells, tmp_path)
+    frame = pd.read_csv(tmp_path / "table.csv")
+    assert frame["robot.name"].tolist() == ['\'=HYPERLINK("http://x")', "'@SUM(1)"]
+    assert frame["trajectory.goal"].tolist() == [-0.5, 0.25]
+    assert frame["failure"].iloc[1] == "'-1+1\\x1b[2J\\nis no number"
+    assert pd.read_parquet(tmp_path / "table.parquet")["robot.name"].tolist() == axes[0].values

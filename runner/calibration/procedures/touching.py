@@ -11,6 +11,7 @@ from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.inverse_kinematics import solve_tip_pose
 from runner.robots.model import FloatArray
+from runner.texts import quoted
 
 
 class TouchingConfig(StrictModel):
@@ -46,7 +47,7 @@ def touching_postures(bench: Bench, tip: FloatArray, config: TouchingConfig) -> 
     middle = bench.home if config.posture is None else np.array(config.posture)
     if middle.shape != bench.home.shape:
         raise ConfigError(
-            [f"calibration.posture: must have {bench.home.size} values, or be null; found {config.posture}"]
+            [f"calibration.posture: must have {bench.home.size} values, or be null; found {quoted(config.posture)}"]
         )
     central = bench.flange.tip_pose(middle)
     point = central[:3, :3] @ tip + central[:3, 3]

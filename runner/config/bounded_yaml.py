@@ -1,0 +1,165 @@
+"""YAML from outside, checked before anything is made of it: its size, its nesting, its aliases, its keys.
+
+A few lines of YAML can stand for more values than fit in memory (aliases of aliases), for endless ones (an anchor
+that holds itself), or for a nesting that no loader survives.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+from yaml.resolver import Resolver
+
+from runner.errors import RunnerError
+from runner.texts import quoted
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What a YAML text may hold.
+
+    Attributes:
+        characters: Its length.
+        values: Values, keys and collections in it, each alias counted as all that it stands for.
+        depth: Collections within each other.
+    """
+
+    characters: int
+    values: int
+    depth: int = 30
+
+
+CONFIG = Bounds(characters=250_000, values=10_000)
+"""Of a config file: some 3,000 way-points; Hydra takes a second for it."""
+STORED = Bounds(characters=2_000_000, values=100_000)
+"""Of what the runner wrote itself, and what a person lists: a reference, a set of inertials."""
+
+
+class YamlError(RunnerError):
+    """A YAML text that cannot be read, is too large, or refers to itself; the message says in which line."""
+
+
+def read_yaml(text: str, name: str | Path, bounds: Bounds = STORED) -> Any:
+    """Return what a YAML text holds, as plain data.
+
+    Args:
+        text: The text.
+        name: Its file, for messages.
+        bounds: What it may hold.
+
+    Raises:
+        YamlError: if it cannot be read, or breaks a bound; see check_yaml.
+    """
+    check_yaml(text, name, bounds)
+    try:
+        return yaml.load(text, yaml.CSafeLoader)
+    except yaml.YAMLError as error:
+        raise YamlError(explain_yaml(error, name)) from None
+    except (ValueError, OverflowError) as error:  # dates that are none, numbers of more than 4,300 digits
+        raise YamlError(f"{name}: {error}") from None
+
+
+def check_yaml(text: str, name: str | Path, bounds: Bounds = CONFIG) -> None:
+    """Check a YAML text without making anything of it.
+
+    Args:
+        text: The text.
+        name: Its file, for messages.
+        bounds: What it may hold.
+
+    Raises:
+        YamlError: if it is no YAML, too long, too deep or of too many values, an anchor holds itself, a key is no
+            text, or a value has a tag, which names how to make it.
+    """
+    if len(text) > bounds.characters:
+        raise YamlError(f"{name}: has {len(text)} characters; allowed: up to {bounds.characters}")
+    scan = _Scan(str(name), bounds)
+    try:
+        for event in yaml.parse(text, Loader=yaml.CSafeLoader):
+            scan.take(event)
+    except yaml.YAMLError as error:
+        raise YamlError(explain_yaml(error, name)) from None
+
+
+def explain_yaml(error: yaml.YAMLError, name: str | Path | None = None) -> str:
+    """Return file, line, column and problem of what is no YAML; `name` is for a text without a file name."""
+    mark = getattr(error, "problem_mark", None)
+    where = name or (mark and mark.name) or "a YAML file"
+    line = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+    return f"{where}{line}: {getattr(error, 'problem', None) or error}"
+
+
+def line_of(event: yaml.Event, name: str) -> str:
+    """Return the file and the line of an event, for messages."""
+    return name if event.start_mark is None else f"{name}, line {event.start_mark.line + 1}"
+
+
+@dataclass
+class _Open:
+    """A collection whose end has not come: its anchor, the values in it, whether a key comes next (None in a list)."""
+
+    anchor: str | None
+    values: int
+    key_next: bool | None
+
+
+class _Scan:
+    def __init__(self, name: str, bounds: Bounds) -> None:
+        self._name, self._bounds = name, bounds
+        self._open = [_Open(None, 0, None)]
+        self._sizes: dict[str, int] = {}
+        self._resolver = Resolver()
+
+    def take(self, event: yaml.Event) -> None:
+        if isinstance(event, yaml.CollectionEndEvent):
+            ended = self._open.pop()
+            self._count(event, ended.anchor, ended.values)
+        elif isinstance(event, yaml.NodeEvent):
+            for problem in self._problems(event):
+                raise YamlError(f"{line_of(event, self._name)}: {problem}")
+            parent = self._open[-1]
+            if parent.key_next is not None:
+                parent.key_next = not parent.key_next
+            if isinstance(event, yaml.CollectionStartEvent):
+                keyed = True if isinstance(event, yaml.MappingStartEvent) else None
+                self._open.append(_Open(event.anchor, 1, keyed))
+            elif isinstance(event, yaml.AliasEvent):
+                self._count(event, None, self._sizes[str(event.anchor)])
+            else:
+                self._count(event, event.anchor, 1)
+
+    def _count(self, event: yaml.Event, anchor: str | None, values: int) -> None:
+        if anchor is not None:
+            self._sizes[anchor] = values
+        self._open[-1].values += values
+        if sum(each.values for each in self._open) > self._bounds.values:
+            raise YamlError(
+                f"{line_of(event, self._name)}: the file stands for more than {self._bounds.values} values, aliases "
+                "counted as what they stand for; make it smaller"
+            )
+
+    def _problems(self, event: yaml.NodeEvent) -> Iterator[str]:
+        if not isinstance(event, yaml.ScalarEvent | yaml.CollectionStartEvent):
+            if any(event.anchor == each.anchor for each in self._open):
+                yield f"*{event.anchor} stands inside of &{event.anchor}, and so for endless values; write it out"
+            elif event.anchor not in self._sizes:
+                yield f"*{event.anchor} stands for nothing: there is no &{event.anchor} before it"
+            return
+        if len(self._open) > self._bounds.depth and isinstance(event, yaml.CollectionStartEvent):
+            yield f"nested deeper than {self._bounds.depth} levels; no config needs so many"
+        if event.tag not in (None, "!"):
+            yield f"the tag {quoted(event.tag)} says how to make a value; remove it: values are plain"
+        if self._open[-1].key_next and not self._is_text(event):
+            found = quoted(event.value) if isinstance(event, yaml.ScalarEvent) else "a collection"
+            yield f"the key {found} is no text; put it in quotes, or look for a typing error"
+
+    def _is_text(self, event: yaml.NodeEvent) -> bool:
+        if not isinstance(event, yaml.ScalarEvent):
+            return False
+        resolve: Callable[..., str] = self._resolver.resolve
+        return resolve(yaml.ScalarNode, event.value, event.implicit) in (
+            "tag:yaml.org,2002:str",
+            "tag:yaml.org,2002:merge",
+        )

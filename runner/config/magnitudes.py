@@ -1,0 +1,44 @@
+"""Numbers and texts that no experiment needs: beyond them arithmetic overflows, and programs that take names fail."""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from runner.texts import quoted
+
+LARGEST = 1e9
+"""Largest magnitude of a number, in SI units: thirty years, or a million tonnes."""
+SMALLEST = 1e-12
+"""Smallest magnitude of a number that is not 0, unless it is one of a list, as a coordinate off by rounding."""
+_LARGEST_WHOLE = 10**18 - 1
+_TEXT = 4096
+
+
+def absurd(key: str, value: Any) -> Iterator[str]:
+    """Yield a problem for each number or text in a config that is beyond reason.
+
+    Args:
+        key: Dotted key of the value; "" for the root.
+        value: The value as plain data.
+    """
+    return (f"{key}{problem}".lstrip(".") for problem in _beyond(value, in_list=False))
+
+
+def _beyond(value: Any, in_list: bool) -> Iterator[str]:
+    """Yield problems, each with the way to it from the value."""
+    if isinstance(value, float):
+        size = abs(value)
+        if LARGEST < size < math.inf or (0.0 < size < SMALLEST and not in_list):  # models tell of inf and nan
+            yield f": must lie between {SMALLEST:g} and {LARGEST:g} in magnitude; found {value:g}"
+    elif isinstance(value, str):
+        if len(value) > _TEXT:
+            yield f": must have at most {_TEXT} characters; found {quoted(value)}"
+    elif isinstance(value, int):
+        if abs(value) > _LARGEST_WHOLE:
+            yield f": must be a whole number of at most 18 digits; found {quoted(value)}"
+    elif isinstance(value, dict):
+        for name, item in value.items():
+            yield from (f".{name}{problem}" for problem in _beyond(item, in_list=False))
+    elif isinstance(value, list):
+        for number, item in enumerate(value):
+            yield from (f".{number}{problem}" for problem in _beyond(item, in_list=True))

@@ -1,0 +1,63 @@
+"""Overrides as typed: checked before Hydra parses them, and made such that it composes unknown keys."""
+
+import re
+from collections.abc import Sequence
+
+from runner.config.bounded_yaml import CONFIG
+from runner.config.options import groups
+from runner.errors import ConfigError
+from runner.texts import quoted
+
+_CHARACTERS = 20_000  # Hydra takes some seconds for a list of that length
+_LOOKS_LIKE_A_VALUE = re.compile(r"(?i)(null|true|false|[-+.\d][-+.\de]*)$")
+
+
+def force(overrides: Sequence[str]) -> list[str]:
+    """Let overrides of unknown keys compose, so that validation finds them all at once and names the nearest key.
+
+    Hydra alone stops at the first, and suggests to add the key, which no part of the runner would read. The option
+    of a group is quoted where Hydra would take it for a number or null and not name the group.
+
+    Raises:
+        ConfigError: for overrides that are too long or nested too deeply, choose an option of Hydra's own, or give a
+            group no name to choose.
+    """
+    names = set(groups())
+    problems = [problem for override in overrides if (problem := _problem(override, names))]
+    if problems:
+        raise ConfigError(problems)
+    return [_forced(override, names) for override in overrides]
+
+
+def _forced(override: str, names: set[str]) -> str:
+    match = re.match(r"([A-Za-z_][\w.]*)=(.*)", override)
+    if match is None:
+        return override
+    if match[1] in names and _LOOKS_LIKE_A_VALUE.match(match[2]):
+        return f"{match[1]}='{match[2]}'"  # the name of an option, though it looks like a value
+    return override if match[1] in names or match[1].startswith("hydra") else f"++{override}"
+
+
+def _problem(override: str, names: set[str]) -> str | None:
+    key, given, value = override.partition("=")
+    if override.startswith("-"):
+        return None  # a flag
+    if len(override) > _CHARACTERS:
+        return f"{quoted(override)} is no override: it is too long; allowed: up to {_CHARACTERS} characters"
+    if _depth(value) + key.count(".") > CONFIG.depth:
+        return f"{quoted(override)} is no override: nested deeper than {CONFIG.depth} levels"
+    group = key.lstrip("+~").partition("@")[0]
+    if group.startswith("hydra/"):
+        return f"{group}: Hydra's own groups are as they are; free are hydra.sweeper.workers, .address and .params"
+    if given and group in names and (not value or "${" in value):
+        return f"{group}: {quoted(value)} is no option; choose by name, see `runner list`"
+    return None
+
+
+def _depth(text: str) -> int:
+    """Return how deeply brackets stand within each other in a text."""
+    deepest = depth = 0
+    for sign in text:
+        depth += (sign in "[{(") - (sign in ")}]")
+        deepest = max(deepest, depth)
+    return deepest

@@ -1,0 +1,44 @@
+"""Text from outside (values, names, file contents) made safe to show: one line, no control characters, not too long."""
+
+VALUE = 200
+"""Longest text quoted of a value, in characters."""
+LINE = 2000
+"""Longest line of a message, in characters."""
+
+
+def escaped(text: str) -> str:
+    r"""Return text on one line, in which line breaks, terminal escapes and invisible characters read \n or \x1b."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def one_line(text: str, longest: int = LINE) -> str:
+    """Return text escaped, and cut with a word on how long it was where it has more characters than `longest`."""
+    shown = escaped(text[: longest + 1])
+    if len(shown) <= longest:
+        return shown
+    end = f"... ({len(text)} characters)"
+    return shown[: longest - len(end)] + end
+
+
+def lines(text: str) -> str:
+    """Return text in which each line is safe to show; its line breaks stay."""
+    return "\n".join(map(one_line, text.split("\n")))
+
+
+def quoted(value: object) -> str:
+    """Return a value as a message quotes it: at most a line."""
+    try:
+        return one_line(repr(value), VALUE)
+    except (ValueError, RecursionError):  # Python prints no whole number of more than some 4,300 digits
+        return f"a value too large to show ({type(value).__name__})"
+
+
+def table_cell(text: str) -> str:
+    """Return text as a cell of a CSV table that no spreadsheet takes for a formula; a number stays as it is."""
+    try:
+        float(text)
+    except ValueError:
+        return f"'{escaped(text)}" if text.startswith(("=", "+", "-", "@", "\t", "\r", "\n")) else escaped(text)
+    return text

@@ -1,0 +1,73 @@
+import pytest
+
+from runner.config.interpolation import check_references, refuse_functions
+from runner.errors import ConfigError
+from runner.paths import conf_dir
+
+
+def test_files_of_ours_refer_to_keys_alone():
+    for path in conf_dir().rglob("*.yaml"):
+        refuse_functions(path.read_text(), path.name)
+
+
+@pytest.mark.parametrize("value", ["${robot.goal}", "${.x}", "${a.b[0]}_${ c }", "$ {oc.env:HOME}", "costs $5 {a: b}"])
+def test_references_to_keys_are_free(value):
+    refuse_functions(f"a: '{value}'", "f")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "b: ${oc.env:HOME}",
+        r"b: '\${oc.env:HOME}'",
+        r'b: "\x24{oc.env:HOME}"',
+        "b: [1, {c: 'x${ oc.env : HOME }'}]",
+        "b: ${${c}:HOME}",
+        "b: ${a.${c}}",
+        "b: ${oc.decode:'1e400'}",
+        "b: ${oc.create:${trap}}",
+        "b: ${now:%H}",
+        "${oc.env:HOME}: b",
+    ],
+)
+def test_functions_in_a_file_are_refused_with_their_line(text):
+    with pytest.raises(ConfigError, match=r"own\.yaml, line 2: .* calls a function; a file may refer to keys"):
+        refuse_functions(f"a: 1\n{text}", "own.yaml")
+
+
+def doubling(first, double):
+    return {"a0": first, **{f"a{n}": double(f"${{a{n - 1}}}") for n in range(1, 60)}}
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        doubling("x" * 100, lambda reference: reference * 2),
+        doubling([1, 2, 3], lambda reference: [reference, reference]),
+        {"a": "x" * 200_000, "b": "${a}" * 5000},
+        {"list": [0] * 8000, **{f"a{n}": "${list}" for n in range(3)}},
+    ],
+)
+def test_references_that_multiply_are_refused(config):
+    with pytest.raises(ConfigError, match="stands for too many values, by its references"):
+        check_references(config)
+
+
+@pytest.mark.parametrize(
+    ("config", "problem"),
+    [
+        ({"a": "${b}", "b": "${a}"}, "a: refers to itself, by way of b"),
+        ({"a": {"b": "${a}"}}, "a: refers to itself, by way of a.b"),
+        ({"a": {"b": "${.b}"}}, "a.b: refers to itself, by way of a.b"),
+        ({"a": [{"c": "${a[0]}"}]}, "a.0: refers to itself"),
+        ({f"a{n}": f"${{a{n + 1}}}" for n in range(5000)}, "deeper than 60 levels"),
+    ],
+)
+def test_references_in_a_circle_and_long_chains_are_refused(config, problem):
+    with pytest.raises(ConfigError) as raised:
+        check_references(config)
+    assert problem in str(raised.value)
+
+
+def test_references_between_neighbours_and_to_nothing_pass():
+    check_references({"a": {"b": 1, "c": "${a.b}", "d": "${.b}", "e": "${..f.0}"}, "f": ["${a.c}", "${nope.x}", "???"]})

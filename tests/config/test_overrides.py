@@ -1,0 +1,47 @@
+import pytest
+
+from runner.config.overrides import force
+from runner.errors import ConfigError
+
+
+@pytest.mark.parametrize(
+    ("override", "forced"),
+    [
+        ("noise.position=1", "++noise.position=1"),
+        ("seed=3", "++seed=3"),
+        ("robot=macro", "robot=macro"),
+        ("robot=macro,mini", "robot=macro,mini"),
+        ("noise=1", "noise='1'"),
+        ("experiment=null", "experiment='null'"),
+        ("hydra.run.dir=x", "hydra.run.dir=x"),
+        ("+new=1", "+new=1"),
+        ("~noise", "~noise"),
+        ("--config-dir=" + "/x" * 20_000, "--config-dir=" + "/x" * 20_000),
+    ],
+)
+def test_keys_are_forced_and_options_are_not(override, forced):
+    assert force([override]) == [forced]
+
+
+@pytest.mark.parametrize(
+    ("override", "problem"),
+    [
+        ("noise.position=" + "[" * 200 + "]" * 200, "(417 characters) is no override: nested deeper than 30 levels"),
+        ("noise.position=" + "{a:" * 80 + "1" + "}" * 80, "nested deeper than 30 levels"),
+        (".".join("a" * 100) + "=1", "nested deeper than 30 levels"),
+        ("seed=" + "1," * 20_000, "it is too long; allowed: up to 20000 characters"),
+        ("hydra/launcher=", "hydra/launcher: Hydra's own groups are as they are; free are hydra.sweeper.workers, "),
+        ("+hydra/job_logging=default", "hydra/job_logging: Hydra's own groups are as they are"),
+        ("noise=", "noise: '' is no option; choose by name, see `runner list`"),
+        ('torque_limits=${oc.decode:"1e400"}', "torque_limits: '${oc.decode:\"1e400\"}' is no option"),
+    ],
+)
+@pytest.mark.parametrize("mode", [(), ("-m",)])
+def test_what_hydra_would_choke_on_is_refused(cli, tmp_path, mode, override, problem):
+    ending = cli(*mode, "robot=macro", override)
+    assert (ending.code, ending.out) == (2, "")
+    assert problem in ending.err
+    assert len(ending.err) < 500
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(ConfigError):
+        force([override])
