@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import composing
 import numpy as np
 import pytest
 from hypothesis import settings
@@ -14,6 +15,7 @@ from runner.config.run import RunConfig
 from runner.config.validation import validate
 
 quiet_environment()
+composing.begin()
 
 from runner.assembly import assemble, make_encoders, make_wrist_sensor  # noqa: E402 - after the environment
 from runner.cli import dispatch  # noqa: E402
@@ -28,6 +30,13 @@ settings.load_profile("runner")
 
 def read_thesis_urdf(name: str) -> str:
     return read_urdf(find_urdf(f"{name}.urdf"), {})
+
+
+@pytest.fixture
+def plain_hydra() -> Iterator[None]:
+    """Lets Hydra alone compose."""
+    with composing.plainly():
+        yield
 
 
 @pytest.fixture

@@ -16,10 +16,10 @@ class Spy:
     """In a stage's law's place: keeps what it is told."""
 
     def __init__(self):
-        self.told = []
+        self.told, self.gravity = [], None
 
     def set_gravity(self, gravity):
-        pass
+        self.gravity = gravity.copy()
 
     def move(self, time, q, dq, reference):
         self.told.append(("move", np.array(reference)))
@@ -34,9 +34,9 @@ class Spy:
 def rider(combined):
     """A Mini's loop, and what its law is told when the tip is wanted some way off its base."""
 
-    def make(moving_target=True, stretch=False, turns=None):
+    def make(moving_target=True, stretch=False, turns=None, later=(0.0, 0.0, 0.0)):
         law = Spy()
-        loop = RiderController(combined, 1, law, True, np.zeros(3), False, moving_target, REACH, stretch, turns)
+        loop = RiderController(combined, 1, law, True, np.array(later), False, moving_target, REACH, stretch, turns)
 
         def ask(way, q=None, time=0.0):
             q = np.array([0.3, -0.5, 0.7, 0.2, -0.4, 0.9]) if q is None else q
@@ -95,6 +95,78 @@ def test_a_stretching_mini_goes_towards_the_target_as_far_as_it_reaches(rider, d
     np.testing.assert_allclose(target[0] / np.linalg.norm(target[0]), reachable / 0.1, atol=1e-12)
     assert (np.abs(target[1]).max() > 0.0) == (distance <= REACH)  # at its limit it stands
     np.testing.assert_array_equal(target[2], 0.0)
+
+
+# Later stages.
+
+LATER = np.array([0.02, -0.3, 0.1])  # home offset of what rides on the Mini, longer than the Mini's reach
+
+
+@pytest.mark.parametrize("stretch", [False, True])
+def test_what_later_stages_make_up_for_is_taken_off_the_way(rider, stretch):
+    way = along(0.1)
+    _, alone = rider(stretch=stretch)[1](way)
+    kind, target = rider(stretch=stretch, later=LATER)[1](way + LATER)
+    assert kind == "move"
+    np.testing.assert_allclose(target, alone, atol=1e-12)
+    assert np.linalg.norm(target[0]) == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("direction", [(1.0, 2.0, -2.0), (0.0, 0.0, 1.0), (0.0, -1.0, 0.0), (0.0, 1.0, 0.0)])
+def test_reach_counts_to_where_later_stages_begin(rider, direction):
+    _, ask = rider(later=LATER)
+    assert ask(along(REACH * (1.0 - 1e-9), direction) + LATER)[0] == "move"
+    assert ask(along(REACH * (1.0 + 1e-9), direction) + LATER)[0] == "hold"
+
+
+@pytest.fixture(scope="module")
+def three_stages(checked_config):
+    """A Mini on the Mini on the Macro."""
+    return checked_config("robot=macro_mini_mini").arm
+
+
+Q_NINE = np.array([0.3, -0.5, 0.7, 0.2, -0.4, 0.9, -0.6, 0.5, 0.1])
+
+
+@pytest.mark.parametrize("direction", [(1.0, 2.0, -2.0), (0.0, 1.0, 1.0), (0.0, -1.0, -1.0)])
+def test_the_carrier_s_turn_ends_where_the_first_rider_reaches_its_own_target(three_stages, direction):
+    law = Spy()
+    carrier = CarrierController(three_stages, law, np.zeros(3), False, REACH, Turns(0.01))
+    x_E = three_stages.stages[0].model.tip_position(Q_NINE[:3])
+    later = np.array([0.0, 0.1, 0.1])  # at home the second Mini stands on the first, as this on the Macro
+    for distance, expected in ((REACH * (1.0 - 1e-9), "hold"), (REACH * (1.0 + 1e-9), "move")):
+        target = np.array([x_E + later + along(distance, direction), np.zeros(3), np.zeros(3)])
+        carrier.torque(0.01, Q_NINE, np.zeros(9), target)
+        assert law.told[-1][0] == expected
+
+
+def test_in_two_way_coupling_the_carrier_makes_up_for_all_its_riders(three_stages):
+    law = Spy()
+    carrier = CarrierController(three_stages, law, None, False, REACH, None)
+    desired = np.array([[0.4, 1.0, 0.8], [0.1, 0.2, 0.3], [0.0, 0.0, 1.0]])
+    carrier.torque(0.0, Q_NINE, np.zeros(9), desired)
+    riders = three_stages.model.tip_position(Q_NINE) - three_stages.stages[0].model.tip_position(Q_NINE[:3])
+    np.testing.assert_allclose(law.told[-1][1][0], desired[0] - riders, atol=1e-12)
+    np.testing.assert_array_equal(law.told[-1][1][1:], desired[1:])
+
+
+def test_the_rider_sees_target_and_gravity_from_its_base(combined):
+    """R^T (x_d - x_E), R^T (xd_d - xd_E - w x (x_d - x_E)) and R^T g, R turned by every joint of the Macro."""
+    law = Spy()
+    loop = RiderController(combined, 1, law, True, np.zeros(3), False, True, REACH, False, None)
+    macro, generator = combined.stages[0].model, np.random.default_rng(2)
+    for _ in range(5):
+        q, dq = generator.uniform(-2.0, 2.0, (2, 6))
+        desired, way = generator.uniform(-1.0, 1.0, (3, 3)), along(0.1)
+        pose = macro.tip_pose(q[:3])
+        R = pose[:3, :3] @ np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # as the Mini is mounted
+        velocity, spin = np.split(macro.tip_jacobian(q[:3]) @ dq[:3], 2)
+        desired[0] = pose[:3, 3] + way
+        loop.torque(0.0, q, dq, desired)
+        _, target = law.told[-1]
+        np.testing.assert_allclose(target[0], R.T @ way, atol=1e-12)
+        np.testing.assert_allclose(target[1], R.T @ (desired[1] - velocity - np.cross(spin, way)), atol=1e-12)
+        np.testing.assert_allclose(law.gravity, R.T @ [0.0, 0.0, -9.81], atol=1e-12)
 
 
 # Turns.

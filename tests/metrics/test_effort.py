@@ -60,6 +60,14 @@ def test_saturation_is_the_share_of_ticks_with_any_joint_at_its_limit(hand_made_
     assert found["saturation_fraction_q2"] == pytest.approx(2 / 400)
 
 
+def test_a_torque_at_its_limit_but_for_rounding_is_at_its_limit(hand_made_trace):
+    limit = 0.1 + 0.2
+    tau = rows(t0_q1=0.3, t1_q1=0.3 * (1.0 - 1e-9))
+    assert limit > 0.3
+    found = evaluate(hand_made_trace(T, tau=tau, limits=limit), CONTEXT)
+    assert found["saturation_fraction"] == pytest.approx(1 / 400)
+
+
 def test_no_limit_is_never_reached(hand_made_trace):
     assert evaluate(hand_made_trace(T, tau=1e30), CONTEXT)["saturation_fraction"] == 0.0
 

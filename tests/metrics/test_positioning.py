@@ -101,5 +101,17 @@ def test_no_overshoot_before_the_goal_or_without_a_way(hand_made_trace):
     assert evaluate(trace, context(Goal(GOAL, GOAL)))["overshoot"] == 0.0
 
 
+@pytest.mark.parametrize(
+    ("wanted", "reached", "past"),
+    [(0.0, 0.4, 0.4), (0.3, 0.4, 0.1), (0.3, 0.2, 0.0), (-0.2, 0.1, 0.1), (-0.2, -0.1, 0.0)],
+)
+def test_how_far_the_desired_motion_itself_goes_past_the_goal_is_no_overshoot(hand_made_trace, wanted, reached, past):
+    # Both come no nearer than that, or go past the goal at x = 1 and back.
+    desired, tip = (np.tile(GOAL + min(far, 0.0) * GOAL, (len(T), 1)) for far in (wanted, reached))
+    desired[100], tip[120] = (1.0 + wanted) * GOAL, (1.0 + reached) * GOAL
+    found = evaluate(hand_made_trace(T, tip=tip, desired=desired), context())
+    assert found["overshoot"] == pytest.approx(past, abs=1e-15)
+
+
 def test_units_cover_what_is_given(hand_made_trace):
     assert set(evaluate(hand_made_trace(T), context())) == set(UNITS)

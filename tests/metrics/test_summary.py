@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -91,6 +93,28 @@ def test_a_failed_repetition_gives_nulls(hand_made_trace, failed):
         assert [x is None for x in value.values] == [good[name] is None or r == failed for r in range(3)]
         assert value.max is None
     assert found["settling_time"].median == 0.0
+
+
+def test_a_carrier_is_judged_at_its_own_end_point_against_x_d_less_what_rides_on_it(hand_made_trace):
+    path = np.outer(np.clip(T / 3.0, 0.0, 1.0), np.ones(3))  # along the desired line, a third a second
+    offset, sag, miss = np.array([0.0, 0.1, 0.1]), np.array([0.0, 0.0, -0.03]), np.array([1e-3, 0.0, 0.0])
+    trace = replace(
+        hand_made_trace(T, desired=path),
+        end_points=np.array([path - offset + sag, path + miss]),
+        offsets=np.array([offset, np.zeros(3)]),
+        stage_names=("macro", "mini"),
+    )
+    found = evaluate(trace, TRACKED)
+    assert found["max_tracking_error"] == pytest.approx(1e-3)
+    assert found["macro_max_tracking_error"] == found["macro_max_tracking_error_z"] == pytest.approx(0.03)
+    assert found["macro_max_tracking_error_x"] == pytest.approx(0.0, abs=1e-15)
+    # Across the diagonal, whose share of the sag is a third of its square: of the line that starts at -offset.
+    across = 0.03 * np.sqrt(2.0 / 3.0)
+    assert found["macro_cross_track_error"] == pytest.approx(np.hypot(across, 0.03 / np.sqrt(3.0)), rel=1e-9)
+    assert found["macro_settling_time"] is None
+    assert found["settling_time"] == 0.0
+    assert {name.removeprefix("macro_") for name in found if name.startswith("macro_")} < set(found)
+    assert not {name for name in found if name.startswith("mini")}
 
 
 def test_all_repetitions_failed():

@@ -29,6 +29,14 @@ def test_only_the_ticks_of_0_to_t_f_count(hand_made_trace, tick, counts):
     assert found["rms_tracking_error"] == pytest.approx(0.5 / np.sqrt(301) if counts else 0.0)
 
 
+def test_the_tick_at_t_f_counts_though_its_time_is_rounded(hand_made_trace):
+    t, tip = np.arange(5) * 0.1, np.zeros((5, 3))
+    tip[3, 2] = 0.5
+    assert t[3] > 0.3
+    found = evaluate(hand_made_trace(t, tip=tip), MetricContext(Quintic(START, END, 0.3), 0.02, 0.1))
+    assert found["max_tracking_error"] == 0.5
+
+
 def test_root_mean_square_of_the_norm(hand_made_trace):
     error = np.tile([0.0, 0.3, 0.4], (len(T), 1))
     error[::2] *= -1.0

@@ -37,6 +37,16 @@ def test_at_rest_it_only_bears_its_weight(macro):
     np.testing.assert_allclose(plant.tau, macro.gravity_torque(q), atol=1e-12)
 
 
+def test_it_holds_against_the_world_s_load(macro):
+    plant = Kinematic(macro, TICK, 1)
+    q, load = np.array([0.2, 0.4, -0.3]), np.array([3.0, -6.0, 1.5])
+    plant.reset(q, np.zeros(3))
+    plant.load[:] = load
+    plant.advance(q)
+    np.testing.assert_array_equal(plant.q, q)
+    np.testing.assert_allclose(plant.tau, macro.gravity_torque(q) - load, atol=1e-12)
+
+
 def test_a_torque_controller_is_refused(cli):
     ending = cli("robot=macro", "plant=kinematic")
     assert ending.code == 2

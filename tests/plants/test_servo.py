@@ -43,6 +43,17 @@ def test_without_gravity_compensation_it_sags_by_torque_over_stiffness(servo, ma
     np.testing.assert_allclose(1500.0 * (Q - plant.q), macro.gravity_torque(plant.q), atol=1e-9)
 
 
+def test_the_world_s_load_moves_it_by_torque_over_the_stiffness_that_is_left(servo, macro):
+    """Of K there is M (M + h D + h^2 K)^-1 K left, as the load stops the acceleration that the servo counts on."""
+    plant, load, K = servo(), np.array([3.0, -6.0, 1.5]), 1500.0
+    plant.load[:] = load
+    for _ in range(5000):
+        plant.advance(Q)
+    M = macro.mass_matrix(plant.q)
+    added = np.diag(PERIOD * 2.0 * np.sqrt(K * np.diagonal(macro.mass_matrix(Q))) + PERIOD**2 * K)
+    np.testing.assert_allclose(M @ np.linalg.solve(M + added, K * (plant.q - Q)), load, atol=1e-9)
+
+
 def test_a_small_step_answers_as_a_critically_damped_spring(servo, macro):
     """Joint 1 of the Macro turns about the vertical alone: M_11 of home, no coupling while the others hold still."""
     plant = servo(stiffness=1500.0)

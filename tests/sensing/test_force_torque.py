@@ -108,6 +108,32 @@ def test_the_low_pass_starts_settled():
     np.testing.assert_allclose(at_rest(5, WRENCH, low_pass=30.0), np.tile(WRENCH, (5, 1)), atol=1e-15)
 
 
+def test_noise_is_added_behind_the_low_pass_and_leaves_no_trace_in_it():
+    wrenches = np.random.default_rng(1).normal(size=(200, 6))
+    slow = {"low_pass": 5.0, "range": 6 * [1e9]}  # keeps 97 % of what it holds from one tick to the next
+    noise = at_rest(200, noise=NOISE)
+    np.testing.assert_allclose(at_rest(200, noise=NOISE, **slow), noise, atol=1e-15)
+    np.testing.assert_allclose(read(wrenches, noise=NOISE, **slow) - read(wrenches, **slow), noise, atol=1e-12)
+
+
+def test_rounding_and_range_stand_behind_the_low_pass():
+    wrenches = np.random.default_rng(1).normal(scale=20.0, size=(200, 6))
+    behind = {"resolution": 6 * [0.5], "range": 6 * [2.0]}
+    smooth = read(wrenches, low_pass=5.0, range=6 * [1e9])
+    expected = np.clip(0.5 * np.round(smooth / 0.5), -2.0, 2.0)
+    np.testing.assert_allclose(read(wrenches, low_pass=5.0, **behind), expected, atol=1e-12)
+    assert (np.abs(smooth) > 2.0).any()
+
+
+def test_the_drifting_bias_passes_the_low_pass():
+    drift, cut_off, ticks = [0.5] * 6, 30.0, 300
+    seen = at_rest(ticks, drift=drift)  # the walk itself, which starts at zero
+    share = -np.expm1(-2.0 * np.pi * cut_off * PERIOD)
+    for tick in range(1, ticks):
+        seen[tick] = seen[tick - 1] + share * (seen[tick] - seen[tick - 1])
+    np.testing.assert_allclose(at_rest(ticks, drift=drift, low_pass=cut_off), seen, atol=1e-12)
+
+
 def test_an_overload_reads_the_range_and_is_named():
     wrenches = np.zeros((3, 6))
     wrenches[1] = [25.0, -19.0, -75.0, 0.5, 0.0, -1.5]

@@ -62,6 +62,20 @@ def test_what_matters_is_found_among_what_does_not():
     assert found[("a", "b")].p_value > 0.05
 
 
+def test_the_observed_order_counts_among_the_permutations():
+    # No permutation of 90 values in three clear groups comes near: one of 1 + 999 remains, the observed one.
+    axes = grid(3, repetitions=30)
+    clear = 10.0 * axes["a"] + np.random.default_rng(0).normal(size=90)
+    assert effects_of(axes, clear)[("a",)].p_value == 1 / 1000
+
+
+def test_permutations_that_do_as_much_count_as_large():
+    # 0 and 1 dealt out evenly: no permutation does less than nothing, and the p-value is 1, never above.
+    axes = grid(2, repetitions=8)
+    even = np.tile([0.0, 1.0], 8)
+    assert effects_of(axes, even)[("a",)].p_value == 1.0
+
+
 def test_an_interaction_without_main_effects_is_found():
     axes = grid(2, 2, repetitions=10)
     values = np.where(axes["a"] == axes["b"], 1.0, -1.0) + 0.3 * np.random.default_rng(4).normal(size=40)

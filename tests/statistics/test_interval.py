@@ -41,6 +41,12 @@ def test_its_ends_are_the_order_statistics_of_large_samples():
     assert interval.high == pytest.approx(532.0, abs=3.0)
 
 
+def test_percentiles_are_expanded_for_small_samples():
+    # Of eight values 1.5 is the median of a resample or above it with probability 0.0058, which is the expanded tail;
+    # alpha / 2 of Student's t alone, 0.0090, would always be at 2.
+    assert {interval_of(range(1, 9), seed).low for seed in range(20)} == {1.5, 2.0}
+
+
 @pytest.mark.parametrize("n", [1, SMALLEST_SAMPLE - 1])
 def test_small_samples_have_a_median_and_no_interval(n):
     interval = interval_of(range(n))

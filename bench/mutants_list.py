@@ -1,0 +1,156 @@
+"""The mutants: where each stands, and what it gets wrong."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """An error put into a module.
+
+    Attributes:
+        why: What is wrong then.
+        module: The module, from the root of the checkout.
+        right: What stands there, once.
+        wrong: What is put in its place.
+        test: The module's test file, likewise.
+    """
+
+    why: str
+    module: str
+    right: str
+    wrong: str
+    test: str
+
+    def apply(self, source: str) -> str:
+        """Return the module's source with the error.
+
+        Raises:
+            ValueError: where what is to be replaced does not stand there once.
+        """
+        if source.count(self.right) != 1:
+            raise ValueError(f"{self.module}: {self.right!r} stands there {source.count(self.right)} times, not once")
+        return source.replace(self.right, self.wrong)
+
+
+def _of(module: str, test: str, *errors: tuple[str, str, str]) -> list[Mutant]:
+    """Return mutants of one module from (why, right, wrong)."""
+    return [Mutant(why, f"runner/{module}", right, wrong, f"tests/{test}") for why, right, wrong in errors]
+
+
+MUTANTS = [
+    *_of(
+        "metrics/reaching.py",
+        "metrics/test_reaching.py",
+        ("reach counted from the tip", "trace.end_points[-2]", "trace.end_points[-1]"),
+        ("reach counted from the first stage", "trace.end_points[-2]", "trace.end_points[0]"),
+    ),
+    *_of(
+        "metrics/contact.py",
+        "metrics/test_contact.py",
+        ("the force's error against its last sample", "mean(axis=0) - mean)", "mean(axis=0) - force[-1])"),
+        ("the last sample's error", "felt[steady].mean(axis=0) - mean", "felt[-1] - mean"),
+        ("the largest component for the peak", "np.linalg.norm(force, axis=1).max()", "np.abs(force).max()"),
+        ("the mean of magnitudes", "np.linalg.norm(mean)", "np.linalg.norm(force[steady], axis=1).mean()"),
+    ),
+    *_of(
+        "metrics/positioning.py",
+        "metrics/test_positioning.py",
+        ("overshoot of the desired motion counted", "past - max(0.0, wanted)", "past"),
+        ("overshoot of an arm that is ahead of its desired motion", "past - max(0.0, wanted)", "past - wanted"),
+    ),
+    *_of(
+        "metrics/summary.py",
+        "metrics/test_summary.py",
+        ("the tip judged in its carrier's place", "trace.at_stage(index), carrier", "trace, carrier"),
+        ("a carrier's path not shifted", "Shifted(context.trajectory, trace.offsets[index])", "context.trajectory"),
+    ),
+    *_of(
+        "metrics/tracking.py",
+        "metrics/test_tracking.py",
+        ("the tick at t_f lost to rounding", "trajectory.duration + 1e-9", "trajectory.duration"),
+    ),
+    *_of(
+        "metrics/effort.py",
+        "metrics/test_effort.py",
+        ("a limit missed by rounding", "(1.0 - 1e-12)", "1.0"),
+        (
+            "work that cancels",
+            "float(np.abs(tau * np.diff(trace.q, axis=0)).sum())",
+            "float((tau * np.diff(trace.q, axis=0)).sum())",
+        ),
+    ),
+    *_of(
+        "sensing/force_torque.py",
+        "sensing/test_force_torque.py",
+        (
+            "noise fed back through the low-pass",
+            "value = self._seen + self._noise[tick]",
+            "self._seen = self._seen + self._noise[tick]\n        value = self._seen.copy()",
+        ),
+        (
+            "rounding fed back through the low-pass",
+            "/ self._resolution)\n",
+            "/ self._resolution)\n        self._seen = value - self._noise[tick]\n",
+        ),
+        ("noise before the low-pass", "+ self._bias[tick]\n", "+ self._bias[tick] + self._noise[tick]\n"),
+        (
+            "the bias behind the low-pass",
+            "wrench + self._bias[tick]\n",
+            "wrench\n        self._noise[tick] += self._bias[tick]\n",
+        ),
+    ),
+    *_of(
+        "sensing/encoders.py",
+        "sensing/test_encoders.py",
+        ("differences of true positions", "self._last = measured", "self._last = q.copy()"),
+    ),
+    *_of(
+        "statistics/effects.py",
+        "statistics/test_effects.py",
+        ("p without its + 1", "(1 + as_large) / (1 + PERMUTATIONS)", "as_large / PERMUTATIONS"),
+        ("p with its + 1 above alone", "(1 + as_large) / (1 + PERMUTATIONS)", "(1 + as_large) / PERMUTATIONS"),
+        ("ties taken for smaller", ">= observed * (1 - 1e-9)", "> observed"),
+    ),
+    *_of(
+        "statistics/interval.py",
+        "statistics/test_interval.py",
+        ("percentiles that are not expanded", "np.sqrt(n / (n - 1)) * stats.t.ppf", "stats.t.ppf"),
+    ),
+    *_of(
+        "controllers/stage_loops.py",
+        "controllers/test_stage_loops.py",
+        ("later stages' offset added", "rest = reference[0] - self._later", "rest = reference[0] + self._later"),
+        ("the carrier adds it", "self._bases[0].position - self._later", "self._bases[0].position + self._later"),
+        ("the last rider's offset for that of all", "offset += base", "offset = base"),
+        ("the base's turn the other way round", "_cross(spin, rest)", "_cross(rest, spin)"),
+        ("gravity turned the wrong way", "set_gravity(R.T.dot(self._gravity))", "set_gravity(R.dot(self._gravity))"),
+    ),
+    *_of(
+        "plants/friction.py",
+        "plants/test_friction.py",
+        ("viscous friction of a joint that dry friction stops", "(speed - yields @ mu) - mu", "speed - mu"),
+        ("a contact that friction does not know", "self._contact_torque() - bias", "-bias"),
+    ),
+    *_of(
+        "plants/servo.py",
+        "plants/test_servo.py",
+        ("a world that does not reach the joints", "self.tau + self.load", "self.tau"),
+        ("a world that pulls where it pushes", "self.tau + self.load", "self.tau - self.load"),
+        ("a spring at the start of the period", "position - q - h * dq)", "position - q)"),
+    ),
+    *_of(
+        "plants/kinematic.py",
+        "plants/test_kinematic.py",
+        ("a load that helps where it hinders", "ddq) - self.load", "ddq) + self.load"),
+    ),
+    *_of(
+        "plants/rk4.py",
+        "plants/test_rk4.py",
+        ("a midpoint's own velocity", "q + half * v2, v3", "q + half * v, v3"),
+    ),
+    *_of(
+        "calibration/gravity.py",
+        "calibration/test_gravity.py",
+        ("the moment's bias with the wrong sign", "k + np.cross(r, F_0)", "k - np.cross(r, F_0)"),
+    ),
+]
