@@ -1,4 +1,4 @@
-"""Kills workers and the command itself at random moments of one sweep, until it is done; then counts what is stored."""
+"""Kills workers and the command itself at random moments of a sweep, a work or a tuning; then counts what is stored."""
 
 import contextlib
 import os
@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from runner.store import open_sweep
+from runner.store import Sweep, open_run, open_sweep
 from runner.store.shards import read_outcomes
 
 Process = subprocess.Popen[bytes]
@@ -35,16 +35,22 @@ class Tally:
     leftovers: list[str]
 
 
-def torture(outputs: Path, arguments: list[str], workers: int, commands: int, seed: int, pause: float) -> Tally:
+def torture(folder: Path, arguments: list[str], workers: int, commands: int, seed: int, pause: float) -> Tally:
     """Run a sweep and kill so many of its workers and of its commands, each `pause` s after the last on average."""
+    return torture_command(folder, ["-m", *arguments], workers, commands, seed, pause)
+
+
+def torture_command(folder: Path, command: list[str], workers: int, commands: int, seed: int, pause: float) -> Tally:
+    """Do the same to any command that makes runs, of a sweep, a work or a tuning, in `outputs` of a folder."""
+    outputs = folder / "outputs"
     draw = random.Random(seed)  # noqa: S311
     victims = ["worker"] * workers + ["command"] * commands
     draw.shuffle(victims)
     made: dict[Path, int] = {}
     doubled: set[str] = set()
-    process = _start(arguments, outputs)
+    process = _start(command, folder)
     for victim in victims:
-        process = _await_runs(process, arguments, outputs, len(made))
+        process = _await_runs(process, command, folder, len(made))
         time.sleep(draw.expovariate(1.0 / pause))
         if victim == "command":
             process.kill()
@@ -56,13 +62,13 @@ def torture(outputs: Path, arguments: list[str], workers: int, commands: int, se
         doubled |= _look(outputs, made)
     while process.poll() is None or process.returncode < 0:
         if process.poll() is not None:
-            process = _start(arguments, outputs)
+            process = _start(command, folder)
         time.sleep(0.1)
     doubled |= _look(outputs, made)
     assert process.returncode == 0, process.returncode
-    (folder,) = (outputs / "sweeps").iterdir()  # several, if the source was changed meanwhile
-    sweep = open_sweep(folder)
-    lost = len(set(sweep.hashes)) - sum(1 for _ in sweep.runs())
+    (kept,) = [*outputs.glob("sweeps/*"), *outputs.glob("tunings/*")]  # several, if the source was changed meanwhile
+    sweep = open_sweep(kept)
+    lost = len(set(sweep.hashes)) - sum(1 for _ in sweep.runs()) if "-m" in command else _count_missing(sweep)
     rows = Counter(end.name for shard in (outputs / "shards").glob("*.parquet") for end in read_outcomes(shard))
     doubled |= {name for name, count in rows.items() if count > 1}
     hidden = [path for path in outputs.rglob("*") if path.name.startswith(".") or path.name == "scratch"]
@@ -70,18 +76,23 @@ def torture(outputs: Path, arguments: list[str], workers: int, commands: int, se
     return Tally(workers, commands, len(sweep.hashes), lost, len(doubled), [str(path) for path in (*hidden, *halves)])
 
 
-def _start(arguments: list[str], outputs: Path) -> Process:
-    command = [sys.executable, "-m", "runner", "-m", *arguments, f"outputs={outputs}"]
-    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+def _count_missing(sweep: Sweep) -> int:
+    """Return how many runs of a work or tuning, some of which stand for several cells, are not stored."""
+    return len(set(sweep.hashes) - {path.name for path in (sweep.outputs / "runs").iterdir()})
 
 
-def _await_runs(process: Process, arguments: list[str], outputs: Path, known: int) -> Process:
+def _start(command: list[str], folder: Path) -> Process:
+    words = [sys.executable, "-m", "runner", *command]
+    return subprocess.Popen(words, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def _await_runs(process: Process, command: list[str], folder: Path, known: int) -> Process:
     """Return the process, started again where it was killed, once it makes runs."""
-    while _count(outputs) <= known:
+    while _count(folder / "outputs") <= known:
         if process.poll() is not None:
             if process.returncode == 0:
-                raise RuntimeError("the sweep ended before all were killed: give it more runs")
-            process = _start(arguments, outputs)
+                raise RuntimeError("the command ended before all were killed: give it more runs")
+            process = _start(command, folder)
         time.sleep(0.02)
     return process
 
@@ -111,13 +122,41 @@ def _workers_of(pid: int) -> Iterator[int]:
                     yield child
 
 
+def _metrics(outputs: Path) -> dict[str, object]:
+    """Return what all runs of an outputs folder measured, by their names."""
+    return {path.name: open_run(path).metrics for path in (outputs / "runs").iterdir()}
+
+
+def _reports(folder: Path) -> list[bytes]:
+    return [path.read_bytes() for path in sorted(folder.rglob("report.*"))]
+
+
+def _is_as_undisturbed(name: str, command: list[str], kills: tuple[int, int], pause: float) -> bool:
+    """Kill a command at work; return whether its runs and reports are those of one that was left alone."""
+    with tempfile.TemporaryDirectory() as folder:
+        alone, killed = Path(folder, "alone"), Path(folder, "killed")
+        for place in (alone, killed):
+            place.mkdir()
+        assert _start(command, alone).wait() == 0
+        tally = torture_command(killed, command, *kills, 1, pause)
+        equal = _metrics(alone / "outputs") == _metrics(killed / "outputs")
+        same = [a == b for a, b in zip(_reports(alone), _reports(killed), strict=True)]
+    print(f"{name}: {tally}, metrics equal: {equal}, reports equal: {all(same)} ({len(same)})")
+    return tally.lost == 0 and tally.doubled == 0 and not tally.leftovers and equal and all(same)
+
+
 def main() -> bool:
-    """Kill 20 workers and 10 commands; return whether nothing was lost, doubled or left behind."""
+    """Kill 25 times in each of two sweeps, ten times in a work and in a tuning; return whether all is as it should."""
     arguments = ["robot=macro", "trajectory=quintic", "noise=thesis", "seed=range(0,2000)", "repetitions=4"]
     met = True
     for trace in ("all", "never"):
         with tempfile.TemporaryDirectory() as folder:
-            tally = torture(Path(folder), [*arguments, f"sweep.trace={trace}"], 20, 10, seed=1, pause=1.0)
+            tally = torture(Path(folder), [*arguments, f"sweep.trace={trace}"], 15, 10, seed=1, pause=1.0)
         print(tally)
         met = met and tally.lost == 0 and tally.doubled == 0 and not tally.leftovers
+    tuned = "controller.natural_frequency=interval(5,40)"
+    tuning = ["tune", *arguments[:3], tuned, "--minimize=max_tracking_error", "--trials=200"]
+    works = (("reproduce", ["reproduce", "xarm7"]), ("tune", tuning))
+    for name, command in works:
+        met = _is_as_undisturbed(name, command, (5, 5), 1.0) and met
     return met

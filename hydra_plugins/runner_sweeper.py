@@ -2,7 +2,7 @@
 
 import shlex
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -34,17 +34,17 @@ class RunnerSweeper(Sweeper):
         self._task.sweep(lambda: self._make(arguments))
 
     def _make(self, arguments: list[str]) -> Any:
-        from runner.sweeps.plan import Plan
+        from runner.sweeps.grid import Grid
         from runner.sweeps.run import Engine, run_sweep
 
-        def load(options: list[str]) -> DictConfig:
-            return self._loader.load_sweep_config(self._config, options)
-
+        self.hydra = self._loader
         sources = self._config.hydra.runtime.config_sources
-        own = [Path(source.path) for source in sources if source.provider == "command-line"]
-        plan = Plan([*self._params, *arguments], self._loader, load, own)
-        return run_sweep(
-            plan,
-            Engine(self._workers, self._address),
-            shlex.join(["runner", *(argument.removeprefix("++") for argument in sys.argv[1:])]),
-        )
+        self.config_dirs = tuple(Path(each.path).resolve() for each in sources if each.provider == "command-line")
+        command = shlex.join(["runner", *(argument.removeprefix("++") for argument in sys.argv[1:])])
+        plan = Grid([*self._params, *arguments], self)
+        return run_sweep(plan, Engine(self._workers, self._address), command)
+
+    def load(self, options: Sequence[str]) -> DictConfig:
+        """Compose a config from overrides of options, as Hydra does for one job; see ConfigSource."""
+        config: DictConfig = self._loader.load_sweep_config(self._config, list(options))
+        return config

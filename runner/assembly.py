@@ -26,7 +26,7 @@ from runner.robots.task_space import distance_beside
 from runner.sensing import ForceTorqueSensor, JointEncoders
 from runner.simulation import ClosedLoop
 from runner.trace import FloatArray
-from runner.trajectories import TRAJECTORIES, Trajectory
+from runner.trajectories import Trajectory
 
 _BESIDE = 1e-9  # of the reach: farther beside the plane of a planar arm a path cannot be reached
 
@@ -47,17 +47,12 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
         ConfigError: where the start of the trajectory cannot be reached, joints that are told where to go cannot
             follow it, or a part refuses its config.
     """
-    arm, home = config.arm, config.arm.home
-    parallel = config.parallel
-    at_home = end_points(arm, home[None], parallel)[-1, 0]
-    asked = getattr(config.trajectory, "start", None)
-    start = at_home if asked is None else np.array(asked)
-    trajectory = TRAJECTORIES.build(config.trajectory, start)
+    arm = config.arm
+    trajectory = config.path
     _check_path_reach(config, trajectory)
     limits, q_start = _limits(config), _start_posture(config, trajectory.start)
     if CONTROLLERS.follows_paths(config.controller.kind):
         check_path(config.controller, arm, trajectory, q_start, config.robot.settling_band)
-    duration = trajectory.run_duration if config.settings.duration is None else config.settings.duration
     environment: Environment | None = ENVIRONMENTS.build(config.environment)
     believed = _believe(config, repetition)
     loops: tuple[Loop, ...] = CONTROLLERS.build(config.controller, believed)
@@ -69,11 +64,11 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
         trajectory=trajectory,
         limits=limits,
         tick=config.tick,
-        ticks=math.ceil(duration / config.tick - 1e-9),
+        ticks=config.ticks,
         commands=config.commands,
         interaction=_make_interaction(config, loops, environment, plant, trajectory.start),
         q_start=q_start,
-        parallel=parallel,
+        parallel=config.parallel,
         delay=config.delay,
     )
 

@@ -17,6 +17,8 @@ from runner.config.compose import Composed, compose
 from runner.metrics.summary import Summary
 from runner.robots.model import FloatArray
 
+CALIBRATION = "calibrate"
+"""Root of a calibration's config; that of a run is "config"."""
 LEVEL = 0.99
 """Probability of the band in which the mean normalised error squared must lie."""
 
@@ -35,7 +37,7 @@ def calibrate(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Calibr
         ConfigError: for a config that cannot be carried out; lists all its problems.
         StoreError: if the outputs folder cannot be written.
     """
-    composed = compose(overrides, config_dirs, root="calibrate")
+    composed = compose(overrides, config_dirs, root=CALIBRATION)
     config = validate_calibration(composed)
     outputs = Path(config.settings.outputs)
     name = store.run_hash(config.resolved, config.arm.urdf)
@@ -46,10 +48,16 @@ def calibrate(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Calibr
         stored = None
     if stored is not None:
         return stored
-    return store.write_calibration(outputs, name, config.resolved, config.arm.urdf, _carry_out(config, composed))
+    return store.write_calibration(outputs, name, config.resolved, config.arm.urdf, carry_out(config, composed))
 
 
-def _carry_out(config: CalibrationConfig, composed: Composed) -> dict[str, Any]:
+def carry_out(config: CalibrationConfig, composed: Composed) -> dict[str, Any]:
+    """Repeat a calibration; return what is to be stored of it.
+
+    Args:
+        config: The checked config.
+        composed: What it was checked from, for provenance.
+    """
     wall = time.perf_counter()
     procedure, settings = config.procedure, config.settings
     outcomes = [

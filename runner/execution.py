@@ -12,6 +12,7 @@ import numpy as np
 from runner import provenance, store
 from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
 from runner.config.compose import Composed, compose
+from runner.config.limits import check_cpu_time
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.errors import SimulationError
@@ -20,6 +21,10 @@ from runner.sensing import ForceTorqueSensor
 from runner.simulation import ClosedLoop, simulate
 from runner.store.writing import timing
 from runner.trace import Failure, Trace
+
+_PROBED_TICKS = 50
+_SURELY_ALLOWED = 200_000  # ticks, which take minutes at most
+_CLOCKED_TICKS = 1_000_000  # ticks whose time is kept; more would tell nothing new
 
 
 def run(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Run:
@@ -51,8 +56,24 @@ def execute(composed: Composed) -> store.Run:
         stored = None
     if stored is not None:
         return stored
+    ticks = config.ticks * config.settings.repetitions
+    if ticks > _SURELY_ALLOWED:
+        check_cpu_time(config.limits, seconds_per_tick(config) * ticks, 1)
     store.prepare(outputs)
     return store.write_run(outputs, name, simulate_job(config, composed))
+
+
+def seconds_per_tick(config: RunConfig) -> float:
+    """Return how long a tick of a run takes, in s, from its first ones, made twice."""
+    whole = assemble(config)
+    part = replace(whole, ticks=min(whole.ticks, _PROBED_TICKS))
+    try:
+        for _ in range(2):  # the first time warms up
+            start = time.perf_counter()
+            simulate(part, make_encoders(config, part, 0), make_wrist_sensor(config, part, 0))
+        return (time.perf_counter() - start) / (part.ticks + 1)
+    finally:
+        whole.plant.close()
 
 
 def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
@@ -71,6 +92,7 @@ def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
     first: Trace | None = None
     failure: tuple[int, Failure] | None = None
     metrics, ticks = [], []
+    clocked = 0
     notices: list[str] = []
     told: list[str] = []
     try:
@@ -85,7 +107,9 @@ def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
             if trace.failure is not None and failure is None:
                 failure = (repetition, trace.failure)
             metrics.append(measured)
-            ticks.append(trace.tick_seconds)
+            if clocked < _CLOCKED_TICKS:
+                ticks.append(trace.tick_seconds)
+                clocked += len(trace.tick_seconds)
     finally:
         loop.plant.close()
     assert first is not None  # noqa: S101 - repetitions is at least 1

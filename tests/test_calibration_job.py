@@ -29,7 +29,7 @@ def test_a_calibration_is_a_folder_of_its_own(job, tmp_path):
 
 def test_an_equal_config_returns_the_stored_one(job, monkeypatch):
     first = job("calibration=gravity")
-    monkeypatch.setattr(calibration_job, "_carry_out", None)
+    monkeypatch.setattr(calibration_job, "carry_out", None)
     assert job("calibration=gravity") == first
     assert job("calibration=gravity", "wrist_sensor=mini40").hash == first.hash
 

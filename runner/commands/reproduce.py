@@ -1,10 +1,13 @@
-"""`runner reproduce [NAME]`: run what is missing for a published work, and write its report."""
+"""`runner reproduce [NAME] [OVERRIDES]`: run what is missing for a published work, and write its report.
 
-import multiprocessing
+OVERRIDES say how the runs are made: hydra.sweeper.workers and .address, sweep.time_limit, .attempts, .retry and
+.on_failure, limits.cpu_hours and .memory. What is simulated is the work's own.
+"""
+
 import shlex
 import sys
-from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,67 +17,84 @@ from runner.config.compose import quiet_environment
 from runner.errors import RunnerError, nearest
 
 if TYPE_CHECKING:
-    from runner.reporting.job import Job
+    from runner.reporting.job import Job, Made
     from runner.store import Calibration, Run
 
-_PROCESSES = 2
+_FREE = ("hydra.sweeper.", "sweep.", "limits.")
+
+
+@dataclass(frozen=True)
+class _Way:
+    """How a work is made: folder of runs and reports, overrides of the engine, and the command as typed."""
+
+    outputs: Path
+    overrides: Sequence[str]
+    command: str
 
 
 def main(arguments: Sequence[str]) -> int:
     """Reproduce one work or all; print the report's folder as the last line."""
     parser = Parser("reproduce", __doc__)
     parser.add_argument("work", nargs="?", default="all", metavar="NAME", help=f"{', '.join(WORKS)} or all")
+    parser.add_argument("overrides", nargs="*", metavar="OVERRIDE", help="such as hydra.sweeper.workers=1")
     parser.add_argument("--outputs", type=Path, default=Path("outputs"), help="folder of runs and reports")
-    options = parser.parse_args(arguments)
+    options = parser.parse_intermixed_args(arguments)
     if options.work not in (*WORKS, "all"):
         raise RunnerError(
             f"no work '{options.work}'{nearest(options.work, (*WORKS, 'all'))}; works: {', '.join(WORKS)}, all"
         )
+    others = [text for text in options.overrides if not text.startswith(_FREE) or text.startswith("sweep.trace")]
+    if others:
+        raise RunnerError(f"reproduce: {others[0]}: what is simulated is the work's own; free are {', '.join(_FREE)}")
     quiet_environment()
-    return max(_reproduce(work, options.outputs) for work in (WORKS if options.work == "all" else (options.work,)))
+    way = _Way(options.outputs, options.overrides, shlex.join(["runner", "reproduce", *arguments]))
+    return max(_reproduce(work, way) for work in (WORKS if options.work == "all" else (options.work,)))
 
 
-def _reproduce(work: str, outputs: Path) -> int:
+def _reproduce(work: str, way: _Way) -> int:
     from runner import store
 
-    folder = outputs / "reports" / work
-    store.prepare(outputs)
-    _WORKS[work](work, outputs, folder)
+    folder = way.outputs / "reports" / work
+    store.prepare(way.outputs)
+    missing = _WORKS[work](work, way, folder)
+    for name, why in missing.items():
+        print(f"runner: {work}: {name} is missing in the report: {why}", file=sys.stderr)
     print(folder)
-    return 0
+    return 1 if missing else 0
 
 
-def _reproduce_runs(work: str, outputs: Path, folder: Path) -> None:
+def _reproduce_runs(work: str, way: _Way, folder: Path) -> Mapping[str, str]:
     """Reproduce a work by its package in reporting: `plan` says which jobs to run, `report` what to write of them."""
     from runner.reporting.render import write_report
 
     plan = import_module(f"runner.reporting.{work}.plan").plan
     document = getattr(import_module(f"runner.reporting.{work}.report"), f"{work}_document")
-    runs = run_all(plan(), outputs)
+    runs, _ = make_all(plan(), {}, way.outputs, way.overrides, way.command)
     print("writing the report ...", file=sys.stderr)
     write_report(document(runs), folder)
+    return runs.missing
 
 
-def _reproduce_thesis(work: str, outputs: Path, folder: Path) -> None:
+def _reproduce_thesis(work: str, way: _Way, folder: Path) -> Mapping[str, str]:
     from runner.reporting.thesis.dynamics_benchmark import FILE, measure
 
-    measure(outputs / FILE)
-    _reproduce_runs(work, outputs, folder)
+    measure(way.outputs / FILE)
+    return _reproduce_runs(work, way, folder)
 
 
-def _reproduce_meca500(work: str, outputs: Path, folder: Path) -> None:
+def _reproduce_meca500(work: str, way: _Way, folder: Path) -> Mapping[str, str]:
     from runner.reporting.meca500.calibration_plan import calibration_jobs
     from runner.reporting.meca500.plan import plan
     from runner.reporting.meca500.report import meca500_document
     from runner.reporting.render import write_report
 
-    runs = run_all(plan(), outputs)
-    calibrations = calibrate_all(calibration_jobs(), outputs)
+    runs, calibrations = make_all(plan(), calibration_jobs(), way.outputs, way.overrides, way.command)
     print("writing the report ...", file=sys.stderr)
     write_report(meca500_document(runs, calibrations), folder)
+    return runs.missing | calibrations.missing
 
 
-def _audit(work: str, outputs: Path, folder: Path) -> None:
+def _audit(work: str, way: _Way, folder: Path) -> Mapping[str, str]:
     from runner.audit.audit import as_csv, audit_all
     from runner.reporting.audit.report import audit_document
     from runner.reporting.render import write_report
@@ -86,6 +106,7 @@ def _audit(work: str, outputs: Path, folder: Path) -> None:
     folder.joinpath("equations.csv").write_text(
         as_csv([each for source in judged.values() for each in source]), encoding="utf-8"
     )
+    return {}
 
 
 _WORKS = {
@@ -97,70 +118,57 @@ _WORKS = {
 WORKS = tuple(_WORKS)
 
 
-def run_all(jobs: Mapping[str, "Job"], outputs: Path) -> dict[str, "Run"]:
-    """Run what is not stored yet on two processes, with progress on standard error; return all runs by name."""
-    from runner import store
-
-    ticks = {name: job.ticks for name, job in jobs.items()}
-    folders = _make_all(_run_job, {name: job.overrides for name, job in jobs.items()}, ticks, "tick", outputs)
-    commands = {name: shlex.join(["runner", *job.overrides]) for name, job in jobs.items()}
-    return {name: store.open_run(folders[name]).made_by(commands[name]) for name in jobs}
-
-
-def calibrate_all(jobs: Mapping[str, tuple[str, ...]], outputs: Path) -> dict[str, "Calibration"]:
-    """Carry out the calibrations that are not stored yet, likewise; return all by name."""
-    from runner import store
-
-    folders = _make_all(_calibrate_job, jobs, dict.fromkeys(jobs, 1), "calibration", outputs)
-    return {name: store.open_calibration(folders[name]) for name in jobs}
-
-
-def _make_all(
-    make: Callable[[tuple[str, ...], str], str],
-    jobs: Mapping[str, tuple[str, ...]],
-    costs: Mapping[str, int],
-    unit: str,
+def make_all(
+    jobs: Mapping[str, "Job"],
+    calibrations: Mapping[str, tuple[str, ...]],
     outputs: Path,
-) -> dict[str, Path]:
-    """Call a function with the overrides of each job, and return the folders that it makes, by name.
+    overrides: Sequence[str] = (),
+    command: str = "runner reproduce",
+) -> "tuple[Made[Run], Made[Calibration]]":
+    """Make the runs and calibrations of a work that are not stored yet; return all by name.
 
     Args:
-        make: The function; in a worker process.
-        jobs: Overrides by name.
-        costs: What each job costs, roughly, for the estimate of what is left.
-        unit: What the costs count.
-        outputs: Folder of runs and calibrations.
+        jobs: The runs by name.
+        calibrations: Overrides of the calibrations by name.
+        outputs: Folder in which they are stored.
+        overrides: How they are made: keys of hydra.sweeper, sweep and limits.
+        command: The command that makes them and goes on with it.
+
+    Raises:
+        ConfigError: if one cannot be made, or all would cost too much; nothing has been started then.
+        StoreError: if the disk does not take them.
+        RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
     """
-    from tqdm import tqdm
+    from runner import store
+    from runner.calibration_job import CALIBRATION
+    from runner.reporting.job import Made
+    from runner.sweeps.listed import Item, Listed
+    from runner.sweeps.loading import Loader
+    from runner.sweeps.run import Engine, run_sweep
 
-    context = multiprocessing.get_context("spawn")  # a forked PyBullet or thread pool is not safe
-    folders: dict[str, Path] = {}
-    with ProcessPoolExecutor(_PROCESSES, mp_context=context) as pool:
-        futures = {pool.submit(make, overrides, str(outputs)): name for name, overrides in jobs.items()}
-        progress = tqdm(total=sum(costs.values()), unit=unit, unit_scale=True, desc="running")
-        try:
-            with progress:
-                for future in as_completed(futures):
-                    name = futures[future]
-                    folders[name] = Path(future.result())
-                    progress.update(costs[name])
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-    return folders
-
-
-def _run_job(overrides: tuple[str, ...], outputs: str) -> str:
-    """Run one job in a worker process."""
-    quiet_environment()
-    from runner.execution import run
-
-    return str(run(*overrides, f"outputs={outputs}").folder)
-
-
-def _calibrate_job(overrides: tuple[str, ...], outputs: str) -> str:
-    """Carry out one calibration in a worker process."""
-    quiet_environment()
-    from runner.calibration_job import calibrate
-
-    return str(calibrate(*overrides, f"outputs={outputs}").folder)
+    items = {name: Item(job.overrides) for name, job in jobs.items()}
+    items |= {name: Item(own, CALIBRATION) for name, own in calibrations.items()}
+    shared = [text for text in overrides if not text.startswith("hydra.")]
+    loader = Loader()
+    sweeper = loader.sweeper([text for text in overrides if text.startswith("hydra.")])
+    plan = Listed(items, [*shared, "sweep.trace=all", f"outputs={outputs}"], loader)
+    ended = run_sweep(plan, Engine(sweeper.workers, sweeper.address), command, accept_cut_short=False)
+    places = dict(zip(items, ended.names, strict=True))
+    ends = {name: ended.ends.get(place) for name, place in places.items()}
+    missing = {name: "not begun" for name, end in ends.items() if end is None}
+    missing |= {name: end.failure for name, end in ends.items() if end is not None and end.cut_short}
+    commands = {name: shlex.join(["runner", *job.overrides]) for name, job in jobs.items()}
+    runs = {
+        name: store.open_run(outputs / "runs" / places[name]).made_by(commands[name])
+        for name in jobs
+        if name not in missing
+    }
+    found = {
+        name: store.open_calibration(outputs / "calibrations" / places[name])
+        for name in calibrations
+        if name not in missing
+    }
+    return (
+        Made(runs, {name: why for name, why in missing.items() if name in jobs}),
+        Made(found, {name: why for name, why in missing.items() if name in calibrations}),
+    )

@@ -29,12 +29,14 @@ class Composed:
         overrides: The overrides that it was composed with, as typed.
         choices: The option chosen in each group, such as {"robot": "macro"}.
         config_dirs: Config folders of the user's.
+        root: Name of the file in conf/ that the groups hang on: "config" of a run, "calibrate" of a calibration.
     """
 
     resolved: Mapping[str, Any]
     overrides: tuple[str, ...]
     choices: Mapping[str, str]
     config_dirs: tuple[Path, ...]
+    root: str = "config"
 
 
 def compose(overrides: Sequence[str], config_dirs: Sequence[Path] = (), root: str = "config") -> Composed:
@@ -54,13 +56,17 @@ def compose(overrides: Sequence[str], config_dirs: Sequence[Path] = (), root: st
             config = hydra_compose(
                 root, [*force(overrides), *(search if config_dirs else [])], return_hydra_config=True
             )
-        return from_hydra(config, config.hydra.runtime.choices, overrides, config_dirs)
+        return from_hydra(config, config.hydra.runtime.choices, overrides, config_dirs, root)
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None
 
 
 def from_hydra(
-    config: DictConfig, chosen: Mapping[str, Any], overrides: Sequence[str], config_dirs: Sequence[Path]
+    config: DictConfig,
+    chosen: Mapping[str, Any],
+    overrides: Sequence[str],
+    config_dirs: Sequence[Path],
+    root: str = "config",
 ) -> Composed:
     """Take a config as Hydra made it, and resolve it.
 
@@ -69,6 +75,7 @@ def from_hydra(
         chosen: What Hydra took in each group, its own groups included.
         overrides: The overrides, as typed.
         config_dirs: Config folders of the user's.
+        root: Name of the file in conf/ that it hangs on.
 
     Raises:
         ConfigError: for an interpolation of a key that does not exist, or a key that is no text.
@@ -85,7 +92,7 @@ def from_hydra(
     problems = list(_strange_keys(resolved))
     if problems:
         raise ConfigError(problems)
-    return Composed(resolved, tuple(overrides), choices, tuple(config_dirs))
+    return Composed(resolved, tuple(overrides), choices, tuple(config_dirs), root)
 
 
 def _strange_keys(value: Any, place: str = "") -> Iterator[str]:

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveFloat, PositiveInt
 
+from runner.config.limits import LimitsConfig
 from runner.config.noise import NoiseConfig
 from runner.config.robot import RobotConfig
 from runner.config.sweep import SweepConfig
@@ -14,6 +15,7 @@ from runner.registry import StrictModel
 from runner.robots.mismatch import MismatchConfig
 from runner.robots.robot import Robot
 from runner.sensing import ForceTorqueConfig
+from runner.trajectories import Trajectory
 
 
 class RunSettings(StrictModel):
@@ -50,12 +52,15 @@ class RunConfig:
         mismatch: How what the controllers believe of the robot differs from it.
         robot: Config of the robot.
         sweep: How a sweep that the run is part of is run.
+        limits: What a command may cost.
         arm: The robot's rigid-body model, stage by stage.
         tick: Period of the fastest loop, in s: of the controller, or of the servo below it.
         commands: Whether the controller gives joint torques, or joint positions to a plant that follows them.
         step: Integration step of the plant, in s.
         steps_per_tick: Integration steps in one tick.
         delay: Ticks from a command until it acts.
+        path: The desired motion of the tip.
+        ticks: Number of ticks of the run.
         resolved: The composed config as plain data, interpolations resolved.
     """
 
@@ -70,12 +75,15 @@ class RunConfig:
     mismatch: MismatchConfig
     robot: RobotConfig
     sweep: SweepConfig
+    limits: LimitsConfig
     arm: Robot
     tick: float
     commands: Literal["torque", "position"]
     step: float
     steps_per_tick: int
     delay: int
+    path: Trajectory
+    ticks: int
     resolved: Mapping[str, Any]
 
     @property

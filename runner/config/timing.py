@@ -1,5 +1,6 @@
 """Checking the times of a run: plant step, control periods, duration."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -9,6 +10,7 @@ from runner.controllers import CONTROLLERS
 from runner.errors import ConfigError
 from runner.plants import PLANTS
 from runner.robots.robot import Robot
+from runner.trajectories import Trajectory
 
 _MAX_TICKS = 10_000_000
 _MAX_STEPS = 100_000  # of the plant in a tick
@@ -76,25 +78,16 @@ def count_delay(plant: Any, tick: float) -> int:
     return ticks
 
 
-def check_duration(settings: RunSettings, tick: float, trajectory: Any) -> None:
-    """Check that a run is neither shorter than a tick nor longer than memory holds.
+def count_ticks(settings: RunSettings, tick: float, path: Trajectory) -> int:
+    """Return the number of ticks of a run.
 
     Raises:
-        ConfigError: if it is.
+        ConfigError: if it is shorter than a tick.
     """
-    key, length = "duration", settings.duration
-    if length is None:
-        key, length = "trajectory.duration", getattr(trajectory, "duration", tick)
-    elif length < tick:
-        raise ConfigError([f"duration: {length:g} s is shorter than one controller period, {tick:g} s"])
-    ticks = length / tick
-    if ticks > _MAX_TICKS:
-        raise ConfigError(
-            [
-                f"{key}: {length:g} s are {ticks:.3g} ticks of controller.period, {tick:g} s; allowed: "
-                f"up to {_MAX_TICKS:g} ticks, as a run is kept in memory"
-            ]
-        )
+    if settings.duration is not None and settings.duration < tick:
+        raise ConfigError([f"duration: {settings.duration:g} s is shorter than one controller period, {tick:g} s"])
+    duration = path.run_duration if settings.duration is None else settings.duration
+    return math.ceil(duration / tick - 1e-9)
 
 
 def _periods(arm: Robot, period: Any) -> dict[str, float]:

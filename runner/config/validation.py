@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from runner.config.arms import build_robot
+from runner.config.limits import LimitsConfig, check_memory
 from runner.config.noise import NoiseConfig
 from runner.config.parsing import attempt, parse, parse_group
 from runner.config.per_joint import expand
@@ -16,18 +17,18 @@ from runner.config.preset import PresetConfig
 from runner.config.robot import OneArmConfig, RobotConfig
 from runner.config.run import RunConfig, RunSettings
 from runner.config.sweep import SweepConfig
-from runner.config.timing import check_duration, count_delay, count_steps
+from runner.config.timing import count_delay, count_steps, count_ticks
 from runner.config.torque_limits import TorqueLimitsConfig
-from runner.controllers import CONTROLLERS
+from runner.controllers import CONTROLLERS, Loop
 from runner.environments import ENVIRONMENTS
 from runner.errors import ConfigError, nearest
 from runner.plants import PLANTS
 from runner.registry import Registry, StrictModel
 from runner.robots.mismatch import MismatchConfig
 from runner.robots.model import STANDARD_GRAVITY
-from runner.robots.robot import Robot
+from runner.robots.robot import Robot, end_points
 from runner.sensing import ForceTorqueConfig
-from runner.trajectories import TRAJECTORIES
+from runner.trajectories import TRAJECTORIES, Trajectory
 
 _KINDS: dict[str, Registry] = {
     "plant": PLANTS,
@@ -43,6 +44,7 @@ _PLAIN: dict[str, type[StrictModel]] = {
     "robot": OneArmConfig,
     "preset": PresetConfig,
     "sweep": SweepConfig,
+    "limits": LimitsConfig,
 }
 GROUPS: dict[str, Registry | type[StrictModel]] = {**_KINDS, **_PLAIN}
 _SETTINGS = tuple(RunSettings.model_fields)
@@ -64,7 +66,8 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
     settings = collect(lambda: parse("", RunSettings, {key: resolved.get(key) for key in _SETTINGS}))
     parts = {group: collect(partial(parse_group, group, kind, resolved)) for group, kind in GROUPS.items()}
     robot, plant, controller, trajectory = (parts[g] for g in ("robot", "plant", "controller", "trajectory"))
-    arm, timing, delay = None, None, None
+    arm, timing, delay, path, ticks = None, None, None, None, None
+    loops: Sequence[Loop] = ()
     if robot is not None:
         collect(lambda: _check_payload(robot, parts["mismatch"]))
         gravity = STANDARD_GRAVITY if settings is None else settings.gravity
@@ -77,15 +80,19 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
             collect(lambda: _check_commands(plant.kind, controller.kind))
             timing = collect(lambda: count_steps(arm, plant, controller))
         if controller is not None and not problems:
-            collect(lambda: CONTROLLERS.build(controller, arm))
+            loops = collect(lambda: CONTROLLERS.build(controller, arm))
     if timing is not None:
         delay = collect(lambda: count_delay(plant, timing[0]))
-    if settings is not None and timing is not None and trajectory is not None:
-        collect(lambda: check_duration(settings, timing[0], trajectory))
-    if problems or arm is None or timing is None or delay is None:
+    if arm is not None and plant is not None and trajectory is not None and not problems:
+        path = collect(lambda: _build_trajectory(arm, trajectory, plant))
+    if path is not None and timing is not None and settings is not None:
+        ticks = collect(lambda: count_ticks(settings, timing[0], path))
+    if problems or arm is None or timing is None or delay is None or path is None or ticks is None:
         raise ConfigError(problems)
     tick, step, steps_per_tick = timing
     parts.pop("preset")  # its values have been taken by the other groups
+    feels = parts["environment"].kind != "free" or any(loop.feels for loop in loops)
+    check_memory(parts["limits"], arm, ticks, tick, settings.repetitions, feels)
     return RunConfig(
         settings=settings,
         **parts,
@@ -95,8 +102,19 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
         step=step,
         steps_per_tick=steps_per_tick,
         delay=delay,
+        path=path,
+        ticks=ticks,
         resolved=resolved,
     )
+
+
+def _build_trajectory(arm: Robot, trajectory: Any, plant: Any) -> Trajectory:
+    """Return the desired motion, which starts at the tip of home where the config does not say."""
+    start = getattr(trajectory, "start", None)
+    parallel = len(arm.stages) > 1 and plant.wrist_rotation == "parallel"
+    place = end_points(arm, arm.home[None], parallel)[-1, 0] if start is None else np.array(start)
+    path: Trajectory = TRAJECTORIES.build(trajectory, place)
+    return path
 
 
 def _check_groups(resolved: Mapping[str, Any]) -> None:

@@ -1,8 +1,13 @@
-"""What the plans of all works are made of: the runs that a report needs, and the presets that it compares."""
+"""What the plans of all works are made of: the runs that a report needs, and what became of them."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TypeVar
+
+from runner.errors import RunnerError
 
 PRESETS = ("as_reported", "sound")
+Thing = TypeVar("Thing")
 
 
 @dataclass(frozen=True)
@@ -11,16 +16,31 @@ class Job:
 
     Attributes:
         overrides: The overrides that make it.
-        ticks: Control ticks that it takes, roughly, for the estimate of what is left.
     """
 
     overrides: tuple[str, ...]
-    ticks: int
 
 
 Jobs = dict[str, Job]
 
 
-def longest_first(jobs: Jobs) -> Jobs:
-    """Return runs by name in the order in which to start them."""
-    return dict(sorted(jobs.items(), key=lambda item: -item[1].ticks))
+class MissingError(RunnerError):
+    """A run or calibration that a report needs, and that was not made."""
+
+
+class Made(dict[str, Thing]):
+    """The runs or calibrations of a work by name; asking for one that was not made raises MissingError.
+
+    Args:
+        found: Those that were made.
+        missing: Why the others were not, by name.
+    """
+
+    def __init__(self, found: Mapping[str, Thing], missing: Mapping[str, str]) -> None:
+        super().__init__(found)
+        self.missing = dict(missing)
+
+    def __missing__(self, name: str) -> Thing:
+        if name in self.missing:
+            raise MissingError(f"{name}: {self.missing[name]}")
+        raise KeyError(name)

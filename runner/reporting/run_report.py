@@ -38,7 +38,7 @@ def _overview(runs: Sequence[Run]) -> Table:
             quantity(run.metrics[name]["median"], run.metrics[name]["unit"]) if name in run.metrics else "–"
             for name in names
         ]
-        rows.append([str(index), *(_literal(str(config.get(key, "–"))) for key in varying), run.status, *values])
+        rows.append([str(index), *(literal(str(config.get(key, "–"))) for key in varying), run.status, *values])
     header = ["run", *varying, "status", *names]
     first = len(varying) + 2
     return Table("Runs, with what distinguishes them; medians.", header, rows, tuple(range(first, len(header))))
@@ -77,13 +77,13 @@ def _metrics(run: Run) -> Table:
     return Table(
         "Metrics of one repetition." if count == 1 else f"Metrics over {count} repetitions.",
         ["metric", "median", "smallest", "largest"],
-        [[_literal(cell) for cell in row] for row in rows],
+        [[literal(cell) for cell in row] for row in rows],
         (1, 2, 3),
     )
 
 
 def _config(run: Run) -> Table:
-    rows = [[_literal(key), _literal(_yaml(value))] for key, value in _flatten(run.config).items() if key != "outputs"]
+    rows = [[literal(key), literal(_yaml(value))] for key, value in _flatten(run.config).items() if key != "outputs"]
     return Table("Config, all values.", ["key", "value"], rows)
 
 
@@ -136,5 +136,6 @@ def _yaml(value: Any) -> str:
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
 
 
-def _literal(text: str) -> str:
+def literal(text: str) -> str:
+    """Return text in which a dollar sign is one, not the begin of mathematics."""
     return text.replace("$", "$$")

@@ -2,8 +2,9 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
-from runner.reporting.document import Document, Section, Text
-from runner.reporting.run_report import provenance
+from runner.reporting.document import Document, Notice, Section, Table, Text
+from runner.reporting.job import Made, MissingError, Thing
+from runner.reporting.run_report import literal, provenance
 from runner.store import Run
 
 
@@ -27,6 +28,31 @@ def work_document(
         runs: The stored runs of the work's plan, by name.
         checklist: Makes the last chapter from those before it.
     """
-    sections = (*chapters, Section("Provenance", (Text(behind), provenance(list(runs.values())))))
+    missing = [_missing(runs.missing)] if isinstance(runs, Made) and runs.missing else []
+    sections = (*missing, *chapters, Section("Provenance", (Text(behind), provenance(list(runs.values())))))
     date = max(str(run.provenance["date"]) for run in runs.values())
     return Document(title, subtitle, abstract, (*sections, checklist(sections)), date)
+
+
+def parts(made: Mapping[str, Thing], *makers: Callable[[Mapping[str, Thing]], Section]) -> list[Section]:
+    """Return chapters or sections, made one by one; one that needs what was not made says so instead.
+
+    Args:
+        made: Runs or calibrations by name.
+        makers: Functions that make each of them; their names are told where one is left out.
+    """
+    found = []
+    for make in makers:
+        try:
+            found.append(make(made))
+        except MissingError as error:
+            name = getattr(make, "func", make).__name__.removesuffix("_section").strip("_").replace("_", " ")
+            notice = Notice("failure", "Left out", f"This part needs what was not made: {literal(str(error))}.")
+            found.append(Section(f"Left out: {name}", (notice,)))
+    return found
+
+
+def _missing(missing: Mapping[str, str]) -> Section:
+    rows = [[literal(name), literal(why)] for name, why in missing.items()]
+    table = Table("Not made, and so missing in this report; the same command makes them.", ["name", "why"], rows)
+    return Section("What is missing", (table,))

@@ -10,13 +10,11 @@ from concurrent.futures import CancelledError
 from pathlib import Path
 from typing import Any
 
-from runner.config.validation import validate
 from runner.errors import RunnerError
 from runner.store.identity import source_digest
-from runner.store.shards import outcome, write_shard
 from runner.sweeps.deadline import STUCK
 from runner.sweeps.queue import Queue
-from runner.sweeps.work import Chunk, Report, cut_short, work, write_log
+from runner.sweeps.work import Chunk, Report, give_up, work
 
 _DEATHS = 3  # of workers over one run, until it is taken for their cause
 _ANSWER_WITHIN = 10.0  # s, for a scheduler and its workers
@@ -101,16 +99,10 @@ def _next_done(client: Any, futures: Sequence[Any]) -> Any:
 
 
 def _give_up(chunk: Chunk) -> Report:
-    """Store that the one run of a chunk was cut short, as it brings every worker down."""
-    name, composed = chunk.runs[0]
-    config = validate(composed.resolved, composed.config_dirs)
     reason = f"its worker process died {_DEATHS + 1} times"
     if chunk.rules.time_limit is not None:
         reason += f", of itself or as it could not be interrupted for {STUCK:g} s after sweep.time_limit"
-    run = cut_short(name, config, composed, chunk.rules, reason)
-    write_log(run, chunk.rules)
-    write_shard(chunk.rules.outputs, chunk.name, [run])
-    return Report([outcome(run)], "", 0.0)
+    return give_up(chunk, reason)
 
 
 def _hush() -> None:
@@ -128,9 +120,12 @@ def local_client(workers: int, scratch: Path) -> Iterator[Any]:
     Args:
         workers: Number of processes.
         scratch: Folder for all temporary files of the cluster and of what runs on it; it is removed.
+
+    Raises:
+        RunnerError: if the processes cannot be started.
     """
     import dask
-    from distributed import Client, LocalCluster, Security
+    from distributed import Client
 
     scratch.mkdir(parents=True, exist_ok=True)
     _hush()
@@ -143,25 +138,33 @@ def local_client(workers: int, scratch: Path) -> Iterator[Any]:
         "distributed.nanny.environ": {"OMP_NUM_THREADS": 1, "TMPDIR": str(scratch)},
     }
     try:
-        with (
-            dask.config.set(settings),
-            LocalCluster(
-                n_workers=workers,
-                threads_per_worker=1,
-                protocol="tls://",
-                security=Security.temporary(),
-                host="127.0.0.1",
-                dashboard_address="127.0.0.1:0",  # none is installed, but its port is opened
-                memory_limit=0,
-                local_directory=str(scratch),
-                preload="runner.sweeps.work",  # for its dask_setup
-                silence_logs=logging.CRITICAL,
-            ) as cluster,
-            Client(cluster) as client,
-        ):
+        with dask.config.set(settings), _start_cluster(workers, scratch) as cluster, Client(cluster) as client:
             yield client
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
+
+
+def _start_cluster(workers: int, scratch: Path) -> Any:
+    from distributed import LocalCluster, Security
+
+    try:
+        return LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            protocol="tls://",
+            security=Security.temporary(),
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",  # none is installed, but its port is opened
+            memory_limit=0,
+            local_directory=str(scratch),
+            preload="runner.sweeps.work",  # for its dask_setup
+            silence_logs=logging.CRITICAL,
+        )
+    except (RuntimeError, OSError) as error:
+        raise RunnerError(
+            f"the processes that make the runs cannot be started: {str(error).rstrip('.')}; look at the limits of open files and "
+            "processes (`ulimit -a`), or take hydra.sweeper.workers=0, which makes them in the command itself"
+        ) from error
 
 
 @contextlib.contextmanager

@@ -7,10 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.store import Run
+from runner.sweeps.swept import is_simulated
 
 FloatArray = NDArray[np.float64]
-
-_ASIDE = ("outputs", "sweep", "hydra")  # how a sweep is run and where it is kept, not what is simulated
 
 
 @dataclass(frozen=True)
@@ -137,7 +136,7 @@ def _values(run: Run) -> dict[str, FloatArray]:
 def _axes(overrides: Sequence[Sequence[str]]) -> tuple[list[Axis], list[str]]:
     """Return the keys whose values differ between jobs as axes, and the other overrides."""
     given = [dict(override.lstrip("+").partition("=")[::2] for override in job) for job in overrides]
-    keys = list(dict.fromkeys(key for job in given for key in job if key.partition(".")[0] not in _ASIDE))
+    keys = list(dict.fromkeys(key for job in given for key in job if is_simulated(key)))
     axes, fixed = [], []
     for key in keys:
         texts = [job.get(key, "") for job in given]

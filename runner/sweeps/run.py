@@ -2,22 +2,23 @@
 
 import shutil
 import sys
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from runner import store
+from runner.config.limits import check_cpu_time
 from runner.config.sweep import SweepConfig
 from runner.errors import ConfigError, StoreError
 from runner.plugins import in_use
 from runner.store.atomic import remove_leftovers
 from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
 from runner.sweeps.lock import at_work
-from runner.sweeps.plan import Plan
+from runner.sweeps.plan import Checked, Plan, check
 from runner.sweeps.progress import Progress, estimate
 from runner.sweeps.queue import Queue
 from runner.sweeps.status import in_words
-from runner.sweeps.work import Report, Rules, TraceKeeping
+from runner.sweeps.work import Report, Rules, TraceKeeping, find_calibrated
 
 _DAMAGE_SHOWN = 10
 _ALL_TRACES_UP_TO = 3000  # runs; with more, sweep.trace=auto is sample
@@ -46,37 +47,47 @@ class Ended:
 
     Attributes:
         folder: The sweep's folder.
-        failures: Overrides, reason and where to read on, of each run that failed.
+        outputs: The outputs folder.
+        names: Hash of each cell's run or calibration.
+        ends: How those ended that are made, by hash.
+        failures: Overrides, reason and where to read on, of each cell that failed.
         left: Number of runs that were not made, as the sweep was to stop at the first failure.
     """
 
     folder: Path
+    outputs: Path
+    names: Sequence[str]
+    ends: Mapping[str, store.Outcome]
     failures: Sequence[tuple[Sequence[str], str, Path]]
     left: int
 
 
-def run_sweep(plan: Plan, engine: Engine, command: str) -> Ended:
-    """Make all runs of a plan that are not stored yet.
+def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool = True) -> Ended:
+    """Make all runs and calibrations of a plan that are not stored yet, the longest first.
 
     Args:
         plan: The plan.
         engine: Where they are made.
         command: The command that makes the sweep, kept with it.
+        accept_cut_short: Whether a stored run that was cut short counts as done; where it is an error it does not.
 
     Raises:
-        ConfigError: if a cell cannot be run; nothing has been started then.
+        ConfigError: if a cell cannot be run, or all would cost too much; nothing has been started then.
         StoreError: if the disk does not take them, or a worker cannot work.
         RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
     """
-    checked = plan.check()
+    checked = check(plan)
     names, outputs = checked.names, checked.outputs
     store.prepare(outputs)
     with at_work(outputs):
-        folder = store.write_sweep(outputs, [(plan.overrides(i), name) for i, name in enumerate(names)], command)
-        rules = make_rules(checked.settings, folder, len(names))
-        ends = _find_stored(names, rules)
+        runs = [(plan.overrides(i), name) for i, name in enumerate(names) if i not in checked.calibrations]
+        folder = store.write_sweep(outputs, runs, command)
+        rules = replace(make_rules(checked.settings, folder, len(names)), accept_cut_short=accept_cut_short)
+        ends = _find_stored(checked, rules)
         left = list({name: cell for cell, name in enumerate(names) if name not in ends}.values())
-        for report in make_runs(plan, Queue(plan, names, left, rules), left, engine, len(ends)):
+        left.sort(key=lambda cell: -checked.costs[cell])
+        queue = Queue(plan, names, checked.costs, left, rules)
+        for report in make_jobs(plan, checked, queue, left, engine, len(ends)):
             ends |= {end.name: end for end in report.outcomes}
             if report.trouble:
                 raise StoreError(f"{report.trouble}; finished runs are stored, the same command goes on from there")
@@ -85,7 +96,7 @@ def run_sweep(plan: Plan, engine: Engine, command: str) -> Ended:
         clean(rules, set(names))
     failed = [(cell, ends[name]) for cell, name in enumerate(names) if name in ends and ends[name].failure]
     failures = [(plan.overrides(cell), end.failure, _where(end.name, outputs, folder)) for cell, end in failed]
-    return Ended(folder, failures, len(set(names) - ends.keys()))
+    return Ended(folder, outputs, names, ends, failures, len(set(names) - ends.keys()))
 
 
 def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
@@ -98,61 +109,95 @@ def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
         sweep=folder,
         trace=automatic if settings.trace == "auto" else settings.trace,
         accept_failed=settings.retry == "none",
+        accept_cut_short=settings.retry == "none",
         stop_at_failure=settings.on_failure == "stop",
         attempts=settings.attempts,
         time_limit=settings.time_limit,
     )
 
 
-def _find_stored(names: Sequence[str], rules: Rules) -> dict[str, store.Outcome]:
-    """Return how those runs ended that count as done: one that shall keep its trace only with it."""
+def _find_stored(checked: Checked, rules: Rules) -> dict[str, store.Outcome]:
+    """Return how those jobs ended that count as done: a run that shall keep its trace only with it."""
     finished = store.Finished(rules.outputs)
     found = {}
-    for name in names:
-        ends = [finished.in_folder(name)]
-        traceless = finished.in_shard(name)
-        if traceless is not None and (traceless.cut_short or not rules.keeps_trace(name, bool(traceless.failure))):
-            ends.append(traceless)
+    for cell, name in enumerate(checked.names):
+        if cell in checked.calibrations:
+            ends = [_find_calibrated(rules, name, finished.damage)]
+        else:
+            ends = [finished.in_folder(name)]
+            traceless = finished.in_shard(name)
+            if traceless is not None and (traceless.cut_short or not rules.keeps_trace(name, bool(traceless.failure))):
+                ends.append(traceless)
         end = min((end for end in ends if end is not None), key=lambda end: end.rank, default=None)
         if end is not None and rules.accepts(end):
             found[name] = end
     for damage in finished.damage[:_DAMAGE_SHOWN]:
-        _tell(f"{damage}; its runs are made again")
+        _tell(f"{damage}; it is made again")
     if len(finished.damage) > _DAMAGE_SHOWN:
         _tell(f"and {len(finished.damage) - _DAMAGE_SHOWN} more; `runner verify {rules.outputs}` names them all")
     return found
 
 
-def make_runs(plan: Plan, queue: Queue, cells: Sequence[int], engine: Engine, stored: int) -> Iterator[Report]:
-    """Make the runs of a queue and show the progress; yield what became of each chunk."""
-    _tell(f"{len(cells) + stored} runs, {stored} of them stored already" if stored else f"{len(cells)} runs")
+def _find_calibrated(rules: Rules, name: str, damage: list[str]) -> store.Outcome | None:
+    try:
+        return find_calibrated(rules.outputs, name)
+    except store.DamagedError as error:
+        damage.append(str(error))
+        return None
+
+
+def make_jobs(
+    plan: Plan, checked: Checked, queue: Queue, cells: Sequence[int], engine: Engine, stored: int
+) -> Iterator[Report]:
+    """Make what is in a queue and show the progress; yield what became of each chunk.
+
+    Args:
+        plan: The plan.
+        checked: What its check gave.
+        queue: The queue.
+        cells: Its cells; of a tuning, whose trials are chosen later, a cell like them for each.
+        engine: Where they are made.
+        stored: Number of jobs that are stored already.
+
+    Raises:
+        ConfigError: if they would cost too much.
+    """
+    _tell(_count(checked, len(cells), stored))
     if not cells:
         return
-    progress = Progress(queue.rules.sweep, len(cells) + stored, stored)
+    ticks = sum(checked.costs[cell] for cell in cells)
+    seconds = estimate(plan, checked, cells, ticks)
+    check_cpu_time(checked.limits, seconds, len(cells))
+    progress = Progress(queue.rules.sweep, len(cells), ticks, queue.cost)
     with progress:
-        for report in _reports(plan, queue, cells, engine):
+        for report in _reports(queue, len(cells), engine, seconds):
             progress.add(report.outcomes)
             yield report
 
 
-def _reports(plan: Plan, queue: Queue, cells: Sequence[int], engine: Engine) -> Iterator[Report]:
+def _count(checked: Checked, left: int, stored: int) -> str:
+    kind = "runs and calibrations" if checked.calibrations else "runs"
+    return f"{left + stored} {kind}, {stored} of them stored already" if stored else f"{left} {kind}"
+
+
+def _reports(queue: Queue, jobs: int, engine: Engine, seconds: float) -> Iterator[Report]:
     if engine.address is not None:
         with remote_client(engine.address) as client:
-            _tell_estimate(plan, cells, max(1, len(client.nthreads())))
+            _tell_estimate(seconds, max(1, len(client.nthreads())))
             yield from on_cluster(queue, client)
     elif engine.workers == 0:
-        _tell_estimate(plan, cells, 1)
+        _tell_estimate(seconds, 1)
         yield from in_process(queue)
     else:
-        workers = min(engine.workers, len(cells))
-        _tell_estimate(plan, cells, workers)
+        workers = min(engine.workers, jobs)
+        _tell_estimate(seconds, workers)
         with local_client(workers, _scratch(queue.rules)) as client:
             yield from on_cluster(queue, client)
 
 
-def _tell_estimate(plan: Plan, cells: Sequence[int], processes: int) -> None:
-    seconds = estimate(plan, cells, processes)
-    _tell(f"about {in_words(seconds)} on {processes} process{'es' if processes > 1 else ''}")
+def _tell_estimate(seconds: float, processes: int) -> None:
+    several = "es" if processes > 1 else ""
+    _tell(f"about {in_words(seconds / processes)} on {processes} process{several}")
 
 
 def _tell(text: str) -> None:

@@ -51,6 +51,11 @@ def parse_sweep(arguments: Sequence[str], groups: Sequence[str], loader: ConfigL
     return list(keys.values())
 
 
+def is_simulated(key: str) -> bool:
+    """Tell whether a key says what is simulated, not how and where that is done."""
+    return key.partition(".")[0] not in ("hydra", "limits", "outputs", "sweep")
+
+
 def _read(override: Override, groups: Sequence[str]) -> SweptKey:
     name = override.key_or_group
     if override.is_sweep_override():

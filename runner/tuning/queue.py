@@ -8,9 +8,10 @@ from runner import store
 from runner.config.compose import Composed
 from runner.config.validation import validate
 from runner.errors import ConfigError
+from runner.sweeps.grid import Grid
+from runner.sweeps.loading import Loader
 from runner.sweeps.queue import Queue
 from runner.sweeps.work import Chunk, Report, Rules
-from runner.tuning.composer import Composer
 from runner.tuning.journal import Journal
 from runner.tuning.sampler import propose
 from runner.tuning.study import Study
@@ -35,18 +36,17 @@ class TrialQueue(Queue):
     Args:
         study: What is tuned.
         journal: The trials that have ended already.
-        composer: Composes their configs.
+        loader: Composes their configs.
         rules: How their runs are made and kept.
         trials: Number of trials after which to end.
         seed: Seed of the search.
     """
 
-    def __init__(
-        self, study: Study, journal: Journal, composer: Composer, rules: Rules, trials: int, seed: int
-    ) -> None:
+    def __init__(self, study: Study, journal: Journal, loader: Loader, rules: Rules, trials: int, seed: int) -> None:
         self._runs: list[str] = []
-        super().__init__(self, self._runs, (), rules)
-        self._study, self._journal, self._composer = study, journal, composer
+        self._ticks: list[int] = []
+        super().__init__(self, self._runs, self._ticks, (), rules)
+        self._study, self._journal, self._loader = study, journal, loader
         self._trials, self._seed = trials, seed
         self._started = deque[_Started]()
         self._configs: dict[int, Composed] = {}
@@ -95,8 +95,9 @@ class TrialQueue(Queue):
     def _start(self, params: Mapping[str, float]) -> None:
         overrides = [*self._study.overrides, *(key.override(params[key.name]) for key in self._study.keys)]
         try:
-            composed = self._composer.plan(overrides).composed(0)
-            run = store.run_hash(composed.resolved, validate(composed.resolved, composed.config_dirs).arm.urdf)
+            composed = Grid(overrides, self._loader).composed(0)
+            config = validate(composed.resolved, composed.config_dirs)
+            run = store.run_hash(composed.resolved, config.arm.urdf)
         except ConfigError as error:
             self._started.append(_Started(params, "", "; ".join(error.problems)))
             return
@@ -104,6 +105,7 @@ class TrialQueue(Queue):
         if run not in self._cell_of:
             cell = self._cell_of[run] = len(self._runs)
             self._runs.append(run)
+            self._ticks.append(config.ticks * config.settings.repetitions)
             self._configs[cell] = composed
             self._left.append(cell)
 

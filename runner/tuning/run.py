@@ -13,17 +13,17 @@ from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.options import groups
 from runner.config.overrides import force
 from runner.errors import ConfigError, StoreError
+from runner.sweeps.grid import Grid
+from runner.sweeps.loading import Loader
 from runner.sweeps.lock import at_work
-from runner.sweeps.plan import Checked, Plan
-from runner.sweeps.run import Engine, clean, make_rules, make_runs
-from runner.tuning.composer import Composer
+from runner.sweeps.plan import Checked, Plan, check
+from runner.sweeps.run import Engine, clean, make_jobs, make_rules
+from runner.sweeps.swept import is_simulated
 from runner.tuning.journal import Journal
 from runner.tuning.key import RANGES, Key, read_key
 from runner.tuning.objective import Objective
 from runner.tuning.queue import TrialQueue
 from runner.tuning.study import Study, Tuning, journal_path
-
-_NOT_SIMULATED = ("hydra", "outputs", "sweep")
 
 
 def tune(
@@ -50,13 +50,13 @@ def tune(
         StoreError: if the disk does not take the runs, or a worker cannot work.
     """
     fixed, keys = _read(overrides, config_dirs)
-    composer = Composer(config_dirs)
-    sweeper = composer.sweeper(force(fixed))
+    loader = Loader(config_dirs)
+    sweeper = loader.sweeper(force(fixed))
     engine = Engine(sweeper.workers, sweeper.address)
     shared = [text for text in fixed if not text.startswith("hydra.")]
-    _check_numbers(composer.plan(shared), keys)
-    plan, checked = _check_ranges(composer, shared, keys)
-    shown = [text for text in shared if text.partition("=")[0].partition(".")[0] not in _NOT_SIMULATED]
+    _check_numbers(Grid(shared, loader), keys)
+    plan, checked = _check_ranges(loader, shared, keys)
+    shown = [text for text in shared if is_simulated(text.partition("=")[0])]
     study = Study(shown, keys, objectives, at_once, command)
     seed = plan.composed(0).resolved["seed"]
     store.prepare(checked.outputs)
@@ -66,19 +66,19 @@ def tune(
         folder.mkdir(parents=True, exist_ok=True)
         journal = Journal(journal_path(folder), keys, objectives)
         study.write(folder, journal.trials)
-        queue = TrialQueue(study, journal, composer, rules, trials, seed)
+        queue = TrialQueue(study, journal, loader, rules, trials, seed)
         try:
-            _work_off(plan, queue, engine, len(journal.trials))
+            _work_off(plan, checked, queue, engine, len(journal.trials))
         finally:
             study.write(folder, journal.trials)
         clean(rules, [trial.run for trial in journal.trials if trial.run])
     return Tuning(folder, study, journal.trials)
 
 
-def _work_off(plan: Plan, queue: TrialQueue, engine: Engine, ended: int) -> None:
+def _work_off(plan: Plan, checked: Checked, queue: TrialQueue, engine: Engine, ended: int) -> None:
     """Make all trials of a queue; once more where the last ones brought their workers down."""
     while queue.left:
-        for report in make_runs(plan, queue, [0] * queue.left, engine, ended):
+        for report in make_jobs(plan, checked, queue, [0] * queue.left, engine, ended):
             if report.trouble:
                 raise StoreError(f"{report.trouble}; finished trials are stored, the same command goes on from there")
             queue.note(report.outcomes)
@@ -116,7 +116,7 @@ def _read_key(override: Override, known_groups: Sequence[str]) -> Key | None:
     key = read_key(override)
     if key is not None and key.name in known_groups:
         raise ConfigError([f"{key.name}: is a group of options, no number"])
-    if key is not None and key.name.partition(".")[0] in _NOT_SIMULATED:
+    if key is not None and not is_simulated(key.name):
         raise ConfigError([f"{key.name}: says how runs are made, not what is simulated; it cannot be tuned"])
     return key
 
@@ -137,14 +137,14 @@ def _check_numbers(plan: Plan, keys: Sequence[Key]) -> None:
         raise ConfigError(problems)
 
 
-def _check_ranges(composer: Composer, shared: Sequence[str], keys: Sequence[Key]) -> tuple[Plan, Checked]:
+def _check_ranges(loader: Loader, shared: Sequence[str], keys: Sequence[Key]) -> tuple[Plan, Checked]:
     """Check the configs at both ends and inside of the ranges; return the plan of the last one and what they gave."""
     problems: dict[str, None] = {}
     names: list[str] = []
     for values in zip(*(key.probes for key in keys), strict=True):
-        plan = composer.plan([*shared, *(key.override(value) for key, value in zip(keys, values, strict=True))])
+        plan = Grid([*shared, *(key.override(value) for key, value in zip(keys, values, strict=True))], loader)
         try:
-            checked = plan.check()
+            checked = check(plan)
             names += checked.names
         except ConfigError as error:
             problems |= dict.fromkeys(error.problems)

@@ -1,22 +1,27 @@
 import csv
+from functools import partial
 
 import pytest
 
+from runner.audit import entry
 from runner.audit.audit import audit
-from runner.audit.entry import parts
 from runner.audit.verdict import VERDICTS
-from runner.commands.reproduce import WORKS
+from runner.commands.reproduce import WORKS, make_all
+from runner.reporting.document import Section, Text
 from runner.reporting.job import Job
 from runner.reporting.run_report import run_document
+from runner.reporting.work_report import parts, work_document
+from runner.sweeps import work as workers
+from runner.sweeps.lock import at_work
 
 
 @pytest.fixture
 def small_work(monkeypatch):
     """Works of three short runs, one of which fails."""
     jobs = {
-        "goal": Job(("robot=macro", "duration=0.1"), 10),
-        "quintic": Job(("robot=mini", "trajectory=quintic", "duration=0.01"), 10),
-        "singular": Job(("experiment=thesis/singular",), 400),
+        "goal": Job(("robot=macro", "duration=0.1")),
+        "quintic": Job(("robot=mini", "trajectory=quintic", "duration=0.01")),
+        "singular": Job(("experiment=thesis/singular",)),
     }
     for work in ("thesis", "xarm7"):
         monkeypatch.setattr(f"runner.reporting.{work}.plan.plan", lambda: jobs)
@@ -55,6 +60,74 @@ def test_a_second_time_nothing_is_simulated(cli, small_work, tmp_path):
     assert first.folder.joinpath("report.pdf").read_bytes().startswith(b"%PDF")
 
 
+HERE = "hydra.sweeper.workers=0"
+
+
+def test_a_run_that_was_cut_short_is_an_error_and_the_report_says_what_is_missing(cli, small_work, monkeypatch):
+    simulate = workers.simulate_job
+
+    def breaks(config, composed):
+        if composed.choices["robot"] == "mini":
+            raise RuntimeError("the machine broke")
+        return simulate(config, composed)
+
+    monkeypatch.setattr(workers, "simulate_job", breaks)
+    monkeypatch.setattr("runner.reporting.thesis.report.thesis_document", _document)
+    ending = cli("reproduce", "thesis", HERE)
+    assert ending.code == 1
+    assert "runner: thesis: quintic is missing in the report: cut short: RuntimeError: the machine broke" in ending.err
+    page = (ending.folder / "report.html").read_text()
+    assert "Not made, and so missing in this report" in page
+    assert "This part needs what was not made: quintic: cut short: RuntimeError: the machine broke" in page
+    monkeypatch.setattr(workers, "simulate_job", simulate)
+    assert cli("reproduce", "thesis", HERE).code == 0
+
+
+def _document(runs):
+    """A report of one part for each run; the one that diverged is a result like any other."""
+    assert runs["singular"].status == "failed"
+    makers = [partial(_part, name=name) for name in ("goal", "quintic")]
+    checklist = lambda sections: Section("Checklist", ())  # noqa: E731
+    return work_document("Title", "", "Abstract", parts(runs, *makers), "", runs, checklist)
+
+
+def _part(runs, name):
+    return Section(name, (Text(runs[name].status),))
+
+
+def test_only_how_runs_are_made_can_be_set(cli, small_work, tmp_path):
+    for text in ("seed=1", "sweep.trace=never", "hydra.searchpath=[]"):
+        ending = cli("reproduce", "thesis", text)
+        assert ending.code == 2
+        assert f"reproduce: {text}: what is simulated is the work's own; free are " in ending.err
+    ending = cli("reproduce", "thesis", HERE, "limits.cpu_hours=1e-9")
+    assert ending.code == 2
+    assert "limits.cpu_hours: 3 runs would take about" in ending.err
+    ending = cli("reproduce", "thesis", "hydra.sweeper.address=tcp://127.0.0.1:1")
+    assert "no Dask scheduler answers at tcp://127.0.0.1:1" in ending.err
+
+
+def test_one_at_a_time_works_in_a_folder(cli, small_work, tmp_path):
+    (tmp_path / "outputs").mkdir()
+    with at_work(tmp_path / "outputs"):
+        assert "another sweep is at work in outputs" in cli("reproduce", "thesis", HERE).err
+
+
+def test_calibrations_are_made_by_the_same_engine(tmp_path):
+    jobs = {"goal": Job(("robot=macro", "duration=0.1"))}
+    calibrations = {"tool": ("calibration=tool_direction", "repetitions=2"), "none": ("calibration.poses=3",)}
+    runs, found = make_all(jobs, calibrations, tmp_path, (HERE,))
+    assert (list(runs), list(found), runs.missing, found.missing) == (["goal"], ["tool", "none"], {}, {})
+    written = {
+        path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.json") if path.parent.parent.name != "sweeps"
+    }
+    path = found["tool"].folder / "robot.urdf"
+    path.write_text(path.read_text().replace("1", "2", 1))
+    make_all(jobs, calibrations, tmp_path, (HERE,))
+    again = [path for path, time in written.items() if path.stat().st_mtime_ns != time]
+    assert again == [found["tool"].folder / "result.json"]
+
+
 def test_the_audit_is_a_report_and_a_table(cli, monkeypatch, tmp_path):
     monkeypatch.setattr("runner.audit.audit.audit_all", lambda: {"xarm7": audit("xarm7", samples=20)})
     ending = cli("reproduce", "audit")
@@ -62,12 +135,12 @@ def test_the_audit_is_a_report_and_a_table(cli, monkeypatch, tmp_path):
     names = sorted(path.name for path in ending.folder.iterdir())
     assert names == ["equations.csv", "report.html", "report.pdf"]
     table = list(csv.DictReader(ending.folder.joinpath("equations.csv").read_text(encoding="utf-8").splitlines()))
-    assert len(table) == sum(len(part.entries) for part in parts("xarm7"))
+    assert len(table) == sum(len(part.entries) for part in entry.parts("xarm7"))
     assert {row["verdict"] for row in table} <= set(VERDICTS)
 
 
 def test_all_reproduces_every_work(cli, small_work, monkeypatch, tmp_path):
-    monkeypatch.setattr("runner.commands.reproduce._WORKS", {name: lambda *_: None for name in WORKS})
+    monkeypatch.setattr("runner.commands.reproduce._WORKS", {name: lambda *_: {} for name in WORKS})
     assert cli("reproduce").out.split() == [f"outputs/reports/{name}" for name in WORKS]
 
 

@@ -30,8 +30,11 @@ ABOVE_ZERO = "must be a number above 0, or a list of such numbers with one for e
         ("repetitions=0", "repetitions: must be above 0; found 0"),
         ("duration=0", "duration: must be above 0; found 0"),
         ("duration=1e-9", "duration: 1e-09 s is shorter than one controller period, 0.01 s"),
-        ("duration=1e9", "duration: 1e+09 s are 1e+11 ticks of controller.period, 0.01 s; allowed: up to 1e+07 ticks"),
-        ("trajectory=quintic trajectory.duration=1e9", "trajectory.duration: 1e+09 s are 1e+11 ticks"),
+        (
+            "duration=1e9",
+            "limits.memory: a run of 1e+09 s (1e+11 ticks of 0.01 s, repetitions: 1) would take about 5.04e+04",
+        ),
+        ("trajectory=quintic trajectory.duration=1e9", "limits.memory: a run of 1e+09 s (1e+11 ticks of 0.01 s"),
         ("trajectory=quintic trajectory.duration=0", "trajectory.duration: must be above 0; found 0"),
         ("outputs=", "outputs: must not be empty; found ''"),
         ("outputs=3", "outputs: must be a text; found 3"),

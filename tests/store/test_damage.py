@@ -17,7 +17,7 @@ def outputs(tmp_path_factory):
     from runner.calibration_job import calibrate
     from runner.store.atomic import write_atomically
     from runner.store.seal import sealed_json
-    from runner.sweeps.plan import plan_sweep
+    from runner.sweeps.grid import plan_sweep
     from runner.sweeps.run import Engine, run_sweep
     from runner.tuning.objective import Objective
     from runner.tuning.run import tune

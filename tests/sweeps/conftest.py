@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from runner.sweeps.plan import plan_sweep
+from runner.sweeps.grid import plan_sweep
 from runner.sweeps.run import Ended, Engine, run_sweep
 
 SHORT = ("robot=macro", "duration=0.05")

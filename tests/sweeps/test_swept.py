@@ -1,7 +1,7 @@
 import pytest
 
 from runner.errors import ConfigError
-from runner.sweeps.plan import plan_sweep
+from runner.sweeps.grid import plan_sweep
 
 
 def keys(*arguments):

@@ -6,7 +6,7 @@ import pytest
 
 from runner.config.compose import compose
 from runner.errors import ConfigError
-from runner.sweeps.plan import plan_sweep
+from runner.sweeps.grid import plan_sweep
 
 INDEPENDENT = [
     ("robot=macro,mini", "noise.position=1e-4,1e-3", "controller.period=0.01,0.02"),
@@ -52,8 +52,8 @@ def test_keys_that_act_on_each_other_are_composed_cell_by_cell(cases, independen
 def test_hydra_composes_once_for_each_combination_of_options(monkeypatch):
     plan = plan_sweep(("robot=macro,mini", "noise=none,thesis", "seed=range(0,50)"))
     loaded = []
-    load = plan._load
-    monkeypatch.setattr(plan, "_load", lambda options: loaded.append(options) or load(options))
+    load = plan._source.load
+    monkeypatch.setattr(plan._source, "load", lambda options: loaded.append(options) or load(options))
     seeds = {plan.composed(cell).resolved["seed"] for cell in range(len(plan))}
     assert (len(plan), len(loaded), seeds) == (200, 4, {*range(50)})
 

@@ -4,8 +4,8 @@ import pytest
 from short_runs import SHORT
 
 from runner import store
+from runner.sweeps.loading import Loader
 from runner.sweeps.work import Rules, work
-from runner.tuning.composer import Composer
 from runner.tuning.journal import Journal
 from runner.tuning.key import Key
 from runner.tuning.objective import Objective
@@ -21,8 +21,8 @@ def queue(tmp_path):
     store.prepare(tmp_path)
     folder = tmp_path / "tunings" / "one"
     study.write(folder, [])
-    rules = Rules((), tmp_path, folder, "all", True, False, 1, None)
-    return TrialQueue(study, Journal(folder / "journal.log", keys, goals), Composer(()), rules, 5, 0)
+    rules = Rules((), tmp_path, folder, "all", True, True, False, 1, None)
+    return TrialQueue(study, Journal(folder / "journal.log", keys, goals), Loader(), rules, 5, 0)
 
 
 def test_only_so_many_are_under_way_and_they_end_in_order(queue):
@@ -44,7 +44,7 @@ def test_a_run_whose_worker_died_is_made_alone(queue):
     chunk = queue.take(1)
     assert queue.give_back(chunk) == []
     again = queue.take_suspect()
-    assert again.runs == chunk.runs
+    assert again.jobs == chunk.jobs
     queue.note(work(again).outcomes)
     assert queue.left == 4
 

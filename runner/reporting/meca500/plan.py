@@ -6,7 +6,7 @@ import numpy as np
 
 from runner.controllers.admittance_filter import AXES, Admittance
 from runner.controllers.admittance_stability import stiffest_wall
-from runner.reporting.job import Job, Jobs, longest_first
+from runner.reporting.job import Job, Jobs
 from runner.robots import RobotModel, find_urdf, read_urdf
 
 REPORTED = 0.0167  # s, between two reports of the real controller
@@ -54,12 +54,12 @@ def law() -> Admittance:
 
 
 def plan() -> Jobs:
-    """Return every run by name, the longest first."""
-    return longest_first({**_free_space(), **_contact(), **_guiding(), **_arm()})
+    """Return every run by name."""
+    return {**_free_space(), **_contact(), **_guiding(), **_arm()}
 
 
-def _job(experiment: str, overrides: tuple[str, ...], ticks: int) -> Job:
-    return Job((f"experiment=meca500/{experiment}", *overrides), ticks + 500)
+def _job(experiment: str, overrides: tuple[str, ...]) -> Job:
+    return Job((f"experiment=meca500/{experiment}", *overrides))
 
 
 def _free_space() -> Jobs:
@@ -69,13 +69,13 @@ def _free_space() -> Jobs:
             load = [0.0] * 6
             load[index] = FORCE if index < 3 else MOMENT
             wrench = (f"environment.force={load[:3]}", f"environment.moment={load[3:]}")
-            jobs[f"step/{case}/{axis}"] = _job("push", (*overrides, *wrench), 600)
+            jobs[f"step/{case}/{axis}"] = _job("push", (*overrides, *wrench))
     for case, overrides in SINE_CASES.items():
         for frequency in FREQUENCIES:
             own = (*overrides, f"environment.frequency={frequency}")
-            jobs[f"sine/{case}/{frequency}"] = _job("sine", own, 1200)
+            jobs[f"sine/{case}/{frequency}"] = _job("sine", own)
     for case, overrides in TIP_CASES.items():
-        jobs[f"tip/{case}"] = _job("push", (*overrides, "environment.force=[3,-2,4]"), 600)
+        jobs[f"tip/{case}"] = _job("push", (*overrides, "environment.force=[3,-2,4]"))
     return jobs
 
 
@@ -84,7 +84,7 @@ def _contact() -> Jobs:
     for plant, overrides in PLANTS.items():
         for stiffness, damping in WALLS.items():
             wall = (f"environment.stiffness={stiffness:g}", f"environment.damping={damping:g}")
-            jobs[f"wall/{plant}/{stiffness:g}"] = _job("wall", (*overrides, *wall), 2000)
+            jobs[f"wall/{plant}/{stiffness:g}"] = _job("wall", (*overrides, *wall))
     values = (f"controller.{key}={3 * [value] + 3 * [turning]}".replace(" ", "") for key, value, turning in
               (("mass", MASS, 0.02), ("damping", DAMPING, 0.8), ("stiffness", STIFFNESS, 8.0)))  # fmt: skip
     base = (*values, "environment.distance=0", "environment.damping=0", "controller.check_stability=false",
@@ -96,36 +96,35 @@ def _contact() -> Jobs:
             servo = ("plant=bullet", f"plant.servo.period={step}", f"plant.step={step}") if plant == "bullet" else ()
             for share in MAP_SHARES[plant]:
                 own = (f"controller.period={period}", f"environment.stiffness={share * bound:.5g}")
-                ticks = 1200 if servo else round(1.2 / period)
-                jobs[f"map/{plant}/{period}/{share}"] = _job("wall", (*base, *servo, *own), ticks)
+                jobs[f"map/{plant}/{period}/{share}"] = _job("wall", (*base, *servo, *own))
     return jobs
 
 
 def _guiding() -> Jobs:
     jobs = {
-        "hand/ideal": _job("hand", (), 3500),
-        "hand/lab": _job("hand", (*_SERVO, "wrist_sensor=mini40"), 5000),
+        "hand/ideal": _job("hand", ()),
+        "hand/lab": _job("hand", (*_SERVO, "wrist_sensor=mini40")),
     }
-    return jobs | {f"limit/{name}": _job(name, (), 2500) for name in LIMITS}
+    return jobs | {f"limit/{name}": _job(name, ()) for name in LIMITS}
 
 
 def _arm() -> Jobs:
     jobs = {}
     for number, home in enumerate(_homes(ORIENTATIONS)):
         posture = f"robot.home={home.round(6).tolist()}".replace(" ", "")
-        jobs[f"rest/{number}"] = _job("weighing", (posture, "wrist_sensor=mini40", f"seed={number}"), 3)
+        jobs[f"rest/{number}"] = _job("weighing", (posture, "wrist_sensor=mini40", f"seed={number}"))
     for duration in SWINGS:
         own = (f"trajectory.duration={duration:g}", f"duration={duration:g}")
-        jobs[f"swing/{duration}"] = _job("tool_in_motion", own, round(400 * duration))
+        jobs[f"swing/{duration}"] = _job("tool_in_motion", own)
     fine = (f"trajectory.duration={SWINGS[-1]:g}", f"duration={SWINGS[-1]:g}", "controller.period=0.0005")
-    jobs["swing/fine"] = _job("tool_in_motion", (*fine, "plant.step=0.0005"), 500)
-    jobs["noise"] = _job("push", ("wrist_sensor=mini40", "environment.force=[0,0,0]", "duration=3"), 3000)
+    jobs["swing/fine"] = _job("tool_in_motion", (*fine, "plant.step=0.0005"))
+    jobs["noise"] = _job("push", ("wrist_sensor=mini40", "environment.force=[0,0,0]", "duration=3"))
     for inertials in INERTIALS:
-        jobs[f"inertials/{inertials}"] = _job("circle", (f"robot.inertials={inertials}", "plant.step=0.001"), 1500)
+        jobs[f"inertials/{inertials}"] = _job("circle", (f"robot.inertials={inertials}", "plant.step=0.001"))
     for name, overrides in (("kinematic", ("plant=kinematic",)), ("rk4", ("plant=rk4",))):
-        jobs[f"plants/{name}"] = _job("circle", overrides, 1500)
+        jobs[f"plants/{name}"] = _job("circle", overrides)
     for step in STEPS:
-        jobs[f"plants/{step}"] = _job("circle", (f"plant.step={step}",), 1500)
+        jobs[f"plants/{step}"] = _job("circle", (f"plant.step={step}",))
     return jobs
 
 

@@ -1,6 +1,7 @@
 """The whole Meca500 report, from its stored runs and calibrations."""
 
 from collections.abc import Mapping
+from functools import partial
 
 from runner.reporting.document import Document, Section
 from runner.reporting.meca500.at_the_tip import at_the_tip_section
@@ -20,7 +21,7 @@ from runner.reporting.meca500.step_response import step_response_section
 from runner.reporting.meca500.tool_centre_point import tool_centre_point_section
 from runner.reporting.meca500.tool_direction import tool_direction_section
 from runner.reporting.meca500.wrist_sensor import wrist_sensor_section
-from runner.reporting.work_report import work_document
+from runner.reporting.work_report import parts, work_document
 from runner.store import Calibration, Run
 
 
@@ -40,30 +41,17 @@ def meca500_document(runs: Mapping[str, Run], calibrations: Mapping[str, Calibra
             "and no results; a simulation has what its laboratory lacked, the truth, and every method is judged "
             "against it. Its misprints are put right and shown in numbers."
         ),
-        chapters=(
-            statements_section(runs),
-            source_section(runs),
-            kinematics_section(runs),
-            inertials_section(runs),
-            wrist_sensor_section(runs),
-            Section(
-                "Where the tool is",
-                sections=(tool_centre_point_section(calibrations), tool_direction_section(calibrations)),
-            ),
-            gravity_section(calibrations, runs),
-            Section(
-                "Admittance control",
-                sections=(
-                    step_response_section(runs),
-                    frequency_response_section(runs),
-                    at_the_tip_section(runs),
-                    contact_section(runs),
-                    stability_map_section(runs),
-                    hand_guiding_section(runs),
-                    limits_section(runs),
-                ),
-            ),
-            plants_section(runs),
+        chapters=parts(
+            runs,
+            statements_section,
+            source_section,
+            kinematics_section,
+            inertials_section,
+            wrist_sensor_section,
+            partial(_where_the_tool_is, calibrations),
+            partial(gravity_section, calibrations),
+            _admittance_control,
+            plants_section,
         ),
         behind=(
             f"{len(runs)} runs and {len(calibrations)} calibrations lie behind this report, stored under "
@@ -71,4 +59,24 @@ def meca500_document(runs: Mapping[str, Run], calibrations: Mapping[str, Calibra
         ),
         runs=runs,
         checklist=CHECKLIST.section,
+    )
+
+
+def _where_the_tool_is(calibrations: Mapping[str, Calibration], _: Mapping[str, Run]) -> Section:
+    return Section("Where the tool is", sections=parts(calibrations, tool_centre_point_section, tool_direction_section))
+
+
+def _admittance_control(runs: Mapping[str, Run]) -> Section:
+    return Section(
+        "Admittance control",
+        sections=parts(
+            runs,
+            step_response_section,
+            frequency_response_section,
+            at_the_tip_section,
+            contact_section,
+            stability_map_section,
+            hand_guiding_section,
+            limits_section,
+        ),
     )

@@ -68,18 +68,17 @@ def _coupling() -> Jobs:
     jobs = {
         f"coupling/{motion}/{method}/{dynamics}": Job(
             (*_method(motion, method), *_ONCE, f"plant.dynamics={dynamics}"),
-            6000,
         )
         for motion in MOTIONS
         for method in METHODS
         for dynamics in DYNAMICS
     }
     for motion in MOTIONS:
-        jobs[f"coupling/{motion}/noise"] = Job((_STAGED[motion], "repetitions=3"), 18000)
+        jobs[f"coupling/{motion}/noise"] = Job((_STAGED[motion], "repetitions=3"))
     for mass in VANISHING:
         for dynamics in DYNAMICS:
             overrides = (_STAGED["quintic"], *_ONCE, "plant=rk4", f"plant.dynamics={dynamics}", *_mini_mass(2 * mass))
-            jobs[f"vanishing/{mass}/{dynamics}"] = Job(overrides, 6000)
+            jobs[f"vanishing/{mass}/{dynamics}"] = Job(overrides)
     return jobs
 
 
@@ -97,7 +96,6 @@ def _masses() -> Jobs:
     return {
         f"mass/{mass}/{payload}": Job(
             (_STAGED["quintic"], *_ONCE, *_mini_mass(mass), f"controller.payload={payload}"),
-            6000,
         )
         for mass in MASSES
         for payload in PAYLOADS
@@ -110,16 +108,15 @@ def _sampling() -> Jobs:
     for dynamics in DYNAMICS:
         for h in MACRO_PERIODS:
             own: tuple[str, ...] = ("plant=rk4", f"controller.period.macro={h:g}")
-            jobs[f"stage_sampling/macro/{dynamics}/{h}"] = Job((*step, *own, f"plant.dynamics={dynamics}"), 3000)
+            jobs[f"stage_sampling/macro/{dynamics}/{h}"] = Job((*step, *own, f"plant.dynamics={dynamics}"))
         for h in MINI_PERIODS:
             own = ("plant=rk4", *_mini_period(h))
-            jobs[f"stage_sampling/mini/{dynamics}/{h}"] = Job((*step, *own, f"plant.dynamics={dynamics}"), 1500)
+            jobs[f"stage_sampling/mini/{dynamics}/{h}"] = Job((*step, *own, f"plant.dynamics={dynamics}"))
         for steps, periods in EULER_PERIODS.items():
             for h in periods:
                 own = (f"plant.step={h / steps:.9g}", *_mini_period(h))
                 jobs[f"stage_sampling/euler{steps}/{dynamics}/{h}"] = Job(
                     (*step, *own, f"plant.dynamics={dynamics}"),
-                    1500,
                 )
     return jobs
 
@@ -135,13 +132,13 @@ def _shapes() -> Jobs:
         for target in TARGETS:
             for motion in MOTIONS:
                 own = (_STAGED[motion], *_ONCE, *overrides, f"controller.macro_target={target}")
-                jobs[f"folding/{case}/{target}/{motion}"] = Job(own, 6000)
+                jobs[f"folding/{case}/{target}/{motion}"] = Job(own)
     for case, overrides in STRETCHING.items():
         two_way = (_STAGED["goal"], *_ONCE, *overrides, "controller.coupling=two_way", "duration=8")
-        jobs[f"stretch/{case}"] = Job(two_way, 12000)
+        jobs[f"stretch/{case}"] = Job(two_way)
     for preset in PRESETS:
         overrides = (_STAGED["quintic"], *_ONCE, f"preset={preset}", "controller.coupling=two_way")
-        jobs[f"stretch/quintic/{preset}"] = Job(overrides, 6000)
+        jobs[f"stretch/quintic/{preset}"] = Job(overrides)
     return jobs
 
 
@@ -156,7 +153,6 @@ def _references() -> Jobs:
                 f"controller.mini_reference_velocity={velocity}",
                 f"trajectory.duration={t_f}",
             ),
-            int(1500 * (t_f + 1.0)),
         )
         for noise in NOISES
         for velocity in VELOCITIES
@@ -170,10 +166,10 @@ def _turns() -> Jobs:
         own = (*_ONCE, f"controller.schedule={schedule}")
         for preset in PRESETS:
             for motion in MOTIONS:
-                jobs[f"turns/{preset}/{motion}/{schedule}"] = Job((_STAGED[motion], *own, f"preset={preset}"), 6000)
+                jobs[f"turns/{preset}/{motion}/{schedule}"] = Job((_STAGED[motion], *own, f"preset={preset}"))
         for t_f in TURN_DURATIONS:
             overrides = (_STAGED["quintic"], *own, f"trajectory.duration={t_f}")
-            jobs[f"turns/{t_f}/{schedule}"] = Job(overrides, int(1500 * (t_f + 1.0)))
+            jobs[f"turns/{t_f}/{schedule}"] = Job(overrides)
     return jobs
 
 
@@ -182,13 +178,13 @@ def _whole_body() -> Jobs:
     for rate, overrides in COMPARED_RATES.items():
         for motion in MOTIONS:
             base = (f"trajectory={motion}",) if "experiment=thesis/whole_body" in overrides else (_STAGED[motion],)
-            jobs[f"whole_body/{motion}/{rate}"] = Job((*base, *overrides, "repetitions=3", _BULLET_STEP), 15000)
+            jobs[f"whole_body/{motion}/{rate}"] = Job((*base, *overrides, "repetitions=3", _BULLET_STEP))
     for speed in TIP_SPEEDS:
         overrides = ("experiment=thesis/whole_body", "trajectory=goal", f"controller.max_tip_speed={speed:g}")
-        jobs[f"whole_body/speed/{speed}"] = Job((*overrides, "repetitions=3"), 18000)
+        jobs[f"whole_body/speed/{speed}"] = Job((*overrides, "repetitions=3"))
     slow = ("experiment=thesis/whole_body", "controller.period=0.01", f"trajectory.duration={SLOW_DURATION:g}")
-    jobs["whole_body/slow"] = Job((*slow, "repetitions=1", _BULLET_STEP), 10500)
+    jobs["whole_body/slow"] = Job((*slow, "repetitions=1", _BULLET_STEP))
     for coupling in ("one_way", "mini_held"):
         overrides = (_STAGED["quintic"], f"controller.coupling={coupling}", "controller.payload=known")
-        jobs[f"rest/{coupling}"] = Job((*overrides, "repetitions=3"), 18000)
+        jobs[f"rest/{coupling}"] = Job((*overrides, "repetitions=3"))
     return jobs

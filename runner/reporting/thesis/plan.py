@@ -1,6 +1,6 @@
 """Which runs the thesis report needs: a name for each, and the overrides that make it."""
 
-from runner.reporting.job import PRESETS, Job, Jobs, longest_first
+from runner.reporting.job import PRESETS, Job, Jobs
 from runner.reporting.thesis.combined_plan import combined_jobs
 
 FIGURES = (
@@ -34,35 +34,32 @@ ARMS = ("macro", "mini")
 
 
 def plan() -> Jobs:
-    """Return every run by name, the longest first."""
+    """Return every run by name."""
     jobs: Jobs = {}
 
-    def add(name: str, *overrides: str, ticks: int = 400) -> None:
-        jobs[name] = Job(overrides, ticks)
+    def add(name: str, *overrides: str) -> None:
+        jobs[name] = Job(overrides)
 
     for figure in FIGURES:
-        ticks = 4000 if figure.startswith("figure_4") else 400
         for preset in PRESETS:
             base = (f"experiment=thesis/{figure}", f"preset={preset}")
-            add(f"{figure}/{preset}", *base, ticks=40 * ticks if figure in COMPARED else ticks)
+            add(f"{figure}/{preset}", *base)
             if figure in COMPARED:
-                add(f"{figure}/{preset}/rk4", *base, "plant=rk4", "repetitions=1", ticks=ticks)
+                add(f"{figure}/{preset}/rk4", *base, "plant=rk4", "repetitions=1")
             for t_f in DURATIONS if figure in TRACKED else ():
-                add(f"{figure}/{preset}/{t_f}", *base, f"trajectory.duration={t_f}", "repetitions=5", ticks=2500)
+                add(f"{figure}/{preset}/{t_f}", *base, f"trajectory.duration={t_f}", "repetitions=5")
     for name in COMBINED:
-        repetitions = 1 if name in ("figure_5_3", "figure_5_11") else 40
         for preset in PRESETS:
             base = (f"experiment=thesis/{name}", f"preset={preset}")
-            add(f"{name}/{preset}", *base, ticks=6000 * repetitions)  # six joints take half as long again
+            add(f"{name}/{preset}", *base)
             if name in ("figure_5_8", "figure_5_10", "figure_5_12", "figure_5_13"):
-                add(f"{name}/{preset}/rk4", *base, "plant=rk4", "repetitions=1", ticks=6000)
+                add(f"{name}/{preset}/rk4", *base, "plant=rk4", "repetitions=1")
     jobs |= combined_jobs()
     for arm in ARMS:
-        ticks = 4000 if arm == "mini" else 400
-        add(f"gravity_term/{arm}", "experiment=thesis/gravity_term", f"robot={arm}", ticks=ticks)
-        add(f"similarity/{arm}", "experiment=thesis/similarity", f"robot={arm}", ticks=ticks)
+        add(f"gravity_term/{arm}", "experiment=thesis/gravity_term", f"robot={arm}")
+        add(f"similarity/{arm}", "experiment=thesis/similarity", f"robot={arm}")
         for t_f in LAG_DURATIONS:
-            add(f"lag/{arm}/{t_f}", "experiment=thesis/lag", f"robot={arm}", f"trajectory.duration={t_f}", ticks=ticks)
+            add(f"lag/{arm}/{t_f}", "experiment=thesis/lag", f"robot={arm}", f"trajectory.duration={t_f}")
     add("base_axis", "experiment=thesis/base_axis")
     for t_f in TORQUE_DURATIONS:
         add(f"base_axis/{t_f}", "experiment=thesis/base_axis", "torque_limits=none", f"trajectory.duration={t_f}")
@@ -72,4 +69,4 @@ def plan() -> Jobs:
     for w in SAMPLING:
         add(f"sampling/{w}", "experiment=thesis/sampling", f"controller.period={w / 30.0:.6g}")
     add("singular", "experiment=thesis/singular")
-    return longest_first(jobs)
+    return jobs

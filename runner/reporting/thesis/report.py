@@ -22,7 +22,7 @@ from runner.reporting.thesis.stage_sampling import stage_sampling_section
 from runner.reporting.thesis.stretch import stretch_section
 from runner.reporting.thesis.turns import turns_section
 from runner.reporting.thesis.whole_body import whole_body_section
-from runner.reporting.work_report import work_document
+from runner.reporting.work_report import parts, work_document
 from runner.store import Run
 
 
@@ -42,16 +42,17 @@ def thesis_document(runs: Mapping[str, Run]) -> Document:
             "simulated each for itself; with the full equations (preset sound) steady-state and tracking errors "
             "fall by one to three powers of ten."
         ),
-        chapters=(
-            claims_section(runs),
-            questions_section(runs),
-            chapter2(runs),
-            chapter3(runs),
-            chapter4(runs),
-            chapter5(runs),
-            _explanations(runs),
-            _beyond(runs),
-            _trust(runs),
+        chapters=parts(
+            runs,
+            claims_section,
+            questions_section,
+            chapter2,
+            chapter3,
+            chapter4,
+            chapter5,
+            _explanations,
+            _beyond,
+            _trust,
         ),
         behind=(
             f"{len(runs)} runs lie behind this report, each stored with its config, trace and metrics under "
@@ -63,25 +64,28 @@ def thesis_document(runs: Mapping[str, Run]) -> Document:
 
 
 def _explanations(runs: Mapping[str, Run]) -> Section:
-    parts = (gravity_section(runs), lag_section(runs), base_axis_section(runs), duration_section(runs))
-    return Section("What explains the numbers", sections=parts)
+    made = parts(runs, gravity_section, lag_section, base_axis_section, duration_section)
+    return Section("What explains the numbers", sections=made)
 
 
 def _beyond(runs: Mapping[str, Run]) -> Section:
-    parts = (
-        coupling_section(runs),
-        mass_ratio_section(runs),
-        stage_sampling_section(runs),
-        folding_section(runs),
-        stretch_section(runs),
-        reference_velocity_section(runs),
-        turns_section(runs),
-        whole_body_section(runs),
-        dynamics_cost_section(runs),
+    return Section(
+        "What the thesis could not show",
+        sections=parts(
+            runs,
+            coupling_section,
+            mass_ratio_section,
+            stage_sampling_section,
+            folding_section,
+            stretch_section,
+            reference_velocity_section,
+            turns_section,
+            whole_body_section,
+            dynamics_cost_section,
+        ),
     )
-    return Section("What the thesis could not show", sections=parts)
 
 
 def _trust(runs: Mapping[str, Run]) -> Section:
-    parts = (plants_section(runs), sampling_section(runs), similarity_section(runs))
-    return Section("Whether the simulation can be trusted", sections=parts)
+    made = parts(runs, plants_section, sampling_section, similarity_section)
+    return Section("Whether the simulation can be trusted", sections=made)

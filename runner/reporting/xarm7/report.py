@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from runner.reporting.document import Document, Section
-from runner.reporting.work_report import work_document
+from runner.reporting.work_report import parts, work_document
 from runner.reporting.xarm7.checklist import CHECKLIST
 from runner.reporting.xarm7.claims import claims_section
 from runner.reporting.xarm7.kinematics import kinematics_section
@@ -36,15 +36,16 @@ def xarm7_document(runs: Mapping[str, Run]) -> Document:
             "not exist and the printed Jacobian is wrong. Here it works, and the report goes on to what it could "
             "not show."
         ),
-        chapters=(
-            claims_section(runs),
-            source_section(runs),
-            kinematics_section(runs),
-            three_joints_section(runs),
-            why_it_failed_section(runs),
-            seven_joints_section(runs),
-            _beyond(runs),
-            plants_section(runs),
+        chapters=parts(
+            runs,
+            claims_section,
+            source_section,
+            kinematics_section,
+            three_joints_section,
+            why_it_failed_section,
+            seven_joints_section,
+            _beyond,
+            plants_section,
         ),
         behind=(
             f"{len({run.hash for run in runs.values()})} runs lie behind this report, each stored with its "
@@ -56,11 +57,14 @@ def xarm7_document(runs: Mapping[str, Run]) -> Document:
 
 
 def _beyond(runs: Mapping[str, Run]) -> Section:
-    parts = (
-        null_space_section(runs),
-        rates_section(runs),
-        servo_section(runs),
-        payload_section(runs),
-        torque_level_section(runs),
+    return Section(
+        "What the report could not show",
+        sections=parts(
+            runs,
+            null_space_section,
+            rates_section,
+            servo_section,
+            payload_section,
+            torque_level_section,
+        ),
     )
-    return Section("What the report could not show", sections=parts)

@@ -59,10 +59,10 @@ def _printed() -> Jobs:
         for case, errors in ERRORS.items():
             law = (_ROBOT, "controller=xarm7_as_printed", f"controller.task={task}", "controller.feedforward=true")
             values = [f"controller.{key}={'printed' if key in errors else 'right'}" for key in ERRORS["as printed"]]
-            jobs[f"printed/{task}/{case}"] = Job((*law, *values), 1000)
+            jobs[f"printed/{task}/{case}"] = Job((*law, *values))
             if "inverse" not in errors:
-                jobs[f"printed/{task}/{case}/fed back"] = Job((*law, *values, f"controller.gain={GAIN:g}"), 1000)
-        jobs[f"printed/{task}/working"] = Job((_ROBOT, f"controller.task={task}"), 1500)
+                jobs[f"printed/{task}/{case}/fed back"] = Job((*law, *values, f"controller.gain={GAIN:g}"))
+        jobs[f"printed/{task}/working"] = Job((_ROBOT, f"controller.task={task}"))
     return jobs
 
 
@@ -80,10 +80,10 @@ def _null_space() -> Jobs:
     for rule in RULES:
         for speed in SPEEDS:
             own = (f"controller.integration={rule}", f"controller.null_space.max_speed={speed:g}")
-            jobs[f"null_space/{rule}/{speed}"] = Job((*standing, *own), 400)
+            jobs[f"null_space/{rule}/{speed}"] = Job((*standing, *own))
     fastest = (*standing, "controller.integration=rk4", f"controller.null_space.max_speed={SPEEDS[-1]:g}")
-    jobs["null_space/fastest rate"] = Job((*fastest, f"controller.period={1.0 / FASTEST_RATE:g}"), 1000)
-    jobs["null_space/servo"] = Job((*fastest, *_SERVO), 1500)
+    jobs["null_space/fastest rate"] = Job((*fastest, f"controller.period={1.0 / FASTEST_RATE:g}"))
+    jobs["null_space/servo"] = Job((*fastest, *_SERVO))
     return jobs
 
 
@@ -94,12 +94,12 @@ def _cycles() -> Jobs:
         for task in NULL_SPACE_TASKS:
             own = (f"controller.null_space.task={task}", "controller.null_space.gain=5")
             times = (f"trajectory.duration={CYCLE:g}", f"duration={CYCLES * CYCLE:g}")
-            jobs[f"cycles/{path}/{task}"] = Job((_ROBOT, *overrides, *own, *times), 2000)
+            jobs[f"cycles/{path}/{task}"] = Job((_ROBOT, *overrides, *own, *times))
     climb = (f"trajectory.duration={CLIMB_CYCLE:g}", f"duration={CLIMB_CYCLES * CLIMB_CYCLE:g}")
     for task in TASKS:
         for sought in SOUGHT:
             law = (f"controller.task={task}", f"controller.null_space.task={sought}", "controller.null_space.gain=20")
-            jobs[f"climb/{task}/{sought}"] = Job((_ROBOT, *law, *climb), 2000)
+            jobs[f"climb/{task}/{sought}"] = Job((_ROBOT, *law, *climb))
     return jobs
 
 
@@ -108,7 +108,6 @@ def _rates() -> Jobs:
     return {
         f"rates/{plant}/{preset}/{rate}": Job(
             (_ROBOT, *overrides, f"preset={preset}", f"controller.period={1.0 / rate:g}", _HALF),
-            600 + cost * rate,
         )
         for plant, (overrides, cost) in plants.items()
         for preset in PRESETS
@@ -128,7 +127,6 @@ def _stiffness() -> Jobs:
                 "trajectory.duration=5",
                 "duration=2.5",
             ),
-            1200,
         )
         for stiffness in STIFFNESSES
         for compensation in GRAVITY_COMPENSATION
@@ -141,9 +139,9 @@ def _payload() -> Jobs:
     for x in XS:
         line = (_ROBOT, f"robot.start=[{x},-0.2,0.1508]", f"robot.goal=[{x},0.2,0.1508]", _HALF)
         for mass in ASKED_PAYLOADS:
-            jobs[f"payload/{x}/asked/{mass:g}"] = Job((*line, f"robot.payload.mass={mass:g}"), 1000)
+            jobs[f"payload/{x}/asked/{mass:g}"] = Job((*line, f"robot.payload.mass={mass:g}"))
         for mass in PAYLOADS:
-            jobs[f"payload/{x}/{mass:g}"] = Job((*line, *_SERVO, f"robot.payload.mass={mass:g}"), 2000)
+            jobs[f"payload/{x}/{mass:g}"] = Job((*line, *_SERVO, f"robot.payload.mass={mass:g}"))
     return jobs
 
 
@@ -152,6 +150,6 @@ def _torque() -> Jobs:
     for law in LAWS:
         base = (_ROBOT, f"controller={law}", "plant=bullet")
         for mass in TORQUE_PAYLOADS:
-            jobs[f"torque/{law}/{mass:g}"] = Job((*base, f"robot.payload.mass={mass:g}"), 1500)
-        jobs[f"torque/{law}/pose"] = Job((*base, "controller.task=pose"), 1500)
+            jobs[f"torque/{law}/{mass:g}"] = Job((*base, f"robot.payload.mass={mass:g}"))
+        jobs[f"torque/{law}/pose"] = Job((*base, "controller.task=pose"))
     return jobs

@@ -1,0 +1,77 @@
+"""Config of what a command may cost, and the estimate that it is compared with before anything is allocated."""
+
+from pydantic import PositiveFloat
+
+from runner.errors import ConfigError
+from runner.registry import StrictModel
+from runner.robots.robot import Robot
+
+_GB = 1e9  # bytes
+_NUMBER = 8  # bytes
+# Numbers that a run keeps of each tick, its stored trace and the metrics' arrays included: measured, rounded up.
+_OF_EACH_TICK, _OF_EACH_JOINT, _OF_WHAT_IS_FELT = 24, 13, 75
+_OF_EACH_REPETITION = 5_000  # bytes, of its metrics
+
+
+class LimitsConfig(StrictModel):
+    """Limits of what a command may cost; an estimate above one stops it before it begins.
+
+    Attributes:
+        cpu_hours: Largest CPU time of all runs of a command together, in hours; None for no limit.
+        memory: Largest memory of one run, in GB (10^9 bytes); None for no limit.
+    """
+
+    cpu_hours: PositiveFloat | None
+    memory: PositiveFloat | None
+
+
+def memory_of_run(arm: Robot, ticks: int, repetitions: int, feels: bool) -> float:
+    """Return the memory that a run takes beside the program, in bytes.
+
+    Args:
+        arm: The robot.
+        ticks: Number of control ticks.
+        repetitions: Number of repetitions.
+        feels: Whether the tip may feel something.
+    """
+    numbers = _OF_EACH_TICK + _OF_EACH_JOINT * arm.model.nq + (_OF_WHAT_IS_FELT if feels else 0)
+    return _NUMBER * numbers * ticks + _OF_EACH_REPETITION * repetitions
+
+
+def check_memory(limits: LimitsConfig, arm: Robot, ticks: int, tick: float, repetitions: int, feels: bool) -> None:
+    """Check that a run fits into memory; see memory_of_run. `tick` is the length of a tick, in s.
+
+    Raises:
+        ConfigError: if it would take more than `limits.memory`; gives the estimate.
+    """
+    needed = memory_of_run(arm, ticks, repetitions, feels) / _GB
+    if limits.memory is not None and needed > limits.memory:
+        raise ConfigError(
+            [
+                f"limits.memory: a run of {ticks * tick:.3g} s ({ticks:.3g} ticks of {tick:g} s, repetitions: "
+                f"{repetitions:.3g}) would take about {needed:.3g} GB; allowed: {limits.memory:g} GB; shorten duration "
+                "or trajectory.duration, ask for fewer repetitions, or set limits.memory"
+            ]
+        )
+
+
+def check_cpu_time(limits: LimitsConfig, seconds: float, runs: int) -> None:
+    """Check that what is to be computed does not take too long.
+
+    Args:
+        limits: The limits.
+        seconds: CPU time that it takes, as estimated, in s.
+        runs: Number of runs.
+
+    Raises:
+        ConfigError: if it is more than `limits.cpu_hours`; gives the estimate.
+    """
+    hours = seconds / 3600.0
+    if limits.cpu_hours is not None and hours > limits.cpu_hours:
+        what = f"{runs} runs" if runs > 1 else "the run"
+        raise ConfigError(
+            [
+                f"limits.cpu_hours: {what} would take about {hours:.3g} hours of CPU time; allowed: "
+                f"{limits.cpu_hours:g}; ask for less, or set limits.cpu_hours"
+            ]
+        )

@@ -1,0 +1,62 @@
+import re
+
+import pytest
+
+from runner.config.limits import LimitsConfig, check_cpu_time, memory_of_run
+from runner.errors import ConfigError
+from runner.execution import seconds_per_tick
+from runner.store import simulated_part
+
+
+@pytest.mark.parametrize(
+    ("overrides", "message"),
+    [
+        (
+            ("duration=90000",),
+            r"limits.memory: a run of 9e\+04 s \(9e\+06 ticks of 0.01 s, .* 4.54 GB; allowed: 4",
+        ),
+        (("repetitions=1000000000",), r"limits.memory: .* repetitions: 1e\+09\) would take about 5e\+03 GB"),
+        (("duration=4000", "limits.memory=0.1"), r"limits.memory: .* allowed: 0.1 GB; shorten duration"),
+        (("repetitions=500000", "limits.cpu_hours=0.1"), r"limits.cpu_hours: the run would take about .* allowed: 0.1"),
+    ],
+)
+def test_a_run_that_costs_too_much_is_not_begun(cli, tmp_path, overrides, message):
+    ending = cli("robot=macro", *overrides)
+    assert ending.code == 2
+    assert re.search(message, ending.err), ending.err
+    assert not (tmp_path / "outputs").exists()
+
+
+def test_a_sweep_that_costs_too_much_is_not_begun(cli, tmp_path):
+    ending = cli("-m", "robot=macro", "seed=range(0,50)", "repetitions=100000", "limits.cpu_hours=1")
+    assert ending.code == 2
+    assert "limits.cpu_hours: 50 runs would take about " in ending.err
+    assert not [*(tmp_path / "outputs" / "runs").iterdir()]
+
+
+def test_null_allows_all(checked_config):
+    config = checked_config("robot=macro", "duration=1e6", "limits.memory=null", "limits.cpu_hours=null")
+    assert config.ticks == 10**8
+    check_cpu_time(config.limits, 1e12, 1)
+
+
+def test_hours_are_compared():
+    limits = LimitsConfig(cpu_hours=2.0, memory=None)
+    check_cpu_time(limits, 7200.0, 3)
+    with pytest.raises(
+        ConfigError, match=r"limits.cpu_hours: 3 runs would take about 2.5 hours of CPU time; allowed: 2;"
+    ):
+        check_cpu_time(limits, 9000.0, 3)
+
+
+def test_what_may_be_felt_takes_memory(macro, one_stage, macro_urdf):
+    robot = one_stage(macro_urdf, macro)
+    assert memory_of_run(robot, 1000, 1, feels=True) > memory_of_run(robot, 1000, 1, feels=False) > 8 * 1000 * 50
+
+
+def test_limits_are_no_part_of_a_result(checked_config):
+    assert "limits" not in simulated_part(checked_config("robot=macro").resolved)
+
+
+def test_a_tick_takes_microseconds(checked_config):
+    assert 1e-7 < seconds_per_tick(checked_config("robot=macro", "plant=rk4")) < 0.1

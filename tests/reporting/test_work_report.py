@@ -1,0 +1,32 @@
+"""A work whose report lacks some of its runs: what needs them says so, all else stands."""
+
+import pytest
+
+from runner.reporting.document import Section, Text
+from runner.reporting.job import Made, MissingError
+from runner.reporting.work_report import parts
+
+RUNS = Made({"a": 1, "b": 2}, {"c": "cut short: killed for $5"})
+
+
+def arms_section(made):
+    return Section("Arms", (Text(f"{made['a']}"),))
+
+
+def wrist_section(made):
+    return Section("Wrist", (Text(f"{made['c']}"),))
+
+
+def test_what_was_not_made_is_said_where_it_is_asked_for():
+    with pytest.raises(MissingError, match="c: cut short: killed"):
+        RUNS["c"]
+    with pytest.raises(KeyError):
+        RUNS["d"]
+    assert list(RUNS.values()) == [1, 2]
+
+
+def test_a_part_that_needs_it_is_left_out():
+    arms, wrist = parts(RUNS, arms_section, wrist_section)
+    assert arms.title == "Arms"
+    assert wrist.title == "Left out: wrist"
+    assert wrist.blocks[0].text == "This part needs what was not made: c: cut short: killed for $$5."
