@@ -101,7 +101,7 @@ def validate(resolved: Mapping[str, Any], config_dirs: Sequence[Path] = ()) -> R
 
 def _check_groups(resolved: Mapping[str, Any]) -> None:
     known = (*_SETTINGS, *_KINDS, *_PLAIN)
-    unknown = [key for key in resolved if key not in known]
+    unknown = [str(key) for key in resolved if key not in known]
     if unknown:
         raise ConfigError(f"{key}: unknown key{nearest(key, known)}; keys: {', '.join(known)}" for key in unknown)
 

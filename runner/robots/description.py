@@ -1,5 +1,6 @@
 """The URDF of a robot as text: found, checked, and changed as a config asks."""
 
+import contextlib
 import math
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
@@ -35,8 +36,9 @@ def find_urdf(name: str, config_dirs: Sequence[Path] = ()) -> Path:
     places = [place for folder in config_dirs for place in (folder / "robots", folder)] + [robots_dir()]
     candidates = [Path(name)] if Path(name).is_absolute() else [place / name for place in places]
     for candidate in candidates:
-        if candidate.is_file():
-            return candidate
+        with contextlib.suppress(OSError):  # a name that is too long for a file, a folder that cannot be read
+            if candidate.is_file():
+                return candidate
     own = sorted(path.name for path in robots_dir().glob("*.urdf"))
     raise ConfigError(
         [

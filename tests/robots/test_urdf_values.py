@@ -22,9 +22,9 @@ def joints(count):
 
 
 FAULTS = {
-    "mass": (changed('mass value="2.0"', 'mass value="1e300"'), "mass 1e+300 kg; allowed: 0, or 1e-12 to 1e+09"),
-    "speck": (changed('mass value="2.0"', 'mass value="1e-30"'), "mass 1e-30 kg; allowed: 0, or 1e-12 to 1e+09"),
-    "inertia": (changed('izz="0.0018', 'izz="1e30'), "inertia izz of 1e+30 kg m^2; allowed: up to 1e+09"),
+    "mass": (changed('mass value="2.0"', 'mass value="1e300"'), "mass 1e+300 kg; allowed: 0, or 1e-12 to 1e+12"),
+    "speck": (changed('mass value="2.0"', 'mass value="1e-30"'), "mass 1e-30 kg; allowed: 0, or 1e-12 to 1e+12"),
+    "inertia": (changed('izz="0.0018', 'izz="1e30'), "inertia izz of 1e+30 kg m^2; allowed: up to 1e+12"),
     "place": (changed('<origin xyz="0 0 0.15"/>', '<origin xyz="nan 0 0"/>'), "<origin xyz='nan 0 0'>; allowed:"),
     "length": (changed('xyz="0 0 0.3"/><axis', 'xyz="0 0 1e300"/><axis'), "<origin xyz='0 0 1e300'>; allowed: three"),
     "axis": (changed(f'axis xyz="{Z}"', 'axis xyz="0 0 0"'), "an axis of length 0; give it a direction"),
