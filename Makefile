@@ -2,21 +2,13 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-STAMP := $(VENV)/.installed
+# A .venv that is there may have any version, unless PYTHON asks for one.
+ANY_VERSION := $(if $(filter file,$(origin PYTHON)),--any-version)
 
 .PHONY: install reproduce test test-slow lint bench clean
 
-install: $(STAMP)
-
-# uv makes this a matter of seconds; where it cannot be had, plain pip does the same from the same constraints.
-$(STAMP): pyproject.toml constraints.txt
-	$(PYTHON) -m venv $(VENV)
-	@if $(BIN)/python -m pip install --quiet uv; then \
-		$(BIN)/uv pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable '.[dev]'; \
-	else \
-		$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev]'; \
-	fi
-	@touch $(STAMP)
+install:
+	@$(PYTHON) .ci/install.py $(ANY_VERSION)
 
 reproduce: install
 	$(BIN)/runner reproduce all

@@ -45,7 +45,7 @@ All config keys, metrics and commands. Made by `python -m bench.make_reference_d
 
 Units are SI, angles in rad; a joint that slides counts in m where one that turns counts in rad. A default such as
 `${robot.period}` is the value of another key. "By stage" means: one value for a robot of one arm; for a robot of
-several a mapping with one for each. A number other than 0 lies between 1e-12 and 1e9 in magnitude (one of a list may
+several a mapping with one for each. A number other than 0 lies between 1e-12 and 1e12 in magnitude (one of a list may
 be smaller), a name has at most 200 characters.
 
 """

@@ -15,8 +15,8 @@ from runner.assembly import assemble, make_encoders
 from runner.config.compose import compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
+from runner.engine_output import quiet_stderr
 from runner.plants.bullet import Bullet
-from runner.plants.quiet import quiet_stderr
 from runner.simulation import ClosedLoop, simulate
 
 with quiet_stderr():

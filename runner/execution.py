@@ -151,5 +151,5 @@ def job_provenance(config: RunConfig, composed: Composed, notices: Sequence[str]
         "stages": {stage.name: stage.base_frame for stage in config.arm.stages},
         "joints": list(config.arm.model.joint_names),
         "seed": config.settings.seed,
-        "warnings": [*config.robot.warnings, *notices],
+        "warnings": [*config.warnings, *notices],
     }

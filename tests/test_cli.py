@@ -215,6 +215,21 @@ def test_completion(tmp_path, line, expected):
     assert process.communicate(timeout=60)[0].split() == expected.split()
 
 
+def test_completion_without_a_shell_is_told(cli, monkeypatch):
+    monkeypatch.delenv("COMP_LINE", raising=False)
+    ending = cli("-sc", "query=bash")
+    assert ending.code == 2
+    assert 'eval "$(runner -sc install=bash)"' in ending.err
+
+
+def test_hydra_s_own_help(tmp_path):
+    process = start("--hydra-help", cwd=tmp_path)
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (0, "")
+    assert "--config-dir" in out
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_listing_and_help_import_little():
     heavy = "{'numpy', 'pydantic', 'pinocchio', 'pybullet', 'pandas', 'hydra'}"
     for arguments in (["list", "robots"], ["--help"]):

@@ -1,6 +1,7 @@
 """`runner OVERRIDES` and `runner -m OVERRIDES`: Hydra composes, we check, run and store."""
 
 import itertools
+import os
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -14,6 +15,7 @@ from runner.config.compose import from_hydra, quiet_environment
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.no_code import code_refused
 from runner.config.overrides import force
+from runner.errors import RunnerError
 from runner.paths import conf_dir
 from runner.texts import one_line
 
@@ -22,6 +24,11 @@ if TYPE_CHECKING:
     from runner.sweeps.run import Ended
 
 _FAILURES_SHOWN = 20
+# What conf/config.yaml says of Hydra itself, which leaves that file aside where it is asked for its own help.
+_WITHOUT_OURS = (
+    "hydra/sweeper=runner", "hydra/job_logging=none", "hydra/hydra_logging=none", "hydra.run.dir=.",
+    "hydra.output_subdir=null",
+)  # fmt: skip
 
 
 class _Task:
@@ -62,7 +69,10 @@ def main(arguments: Sequence[str]) -> int:
     quiet_environment()
     task = _Task()
     completing = bool({"-sc", "--shell-completion"} & set(arguments))
-    sys.argv = ["runner", *(arguments if completing else force(arguments))]
+    if completing and "COMP_LINE" not in os.environ and any(word.startswith("query=") for word in arguments):
+        raise RunnerError('the shell asks so, with COMP_LINE set; let it do so by eval "$(runner -sc install=bash)"')
+    helping = "--hydra-help" in arguments
+    sys.argv = ["runner", *(arguments if completing else force(arguments)), *(_WITHOUT_OURS if helping else ())]
     try:
         # The absolute path works from a console script and from a wheel, where a relative one does not.
         with code_refused():

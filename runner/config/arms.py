@@ -10,13 +10,14 @@ from runner.config.robot import ArmConfig, RobotConfig, StageConfig
 from runner.errors import ConfigError
 from runner.robots.description import find_urdf, read_urdf
 from runner.robots.inertials import Payload, set_file
-from runner.robots.model import RobotModel
+from runner.robots.model import FloatArray, RobotModel
 from runner.robots.mounting import Mount, mount
 from runner.robots.robot import Robot, Stage
 from runner.robots.tool_link import TOOL_TIP, ToolBody, mount_tool
 from runner.sensing.force_torque import ForceTorqueConfig
 
 _KEPT = 8
+_AT_LIMIT = 1e-9  # rad or m
 _built: dict[tuple[object, ...], Robot] = {}
 
 
@@ -33,7 +34,7 @@ def build_robot(
 
     Raises:
         ConfigError: for a URDF that cannot be found or built, a frame or link that does not exist, a posture of the
-            wrong length, or names that clash between stages.
+            wrong length or beyond the joints' limits, or names that clash between stages.
     """
     paths = [find_urdf(arm.urdf, config_dirs) for arm in config.arms.values()]
     files = [file for path in paths for file in (path, set_file(path)) if file.exists()]
@@ -73,10 +74,27 @@ def _build(config: RobotConfig, gravity: float, paths: Sequence[Path], sensor: F
             tip = prefix + own_tip
         joints = slice(first, first + model.nq)
         home = np.array(expand(f"{key}.home", arm.home, model.joint_names))
+        _check_home(f"{key}.home", model, home)
         stages.append(Stage(name, model, urdf, joints, home, base_frame))
         first = joints.stop
     flange = prefix + list(config.arms.values())[-1].tip
     return Robot(whole, RobotModel(whole, tip, gravity) if several else stages[0].model, tuple(stages), flange)
+
+
+def _check_home(key: str, model: RobotModel, home: FloatArray) -> None:
+    problems = []
+    for name, unit, value, lower, upper in zip(
+        model.joint_names, model.joint_units, home, *model.position_limits, strict=True
+    ):
+        if not lower - _AT_LIMIT <= value <= upper + _AT_LIMIT:
+            turned = np.radians(value)
+            degrees = unit == "rad" and abs(value) > 2.0 * np.pi and lower <= turned <= upper
+            hint = f"; degrees? {value:g} degrees are {turned:.4g} rad" if degrees else ""
+            problems.append(
+                f"{key}: {name} at {value:g} {unit} is beyond its limits, {lower:.4g} to {upper:.4g} {unit}{hint}"
+            )
+    if problems:
+        raise ConfigError(problems)
 
 
 def _payloads(config: RobotConfig, flange: str, sensor: ForceTorqueConfig | None) -> list[Payload]:

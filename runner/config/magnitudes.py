@@ -6,8 +6,8 @@ from typing import Any
 
 from runner.texts import quoted
 
-LARGEST = 1e9
-"""Largest magnitude of a number, in SI units: thirty years, or a million tonnes."""
+LARGEST = 1e12
+"""Largest magnitude of a number, in SI units: that of a stiff material's modulus."""
 SMALLEST = 1e-12
 """Smallest magnitude of a number that is not 0, unless it is one of a list, as a coordinate off by rounding."""
 _LARGEST_WHOLE = 10**18 - 1

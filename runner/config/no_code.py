@@ -97,7 +97,7 @@ def check_file(path: Path) -> None:
     Raises:
         ConfigError: if it is too large or nested too deeply, refers to itself, or calls a function of OmegaConf.
     """
-    if conf_dir() in path.parents or not path.is_file():
+    if conf_dir() in path.resolve().parents or not path.is_file():
         return
     with path.open(encoding="utf-8") as file:
         text = file.read(CONFIG.characters + 1)
@@ -122,6 +122,7 @@ def refuse_code(config: DictConfig) -> None:
     if _select(config, "run.dir") != ".":
         bad.append("run.dir")
     sweeper = _plain(config.hydra.sweeper)
+    sweeper = sweeper if isinstance(sweeper, Mapping) else {}
     params = sweeper.get("params") or {}
     ours = {key: value for key, value in sweeper.items() if key not in _SWEEPER_KEYS} == _SWEEPER
     if not ours or not isinstance(params, Mapping) or any(_is_more_than_a_value(value) for value in params.values()):

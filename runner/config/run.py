@@ -11,8 +11,10 @@ from runner.config.noise import NoiseConfig
 from runner.config.robot import RobotConfig
 from runner.config.sweep import SweepConfig
 from runner.config.torque_limits import TorqueLimitsConfig
+from runner.plants import PLANTS
 from runner.registry import StrictModel
 from runner.robots.mismatch import MismatchConfig
+from runner.robots.model import FloatArray, RobotModel
 from runner.robots.robot import Robot
 from runner.sensing import ForceTorqueConfig
 from runner.trajectories import Trajectory
@@ -87,6 +89,25 @@ class RunConfig:
     resolved: Mapping[str, Any]
 
     @property
+    def warnings(self) -> list[str]:
+        """What is unusual in the config though it can be run."""
+        model, found = self.arm.model, list(self.robot.warnings)
+        if PLANTS.commands(self.plant.kind) == "torque":
+            found += _zero_limits("effort", model.effort_limits, "nothing pushes it", model)
+        if self.commands == "position":
+            found += _zero_limits("velocity", model.velocity_limits, "it stands still", model)
+        return found
+
+    @property
     def parallel(self) -> bool:
         """Whether riding stages keep the orientation of home, in the plant's truth."""
         return len(self.arm.stages) > 1 and self.plant.wrist_rotation == "parallel"
+
+
+def _zero_limits(kind: str, limits: FloatArray, so: str, model: RobotModel) -> list[str]:
+    """Return a warning for each joint with a limit of zero: many programs write 0 where they know none."""
+    return [
+        f"robot.urdf: joint '{name}' has the {kind} limit 0, and {so}; is its limit missing?"
+        for name, limit in zip(model.joint_names, limits, strict=True)
+        if limit == 0.0
+    ]

@@ -119,7 +119,7 @@ def _build_trajectory(arm: Robot, trajectory: Any, plant: Any) -> Trajectory:
 
 def _check_groups(resolved: Mapping[str, Any]) -> None:
     known = (*_SETTINGS, *_KINDS, *_PLAIN)
-    unknown = [key for key in resolved if key not in known]
+    unknown = [str(key) for key in resolved if key not in known]
     if unknown:
         raise ConfigError(f"{key}: unknown key{nearest(key, known)}; keys: {', '.join(known)}" for key in unknown)
 

@@ -23,7 +23,10 @@ def compare_engines(urdf: str, model: RobotModel, generator: np.random.Generator
     """
     lower, upper = model.usual_range
     middle, half = 0.5 * (lower + upper), 0.45 * (upper - lower)  # away from the stops, which PyBullet has
-    plant = Bullet(urdf, model, _STEP, 1)
+    try:
+        plant = Bullet(urdf, model, _STEP, 1)
+    except ConfigError as error:
+        return [Finding("refused", "engines", problem.removeprefix("robot.urdf: ")) for problem in error.problems]
     largest = np.zeros(2)
     try:
         for _ in range(_SAMPLES):
@@ -76,5 +79,6 @@ def compare_readings(urdf: Path) -> list[Finding]:
             f"'{worst}' is then off by {100.0 * off[worst]:.0f} %"
         )
         findings.append(Finding("note", "inertia from shapes", text, "the runner tells it to take the file's"))
+    findings += [Finding("note", "PyBullet", f"it prints while it loads the file: {line}") for line in said.said[:10]]
     text = "PyBullet damps bodies by 0.04 1/s of their speed unless it is told not to"
     return [*findings, Finding("note", "default damping", text, "the runner tells it")]

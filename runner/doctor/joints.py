@@ -6,6 +6,7 @@ from collections.abc import Collection
 
 from runner.doctor.finding import Finding
 from runner.robots.tree import UrdfTree, moves
+from runner.robots.urdf_values import number
 
 _NO_LIMIT = "1e6"  # what the runner takes for none
 
@@ -70,11 +71,11 @@ def _check_joint(name: str, joint: ET.Element) -> list[Finding]:
 def _lost(joint: ET.Element) -> bool:
     """Tell whether a joint has damping or friction, which the runner leaves out."""
     dynamics = joint.find("dynamics")
-    return any(_number(dynamics, key) > 0.0 for key in ("damping", "friction"))
+    return any(number(dynamics, key) > 0.0 for key in ("damping", "friction"))
 
 
 def _check_positions(place: str, joint: ET.Element, limit: ET.Element) -> list[Finding]:
-    lower, upper = _number(limit, "lower"), _number(limit, "upper")
+    lower, upper = number(limit, "lower"), number(limit, "upper")
     if lower < upper:
         return []
     said = "no position limits" if math.isnan(lower) or math.isnan(upper) else f"limits from {lower:g} to {upper:g}"
@@ -85,7 +86,7 @@ def _check_positions(place: str, joint: ET.Element, limit: ET.Element) -> list[F
 
 
 def _check_limit(place: str, limit: ET.Element, key: str, joint: ET.Element) -> list[Finding]:
-    value = _number(limit, key)
+    value = number(limit, key)
     if value > 0.0:
         return []
     limit.set(key, _NO_LIMIT)
@@ -93,10 +94,3 @@ def _check_limit(place: str, limit: ET.Element, key: str, joint: ET.Element) -> 
     unit = {"effort": "N" if slides else "N m", "velocity": "m/s" if slides else "rad/s"}[key]
     said = f"no {key} limit" if math.isnan(value) else f"{key} limit {value:g}, with which it could not move"
     return [Finding("finding", place, said, f"give that of the data sheet, in {unit}; {_NO_LIMIT} for none", True)]
-
-
-def _number(element: ET.Element | None, key: str) -> float:
-    try:
-        return math.nan if element is None else float(element.get(key, "nan"))
-    except ValueError:
-        return math.nan

@@ -6,8 +6,7 @@ import xml.etree.ElementTree as ET
 from runner.doctor.finding import Finding
 from runner.robots.inertials import impossible_inertia, make_massless, mend_inertia
 from runner.robots.tree import UrdfTree
-
-_TENSOR = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+from runner.robots.urdf_values import TENSOR, absurd_inertial, number
 
 
 def check_links(tree: UrdfTree) -> list[Finding]:
@@ -21,14 +20,17 @@ def _check_link(tree: UrdfTree, name: str, link: ET.Element) -> list[Finding]:
         make_massless(link)
         text = "no inertial: PyBullet makes it 1 kg, Pinocchio leaves it without mass"
         return [Finding("finding", place, text, "write its mass, or zero mass and zero inertia", True)]
-    mass = _number(link.find("inertial/mass"), "value")
-    moments = [_number(link.find("inertial/inertia"), key) for key in _TENSOR]
+    mass = number(link.find("inertial/mass"), "value")
+    moments = [number(link.find("inertial/inertia"), key) for key in TENSOR]
     if not 0.0 <= mass < math.inf:
         return [Finding("refused", place, f"mass {mass:g} kg", "allowed: 0 or more")]
     if not all(map(math.isfinite, moments)):
         return [
             Finding("refused", place, "an inertia that is missing or no number", "write all six moments, in kg m^2")
         ]
+    absurd = [Finding("refused", place, text) for text in absurd_inertial(link)]
+    if absurd:
+        return absurd
     if mass == 0.0:
         if not any(moments):
             return []
@@ -45,10 +47,3 @@ def _check_link(tree: UrdfTree, name: str, link: ET.Element) -> list[Finding]:
         return []
     mend_inertia(link)
     return [Finding("finding", place, wrong[0], "take the nearest that a body can have, or that of the CAD", True)]
-
-
-def _number(element: ET.Element | None, key: str) -> float:
-    try:
-        return math.nan if element is None else float(element.get(key, "nan"))
-    except ValueError:
-        return math.nan

@@ -7,10 +7,11 @@ from typing import Literal
 import numpy as np
 import pinocchio as pin
 
+from runner.engine_output import caught_output, quiet_stderr
 from runner.errors import ConfigError
+from runner.plants.bullet_reading import words
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
 from runner.plants.plant import FloatArray, Plant
-from runner.plants.quiet import quiet_stderr
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.tool_link import TOOL_MOUNT
@@ -19,6 +20,7 @@ with quiet_stderr():  # PyBullet announces its build time
     import pybullet
 
 _KEPT = 4
+_MOST_JOINTS = 127
 _idle: dict[str, tuple[int, int]] = {}
 """Physics servers of closed plants and the arm in each, by its URDF: a server takes 15 ms of CPU time, an arm 3."""
 # Bullet clamps joint speeds at 100 rad/s by default; a Mini's free goal move is faster than that.
@@ -46,7 +48,7 @@ class Bullet:
         steps_per_tick: Integration steps for which the torques of one tick are held.
 
     Raises:
-        ConfigError: if PyBullet cannot load the URDF.
+        ConfigError: if PyBullet cannot load the URDF, or says anything while it does so.
     """
 
     def __init__(self, urdf: str, model: RobotModel, step: float, steps_per_tick: int) -> None:
@@ -81,10 +83,16 @@ class Bullet:
             file.flush()
             flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
             try:
-                body: int = pybullet.loadURDF(file.name, useFixedBase=True, flags=flags, physicsClientId=client)
+                with caught_output() as said:
+                    body: int = pybullet.loadURDF(file.name, useFixedBase=True, flags=flags, physicsClientId=client)
+                joints = pybullet.getNumJoints(body, physicsClientId=client)
+                if joints > _MOST_JOINTS:
+                    said.append(f"it has {joints} joints, fixed ones included; PyBullet takes up to {_MOST_JOINTS}")
             except pybullet.error as error:
-                pybullet.disconnect(client)
-                raise ConfigError([f"robot.urdf: PyBullet cannot load it: {error}"]) from error
+                said.insert(0, str(error))
+        if said:
+            pybullet.disconnect(client)
+            raise ConfigError([f"robot.urdf: PyBullet does not take it as it is: {'; '.join(words(said))}"])
         return client, body
 
     def _feel_tool(self) -> int | None:

@@ -1,11 +1,12 @@
 """How PyBullet reads a URDF file when nothing is said to it, against what the file says."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from runner.engine_output import caught_output, quiet_stderr
 from runner.errors import ConfigError
-from runner.plants.quiet import quiet_output, quiet_stderr
 
 with quiet_stderr():  # PyBullet announces its build time
     import pybullet
@@ -31,10 +32,18 @@ class BulletReading:
     Attributes:
         joints: Names of the joints that move, in PyBullet's order.
         links: Links by name, the base left out.
+        said: What PyBullet printed while it loaded the file.
     """
 
     joints: tuple[str, ...]
     links: Mapping[str, LinkReading]
+    said: tuple[str, ...]
+
+
+def words(said: Sequence[str]) -> list[str]:
+    """Return what PyBullet printed without the places in its own source."""
+    parts = re.split(r"b3\w+\[[^\]]*\]:", " ".join(said))
+    return list(dict.fromkeys(part.strip() for part in parts if part.strip()))
 
 
 def read_as_bullet(urdf: Path, inertia_from_file: bool) -> BulletReading:
@@ -49,7 +58,7 @@ def read_as_bullet(urdf: Path, inertia_from_file: bool) -> BulletReading:
     """
     client = pybullet.connect(pybullet.DIRECT)
     try:
-        with quiet_output():
+        with caught_output() as said:
             flags = pybullet.URDF_USE_INERTIA_FROM_FILE if inertia_from_file else 0
             body = pybullet.loadURDF(str(urdf), useFixedBase=True, flags=flags, physicsClientId=client)
         joints, links = [], {}
@@ -58,7 +67,7 @@ def read_as_bullet(urdf: Path, inertia_from_file: bool) -> BulletReading:
             values = pybullet.getDynamicsInfo(body, joint, physicsClientId=client)
             links[info[12].decode()] = LinkReading(values[0], tuple(sorted(values[2])))
             joints += [] if info[2] == pybullet.JOINT_FIXED else [info[1].decode()]
-        return BulletReading(tuple(joints), links)
+        return BulletReading(tuple(joints), links, tuple(words(said)))
     except pybullet.error as error:
         raise ConfigError([f"robot.urdf: PyBullet cannot load {urdf}: {error}"]) from error
     finally:

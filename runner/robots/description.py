@@ -1,5 +1,6 @@
 """The URDF of a robot as text: found, checked, and changed as a config asks."""
 
+import contextlib
 import math
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
@@ -12,10 +13,12 @@ from runner.robots.inertials import (
     add_payload,
     add_rotor,
     impossible_inertia,
+    make_massless,
     replace_inertials,
     scale_inertial,
 )
 from runner.robots.tree import UrdfTree, moves, read_tree
+from runner.robots.urdf_values import TENSOR, absurd_inertial, number, wrong_limits, wrong_places
 
 
 def find_urdf(name: str, config_dirs: Sequence[Path] = ()) -> Path:
@@ -33,8 +36,9 @@ def find_urdf(name: str, config_dirs: Sequence[Path] = ()) -> Path:
     places = [place for folder in config_dirs for place in (folder / "robots", folder)] + [robots_dir()]
     candidates = [Path(name)] if Path(name).is_absolute() else [place / name for place in places]
     for candidate in candidates:
-        if candidate.is_file():
-            return candidate
+        with contextlib.suppress(OSError):  # a name that is too long for a file, a folder that cannot be read
+            if candidate.is_file():
+                return candidate
     own = sorted(path.name for path in robots_dir().glob("*.urdf"))
     raise ConfigError(
         [
@@ -66,13 +70,12 @@ def read_urdf(
 
     Raises:
         ConfigError: if the file is no URDF of one serial arm, a set, link or joint named does not exist, a link named
-            has no mass to change, or a link's own mass or inertia is none that a body can have.
+            has no mass to change, or a mass, inertia, place or limit is none that an arm can have.
     """
     tree = read_tree(path)
     links = tree.links
-    if inertials is not None:
-        replace_inertials(links, path, inertials)
-    problems = _check_inertials(path, links) + _check_joints(path, tree)
+    from_set = {} if inertials is None else replace_inertials(links, path, inertials)
+    problems = _check_numbers(path, tree, from_set) + _check_joints(path, tree)
     for name in masses:
         if name not in links:
             problems.append(f"robot.masses.{name}: no such link{nearest(name, links)}; links: {', '.join(links)}")
@@ -88,6 +91,9 @@ def read_urdf(
             )
     if problems:
         raise ConfigError(problems)
+    for link in links.values():
+        if link.find("inertial/inertia") is None:
+            make_massless(link)
     for name, mass in masses.items():
         scale_inertial(links[name], mass)
     if rotor_inertia:
@@ -125,37 +131,42 @@ def _check_joints(path: Path, tree: UrdfTree) -> list[str]:
     ]
 
 
-def _check_inertials(path: Path, links: Mapping[str, ET.Element]) -> list[str]:
+def _check_numbers(path: Path, tree: UrdfTree, from_set: Mapping[str, str]) -> list[str]:
+    """Return numbers that no arm has; `from_set` tells whence a link has its inertial, if not from the file."""
     problems = []
-    for name, link in links.items():
-        if link.find("inertial/mass") is None:
-            problems.append(
-                f"robot.urdf: link '{name}' in {path} has no <inertial><mass>; PyBullet would make it 1 kg: write its "
-                "mass, or zero mass and zero inertia"
-            )
-        elif not 0.0 <= _mass(link) < math.inf:
-            problems.append(f"robot.urdf: link '{name}' in {path} has mass {_mass(link):g} kg; allowed: 0 or more")
-        problems.extend(f"robot.urdf: link '{name}' in {path} has {bad}" for bad in _bad_inertia(link))
+    for name, link in tree.links.items():
+        places = [f"{text}; {mend}" for text, mend in wrong_places(link)]
+        whence = from_set.get(name, f"robot.urdf: link '{name}' in {path} has")
+        problems += [f"robot.urdf: link '{name}' in {path} has {bad}" for bad in places]
+        problems += [] if places else [f"{whence} {bad}" for bad in _bad_inertial(link)]
+    for name, joint in tree.joints.items():
+        wrong = [*(f"{text}; {mend}" for text, mend in wrong_places(joint)), *wrong_limits(joint)]
+        problems += [f"robot.urdf: joint '{name}' in {path} has {bad}" for bad in wrong]
     return problems
 
 
 def _mass(link: ET.Element) -> float:
-    element = link.find("inertial/mass")
-    return math.nan if element is None else _number(element.get("value"))
+    return number(link.find("inertial/mass"), "value")
 
 
-def _number(text: str | None) -> float:
-    """Return what a URDF attribute says, or NaN where it is missing or no number."""
-    try:
-        return math.nan if text is None else float(text)
-    except ValueError:
-        return math.nan
+def _bad_inertial(link: ET.Element) -> list[str]:
+    if link.find("inertial/mass") is None:
+        return ["no <inertial><mass>; PyBullet would make it 1 kg: write its mass, or zero mass and zero inertia"]
+    mass = [] if 0.0 <= _mass(link) < math.inf else [f"mass {_mass(link):g} kg; allowed: 0 or more"]
+    return [*mass, *absurd_inertial(link)] or _bad_inertia(link)
 
 
 def _bad_inertia(link: ET.Element) -> list[str]:
     inertia = link.find("inertial/inertia")
-    values = {} if inertia is None else {key: _number(value) for key, value in inertia.attrib.items()}
-    wrong = [f"inertia {key} that is no finite number" for key, value in values.items() if not math.isfinite(value)]
+    if inertia is None:
+        lost = "no <inertia>, and Pinocchio would leave its mass out: write all six moments, in kg m^2"
+        return [lost] if _mass(link) > 0.0 else []
+    values = {key: number(inertia, key) for key in TENSOR}
+    wrong = [
+        f"inertia {key} that is missing or no finite number"
+        for key, value in values.items()
+        if not math.isfinite(value)
+    ]
     if not wrong and _mass(link) == 0.0 and any(values.values()):
         wrong.append("inertia but no mass; PyBullet would drop it: give it a mass, or zero inertia")
     return wrong or (impossible_inertia(link) if _mass(link) > 0.0 else [])

@@ -63,13 +63,16 @@ def set_file(urdf: Path) -> Path:
     return urdf.with_suffix(".inertials.yaml")
 
 
-def replace_inertials(links: Mapping[str, ET.Element], urdf: Path, name: str) -> None:
+def replace_inertials(links: Mapping[str, ET.Element], urdf: Path, name: str) -> dict[str, str]:
     """Give links the inertials of a named set; links that it leaves out keep theirs.
 
     Args:
         links: The URDF's links by name, changed in place.
         urdf: The URDF's file.
         name: Name of the set.
+
+    Returns:
+        Where each link's inertial comes from that is no more the file's own, for messages about it.
 
     Raises:
         ConfigError: if there is no such set, its file cannot be read, or it names a link that the URDF does not have.
@@ -87,6 +90,7 @@ def replace_inertials(links: Mapping[str, ET.Element], urdf: Path, name: str) ->
         )
     for link, values in sets[name].links.items():
         _write(links[link], values.mass, values.centre_of_mass, values.inertia.model_dump())
+    return {link: f"robot.inertials: set '{name}' in {set_file(urdf)} gives link '{link}'" for link in sets[name].links}
 
 
 def _read_sets(path: Path) -> dict[str, _InertialSet]:

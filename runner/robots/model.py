@@ -8,12 +8,14 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from runner.engine_output import caught_output
 from runner.errors import ConfigError, nearest
 
 FloatArray = NDArray[np.float64]
 
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value (its G(q) shows 9.81 and 19.62)
 
+_MOST_JOINTS = 64
 _NO_LIMIT = 1e6  # SI units; URDF demands limits, and a file without them writes a large number
 
 
@@ -29,8 +31,8 @@ class RobotModel:
         gravity: Magnitude of gravity along -z of the base, in m/s^2.
 
     Raises:
-        ConfigError: if the URDF cannot be built, holds a joint of another kind, lets a joint slide without end, or
-            has no such frame.
+        ConfigError: if the URDF cannot be built without complaint, has no joint that moves or too many, holds a joint
+            of another kind, lets a joint slide without end, or has no such frame.
     """
 
     def __init__(self, urdf: str, tip: str, gravity: float = STANDARD_GRAVITY) -> None:
@@ -208,10 +210,15 @@ def joint_names_of(urdf: str) -> tuple[str, ...]:
 
 
 def _build(urdf: str) -> pin.Model:
+    said: list[str] = []
     try:
-        return pin.buildModelFromXML(urdf)
+        with caught_output() as said:
+            model = pin.buildModelFromXML(urdf)
     except (ValueError, RuntimeError) as error:
-        raise ConfigError([f"robot.urdf: Pinocchio cannot build it: {error}"]) from error
+        raise ConfigError([f"robot.urdf: Pinocchio cannot build it: {' '.join([str(error), *said])}"]) from error
+    if said:
+        raise ConfigError([f"robot.urdf: Pinocchio says of it: {' '.join(said)}"])
+    return model
 
 
 def _slides(joint: pin.JointModel) -> bool:
@@ -220,6 +227,8 @@ def _slides(joint: pin.JointModel) -> bool:
 
 def _check_joints(model: pin.Model, names: Sequence[str]) -> None:
     problems = []
+    if not 1 <= len(names) <= _MOST_JOINTS:
+        problems.append(f"robot.urdf: {len(names) or 'no'} joints that move; allowed: 1 to {_MOST_JOINTS}")
     for name, joint in zip(names, list(model.joints)[1:], strict=True):
         kind = joint.shortname()
         if joint.nq != 1 or not kind.startswith(("JointModelR", "JointModelP")):

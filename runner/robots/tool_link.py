@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from runner.errors import ConfigError
+from runner.robots.inertials import impossible_inertia
 
 TOOL, TOOL_TIP, TOOL_MOUNT = "tool", "tool_tip", "tool_mount"
 """Names of the tool's link, of the massless one at its tip, the tool centre point, and of the joint to the flange."""
@@ -41,7 +42,7 @@ def mount_tool(urdf: str, flange: str, tool: ToolBody) -> str:
         tool: The tool.
 
     Raises:
-        ConfigError: if there is no such link, or names clash.
+        ConfigError: if there is no such link, names clash, or no body has the tool's inertia.
     """
     robot = ET.fromstring(urdf)  # noqa: S314 - our own text, checked when it was read
     links = [link.get("name", "") for link in robot.iter("link")]
@@ -55,6 +56,9 @@ def mount_tool(urdf: str, flange: str, tool: ToolBody) -> str:
     ET.SubElement(inertial, "mass", value=repr(float(tool.mass)))
     moments = dict(zip(("ixx", "iyy", "izz"), (repr(float(value)) for value in tool.inertia), strict=True))
     ET.SubElement(inertial, "inertia", {**moments, "ixy": "0", "ixz": "0", "iyz": "0"})
+    impossible = impossible_inertia(body)
+    if impossible:
+        raise ConfigError(f"robot.tool.inertia: {problem}" for problem in impossible)
     tip = np.array(tool.tip, dtype=float)
     _add_rod(body, tip, tool.tip_radius)
     ball = ET.SubElement(body, "collision")

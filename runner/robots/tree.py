@@ -7,7 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from runner.errors import ConfigError, nearest
+from runner.texts import quoted
 
+_NAME = 200  # characters
+_ELEMENTS = 2000  # links and joints
+_DEPTH = 20
 _XACRO = "{http://www.ros.org/wiki/xacro}"
 
 
@@ -62,7 +66,8 @@ def read_tree(path: Path) -> UrdfTree:
     """Read a URDF file.
 
     Raises:
-        ConfigError: if it is no URDF, holds a document type or macros, or its links do not form one tree.
+        ConfigError: if it is no URDF, holds a document type or macros, more than any engine has room for, or its links
+            do not form one tree.
     """
     robot = _parse(path)
     links = {link.get("name", ""): link for link in robot.findall("link")}
@@ -74,6 +79,9 @@ def read_tree(path: Path) -> UrdfTree:
             [f"robot.urdf: {path} holds xacro macros; make a URDF of it first: xacro {path.name} > {made}"]
         )
     joints = {joint.get("name", ""): joint for joint in robot.findall("joint")}
+    excess = _excess(robot)
+    if excess:
+        raise ConfigError(f"robot.urdf: {path}: {problem}" for problem in excess)
     problems = [*_repeated(robot), *_loose_ends(links, joints)]
     children = Counter(end_of(joint, "child") for joint in joints.values())
     problems += [f"link '{name}' is borne by {count} joints" for name, count in children.items() if count > 1]
@@ -107,6 +115,23 @@ def _parse(path: Path) -> ET.Element:
         raise ConfigError([f"robot.urdf: {path} is no XML: {error}{hint}"]) from error
     except OSError as error:
         raise ConfigError([f"robot.urdf: {path} cannot be read: {error.strerror}"]) from error
+
+
+def _excess(robot: ET.Element) -> list[str]:
+    """Return what engines have no room for: PyBullet writes names that are too long over other memory."""
+    named = (robot, *robot.findall("link"), *robot.findall("joint"))
+    if len(named) > _ELEMENTS:
+        return [f"it has {len(named) - 1} links and joints; allowed: up to {_ELEMENTS}"]
+    level, depth = [robot], 0
+    while level:
+        level, depth = [inner for element in level for inner in element], depth + 1
+    if depth > _DEPTH:
+        return [f"its elements stand {depth} deep within each other; allowed: up to {_DEPTH}"]
+    return [
+        f"the name of a {element.tag} has {len(name)} characters, {quoted(name)}; allowed: up to {_NAME}"
+        for element in named
+        if len(name := element.get("name", "")) > _NAME
+    ]
 
 
 def _repeated(robot: ET.Element) -> list[str]:

@@ -162,8 +162,8 @@ def _start_cluster(workers: int, scratch: Path) -> Any:
         )
     except (RuntimeError, OSError) as error:
         raise RunnerError(
-            f"the processes that make the runs cannot be started: {str(error).rstrip('.')}; look at the limits of open files and "
-            "processes (`ulimit -a`), or take hydra.sweeper.workers=0, which makes them in the command itself"
+            f"the processes that make the runs cannot be started: {str(error).rstrip('.')}; look at the limits of "
+            "open files and processes (`ulimit -a`), or take hydra.sweeper.workers=0, which makes them in the command"
         ) from error
 
 

@@ -13,7 +13,7 @@ def test_nothing_of_ours_is_absurd(robot):
 
 
 @pytest.mark.parametrize(
-    "value", [0, 0.0, 1e-12, -1e9, 10**17, True, None, "x" * 4096, [6.1e-17, 1.0], float("inf"), float("nan")]
+    "value", [0, 0.0, 1e-12, -1e12, 10**17, True, None, "x" * 4096, [6.1e-17, 1.0], float("inf"), float("nan")]
 )
 def test_what_an_experiment_may_need_passes(value):
     assert list(absurd("a", {"b": value})) == []
@@ -22,9 +22,9 @@ def test_what_an_experiment_may_need_passes(value):
 @pytest.mark.parametrize(
     ("value", "problem"),
     [
-        (1e300, "a.b: must lie between 1e-12 and 1e+09 in magnitude; found 1e+300"),
-        (-5e-324, "a.b: must lie between 1e-12 and 1e+09 in magnitude; found -4.94066e-324"),
-        ([1.0, {"c": 2e9}], "a.b.1.c: must lie between 1e-12 and 1e+09 in magnitude; found 2e+09"),
+        (1e300, "a.b: must lie between 1e-12 and 1e+12 in magnitude; found 1e+300"),
+        (-5e-324, "a.b: must lie between 1e-12 and 1e+12 in magnitude; found -4.94066e-324"),
+        ([1.0, {"c": 2e12}], "a.b.1.c: must lie between 1e-12 and 1e+12 in magnitude; found 2e+12"),
         (10**400, "a.b: must be a whole number of at most 18 digits; found 1000"),
         pytest.param(10**5000, "a.b: must be a whole number of at most 18 digits; found a value too large", id="huge"),
         ("x" * 5000, "a.b: must have at most 4096 characters; found 'xxx"),
@@ -44,7 +44,7 @@ def test_what_none_needs_is_told_by_its_key(value, problem):
             "plant.step=1e-12",
             "plant.step: 1e-12 s are 1e+10 steps in controller.period, 0.01 s; allowed: up to ",
         ),
-        ("macro", "plant.step=1e-13", "plant.step: must lie between 1e-12 and 1e+09"),
+        ("macro", "plant.step=1e-13", "plant.step: must lie between 1e-12 and 1e+12"),
         ("macro", "robot.natural_frequency=1e200", "robot.natural_frequency: must lie between"),
         ("xarm7", "controller.damping=1e300", "controller.damping: must lie between"),
         ("macro", "controller.period=5e-324", "controller.period: must lie between"),

@@ -1,9 +1,11 @@
 import json
+import os
 
 import pytest
 
 from runner.config.compose import compose
 from runner.errors import ConfigError
+from runner.paths import conf_dir
 
 HEAD = "# @package _global_\n# A stranger's\n# experiment\n"
 
@@ -129,6 +131,14 @@ def test_the_environment_enters_by_the_command_line_alone(cli, stranger, monkeyp
     assert "hidden" not in ending.err
     ending = cli("robot.name=${oc.env:RUNNER_SECRET}", "duration=0.05")
     assert "name: hidden" in (ending.folder / "config.yaml").read_text()
+
+
+def test_a_way_out_of_our_folder_is_no_way_around_the_check(stranger, tmp_path):
+    (tmp_path / "bomb.yaml").write_text("a: " + "[" * 10_000)
+    there = os.path.relpath(tmp_path / "bomb", conf_dir() / "experiment")
+    ending = stranger(f"defaults: [{there}]")
+    assert ending.code == 2
+    assert "bomb.yaml, line 1: nested deeper than 30 levels" in ending.err
 
 
 @pytest.mark.parametrize("address", ["3", "[a]", "true"])

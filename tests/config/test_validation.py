@@ -48,6 +48,15 @@ ABOVE_ZERO = "must be a number above 0, or a list of such numbers with one for e
         ("robot.masses.link9=1", "robot.masses.link9: no such link (did you mean link3?); links: base, link1, "),
         ("robot.masses=3", "robot.masses: must be a group of keys; found 3"),
         ("robot.home=[0,0]", "robot.home: 2 values for 3 joints (q1, q2, q3); found [0.0, 0.0]"),
+        (
+            "robot=xarm7 robot.home=[0,0,0,90,0,0,0]",
+            "joint4 at 90 rad is beyond its limits, -0.192 to 3.927 rad; degrees? 90 degrees are 1.571 rad",
+        ),
+        ("robot=xarm7 robot.home=[0,0,0,5,0,0,0]", "joint4 at 5 rad is beyond its limits, -0.192 to 3.927 rad\n"),
+        (
+            "robot=xarm7 robot.home=[0,0,0,9000,0,0,0]",
+            "joint4 at 9000 rad is beyond its limits, -0.192 to 3.927 rad\n",
+        ),
         ("robot.urdf=makro.urdf", "robot.urdf: no file 'makro.urdf' (did you mean macro.urdf?); looked in "),
         ("robot.tip=tpi", "robot.tip: no frame 'tpi' (did you mean tip?); frames: "),
         ("torque_limits.max=0", f"torque_limits.max: {ABOVE_ZERO}; found 0"),

@@ -67,7 +67,7 @@ def test_a_clean_arm_fits(examined):
         ),
         ('velocity="20"', "", "joint 'q1'", "no velocity limit; give that of the data sheet, in rad/s"),
         ('lower="-2.8"', 'lower="3"', "joint 'q1'", "limits from 3 to 2.8; give lower and upper, in rad"),
-        ('xyz="0 0 0.3"/><axis', 'xyz="0 0 0,3"/><axis', "joint 'q2'", 'xyz="0 0 0,3">; allowed: three numbers'),
+        ('xyz="0 0 0.3"/><axis', 'xyz="0 0 0,3"/><axis', "joint 'q2'", "xyz='0 0 0,3'>; allowed: three numbers"),
         (f'axis xyz="{Z}"', 'axis xyz="0 0 0"', "joint 'q1'", "an axis of length 0; give it a direction"),
     ],
 )

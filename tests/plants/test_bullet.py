@@ -127,12 +127,31 @@ def test_massless_links_weigh_nothing(make, macro_urdf):
     assert masses == [0.0, 0.0, 1.0, 1.0, 0.0]
 
 
-def test_a_missing_inertial_would_weigh_1_kg(make, macro, macro_urdf):
+def test_what_bullet_says_of_a_missing_inertial_is_told(make, macro_urdf):
     # The trap that read_urdf refuses: were it gone, the refusal could go too.
     head, tail = macro_urdf.split('<link name="tip">')
     bare = head + '<link name="tip">' + tail.replace(tail[tail.index("<inertial>") : tail.index("<visual>")], "")
-    plant = make(bare)
-    assert pybullet.getDynamicsInfo(plant._body, 3, physicsClientId=plant._client)[0] == 1.0
+    with pytest.raises(
+        ConfigError, match=r"robot\.urdf: PyBullet does not take it .*: No inertial data for link, using ma"
+    ):
+        make(bare)
+
+
+def test_what_bullet_says_of_an_inertia_is_told_and_printed_nowhere(make, capfd):
+    with pytest.raises(ConfigError) as raised:
+        make(wheel().replace('izz="0.5"', 'izz="1.1"'), "wheel")
+    assert "Bad inertia tensor properties, setting inertia to zero for link: wheel" in str(raised.value)
+    assert "b3Warning" not in str(raised.value)
+    pybullet.disconnect(pybullet.connect(pybullet.DIRECT))
+    assert capfd.readouterr() == ("", "")
+
+
+def test_more_links_than_bullet_has_room_for(make):
+    end = "".join(
+        link(f"x{i}", NOTHING) + joint(f"f{i}", f"x{i - 1}" if i else "wheel", f"x{i}", "fixed") for i in range(127)
+    )
+    with pytest.raises(ConfigError, match=r"it has 128 joints, fixed ones included; PyBullet takes up to 127"):
+        make(wheel().replace("</robot>", end + "</robot>"), "wheel")
 
 
 def test_two_arms_in_one_process_are_two_arms(make):
@@ -235,7 +254,9 @@ def test_closed_plants_leave_a_bounded_number_of_servers():
 def test_an_urdf_that_bullet_refuses_is_an_error_and_leaves_no_client(macro_urdf):
     model = RobotModel(macro_urdf, "tip")
     connected = [pybullet.isConnected(client) for client in range(64)]
-    with pytest.raises(ConfigError, match=r"robot\.urdf: PyBullet cannot load it"):
+    with pytest.raises(
+        ConfigError, match=r"PyBullet does not take it as it is: Cannot load URDF file\.; No links found"
+    ):
         Bullet("<robot name='none'/>", model, 1e-3, 1)
     assert all(before or not pybullet.isConnected(client) for client, before in enumerate(connected))
 

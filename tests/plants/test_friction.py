@@ -12,7 +12,8 @@ from runner.robots import RobotModel
 
 M = 0.5 + 2.0 * 0.3**2  # kg m^2, of the wheel about its joint
 WHEEL = """
-<robot name="wheel"><link name="base"/><link name="wheel"><inertial>
+<robot name="wheel"><link name="base"><inertial><mass value="0"/>
+  <inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/></inertial></link><link name="wheel"><inertial>
   <origin xyz="0.3 0 0"/><mass value="2"/><inertia ixx="0.3" iyy="0.3" izz="0.5" ixy="0" ixz="0" iyz="0"/>
 </inertial></link>
 <joint name="q1" type="revolute"><parent link="base"/><child link="wheel"/><axis xyz="0 0 1"/>

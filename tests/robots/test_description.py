@@ -120,6 +120,22 @@ def test_a_missing_inertial_is_refused(written):
             read_urdf(written(robot(hand)), {})
 
 
+def test_a_mass_without_inertia_is_refused_as_pinocchio_would_leave_it_out(written):
+    with pytest.raises(
+        ConfigError, match=r"link 'hand' in .* has no <inertia>, and Pinocchio would leave its mass out"
+    ):
+        read_urdf(written(robot("<inertial><mass value='2'/></inertial>")), {})
+    partly = "<inertial><mass value='2'/><inertia ixx='1' iyy='1' izz='1'/></inertial>"
+    with pytest.raises(ConfigError, match=r"link 'hand' in .* has inertia ixy that is missing or no finite number"):
+        read_urdf(written(robot(partly)), {})
+
+
+def test_no_mass_needs_no_inertia(written):
+    urdf = read_urdf(written(robot(inertial(2.0))), {})  # the base says neither
+    assert set(inertials(urdf)["base"][1].values()) == {0.0}
+    assert RobotModel(urdf, "hand").mass == 2.0
+
+
 @pytest.mark.parametrize("mass", ["-1", "nan", "inf", "heavy", ""])
 def test_a_mass_in_the_file_is_a_number_of_0_or_more(written, mass):
     with pytest.raises(ConfigError, match=r"link 'hand' in .* has mass .*; allowed: 0 or more"):

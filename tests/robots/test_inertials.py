@@ -62,6 +62,15 @@ def test_an_arm_without_sets_says_so(arm):
         read_urdf(arm(), {}, inertials="other")
 
 
+def test_a_set_with_an_inertia_that_no_body_has_is_named(arm):
+    tensor = {**TENSOR, "ixx": 5.0}
+    path = arm(one_set({**HAND, "inertia": tensor}))
+    with pytest.raises(ConfigError) as raised:
+        read_urdf(path, {}, inertials="other")
+    assert f"robot.inertials: set 'other' in {set_file(path)} gives link 'hand' principal moments" in str(raised.value)
+    read_urdf(path, {})  # the file's own are sound
+
+
 def test_a_set_for_a_strange_link_is_refused(arm):
     with pytest.raises(ConfigError, match=r"set 'other' names the link 'hnad', which arm\.urdf .*did you mean hand"):
         read_urdf(arm(one_set(link="hnad")), {}, inertials="other")
@@ -82,7 +91,7 @@ def test_a_bad_set_says_where(arm, change, problem):
         read_urdf(arm(one_set({**HAND, **change})), {}, inertials="other")
 
 
-@pytest.mark.parametrize("text", ["a: [", "", "- 1"])
+@pytest.mark.parametrize("text", ["a: [", "", "- 1", "a: " + "[" * 50_000, "a: &a [*a]"])
 def test_a_set_file_that_is_none(arm, text):
     with pytest.raises(ConfigError, match=r"robot\.inertials: .*arm\.inertials\.yaml"):
         read_urdf(arm(text), {}, inertials="other")

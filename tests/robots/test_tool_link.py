@@ -1,5 +1,7 @@
 """A tool on the flange."""
 
+from dataclasses import replace
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -79,6 +81,21 @@ def test_the_holding_wrench_in_motion_is_the_rate_of_change_of_momentum(equipped
 def test_a_flange_that_is_no_link_is_refused(bare):
     with pytest.raises(ConfigError, match=r"robot\.tool: the flange 'hand' is no link"):
         mount_tool(bare.urdf, "hand", TOOL)
+
+
+@pytest.mark.parametrize("moments", [[1.0, 1e-3, 1e-3], [1e-3, 1e-3, 2.1e-3]])
+def test_a_tool_whose_inertia_no_body_has_is_refused(bare, moments):
+    with pytest.raises(ConfigError, match=r"robot\.tool\.inertia: principal moments .* no body has one above the sum"):
+        mount_tool(bare.urdf, "flange", replace(TOOL, inertia=moments))
+
+
+@pytest.mark.parametrize("plant", ["bullet", "rk4"])
+def test_so_is_a_run_with_it(cli, tmp_path, plant):
+    overrides = ("controller=computed_torque", "trajectory=line", "duration=0.05", "robot.tool.inertia=[1,0.001,0.001]")
+    ending = cli("robot=meca500", f"plant={plant}", *overrides)
+    assert ending.code == 2
+    assert "  - robot.tool.inertia: principal moments of inertia of 0.001, 0.001, 1 kg m^2" in ending.err
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_two_tools_are_refused(bare):

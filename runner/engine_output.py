@@ -1,0 +1,59 @@
+"""What C libraries write to the process's outputs themselves: sent to nowhere, or caught so that it can be told."""
+
+import ctypes
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+_C = ctypes.CDLL(None)
+
+
+@contextmanager
+def quiet_stderr() -> Iterator[None]:
+    """Send file descriptor 2 to nowhere for a while; Python's own messages are flushed before."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        with _sent_to(nowhere, 2):
+            yield
+    finally:
+        os.close(nowhere)
+
+
+@contextmanager
+def caught_output() -> Iterator[list[str]]:
+    """Catch what is written to file descriptors 1 and 2 for a while; nothing of it reaches them.
+
+    Yields:
+        Its lines, each once, there when the block has ended.
+    """
+    said: list[str] = []
+    with tempfile.TemporaryFile() as file:
+        try:
+            with _sent_to(file.fileno(), 1), _sent_to(file.fileno(), 2):
+                yield said
+        finally:
+            file.seek(0)
+            lines = file.read().decode(errors="replace").splitlines()
+            said += dict.fromkeys(line.strip() for line in lines if line.strip())
+
+
+@contextmanager
+def _sent_to(target: int, descriptor: int) -> Iterator[None]:
+    _flush()
+    saved = os.dup(descriptor)
+    try:
+        os.dup2(target, descriptor)
+        yield
+    finally:
+        _flush()
+        os.dup2(saved, descriptor)
+        os.close(saved)
+
+
+def _flush() -> None:
+    """Write out what Python and C still hold back, so that it goes where it was meant to."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    _C.fflush(None)

@@ -1,0 +1,138 @@
+"""What `make install` does with the .venv that it finds; nothing here needs a network."""
+
+import importlib.util
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture(scope="module")
+def install():
+    spec = importlib.util.spec_from_file_location("install", ROOT / ".ci" / "install.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """A checkout with a .venv of this Python, its scripts naming where it is."""
+    root = tmp_path / "check out"
+    root.mkdir()
+    for name in ("pyproject.toml", "constraints.txt"):
+        (root / name).write_text(name)
+    venv = root / ".venv"
+    (venv / "bin").mkdir(parents=True)
+    (venv / "bin" / "python").symlink_to(sys.executable)
+    (venv / "bin" / "pip").write_text(
+        f"#!/bin/sh\n'''exec' \"{venv}/bin/python3.11\" \"$0\" \"$@\"\n' '''\nimport sys\n"
+    )
+    return root
+
+
+@pytest.fixture
+def commands(install, monkeypatch):
+    """The commands that would have been run."""
+    given = []
+    monkeypatch.setattr(install, "run", lambda command, root: given.append(command[1:]))
+    return given
+
+
+def another_python(venv, version):
+    (venv / "bin" / "python").unlink()
+    (venv / "bin" / "python").write_text(f"#!/bin/sh\necho {version}\n")
+    (venv / "bin" / "python").chmod(0o755)
+
+
+def test_a_sound_venv_is_installed_into_once(install, checkout, commands):
+    install.install(checkout, any_version=True)
+    assert [command[:3] for command in commands] == [["-m", "pip", "install"], ["pip", "install", "--quiet"]]
+    install.install(checkout, any_version=True)
+    assert len(commands) == 2
+    (checkout / "constraints.txt").write_text("newer")
+    install.install(checkout, any_version=True)
+    assert len(commands) == 4
+
+
+def test_uv_and_what_builds_are_pinned(install, checkout, commands):
+    install.install(checkout, any_version=True)
+    pip, uv = commands
+    assert pip[-3:] == ["--constraint", "constraints.txt", "uv"]
+    assert uv[uv.index("--build-constraint") :][:2] == ["--build-constraint", "constraints.txt"]
+    pins = (ROOT / "constraints.txt").read_text()
+    assert "\nuv==" in pins
+    assert "\nhatchling==" in pins
+
+
+@pytest.mark.parametrize("fault", ["moved", "gone", "old", "other"])
+def test_a_venv_that_cannot_stay_is_made_anew_and_says_why(install, checkout, commands, capsys, fault):
+    if fault == "moved":
+        checkout = checkout.rename(checkout.parent / "elsewhere")
+    venv = checkout / ".venv"
+    if fault == "gone":
+        (venv / "bin" / "python").unlink()
+    if fault in ("old", "other"):
+        another_python(venv, "3 10" if fault == "old" else "3 99")
+    with pytest.raises(FileNotFoundError):  # the stamp's folder, as nothing is really made here
+        install.install(checkout, any_version=fault != "other")
+    assert commands[0] == ["-m", "venv", str(venv)]
+    why = {"moved": "it was made in ", "gone": "its Python is gone", "old": "it has Python 3.10", "other": "3.99"}
+    said = capsys.readouterr().err
+    assert said.startswith("make install: .venv is made anew: ")
+    assert why[fault] in said
+    assert said.count("\n") == 1
+
+
+def test_another_version_stays_unless_one_is_asked_for(install, checkout, commands):
+    another_python(checkout / ".venv", "3 99")
+    install.install(checkout, any_version=True)
+    assert commands[0][:3] == ["-m", "pip", "install"]
+
+
+def test_too_old_a_python_is_told_in_a_line(install, capsys, monkeypatch):
+    with pytest.raises(install.InstallError) as raised:
+        install.require((3, 10), "/usr/bin/python3")
+    assert str(raised.value) == (
+        "Python 3.11 or newer is needed, and /usr/bin/python3 is 3.10; name another one, as in make install "
+        "PYTHON=python3.11"
+    )
+
+
+@pytest.mark.parametrize(
+    "printed",
+    [
+        "WARNING: ... Failed to establish a new connection: [Errno -3] Temporary failure in name resolution",
+        "error: Failed to fetch: `https://pypi.org/simple/numpy/`\n  Caused by: dns error",
+        "ReadTimeoutError: Read timed out.",
+    ],
+)
+def test_without_a_network_it_says_so_and_stops(install, checkout, monkeypatch, capsys, printed):
+    tried = []
+
+    def fail(command, **_):
+        tried.append(command)
+        return subprocess.CompletedProcess(command, 1, stdout=printed.encode())
+
+    monkeypatch.setattr(install, "version_of", lambda _: sys.version_info[:2])
+    monkeypatch.setattr(install.subprocess, "run", fail)
+    monkeypatch.setattr(install, "ROOT", checkout)
+    assert install.main(["--any-version"]) == 2
+    assert len(tried) == 1
+    last = capsys.readouterr().err.splitlines()[-1]
+    assert last.startswith("make install: the packages cannot be fetched: is there a network?")
+
+
+def test_make_hands_on_whether_a_version_was_asked_for():
+    asked = {
+        "": "python3 .ci/install.py --any-version",
+        "PYTHON=python3.12": "python3.12 .ci/install.py ",
+    }
+    for argument, line in asked.items():
+        words = ["make", "-n", "install", *([argument] if argument else [])]
+        clean = {"PATH": os.environ["PATH"]}  # these tests may themselves be started by make
+        assert subprocess.run(words, cwd=ROOT, env=clean, capture_output=True, text=True).stdout.strip() == line.strip()
