@@ -1,15 +1,17 @@
-"""Files of conf/ read once in a process: reading them takes most of the time in which Hydra composes a config.
+"""Files of configs read once in a process, which takes most of the time in which Hydra composes a config.
 
-A YAML text is parsed once. What Hydra makes of the chosen options alone is made once, and copied; values that overrides
-set are put there by Hydra as ever, and so is everything where a user's config folder is read, too.
+A YAML text is parsed once. What Hydra makes of the chosen options alone is made once, for the files as they are, and
+copied; values that overrides set are put there by Hydra as ever.
 `test_composing.py` compares both ways; what is about Hydra itself asks for the fixture `plain_hydra`.
 """
 
 import copy
+import hashlib
 import pickle
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import yaml
@@ -41,9 +43,7 @@ def choose_once(repo: Any, config_name: Any, overrides_list: Any, **options: Any
     """Return which files make a config, as Hydra does from the overrides of options, and the overrides of values."""
     values = Overrides(repo=repo, overrides_list=overrides_list).config_overrides
     others = [override.input_line for override in overrides_list if override not in values]
-    key = (config_name, *others, *sorted(options.items()))
-    if not _ours(repo):
-        return _choose(repo=repo, config_name=config_name, overrides_list=overrides_list, **options)
+    key = (_files(repo), config_name, *others, *sorted(options.items()))
     if key not in _chosen:
         _chosen[key] = _choose(repo=repo, config_name=config_name, overrides_list=overrides_list, **options)
     return replace(_chosen[key], config_overrides=values)
@@ -51,18 +51,22 @@ def choose_once(repo: Any, config_name: Any, overrides_list: Any, **options: Any
 
 def merge_once(self: Any, defaults: Any, repo: Any) -> Any:
     """Return what the files say together."""
-    key = tuple((default.config_path, default.package) for default in defaults)
-    if not _ours(repo):
-        return _merge(self, defaults=defaults, repo=repo)
+    key = (_files(repo), *((default.config_path, default.package) for default in defaults))
     if key not in _merged:
         _merged[key] = _merge(self, defaults=defaults, repo=repo)
     return copy.deepcopy(_merged[key])
 
 
-def _ours(repo: Any) -> bool:
-    """Tell whether no other files are read than ours and Hydra's own."""
-    paths = {source.path for source in repo.get_sources() if source.provider not in ("hydra", "schema")}
-    return paths == {str(conf_dir())}
+def _files(repo: Any) -> str:
+    """Return a digest of where files are read and, but for our own, of what stands in them."""
+    digest = hashlib.sha256()
+    for source in repo.get_sources():
+        digest.update(f"{source.provider} {source.full_path()}\n".encode())
+        folder = Path(source.path)
+        if source.scheme() == "file" and folder != conf_dir():
+            for path in sorted(folder.rglob("*.yaml")):
+                digest.update(f"{path}\n".encode() + path.read_bytes())
+    return digest.hexdigest()
 
 
 def begin() -> None:

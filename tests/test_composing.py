@@ -71,6 +71,16 @@ def test_what_is_changed_in_one_config_is_in_no_other():
     assert compose(["robot=combined"]).resolved["noise"]["position"] != 5.0
 
 
+def test_a_folder_of_ones_own_is_read_as_it_is(tmp_path):
+    (tmp_path / "noise").mkdir()
+    for position in (1e-3, 2e-3):
+        (tmp_path / "noise/own.yaml").write_text(f"defaults: [thesis]\nposition: {position}\n")
+        quick = [compose(["robot=macro", "noise=own"], [tmp_path]) for _ in range(2)]
+        with composing.plainly():
+            assert quick == 2 * [compose(["robot=macro", "noise=own"], [tmp_path])]
+        assert quick[0].resolved["noise"]["position"] == position
+
+
 @pytest.mark.parametrize("path", sorted(conf_dir().rglob("*.yaml")), ids=lambda path: path.stem)
 def test_a_file_is_parsed_as_ever(path):
     with path.open() as stream:
