@@ -1,28 +1,31 @@
-"""Configs composed faster than by Hydra alone, where composing takes most of the time of a short run.
+"""Files of configs read once in a process, which takes most of the time in which Hydra composes a config.
 
-A YAML text is parsed once in a process. Hydra composes every combination of options once; overrides of values are
-applied to a copy, by Hydra's own function for them. What is neither an option nor a value goes to Hydra as ever.
+A YAML text is parsed once. What Hydra makes of the chosen options alone is made once, for the files as they are, and
+copied; values that overrides set are put there by Hydra as ever.
 `test_composing.py` compares both ways; what is about Hydra itself asks for the fixture `plain_hydra`.
 """
 
 import copy
+import hashlib
 import pickle
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import yaml
+from hydra._internal import config_loader_impl as loading
 from hydra._internal.config_loader_impl import ConfigLoaderImpl
-from hydra.core.override_parser.overrides_parser import OverridesParser
-from omegaconf import DictConfig
+from hydra._internal.defaults_list import DefaultsList, Overrides
 
-from runner.config import compose as composition
-from runner.config.options import groups
+from runner.paths import conf_dir
 
-_hydra, _parse = composition.hydra_compose, yaml.load
-_groups = frozenset(groups())
-_composed: dict[tuple[str, ...], DictConfig] = {}
+_parse = yaml.load
+_choose, _merge = loading.create_defaults_list, ConfigLoaderImpl._compose_config_from_defaults_list
 _parsed: dict[tuple[str | bytes, str], bytes] = {}
+_chosen: dict[Any, DefaultsList] = {}
+_merged: dict[Any, Any] = {}
 
 
 def parse_once(stream: Any, Loader: Any) -> Any:
@@ -36,27 +39,45 @@ def parse_once(stream: Any, Loader: Any) -> Any:
     return pickle.loads(_parsed[key])
 
 
-def compose_quickly(root: str, overrides: Sequence[str], return_hydra_config: bool) -> DictConfig:
-    """Do what Hydra's compose does with overrides as `force` leaves them."""
-    options = [override for override in overrides if not override.startswith("++")]
-    values = OverridesParser.create().parse_overrides([value for value in overrides if value.startswith("++")])
-    if any(value.is_sweep_override() for value in values) or not {o.partition("=")[0] for o in options} <= _groups:
-        return _hydra(root, list(overrides), return_hydra_config=return_hydra_config)
-    if (root, *options) not in _composed:
-        _composed[root, *options] = _hydra(root, options, return_hydra_config=True)
-    config = copy.deepcopy(_composed[root, *options])
-    ConfigLoaderImpl._apply_overrides_to_config(values, config)
-    return config
+def choose_once(repo: Any, config_name: Any, overrides_list: Any, **options: Any) -> DefaultsList:
+    """Return which files make a config, as Hydra does from the overrides of options, and the overrides of values."""
+    values = Overrides(repo=repo, overrides_list=overrides_list).config_overrides
+    others = [override.input_line for override in overrides_list if override not in values]
+    key = (_files(repo), config_name, *others, *sorted(options.items()))
+    if key not in _chosen:
+        _chosen[key] = _choose(repo=repo, config_name=config_name, overrides_list=overrides_list, **options)
+    return replace(_chosen[key], config_overrides=values)
+
+
+def merge_once(self: Any, defaults: Any, repo: Any) -> Any:
+    """Return what the files say together."""
+    key = (_files(repo), *((default.config_path, default.package) for default in defaults))
+    if key not in _merged:
+        _merged[key] = _merge(self, defaults=defaults, repo=repo)
+    return copy.deepcopy(_merged[key])
+
+
+def _files(repo: Any) -> str:
+    """Return a digest of where files are read and, but for our own, of what stands in them."""
+    digest = hashlib.sha256()
+    for source in repo.get_sources():
+        digest.update(f"{source.provider} {source.full_path()}\n".encode())
+        folder = Path(source.path)
+        if source.scheme() == "file" and folder != conf_dir():
+            for path in sorted(folder.rglob("*.yaml")):
+                digest.update(f"{path}\n".encode() + path.read_bytes())
+    return digest.hexdigest()
 
 
 def begin() -> None:
-    """Compose quickly from here on."""
-    yaml.load, composition.hydra_compose = parse_once, compose_quickly
+    """Read files once from here on."""
+    yaml.load = parse_once
+    loading.create_defaults_list, ConfigLoaderImpl._compose_config_from_defaults_list = choose_once, merge_once
 
 
 @contextmanager
 def plainly() -> Iterator[None]:
-    """Compose by Hydra alone for a while."""
-    yaml.load, composition.hydra_compose = _parse, _hydra
+    """Leave to Hydra for a while what it makes of the files."""
+    loading.create_defaults_list, ConfigLoaderImpl._compose_config_from_defaults_list = _choose, _merge
     yield
     begin()

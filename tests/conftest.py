@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import compiled_once
 import composing
 import numpy as np
 import pytest
@@ -30,6 +31,12 @@ settings.load_profile("runner")
 
 def read_thesis_urdf(name: str) -> str:
     return read_urdf(find_urdf(f"{name}.urdf"), {})
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _nothing_kept_of_this_session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    yield
+    compiled_once.forget(tmp_path_factory.getbasetemp())
 
 
 @pytest.fixture

@@ -3,9 +3,12 @@
 import composing
 import pytest
 import yaml
+from omegaconf import OmegaConf
+from omegaconf._utils import get_yaml_loader
 
 from runner.config.compose import compose
 from runner.errors import ConfigError
+from runner.paths import conf_dir
 
 
 @pytest.mark.parametrize(
@@ -29,6 +32,16 @@ def test_both_ways_give_the_same(overrides):
     quick = [compose(overrides) for _ in range(2)]
     with composing.plainly():
         plain = compose(overrides)
+    assert quick == [plain, plain]
+
+
+@pytest.mark.parametrize("shown", ["job", "hydra"])
+def test_the_command_composes_the_same(cli, shown):
+    command = ("--cfg", shown, "robot=combined", "noise=thesis", "controller.period.macro=0.03", "seed=5")
+    quick = [cli(*command).out for _ in range(2)]
+    with composing.plainly():
+        plain = cli(*command).out
+    assert "seed" in plain
     assert quick == [plain, plain]
 
 
@@ -56,6 +69,23 @@ def test_what_is_changed_in_one_config_is_in_no_other():
         assert compose(["robot=combined"]).resolved == compose(["robot=combined"]).resolved
     assert compose(["robot=combined"]).resolved["robot"]["stages"]
     assert compose(["robot=combined"]).resolved["noise"]["position"] != 5.0
+
+
+def test_a_folder_of_ones_own_is_read_as_it_is(tmp_path):
+    (tmp_path / "noise").mkdir()
+    for position in (1e-3, 2e-3):
+        (tmp_path / "noise/own.yaml").write_text(f"defaults: [thesis]\nposition: {position}\n")
+        quick = [compose(["robot=macro", "noise=own"], [tmp_path]) for _ in range(2)]
+        with composing.plainly():
+            assert quick == 2 * [compose(["robot=macro", "noise=own"], [tmp_path])]
+        assert quick[0].resolved["noise"]["position"] == position
+
+
+@pytest.mark.parametrize("path", sorted(conf_dir().rglob("*.yaml")), ids=lambda path: path.stem)
+def test_a_file_is_parsed_as_ever(path):
+    with path.open() as stream:
+        again = [OmegaConf.load(stream), OmegaConf.load(path)]
+    assert again == 2 * [OmegaConf.create(composing._parse(path.read_text(), get_yaml_loader()))]
 
 
 def test_a_parsed_text_is_nobody_else_s(tmp_path):

@@ -106,7 +106,14 @@ def test_a_part_that_goes_wrong_is_told_with_its_place_and_the_sweep_goes_on(pla
     (place[0] / "controller" / f"{name}.yaml").write_text(
         (EXAMPLE / "controller" / "gravity_pd.yaml").read_text().replace("gravity_pd", name)
     )
-    parts = ["--plugin", f"controller={name}.py", *PARTS[2:], "sweep.time_limit=2", "duration=0.2"]
+    parts = [
+        "--plugin",
+        f"controller={name}.py",
+        *PARTS[2:],
+        "sweep.time_limit=2",
+        "duration=0.2",
+        "hydra.sweeper.workers=1",
+    ]
     ending = call(
         place, "runner", "-m", *parts, "robot=lamp", f"controller={name}", "controller.natural_frequency=60,20"
     )

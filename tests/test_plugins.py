@@ -1,12 +1,15 @@
+import io
 import json
 import os
 import re
 import subprocess
 import sys
+from contextlib import redirect_stderr, redirect_stdout
 
 import pytest
 
 from runner import plugins
+from runner.cli import dispatch
 from runner.errors import RunnerError
 
 SPRING = '''\
@@ -54,16 +57,30 @@ def mine(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("RUNNER_PLUGINS", raising=False)
     monkeypatch.setattr(sys, "path", [*sys.path])
+    monkeypatch.setattr(sys, "argv", ["runner"])
     (tmp_path / "mine/controller").mkdir(parents=True)
     (tmp_path / "mine/spring.py").write_text(SPRING)
     (tmp_path / "mine/controller/spring.yaml").write_text("kind: spring\nperiod: 0.01\nstiffness: 50.0\n")
     yield tmp_path
+    forget()
+
+
+def forget():
+    """Let this process know no part that a test has told it of."""
     os.environ.pop("RUNNER_PLUGINS", None)
     sys.modules.pop("spring", None)
 
 
-def runner(*arguments):
+def process(*arguments):
     return subprocess.run([sys.executable, "-m", "runner", *arguments], capture_output=True, text=True, check=False)
+
+
+def runner(*arguments):
+    """Do the same in this process, as if it were a new one."""
+    forget()
+    with redirect_stdout(io.StringIO()) as out, redirect_stderr(io.StringIO()) as err:
+        code = dispatch(arguments)
+    return subprocess.CompletedProcess(arguments, code, out.getvalue(), err.getvalue())
 
 
 def folder(ending):
@@ -71,7 +88,7 @@ def folder(ending):
 
 
 def test_a_module_named_on_the_command_line_runs_and_is_recorded(mine):
-    ending = runner(*PLUGIN, *COMMAND)
+    ending = process(*PLUGIN, *COMMAND)
     assert (ending.returncode, ending.stderr) == (0, "")
     found = json.loads((mine / folder(ending) / "metrics.json").read_text())["provenance"]
     assert list(found["plugins"]) == ["controller=mine/spring.py"]
@@ -81,10 +98,10 @@ def test_a_module_named_on_the_command_line_runs_and_is_recorded(mine):
 
 
 def test_its_source_decides_about_the_runs_name(mine):
-    first = runner(*PLUGIN, *COMMAND)
-    assert folder(runner(*PLUGIN, *COMMAND)) == folder(first)
+    first = process(*PLUGIN, *COMMAND)
+    assert folder(process(*PLUGIN, *COMMAND)) == folder(first)
     (mine / "mine/spring.py").write_text(SPRING.replace("2.0 * dq", "3.0 * dq"))
-    assert folder(runner(*PLUGIN, *COMMAND)) != folder(first)
+    assert folder(process(*PLUGIN, *COMMAND)) != folder(first)
 
 
 def test_a_config_cannot_name_a_module(mine):
@@ -133,7 +150,7 @@ def test_worker_processes_inherit_it(mine):
 
 
 def test_a_sweep_takes_it(mine):
-    ending = runner("-m", *PLUGIN, *COMMAND, "controller.stiffness=20,40")
+    ending = process("-m", *PLUGIN, *COMMAND, "controller.stiffness=20,40", "hydra.sweeper.workers=1")
     assert ending.returncode == 0, ending.stderr
     assert len(list((mine / "outputs/runs").iterdir())) == 2
 

@@ -1,6 +1,16 @@
+from collections.abc import Iterator
+
+import composing
 import pytest
+
+_NOT_ABOUT_COMPOSING = ("test_every_option.py", "test_meanings.py", "test_options.py", "test_validation.py")
 
 
 @pytest.fixture(autouse=True)
-def _by_hydra_alone(plain_hydra: None) -> None:
-    """What is tested here is how configs compose."""
+def _by_hydra_alone(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Most of what is tested here is how configs compose."""
+    if request.path.name in _NOT_ABOUT_COMPOSING:
+        yield
+    else:
+        with composing.plainly():
+            yield

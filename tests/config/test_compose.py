@@ -1,23 +1,13 @@
-"""Composition: precedence, every option there is, own config folders, and files that are no configs."""
+"""Composition: precedence, own config folders, and files that are no configs."""
 
 import pytest
 
 from runner.config.compose import compose
-from runner.config.options import group_options, groups
+from runner.config.options import group_options
 from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.paths import robots_dir
 
-OPTIONS = [f"{group}={name}" for group in groups() if group != "calibration" for name in group_options(group)]
-NEEDS = {  # what an option does not run without
-    "controller=admittance": ("robot=meca500",),
-    "controller=macro_mini": ("robot=combined",),
-    "controller=three_joint": ("robot=xarm7",),
-    "controller=xarm7_as_printed": ("robot=xarm7", "controller.inverse=right"),
-    "environment=wall": ("robot=meca500",),
-    "experiment=xarm7/as_printed": ("controller.inverse=right",),
-    "plant=kinematic": ("robot=xarm7",),
-}
 SMALL_ROBOT = """\
 # @package _global_
 # My arm
@@ -51,17 +41,6 @@ robot:
 
 def resolve(*overrides):
     return compose(overrides).resolved
-
-
-@pytest.mark.parametrize("option", OPTIONS)
-def test_every_option_composes(option):
-    validate(resolve(*NEEDS.get(option, ()), option))
-
-
-@pytest.mark.parametrize("option", OPTIONS)
-def test_every_option_runs(cli, option):
-    ending = cli(*NEEDS.get(option, ()), option, "duration=0.05", "repetitions=1")
-    assert (ending.code, ending.err) == (0, "")
 
 
 def test_precedence_group_preset_robot_experiment_command_line():

@@ -1,12 +1,19 @@
 """What every control graph's picture has to keep to."""
 
+import functools
 import itertools
+import sys
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.mathtext import MathTextParser
 
 from runner.reporting.drawings import canvas
-from runner.reporting.drawings.block_diagram import _box, _route, block_diagram
+from runner.reporting.drawings.block_diagram import _box, _route, _text_width, block_diagram
+
+# The same few texts stand in all graphs; each is set once.
+MathTextParser._parse_cached = functools.cache(MathTextParser._parse_cached.__wrapped__)
+sys.modules["runner.reporting.drawings.block_diagram"]._text_width = functools.cache(_text_width)
 
 
 def check_structure(graph):

@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 from graph_layout import check_structure, check_texts, check_ways
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers.computed_torque import ComputedTorque, ComputedTorqueConfig
 from runner.controllers.computed_torque_graph import computed_torque_graph
 
@@ -44,18 +42,17 @@ def evaluate(graph, model, q, dq, resolved):
 
 
 @pytest.mark.parametrize("flags", FLAGS)
-def test_the_graph_is_the_law_that_is_executed(flags):
+def test_the_graph_is_the_law_that_is_executed(xarm7, flags):
     gravity_compensation, feedforward, torque_limited, goal, posture_task = flags
-    arm = validate(compose(["robot=xarm7", "controller=computed_torque"]).resolved).arm
     config = ComputedTorqueConfig(
         kind="computed_torque", task="position", natural_frequency=OMEGA, damping_ratio=XI, period=1e-2,
         gravity_compensation=gravity_compensation, feedforward=feedforward, singularity_damping=0.0,
         null_space_frequency=10.0 if posture_task else 0.0,
     )  # fmt: skip
-    law, generator = ComputedTorque(arm.model, config, arm.home), np.random.default_rng(0)
+    law, generator = ComputedTorque(xarm7.model, config, xarm7.home), np.random.default_rng(0)
     for _ in range(5):
         q_d, dq_d = law._q_d.copy(), law._dq_d.copy()
-        q, dq = arm.home + generator.uniform(-0.3, 0.3, 7), generator.uniform(-1.0, 1.0, 7)
+        q, dq = xarm7.home + generator.uniform(-0.3, 0.3, 7), generator.uniform(-1.0, 1.0, 7)
         reference = generator.uniform(-1.0, 1.0, (3, 3))
         if goal:
             reference[1:] = 0.0
@@ -65,7 +62,7 @@ def test_the_graph_is_the_law_that_is_executed(flags):
         resolved = (q, np.zeros(7), ddq_d) if first else (q_d, dq_d, ddq_d)
         if torque_limited:
             tau = np.clip(tau, -LIMIT, LIMIT)
-        drawn = evaluate(graph_of(flags), arm.model, q, dq, resolved)
+        drawn = evaluate(graph_of(flags), xarm7.model, q, dq, resolved)
         np.testing.assert_allclose(drawn, tau, atol=1e-9 * max(1.0, np.abs(tau).max()))
 
 

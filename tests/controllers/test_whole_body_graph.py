@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 from graph_layout import check_structure, check_texts, check_ways
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers.whole_body import WholeBody, WholeBodyConfig
 from runner.controllers.whole_body_graph import whole_body_graph
 
@@ -16,11 +14,6 @@ OMEGA, XI, OMEGA_N, SPEED, LIMIT = 30.0, 0.8, 20.0, 0.5, 40.0
 
 def graph_of(flags):
     return whole_body_graph(**dict(zip(NAMES, flags, strict=True)))
-
-
-@pytest.fixture(scope="module")
-def arm():
-    return validate(compose(["robot=combined"]).resolved).arm
 
 
 def evaluate(graph, robot, q, dq, reference, rest):
@@ -69,7 +62,7 @@ def evaluate(graph, robot, q, dq, reference, rest):
 
 
 @pytest.mark.parametrize("flags", FLAGS)
-def test_the_graph_is_the_law_that_is_executed(arm, flags):
+def test_the_graph_is_the_law_that_is_executed(combined, flags):
     gravity_compensation, feedforward, torque_limited, goal, speed_limited, posture_task = flags
     config = WholeBodyConfig(
         kind="whole_body", natural_frequency=OMEGA, damping_ratio=XI, period=1e-3,
@@ -78,7 +71,7 @@ def test_the_graph_is_the_law_that_is_executed(arm, flags):
         singularity_damping=0.0,
     )  # fmt: skip
     rest = np.array([0.0, 0.0, 0.0, 0.1, -0.2, 0.3])
-    law = WholeBody(arm.model, config, rest)
+    law = WholeBody(combined.model, config, rest)
     generator = np.random.default_rng(0)
     for _ in range(5):
         q, dq = generator.uniform(-1.0, 1.0, (2, 6))
@@ -88,7 +81,7 @@ def test_the_graph_is_the_law_that_is_executed(arm, flags):
         tau = law.torque(0.0, q, dq, reference)
         if torque_limited:
             tau = np.clip(tau, -LIMIT, LIMIT)
-        drawn = evaluate(graph_of(flags), arm, q, dq, reference, rest)
+        drawn = evaluate(graph_of(flags), combined, q, dq, reference, rest)
         np.testing.assert_allclose(drawn, tau, rtol=1e-7, atol=1e-7 * max(1.0, np.abs(tau).max()))
 
 
@@ -116,7 +109,7 @@ def test_the_picture_keeps_the_rules(flags):
 
 
 @pytest.mark.parametrize("flags", FLAGS[1::2])
-def test_the_posture_of_all_joints_has_its_own_terms(arm, flags):
+def test_the_posture_of_all_joints_has_its_own_terms(combined, flags):
     graph = whole_body_graph(**dict(zip(NAMES, flags, strict=True)), all_joints=True)
     labels = {node.name: node.label for node in graph.nodes}
     config = WholeBodyConfig(
@@ -129,13 +122,13 @@ def test_the_posture_of_all_joints_has_its_own_terms(arm, flags):
     rest, generator = np.array([0.0, 0.0, 0.0, 0.1, -0.2, 0.3]), np.random.default_rng(1)
     q, dq, reference = *generator.uniform(-1.0, 1.0, (2, 6)), generator.uniform(-1.0, 1.0, (3, 3))
     with_posture, without = (
-        WholeBody(arm.model, config.model_copy(update={"null_space_frequency": frequency}), rest, first_held=0)
+        WholeBody(combined.model, config.model_copy(update={"null_space_frequency": frequency}), rest, first_held=0)
         .torque(0.0, q, dq, reference)
         .copy()
         for frequency in (OMEGA_N, 0.0)
     )
-    J = arm.model.tip_jacobian(q)[:3]
-    projector = arm.model.mass_matrix(q) @ (np.eye(6) - np.linalg.pinv(J) @ J)
+    J = combined.model.tip_jacobian(q)[:3]
+    projector = combined.model.mass_matrix(q) @ (np.eye(6) - np.linalg.pinv(J) @ J)
     expected = projector @ (OMEGA_N**2 * (rest - q) - 2.0 * OMEGA_N * dq)
     scale = np.abs(with_posture).max()
     np.testing.assert_allclose(with_posture - without, expected, atol=1e-9 * scale)

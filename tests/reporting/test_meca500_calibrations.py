@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from study_sections import blocks, unfinished_texts
+from thin_plans import make_calibrations, make_runs
+from work_plans import meca500_calibrations
 
-from runner import calibrate, run
 from runner.calibration import REST, GravityCalibration, Tool, WrenchCompensation
 from runner.calibration.tool_centre_point import identify_tool_centre_point
 from runner.reporting import formulas
 from runner.reporting.document import Curves, Document, Table
-from runner.reporting.meca500.calibration_plan import calibration_jobs, name_of
+from runner.reporting.meca500.calibration_plan import name_of
 from runner.reporting.meca500.calibration_studies import consistency_notice, fit, found_error, predicted_error, refusal
 from runner.reporting.meca500.gravity import gravity_section
 from runner.reporting.meca500.gravity_printed import (
@@ -36,21 +37,16 @@ ORIENTATIONS = Rotation.random(12, rng=np.random.default_rng(3)).as_matrix()
 
 
 @pytest.fixture(scope="module")
-def calibrations(tmp_path_factory):
+def calibrations(shared_store):
     """Every calibration of the plan, with few repetitions."""
-    outputs = tmp_path_factory.mktemp("outputs")
-    return {
-        name: calibrate(*(o for o in overrides if o != "repetitions=1"), "repetitions=4", f"outputs={outputs}")
-        for name, overrides in calibration_jobs().items()
-    }
+    return make_calibrations(shared_store, meca500_calibrations())
 
 
 @pytest.fixture(scope="module")
-def weighed(tmp_path_factory):
-    outputs = tmp_path_factory.mktemp("outputs")
+def weighed(shared_store):
     homes = ("[0,0.5,0,0,1.07,0]", "[0,0.2,-0.5,1,-1,0]", "[1,0,0.3,2,1.5,1]", "[0.5,0.4,-1,-1,0.5,2]")
-    command = ("experiment=meca500/weighing", f"outputs={outputs}")
-    return {f"rest/{number}": run(*command, f"robot.home={home}") for number, home in enumerate(homes)}
+    jobs = {f"rest/{i}": ("experiment=meca500/weighing", f"robot.home={home}") for i, home in enumerate(homes)}
+    return make_runs(shared_store, jobs)
 
 
 @pytest.fixture(scope="module")

@@ -1,46 +1,28 @@
-"""The Meca500 report, from its real plan with the runs cut short."""
+"""The Meca500 report, from its plan with the runs cut short, and from one made thin."""
 
 import re
 
 import pytest
+from thin_plans import make_calibrations, make_runs, stand_ins
+from work_plans import meca500_calibrations, meca500_jobs
 
-from runner import calibrate, run
 from runner.reporting import outline
 from runner.reporting.document import Curves, Notice, Playback, Table
 from runner.reporting.formulas import faulty
-from runner.reporting.meca500.calibration_plan import calibration_jobs
-from runner.reporting.meca500.plan import plan
 from runner.reporting.meca500.report import meca500_document
 from runner.reporting.render import write_report
 
-SHORT = {"step": 0.2, "sine": 0.8, "tip": 0.2, "wall": 0.6, "map": 0.6, "hand": 0.6, "limit": 0.7, "noise": 0.3,
-         "inertials": 0.4, "plants": 0.4}  # s, by what the names begin with  # fmt: skip
-ORIENTATIONS = 3  # run; they stand in for the others
-
 
 @pytest.fixture(scope="module")
-def runs(tmp_path_factory):
-    outputs, found = tmp_path_factory.mktemp("outputs"), {}
-    for name, job in plan().items():
-        begin, _, end = name.partition("/")
-        if begin == "rest" and int(end) >= ORIENTATIONS:
-            continue
-        kept = [o for o in job.overrides if begin not in SHORT or not o.startswith("duration=")]
-        short = [f"duration={SHORT[begin]}"] if begin in SHORT else []
-        found[name] = run(*kept, *short, f"outputs={outputs}")
-    return {name: found[name] if name in found else found[f"rest/{int(name[5:]) % ORIENTATIONS}"] for name in plan()}
-
-
-@pytest.fixture(scope="module")
-def document(runs, tmp_path_factory):
-    outputs = tmp_path_factory.mktemp("outputs")
-    return meca500_document(
-        runs,
-        {
-            name: calibrate(*(o for o in overrides if o != "repetitions=1"), "repetitions=3", f"outputs={outputs}")
-            for name, overrides in calibration_jobs().items()
-        },
+def runs(shared_store, thin):
+    return make_runs(
+        shared_store, meca500_jobs(), stand_ins(meca500_jobs(), thin, every=("step/", "plants/", "rest/0"))
     )
+
+
+@pytest.fixture(scope="module")
+def document(runs, shared_store):
+    return meca500_document(runs, make_calibrations(shared_store, meca500_calibrations()))
 
 
 def blocks_of(document, *kinds):

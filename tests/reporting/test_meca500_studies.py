@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from thin_plans import make_runs
 
-from runner import run
 from runner.controllers.admittance_response import sampled_frequency_response
 from runner.controllers.admittance_stability import stiffest_wall
 from runner.reporting.meca500.at_the_tip import filtered_turn, tool_turn
@@ -18,10 +18,10 @@ from runner.reporting.meca500.step_response import law_of, step_error
 
 
 @pytest.fixture(scope="module")
-def planned(tmp_path_factory):
+def planned(shared_store):
     """Run a job of the plan by its name, with further overrides."""
-    outputs, jobs = tmp_path_factory.mktemp("outputs"), plan()
-    return lambda name, *overrides: run(*jobs[name].overrides, *overrides, f"outputs={outputs}")
+    jobs = plan()
+    return lambda name, *overrides: make_runs(shared_store, {name: (*jobs[name].overrides, *overrides)})[name]
 
 
 @pytest.mark.parametrize("axis", ["y", "rotation x"])

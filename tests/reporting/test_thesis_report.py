@@ -1,17 +1,17 @@
-"""The whole thesis report, from its real plan with two repetitions in place of forty."""
+"""The whole thesis report, from its plan with two repetitions in place of forty, and from one made thin."""
 
 import re
 from collections import Counter
 
 import pytest
+from thin_plans import make_runs, stand_ins
+from work_plans import thesis_jobs, thesis_moments
 
-from runner import run
 from runner.reporting import outline
 from runner.reporting.document import Claim, Curves, Picture, Table, Text
 from runner.reporting.formulas import faulty
 from runner.reporting.job import PRESETS
 from runner.reporting.render import write_report
-from runner.reporting.thesis.plan import plan
 from runner.reporting.thesis.report import thesis_document
 
 ONCE = (
@@ -22,15 +22,10 @@ FOR_EACH_PRESET = ("3.5", "3.9", "3.10", "4.2", "4.4", "5.8", "5.10", "5.12", "5
 TABLES = ("2.1", "3.1", "4.1", "5.1")
 
 
-def reduced(overrides):
-    kept = [override for override in overrides if not override.startswith("repetitions=")]
-    return (*kept, f"repetitions={1 if 'plant=rk4' in overrides else 2}")
-
-
 @pytest.fixture(scope="module")
-def runs(tmp_path_factory):
-    outputs = tmp_path_factory.mktemp("outputs")
-    return {name: run(*reduced(job.overrides), f"outputs={outputs}") for name, job in plan().items()}
+def runs(shared_store, thin):
+    jobs = thesis_moments() if thin else thesis_jobs()
+    return make_runs(shared_store, jobs, stand_ins(jobs, thin))
 
 
 @pytest.fixture(scope="module")

@@ -1,20 +1,20 @@
 """Every study builds from short runs, and from runs of which some or all have failed."""
 
+import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
 from study_sections import every_run, texts, unfinished_texts, whatever_has_failed
+from thin_plans import make_runs, stand_ins
+from work_plans import thesis_moments
 
 from runner import store
-from runner.execution import run
 from runner.reporting import formulas
 from runner.reporting.document import Document, Section, Table
 from runner.reporting.figures import torque_and_error
-from runner.reporting.job import PRESETS
 from runner.reporting.thesis import dynamics_benchmark
 from runner.reporting.thesis.checklist import checklist_section
-from runner.reporting.thesis.combined_plan import combined_jobs
 from runner.reporting.thesis.coupling import coupling_section
 from runner.reporting.thesis.dynamics_cost import dynamics_cost_section
 from runner.reporting.thesis.folding import folding_section
@@ -39,20 +39,12 @@ SECTIONS = (
     whole_body_section,
     dynamics_cost_section,
 )
-FIGURES = ("figure_5_3", "figure_5_8", "figure_5_10", "figure_5_12", "figure_5_13", "macro_alone", "macro_alone_goal")
 
 
 @pytest.fixture(scope="module")
-def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
-    """Every run of the plan, cut to a moment; runs that differ in nothing else are made once."""
-    outputs = tmp_path_factory.mktemp("outputs")
-    jobs = {name: job.overrides for name, job in combined_jobs().items()}
-    jobs |= {f"{f}/{p}": (f"experiment=thesis/{f}", f"preset={p}") for f in FIGURES for p in PRESETS}
-    jobs["figure_4_4/sound"] = ("experiment=thesis/figure_4_4",)
-    short = ("repetitions=1", "duration=0.08", f"outputs={outputs}")
-    return {
-        name: run(*(o for o in overrides if not o.startswith("duration=")), *short) for name, overrides in jobs.items()
-    }
+def runs(shared_store: Path, thin: bool) -> dict[str, Run]:
+    """Every run of the plan, cut to a moment."""
+    return make_runs(shared_store, thesis_moments(), stand_ins(thesis_moments(), thin))
 
 
 def document(sections: list[Section]) -> Document:
@@ -75,10 +67,13 @@ def test_a_failed_run_is_shown_with_its_failure(
     assert any("for this test" in text for text in texts(build(every_run(runs))))
 
 
-def test_the_dynamics_are_measured_once_and_read(runs: dict[str, Run], monkeypatch: pytest.MonkeyPatch) -> None:
-    outputs = runs["mass/0.2/known"].folder.parent.parent
-    path = Path(outputs, dynamics_benchmark.FILE)
-    assert "Not measured" in list(texts(dynamics_cost_section(runs)))
+def test_the_dynamics_are_measured_once_and_read(
+    runs: dict[str, Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / dynamics_benchmark.FILE
+    folder = shutil.copytree(runs["mass/0.2/known"].folder, tmp_path / "runs" / "copied")
+    copied = {"mass/0.2/known": store.open_run(folder)}
+    assert "Not measured" in list(texts(dynamics_cost_section(copied)))
     monkeypatch.setattr(dynamics_benchmark, "_BLOCKS", 1)
     monkeypatch.setattr(dynamics_benchmark, "_CALLS", 3)
     dynamics_benchmark.measure(path)
@@ -88,7 +83,7 @@ def test_the_dynamics_are_measured_once_and_read(runs: dict[str, Run], monkeypat
     record = dynamics_benchmark.load(path)
     assert record is not None
     assert [row["joints"] for row in record["rows"]] == list(range(3, 31, 3))
-    section = dynamics_cost_section(runs)
+    section = dynamics_cost_section(copied)
     assert formulas.faulty(document([section])) == []
     path.write_text("{}")
     assert dynamics_benchmark.load(path) is None

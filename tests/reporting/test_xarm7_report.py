@@ -3,8 +3,8 @@
 import re
 
 import pytest
+from thin_plans import make_runs
 
-from runner import run
 from runner.reporting import outline
 from runner.reporting.document import Claim, Curves, Notice, Picture, Playback, Section, Table, Text
 from runner.reporting.formulas import faulty
@@ -19,10 +19,9 @@ OWN_FIGURES = ("sketch of the motion", "Graphs of x, y and z", "Graphs of q1, q2
 
 
 @pytest.fixture(scope="module")
-def runs(tmp_path_factory):
-    outputs = tmp_path_factory.mktemp("outputs")
-    own = {name: job for name, job in plan().items() if name not in studies_jobs()}
-    return {name: run(*job.overrides, f"outputs={outputs}") for name, job in own.items()}
+def runs(shared_store):
+    studies = studies_jobs()
+    return make_runs(shared_store, {name: job.overrides for name, job in plan().items() if name not in studies})
 
 
 @pytest.fixture(scope="module")

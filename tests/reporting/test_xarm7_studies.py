@@ -1,13 +1,16 @@
 """The studies of the xArm7 report build from short runs and failed ones, and their closed forms are right."""
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from study_sections import every_run, texts, unfinished_texts, whatever_has_failed
+from thin_plans import make_runs, stand_ins
+from work_plans import xarm7_moments
 
-from runner.execution import run
+from runner import run
 from runner.reporting import formulas
 from runner.reporting.document import Document, Section
 from runner.reporting.xarm7.null_space import BOUND, null_space_section, standing
@@ -34,21 +37,15 @@ Make = Callable[[str], Run]
 
 
 @pytest.fixture(scope="module")
-def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
+def runs(shared_store: Path, thin: bool) -> dict[str, Run]:
     """Every run of the plan, cut to a moment."""
-    outputs = tmp_path_factory.mktemp("outputs")
-    short = ("duration=0.08", f"outputs={outputs}")
-    return {
-        name: run(*(o for o in job.overrides if not o.startswith("duration=")), *short)
-        for name, job in studies_jobs().items()
-    }
+    return make_runs(shared_store, xarm7_moments(), stand_ins(xarm7_moments(), thin, every=("payload/",)))
 
 
 @pytest.fixture(scope="module")
-def planned(tmp_path_factory: pytest.TempPathFactory) -> Make:
+def planned(shared_store: Path) -> Make:
     """Make a run of the plan, as it is planned."""
-    outputs = tmp_path_factory.mktemp("outputs")
-    return lambda name: run(*studies_jobs()[name].overrides, f"outputs={outputs}")
+    return lambda name: make_runs(shared_store, {name: studies_jobs()[name].overrides})[name]
 
 
 @whatever_has_failed

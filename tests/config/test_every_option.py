@@ -1,0 +1,37 @@
+"""Every option that there is composes and runs, with what it does not run without."""
+
+import pytest
+
+from runner import run
+from runner.config.compose import compose
+from runner.config.options import group_options, groups
+from runner.config.validation import validate
+
+OPTIONS = [f"{group}={name}" for group in groups() if group != "calibration" for name in group_options(group)]
+NEEDS = {  # what an option does not run without
+    "controller=admittance": ("robot=meca500",),
+    "controller=macro_mini": ("robot=combined",),
+    "controller=three_joint": ("robot=xarm7",),
+    "controller=xarm7_as_printed": ("robot=xarm7", "controller.inverse=right"),
+    "environment=wall": ("robot=meca500",),
+    "experiment=xarm7/as_printed": ("controller.inverse=right",),
+    "plant=kinematic": ("robot=xarm7",),
+}
+
+
+@pytest.mark.parametrize("option", OPTIONS)
+def test_it_composes(option):
+    validate(compose([*NEEDS.get(option, ()), option]).resolved)
+
+
+@pytest.mark.parametrize("option", OPTIONS)
+def test_it_runs(tmp_path, option):
+    made = run(*NEEDS.get(option, ()), option, "duration=0.05", "repetitions=1", f"outputs={tmp_path}")
+    assert (made.status, made.provenance["warnings"]) == ("ok", [])
+
+
+@pytest.mark.parametrize("group", [group for group in groups() if group != "calibration"])
+def test_one_of_a_group_runs_from_the_command_line(cli, group):
+    option = f"{group}={list(group_options(group))[-1]}"
+    ending = cli(*NEEDS.get(option, ()), option, "duration=0.05", "repetitions=1")
+    assert (ending.code, ending.err) == (0, "")

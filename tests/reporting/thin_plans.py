@@ -1,0 +1,95 @@
+"""Plans of works made thin, and their runs, made once for all test processes.
+
+A thin plan has the runs of the whole one by name. Runs that differ in numbers alone are of a kind: of each kind the
+first and the last are made, and stand in for the others. `make test-slow` runs whole plans.
+"""
+
+import fcntl
+import hashlib
+import re
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TypeVar
+
+from runner import calibrate, run, store
+from runner.store import Calibration, Run
+
+Overrides = tuple[str, ...]
+Kept = TypeVar("Kept", Run, Calibration)
+
+_NUMBER = re.compile(r"-?\d+(\.\d*)?(e-?\d+)?")
+_OPTIONS = ("experiment=", "preset=", "plant=", "robot=")
+
+
+def stand_ins(jobs: Mapping[str, Overrides], thin: bool, every: tuple[str, ...] = ()) -> dict[str, str]:
+    """Return the name of the run that stands for each, by name.
+
+    Args:
+        jobs: Overrides by name.
+        thin: Whether any does; else each stands for itself.
+        every: How the names begin of runs that stand for themselves in any case.
+    """
+    kinds: dict[Overrides, list[str]] = {}
+    for name, overrides in jobs.items():
+        kind = tuple(o if o.startswith(_OPTIONS) else _NUMBER.sub("0", o) for o in overrides)
+        kinds.setdefault(kind if thin and not name.startswith(every) else (name,), []).append(name)
+    return {
+        name: names[-1] if 2 * index >= len(names) else names[0]
+        for names in kinds.values()
+        for index, name in enumerate(names)
+    }
+
+
+def make_runs(
+    folder: Path, jobs: Mapping[str, Overrides], stands_for: Mapping[str, str] | None = None
+) -> dict[str, Run]:
+    """Return the runs of jobs by name.
+
+    Args:
+        folder: Shared by all test processes: each run is made by the first one that comes to it.
+        jobs: Overrides by name.
+        stands_for: Name of the run that stands for each; None lets each stand for itself.
+    """
+    stands_for = {name: name for name in jobs} if stands_for is None else stands_for
+    made = _make(folder, {name: jobs[name] for name in stands_for.values()}, run, store.open_run)
+    return {name: made[stands_for[name]] for name in jobs}
+
+
+def make_calibrations(folder: Path, jobs: Mapping[str, Overrides]) -> dict[str, Calibration]:
+    """Return the calibrations of jobs by name, likewise."""
+    return _make(folder, jobs, calibrate, store.open_calibration)
+
+
+def _make(
+    folder: Path, jobs: Mapping[str, Overrides], make: Callable[..., Kept], read: Callable[[Path], Kept]
+) -> dict[str, Kept]:
+    made: dict[str, Kept] = {}
+    left = dict(jobs)
+    while left:
+        for name, overrides in list(left.items()):
+            # What another process is at work on is left for later, but for the last.
+            with _mine(folder / _digest(make.__name__, *overrides), wait=len(left) == 1) as note:
+                if note is None:
+                    continue
+                if not note.read_text():
+                    note.write_text(str(make(*overrides, f"outputs={folder / 'outputs'}").folder))
+                made[name] = read(Path(note.read_text()))
+                del left[name]
+    return {name: made[name] for name in jobs}
+
+
+def _digest(*texts: str) -> str:
+    return hashlib.sha256("\n".join(texts).encode()).hexdigest()
+
+
+@contextmanager
+def _mine(path: Path, wait: bool) -> Iterator[Path | None]:
+    """Hold a file that no other process holds meanwhile; None where one does and nobody wants to wait."""
+    with path.open("a") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+        except BlockingIOError:
+            yield None
+        else:
+            yield path
