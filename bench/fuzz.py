@@ -1,4 +1,4 @@
-"""`python -m bench.fuzz configs [--cases N] [--seed S] [--lines N]`: bad input of every kind, drawn from a grammar.
+"""`python -m bench.fuzz [configs|stores] [--cases N] [--seed S] [--lines N]`: bad input and damage of every kind.
 
 Nothing may end in a traceback or a crash, take 5 s of CPU time or 500 MB over a sound case, or answer with more than
 10 kB or with control characters. A case follows from the seed and its number: `--only N` tries it alone and shows it.
@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from bench import fuzz_configs, fuzz_lines
+from bench import fuzz_configs, fuzz_lines, fuzz_stores
 from runner.config.compose import quiet_environment
 
 _BATCH = 500  # cases in a process, so that a crash ends no more than that
@@ -36,6 +36,23 @@ def configs(options: argparse.Namespace) -> bool:
     _show(bad)
     sound = _lines(options.seed, options.lines) if options.lines else True
     return sound and not bad
+
+
+def stores(options: argparse.Namespace) -> bool:
+    """Damage a store of every kind of file; print what was found, and return whether that is nothing."""
+    with tempfile.TemporaryDirectory() as name:
+        outputs = Path(name, "outputs")
+        fuzz_stores.make_store(outputs)
+        ways = {
+            "flipped bits": fuzz_stores.flip_bits(outputs, options.cases, options.seed),
+            "other damages": fuzz_stores.damage_files(outputs, options.cases, options.seed),
+            "damages met by commands": fuzz_stores.damage_files(outputs, options.cases // 20, options.seed, True),
+        }
+        found = {way: list(faults) for way, faults in ways.items()}
+    for way, faults in found.items():
+        print(f"{way}, {options.cases} of the store's files, seed {options.seed}: {len(faults)} with faults")
+        print("\n".join(f"  {fault}" for fault in faults[:20]))
+    return not any(found.values())
 
 
 def _lines(seed: int, count: int) -> bool:
@@ -91,7 +108,7 @@ def _work(send: Any, seed: int, numbers: range) -> None:
             send.send((number, fuzz_configs.attempt(fuzz_configs.case(seed, number), Path(name))))
 
 
-TARGETS: dict[str, Callable[[argparse.Namespace], bool]] = {"configs": configs}
+TARGETS: dict[str, Callable[[argparse.Namespace], bool]] = {"configs": configs, "stores": stores}
 """What can be fuzzed."""
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import yaml
 
+from runner.config.bounded_yaml import YamlError, read_yaml
 from runner.store.atomic import write_atomically
 from runner.store.seal import SCHEMA, DamagedError, digest, is_sealed, read_file, read_json, sealed_json
 
@@ -97,9 +98,9 @@ def read_job(folder: Path, record_name: str) -> tuple[dict[str, Any], dict[str, 
     record = _read_record(folder / record_name)
     path = folder / "config.yaml"
     text = decoded(path, read_file(path, _files(record), MEND))
-    try:
-        config = yaml.load(text, yaml.CSafeLoader)
-    except yaml.YAMLError as error:
+    try:  # what is as it was written needs no bounds, and no time for them
+        config = yaml.load(text, yaml.CSafeLoader) if is_sealed(record) else read_yaml(text, path)
+    except (yaml.YAMLError, YamlError) as error:
         raise DamagedError(f"cannot read {path}: it is damaged: {' '.join(str(error).split())}; {MEND}") from error
     if not isinstance(config, dict):
         raise DamagedError(f"cannot read {path}: it is damaged: it holds no config; {MEND}")

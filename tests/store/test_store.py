@@ -141,6 +141,16 @@ def test_a_run_of_schema_1_is_read_and_marked(cli, run):
     assert provenance([old]).rows[-3] == ("unsealed", "1 of 1 runs have no digests: damage to them is not found")
 
 
+@pytest.mark.parametrize(
+    "content", ["[" * 50_000, "a: [", "3", "a: &a [1]\nb: &b [*a,*a]\n" + "c: [" + "*b," * 60_000 + "]"]
+)
+def test_a_config_of_schema_1_is_bounded(run, content):
+    unseal(run)
+    (run.folder / "config.yaml").write_text(content)
+    with pytest.raises(DamagedError, match=r"config\.yaml: it is damaged: "):
+        open_run(run.folder)
+
+
 def test_a_run_of_schema_1_that_has_a_digest_is_damaged(run):
     record = json.loads((run.folder / "metrics.json").read_text())
     (run.folder / "metrics.json").write_text(json.dumps({**record, "schema": 1}))

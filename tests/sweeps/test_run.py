@@ -101,10 +101,24 @@ def test_traces_are_kept_as_asked_and_metrics_always(sweep, tmp_path, policy, fo
 
 
 def test_one_in_a_hundred_is_sampled(tmp_path):
-    rules = work.Rules((), tmp_path, tmp_path, "sample", True, False, 1, None)
+    rules = work.Rules((), tmp_path, tmp_path, "sample", True, True, False, 1, None)
     kept = sum(rules.keeps_trace(f"{np.random.default_rng(n).bytes(12).hex()}", False) for n in range(5000))
     assert 30 <= kept <= 70
     assert all(rules.keeps_trace(f"{n:024x}", True) for n in range(20))
+
+
+def test_failures_in_shards_are_made_again_whatever_the_clock_says(sweep, simulated_runs, tmp_path):
+    """The clock was ahead when the first shards were written; their names have nothing of it."""
+    given = ("seed=1,2", "sweep.trace=never")
+    first = sweep(*given, "sweep.time_limit=1e-9")
+    assert [why.startswith("cut short") for _, why, _ in first.failures] == [True, True]
+    for path in (tmp_path / "outputs" / "shards").iterdir():
+        path.rename(path.with_name(f"0{9 * 10**18}-{path.name.partition('-')[2]}"))
+    again = sweep(*given, "sweep.retry=failed")
+    assert (again.failures, len(simulated_runs)) == ([], 4)
+    assert [run.status for run in runs(again)] == ["ok", "ok"]
+    assert sweep(*given, "sweep.retry=failed").failures == []
+    assert len(simulated_runs) == 4
 
 
 def test_a_run_in_a_shard_counts_unless_its_trace_is_wanted(sweep, simulated_runs):

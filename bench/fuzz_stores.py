@@ -1,14 +1,27 @@
-"""Damage to a stored outputs folder: what is done to its files, and what reading them then gives."""
+"""Damage to a stored outputs folder: what is done to its files, and what reading them then gives.
 
+No damage may be read as something else, or end a command with a traceback.
+"""
+
+import contextlib
+import io
 import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from runner import store
+from runner.calibration_job import calibrate
+from runner.cli import dispatch
 from runner.errors import StoreError
+from runner.store.atomic import write_atomically
+from runner.store.seal import sealed_json
 from runner.store.shards import open_row, read_outcomes, shard_files
+from runner.sweeps.grid import plan_sweep
+from runner.sweeps.run import Engine, run_sweep
 from runner.sweeps.status import read_pace
+from runner.tuning.objective import Objective
+from runner.tuning.run import tune
 from runner.tuning.study import open_tuning
 
 
@@ -111,3 +124,66 @@ def damage(path: Path, others: Sequence[Path], draw: random.Random) -> bytes:
     ]
     path.write_bytes(draw.choice(ways))
     return content
+
+
+def make_store(outputs: Path) -> None:
+    """Make a store with every kind of file: runs, shards, sweeps, a tuning, a calibration, notes of progress."""
+    here = Engine(0, None)
+    given = ("robot=macro", "duration=0.03", f"outputs={outputs}")
+    for more in (("seed=0,1",), ("seed=2,3,4", "sweep.trace=never", "noise=thesis", "repetitions=3")):
+        swept = run_sweep(plan_sweep([*given, *more]), here, "runner -m").folder
+        write_atomically(swept / "progress.json", sealed_json({"seconds_per_run": 0.5}))
+    key = "controller.damping_ratio=interval(0.5,1.5)"
+    tune([*given, key, "hydra.sweeper.workers=0"], [Objective("peak_torque", "minimize")], 3, 2, "runner tune")
+    calibrate("calibration=tool_direction", "repetitions=2", f"outputs={outputs}")
+
+
+def flip_bits(outputs: Path, cases: int, seed: int) -> Iterator[str]:
+    """Flip single bits, each kind of file as often; yield what is read as something else, or not told by its name."""
+    draw, whole = random.Random(seed), read_all(outputs)  # noqa: S311
+    kinds: dict[str, list[Path]] = {}
+    for path in files_of(outputs):
+        kinds.setdefault("shards" if path.parent.name == "shards" else path.name, []).append(path)
+    for _ in range(cases):
+        path = draw.choice(kinds[draw.choice(sorted(kinds))])
+        content = flip(path, draw)
+        found = read_all(outputs, path)
+        path.write_bytes(content)
+        if not found.told or any(whole.values[place] != value for place, value in found.values.items()):
+            yield f"{path}: a flipped bit is not noticed"
+        if not all(path.name in told for told in found.told.values()):
+            yield f"{path}: a flipped bit is told of another file: {found.told}"
+
+
+def damage_files(outputs: Path, cases: int, seed: int, commands: bool = False) -> Iterator[str]:
+    """Damage files in other ways; yield what is read as something else, is not told, or what command crashes."""
+    draw = random.Random(seed)  # noqa: S311
+    whole, files = read_all(outputs), files_of(outputs)
+    for _ in range(cases):
+        path = draw.choice(files)
+        content = damage(path, files, draw)
+        changed = path.read_bytes() != content
+        found = read_all(outputs, path)
+        crashes = list(_crashes(outputs)) if commands else []
+        path.write_bytes(content)
+        if any(whole.values[place] != value for place, value in found.values.items()):
+            yield f"{path}: damage is read as something else"
+        if bool(found.told) != changed or not all(str(path.parent) in told for told in found.told.values()):
+            yield f"{path}: damage is not told: {found.told}"
+        yield from (f"{path}: {crash}" for crash in crashes)
+
+
+def _crashes(outputs: Path) -> Iterator[str]:
+    """Yield what commands that read a store end with, where that is no ending of theirs."""
+    runs, sweeps = sorted((outputs / "runs").iterdir()), sorted((outputs / "sweeps").iterdir())
+    tunings = sorted((outputs / "tunings").iterdir())
+    lines = [("verify", outputs), ("diff", runs[0], runs[1]), ("check", runs[0])]
+    lines += [(command, folder) for command in ("status", "table", "check") for folder in (*sweeps, *tunings)]
+    for line in lines:
+        try:
+            with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+                code: object = dispatch([str(word) for word in line])
+        except Exception as error:
+            code = f"{type(error).__name__}: {error}"
+        if code not in (0, 1, 2):
+            yield f"`runner {line[0]}` ends with {code}"
