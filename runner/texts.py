@@ -27,8 +27,9 @@ def one_line(text: str, longest: int = LINE) -> str:
 def lines(text: str) -> str:
     """Return text in which each line is safe to show; its line breaks stay, of the first fifty lines."""
     found = text.split("\n")
-    more = [f"and {len(found) - LINES} more lines"] if len(found) > LINES else []
-    return "\n".join([*map(one_line, found[:LINES]), *more])
+    if len(found) > LINES:
+        found = [*found[: LINES - 1], f"and {len(found) - LINES + 1} more lines"]
+    return "\n".join(map(one_line, found))
 
 
 def quoted(value: object) -> str:
