@@ -52,6 +52,7 @@ COMMANDS = (
 
 def main() -> None:
     """Run the command line and leave the process with its exit code."""
+    _open_outputs()
     try:
         code = dispatch(sys.argv[1:])
         sys.stdout.flush()
@@ -63,6 +64,17 @@ def main() -> None:
             print(f"runner: {error}", file=sys.stderr)
             code = 2
     sys.exit(code)
+
+
+def _open_outputs() -> None:
+    """Send an output that the caller closed to nowhere; else a file of ours would take its number, and its prints."""
+    for number, name in ((1, "stdout"), (2, "stderr")):
+        if getattr(sys, name) is None:
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            if nowhere != number:
+                os.dup2(nowhere, number)
+                os.close(nowhere)
+            setattr(sys, name, os.fdopen(number, "w"))
 
 
 def dispatch(arguments: Sequence[str]) -> int:
