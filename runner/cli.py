@@ -55,6 +55,7 @@ COMMANDS = (
 
 def main() -> None:
     """Run the command line and leave the process with its exit code."""
+    _open_outputs()
     signal.signal(signal.SIGTERM, _terminate)
     try:
         code = dispatch(sys.argv[1:])
@@ -76,6 +77,17 @@ class TerminatedError(KeyboardInterrupt):
 def _terminate(*_: object) -> NoReturn:
     signal.signal(signal.SIGTERM, signal.SIG_IGN)  # what ends must not be ended once more
     raise TerminatedError
+
+
+def _open_outputs() -> None:
+    """Send an output that the caller closed to nowhere; else a file of ours would take its number, and its prints."""
+    for number, name in ((1, "stdout"), (2, "stderr")):
+        if getattr(sys, name) is None:
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            if nowhere != number:
+                os.dup2(nowhere, number)
+                os.close(nowhere)
+            setattr(sys, name, os.fdopen(number, "w"))
 
 
 def dispatch(arguments: Sequence[str]) -> int:

@@ -2,6 +2,7 @@
 
 import ctypes
 import os
+import re
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -22,21 +23,28 @@ def quiet_stderr() -> Iterator[None]:
 
 
 @contextmanager
-def caught_output() -> Iterator[list[str]]:
-    """Catch what is written to file descriptors 1 and 2 for a while; nothing of it reaches them.
+def caught_output(descriptor: int, engines: str = "") -> Iterator[list[str]]:
+    """Catch what an engine writes to a file descriptor for a while.
+
+    Args:
+        descriptor: 1 or 2.
+        engines: Pattern that the engine's lines begin with; others, such as what another thread logs, are written on.
 
     Yields:
-        Its lines, each once, there when the block has ended.
+        The engine's lines, each once, there when the block has ended.
     """
     said: list[str] = []
     with tempfile.TemporaryFile() as file:
         try:
-            with _sent_to(file.fileno(), 1), _sent_to(file.fileno(), 2):
+            with _sent_to(file.fileno(), descriptor):
                 yield said
         finally:
             file.seek(0)
             lines = file.read().decode(errors="replace").splitlines()
-            said += dict.fromkeys(line.strip() for line in lines if line.strip())
+            said += dict.fromkeys(line.strip() for line in lines if line.strip() and re.match(engines, line))
+            others = "".join(f"{line}\n" for line in lines if not re.match(engines, line))
+            if others:
+                os.write(descriptor, others.encode())
 
 
 @contextmanager

@@ -35,6 +35,13 @@ def check_path(controller: Any, robot: Robot, trajectory: Trajectory, q_start: F
     """
     if not trajectory.tracked:
         return
+    if trajectory.duration < controller.period:
+        raise ConfigError(
+            [
+                f"trajectory.duration: {trajectory.duration:g} s is shorter than one controller period, "
+                f"{controller.period:g} s"
+            ]
+        )
     times: FloatArray = np.arange(math.floor(trajectory.duration / controller.period) + 1) * controller.period
     try:
         q, stuck = _roll_out(controller, _without_speed_limits(robot), trajectory.sample(times), q_start)

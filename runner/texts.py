@@ -4,6 +4,8 @@ VALUE = 200
 """Longest text quoted of a value, in characters."""
 LINE = 2000
 """Longest line of a message, in characters."""
+LINES = 50
+"""Most lines of a message."""
 
 
 def escaped(text: str) -> str:
@@ -23,8 +25,11 @@ def one_line(text: str, longest: int = LINE) -> str:
 
 
 def lines(text: str) -> str:
-    """Return text in which each line is safe to show; its line breaks stay."""
-    return "\n".join(map(one_line, text.split("\n")))
+    """Return text in which each line is safe to show; its line breaks stay, of the first fifty lines."""
+    found = text.split("\n")
+    if len(found) > LINES:
+        found = [*found[: LINES - 1], f"and {len(found) - LINES + 1} more lines"]
+    return "\n".join(map(one_line, found))
 
 
 def quoted(value: object) -> str:

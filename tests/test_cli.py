@@ -239,6 +239,15 @@ def test_listing_and_help_import_little():
         subprocess.run([sys.executable, "-c", lines], check=True, stdout=subprocess.DEVNULL)
 
 
+@pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-", "<&- >&- 2>&-"])
+def test_outputs_may_be_closed(tmp_path, closed):
+    command = f'"{sys.executable}" -m runner {" ".join(SHORT)} {closed}'
+    ending = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert (ending.returncode, ending.stderr) == (0, "")
+    (folder,) = (tmp_path / "outputs" / "runs").iterdir()
+    assert json.loads((folder / "metrics.json").read_text())["status"] == "ok"
+
+
 def test_nobody_needs_to_read_to_the_end(tmp_path):
     process = start("list", "robots", cwd=tmp_path)
     process.stdout.close()

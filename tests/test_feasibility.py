@@ -30,6 +30,11 @@ def test_too_short_a_time_says_the_shortest_feasible_one_and_that_one_runs(cli):
     assert cli("robot=xarm7", f"trajectory.duration={0.95 * shortest}").code == 2
 
 
+def test_a_path_within_one_period_is_no_path_for_the_joints(cli):
+    err = refusal(cli, "trajectory.duration=1e-5")
+    assert "trajectory.duration: 1e-05 s is shorter than one controller period, 0.01 s" in err
+
+
 def test_a_goal_is_no_path(cli):
     assert cli("robot=xarm7", "trajectory=goal", "duration=2").code == 0
 

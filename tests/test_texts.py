@@ -30,6 +30,13 @@ def test_a_long_line_is_cut_and_says_how_long_it_was():
     assert lines(f"a\n{'b' * 9999}\x1b\nc").count("\n") == 2
 
 
+def test_of_many_lines_the_first_are_shown():
+    assert lines("\n".join("x" * 50)) == "\n".join("x" * 50)
+    shown = lines("\n".join("x" * 1000))
+    assert shown.split("\n")[48:] == ["x", "and 951 more lines"]
+    assert lines(shown) == shown
+
+
 def test_values_are_quoted_to_a_line():
     assert quoted("a\nb") == r"'a\nb'"
     assert quoted([1, 2.5, None]) == "[1, 2.5, None]"

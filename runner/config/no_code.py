@@ -25,7 +25,7 @@ from runner.texts import quoted
 _NO_LOGGING = {"version": 1, "root": None, "disable_existing_loggers": False}
 _SWEEPER = {"_target_": "hydra_plugins.runner_sweeper.RunnerSweeper", "_recursive_": False}
 _SWEEPER_KEYS = ("workers", "address", "params")
-_HYDRAS_OWN = ("pkg://hydra.conf", "structured://")
+_NAMED_BY_CONFIGS = ("hydra.searchpath", "main", "command-line")  # others are Hydra's own and installed plug-ins'
 
 
 @contextlib.contextmanager
@@ -76,11 +76,12 @@ def refuse_modules(search_path: ConfigSearchPath) -> None:
     """Check that configs are looked for in folders alone: Hydra imports a module to look into it.
 
     Raises:
-        ConfigError: for anything else in `hydra.searchpath`, and for a folder that does not exist.
+        ConfigError: for anything else that a config or the command line names, and for a folder that does not exist.
     """
-    for path in (str(element.path) for element in search_path.get_path()):
+    named = [element for element in search_path.get_path() if str(element.provider).startswith(_NAMED_BY_CONFIGS)]
+    for path in (str(element.path) for element in named):
         scheme, _, place = path.rpartition("://")
-        if path in _HYDRAS_OWN or (scheme in ("", "file") and Path(place).is_dir()):
+        if scheme in ("", "file") and Path(place).is_dir():
             continue
         found = "is no folder" if scheme in ("", "file") else "names a module"
         raise ConfigError(

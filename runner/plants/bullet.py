@@ -83,7 +83,7 @@ class Bullet:
             file.flush()
             flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
             try:
-                with caught_output() as said:
+                with caught_output(1) as said:
                     body: int = pybullet.loadURDF(file.name, useFixedBase=True, flags=flags, physicsClientId=client)
                 joints = pybullet.getNumJoints(body, physicsClientId=client)
                 if joints > _MOST_JOINTS:

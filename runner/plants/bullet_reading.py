@@ -58,7 +58,7 @@ def read_as_bullet(urdf: Path, inertia_from_file: bool) -> BulletReading:
     """
     client = pybullet.connect(pybullet.DIRECT)
     try:
-        with caught_output() as said:
+        with caught_output(1) as said:
             flags = pybullet.URDF_USE_INERTIA_FROM_FILE if inertia_from_file else 0
             body = pybullet.loadURDF(str(urdf), useFixedBase=True, flags=flags, physicsClientId=client)
         joints, links = [], {}

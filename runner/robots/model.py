@@ -1,6 +1,7 @@
 """A robot arm as its rigid-body model: kinematics and dynamics in joint space and at the tip, by Pinocchio."""
 
 import copy
+import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from functools import cached_property
 
@@ -16,6 +17,9 @@ FloatArray = NDArray[np.float64]
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value (its G(q) shows 9.81 and 19.62)
 
 _MOST_JOINTS = 64
+_SAID = (
+    r"\s*(Error|Warning|Info|Debug):|\s+at line \d+ in "  # how the reader of URDFs that Pinocchio uses begins a line
+)
 _NO_LIMIT = 1e6  # SI units; URDF demands limits, and a file without them writes a large number
 
 
@@ -210,15 +214,30 @@ def joint_names_of(urdf: str) -> tuple[str, ...]:
 
 
 def _build(urdf: str) -> pin.Model:
+    model, said = _read(urdf)
+    if said:  # of a shape that is unknown to Pinocchio: none is part of a model
+        model, said = _read(_without_shapes(urdf))
+    if said:
+        raise ConfigError([f"robot.urdf: Pinocchio does not take it as it is: {' '.join(said)}"])
+    return model
+
+
+def _read(urdf: str) -> tuple[pin.Model, list[str]]:
+    """Return the model of a URDF's text, and what was said while it was made."""
     said: list[str] = []
     try:
-        with caught_output() as said:
-            model = pin.buildModelFromXML(urdf)
+        with caught_output(2, _SAID) as said:
+            return pin.buildModelFromXML(urdf), said
     except (ValueError, RuntimeError) as error:
         raise ConfigError([f"robot.urdf: Pinocchio cannot build it: {' '.join([str(error), *said])}"]) from error
-    if said:
-        raise ConfigError([f"robot.urdf: Pinocchio says of it: {' '.join(said)}"])
-    return model
+
+
+def _without_shapes(urdf: str) -> str:
+    robot = ET.fromstring(urdf)  # noqa: S314 - Pinocchio has read it
+    for link in robot.iter("link"):
+        for shape in (*link.findall("visual"), *link.findall("collision")):
+            link.remove(shape)
+    return ET.tostring(robot, encoding="unicode")
 
 
 def _slides(joint: pin.JointModel) -> bool:

@@ -2,8 +2,10 @@ import json
 import os
 
 import pytest
+from hydra._internal.config_search_path_impl import ConfigSearchPathImpl
 
 from runner.config.compose import compose
+from runner.config.no_code import refuse_modules
 from runner.errors import ConfigError
 from runner.paths import conf_dir
 
@@ -121,6 +123,12 @@ def test_a_folder_may_stand_in_the_search_path(cli, tmp_path):
     assert cli(f"hydra.searchpath=[file://{own.parent}]", "noise=mine", "duration=0.05").code == 0
     ending = cli(f"hydra.searchpath=[file://{tmp_path}/nowhere]")
     assert (ending.code, "is no folder; allowed: folders" in ending.err) == (2, True)
+
+
+def test_what_an_installed_plugin_of_hydra_s_adds_stays():
+    path = ConfigSearchPathImpl()
+    path.append("hydra-colorlog", "pkg://hydra_plugins.hydra_colorlog.conf")
+    refuse_modules(path)
 
 
 def test_the_environment_enters_by_the_command_line_alone(cli, stranger, monkeypatch):

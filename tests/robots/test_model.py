@@ -261,3 +261,20 @@ def test_an_unknown_tip_is_named_with_the_nearest(macro_urdf):
 def test_what_pinocchio_cannot_build(urdf):
     with pytest.raises(ConfigError, match=r"robot\.urdf: Pinocchio cannot build it|robot\.tip"):
         RobotModel(urdf, "tip")
+
+
+def test_a_shape_that_pinocchio_does_not_know_is_no_part_of_a_model(macro_urdf, capfd):
+    capsule = "<collision><geometry><capsule radius='0.1' length='1'/></geometry></collision>"
+    model = RobotModel(macro_urdf.replace('<link name="link2">', f'<link name="link2">{capsule}'), "tip")
+    q = np.array([0.1, 0.2, 0.3])
+    np.testing.assert_array_equal(model.mass_matrix(q), RobotModel(macro_urdf, "tip").mass_matrix(q))
+    assert capfd.readouterr() == ("", "")
+
+
+def test_what_pinocchio_says_of_a_body_is_told(macro_urdf, capfd):
+    bare = macro_urdf.replace("<inertia ", "<inertial ")
+    with pytest.raises(
+        ConfigError, match="Pinocchio does not take it as it is: Error:   Inertial element must have iner"
+    ):
+        RobotModel(bare, "tip")
+    assert capfd.readouterr() == ("", "")
