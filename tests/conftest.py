@@ -1,9 +1,12 @@
+import copy
+import functools
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import compiled_once
 import composing
@@ -94,7 +97,12 @@ def one_stage() -> Callable[[str, RobotModel], Robot]:
 @pytest.fixture(scope="session")
 def checked_config() -> Callable[..., RunConfig]:
     """Compose and check a config from overrides; noise-free, without torque limits, unless they ask for it."""
-    return lambda *overrides: validate(compose(overrides).resolved)
+
+    @functools.cache
+    def composed(*overrides: str) -> Mapping[str, Any]:
+        return compose(overrides).resolved
+
+    return lambda *overrides: validate(copy.deepcopy(composed(*overrides)))
 
 
 @pytest.fixture(scope="session")
