@@ -28,6 +28,8 @@ from runner.robots.robot import Robot, Stage  # noqa: E402
 from runner.simulation import ClosedLoop, simulate  # noqa: E402
 from runner.trace import Trace  # noqa: E402
 
+pytest_plugins = ("cost",)
+
 settings.register_profile("runner", derandomize=True, deadline=None, max_examples=40)
 settings.load_profile("runner")
 
