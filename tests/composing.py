@@ -5,7 +5,6 @@ copied; values that overrides set are put there by Hydra as ever.
 `test_composing.py` compares both ways; what is about Hydra itself asks for the fixture `plain_hydra`.
 """
 
-import copy
 import hashlib
 import pickle
 from collections.abc import Iterator
@@ -25,7 +24,7 @@ _parse = yaml.load
 _choose, _merge = loading.create_defaults_list, ConfigLoaderImpl._compose_config_from_defaults_list
 _parsed: dict[tuple[str | bytes, str], bytes] = {}
 _chosen: dict[Any, DefaultsList] = {}
-_merged: dict[Any, Any] = {}
+_merged: dict[Any, bytes] = {}
 
 
 def parse_once(stream: Any, Loader: Any) -> Any:
@@ -53,8 +52,8 @@ def merge_once(self: Any, defaults: Any, repo: Any) -> Any:
     """Return what the files say together."""
     key = (_files(repo), *((default.config_path, default.package) for default in defaults))
     if key not in _merged:
-        _merged[key] = _merge(self, defaults=defaults, repo=repo)
-    return copy.deepcopy(_merged[key])
+        _merged[key] = pickle.dumps(_merge(self, defaults=defaults, repo=repo))
+    return pickle.loads(_merged[key])
 
 
 def _files(repo: Any) -> str:

@@ -1,9 +1,12 @@
+import copy
+import functools
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import compiled_once
 import composing
@@ -24,6 +27,8 @@ from runner.robots import RobotModel, find_urdf, read_urdf  # noqa: E402
 from runner.robots.robot import Robot, Stage  # noqa: E402
 from runner.simulation import ClosedLoop, simulate  # noqa: E402
 from runner.trace import Trace  # noqa: E402
+
+pytest_plugins = ("cost",)
 
 settings.register_profile("runner", derandomize=True, deadline=None, max_examples=40)
 settings.load_profile("runner")
@@ -94,7 +99,12 @@ def one_stage() -> Callable[[str, RobotModel], Robot]:
 @pytest.fixture(scope="session")
 def checked_config() -> Callable[..., RunConfig]:
     """Compose and check a config from overrides; noise-free, without torque limits, unless they ask for it."""
-    return lambda *overrides: validate(compose(overrides).resolved)
+
+    @functools.cache
+    def composed(*overrides: str) -> Mapping[str, Any]:
+        return compose(overrides).resolved
+
+    return lambda *overrides: validate(copy.deepcopy(composed(*overrides)))
 
 
 @pytest.fixture(scope="session")

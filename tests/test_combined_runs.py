@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from runner import open_run
-from runner.assembly import assemble, metric_context
+from runner.assembly import assemble, make_encoders, metric_context
 from runner.metrics import evaluate
+from runner.simulation import simulate
 
 TRACKING = ("robot=combined", "preset=sound", "trajectory=quintic", "trajectory.duration=3", "duration=3")
 OPTIONS = {
@@ -53,14 +54,16 @@ CASES = [
 
 
 @pytest.fixture(scope="session")
-def measured(simulated, checked_config):
+def measured(checked_config):
     """Simulate one repetition, and evaluate it."""
 
     def make(*overrides, repetition=0):
         config = checked_config(*overrides)
         loop = assemble(config)
-        loop.plant.close()
-        trace = simulated(*overrides, repetition=repetition)
+        try:
+            trace = simulate(loop, make_encoders(config, loop, repetition))
+        finally:
+            loop.plant.close()
         return trace, evaluate(trace, metric_context(config, loop))
 
     return make

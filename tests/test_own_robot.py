@@ -93,13 +93,13 @@ def test_a_report_with_the_motion_is_made_of_the_sweep(place, sweep):
 
 
 @pytest.mark.parametrize(
-    ("name", "fault", "said"),
+    ("name", "fault", "said", "workers"),
     [
-        ("faulty", "return torque / 0.0 if self.config.natural_frequency > 50.0 else torque", "GravityPD.torque ("),
-        ("endless", "while self.config.natural_frequency > 50.0:\n            pass\n        return torque", "2 s ("),
+        ("faulty", "return torque / 0.0 if self.config.natural_frequency > 50.0 else torque", "GravityPD.torque (", 0),
+        ("endless", "while self.config.natural_frequency > 50.0:\n            pass\n        return torque", "2 s (", 1),
     ],
 )
-def test_a_part_that_goes_wrong_is_told_with_its_place_and_the_sweep_goes_on(place, name, fault, said):
+def test_a_part_that_goes_wrong_is_told_with_its_place_and_the_sweep_goes_on(place, name, fault, said, workers):
     source = (EXAMPLE / "gravity_pd.py").read_text()
     faulty = source.replace("gravity_pd", name).replace("        return torque\n", f"        {fault}\n")
     (place[0] / f"{name}.py").write_text(faulty)
@@ -112,7 +112,7 @@ def test_a_part_that_goes_wrong_is_told_with_its_place_and_the_sweep_goes_on(pla
         *PARTS[2:],
         "sweep.time_limit=2",
         "duration=0.2",
-        "hydra.sweeper.workers=1",
+        f"hydra.sweeper.workers={workers}",
     ]
     ending = call(
         place, "runner", "-m", *parts, "robot=lamp", f"controller={name}", "controller.natural_frequency=60,20"

@@ -48,7 +48,7 @@ def sealed(text: str) -> bytes:
 
 
 def read_json(path: Path, mend: str) -> dict[str, Any]:
-    """Return what a file of `sealed_json` holds, once its digest has been found right.
+    """Return what was given to `sealed_json`, and the schema, once the digest has been found right.
 
     Args:
         path: The file.
@@ -73,6 +73,7 @@ def read_json(path: Path, mend: str) -> dict[str, Any]:
         raise DamagedError(f"cannot read {path}: it has schema {schema}; this version reads 1 and {SCHEMA}; {mend}")
     if not _is_whole(content):
         raise DamagedError(f"cannot read {path}: it is damaged: its content has another digest than it says; {mend}")
+    del record["digest"]
     return dict(record)
 
 

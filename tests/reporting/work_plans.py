@@ -30,12 +30,17 @@ def _repeated(overrides: Overrides) -> Overrides:
 
 
 def thesis_moments() -> dict[str, Overrides]:
-    """Return the same, the runs of six joints and of the Macro beside them cut to a moment."""
+    """Return the same, the runs of six joints and of the Macro beside them cut to a moment, those of the Mini alone."""
     combined = combined_jobs()
-    return {
-        name: cut(overrides, MOMENT) if name in combined or name.partition("/")[0] in COMBINED else overrides
-        for name, overrides in thesis_jobs().items()
-    }
+    moments = {}
+    for name, overrides in thesis_jobs().items():
+        if name in combined or name.partition("/")[0] in COMBINED:
+            moments[name] = cut(overrides, MOMENT)
+        elif name.startswith("figure_4"):
+            moments[name] = (*(o for o in overrides if not o.startswith("repetitions=")), "repetitions=1")
+        else:
+            moments[name] = overrides
+    return moments
 
 
 def xarm7_moments() -> dict[str, Overrides]:

@@ -8,7 +8,7 @@ def interval_of(values, seed=0):
     return median_interval(np.array(values, dtype=float), seed)
 
 
-@pytest.mark.parametrize(("n", "trials"), [(7, 300), (12, 300), (40, 300)])
+@pytest.mark.parametrize(("n", "trials"), [(7, 300), (12, 300), pytest.param(40, 300, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("draw", "median"), [("standard_normal", 0.0), ("standard_exponential", np.log(2.0))])
 def test_ninety_five_of_a_hundred_intervals_hold_the_median(n, trials, draw, median):
     rng = np.random.default_rng(n)
@@ -22,8 +22,8 @@ def test_ninety_five_of_a_hundred_intervals_hold_the_median(n, trials, draw, med
 def test_the_interval_shrinks_with_the_root_of_the_sample():
     rng = np.random.default_rng(1)
     widths = [np.mean([i.high - i.low for i in (median_interval(rng.normal(size=n)) for _ in range(20))])
-              for n in (50, 800)]  # fmt: skip
-    assert widths[0] / widths[1] == pytest.approx(4.0, rel=0.25)
+              for n in (25, 225)]  # fmt: skip
+    assert widths[0] / widths[1] == pytest.approx(3.0, rel=0.25)
 
 
 def test_it_moves_and_scales_with_the_values():
