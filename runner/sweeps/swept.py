@@ -1,15 +1,18 @@
 """The overrides of a sweep: which keys are swept, over which values."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from hydra.core.config_loader import ConfigLoader
 from hydra.core.override_parser.overrides_parser import OverridesParser
-from hydra.core.override_parser.types import Override, Transformer
+from hydra.core.override_parser.types import Override, RangeSweep, Transformer
 
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.errors import ConfigError
+
+_MOST_CELLS = 10_000_000  # of one sweep; their overrides alone would fill the memory of most machines
 
 
 @dataclass(frozen=True)
@@ -38,17 +41,32 @@ def parse_sweep(arguments: Sequence[str], groups: Sequence[str], loader: ConfigL
         loader: Hydra's loader, which knows what `glob(*)` stands for.
 
     Raises:
-        ConfigError: for what is no override, and for a key that is swept over no value.
+        ConfigError: for what is no override, for a key that is swept over no value, and for too many cells.
     """
     try:
         overrides = OverridesParser.create(config_loader=loader).parse_overrides(list(arguments))
+        _check_ranges(overrides)
         keys = {override.get_key_element(): _read(override, groups) for override in overrides}
     except COMPOSITION_ERRORS as error:
         raise explain(error) from None
     empty = [f"{key.name}: is swept over no value; give one or more" for key in keys.values() if not key.values]
     if empty:
         raise ConfigError(empty)
+    _check_cells(math.prod(len(key.values) for key in keys.values()))
     return list(keys.values())
+
+
+def _check_ranges(overrides: Sequence[Override]) -> None:
+    """Refuse a range of too many values before they are written out."""
+    for override in overrides:
+        value = override.value()
+        if isinstance(value, RangeSweep) and value.start is not None and value.stop is not None and value.step:
+            _check_cells((value.stop - value.start) / value.step)
+
+
+def _check_cells(cells: float) -> None:
+    if cells > _MOST_CELLS:
+        raise ConfigError([f"a sweep of {cells:.3g} cells: allowed: up to {_MOST_CELLS:.0e}; sweep over fewer values"])
 
 
 def is_simulated(key: str) -> bool:

@@ -53,3 +53,11 @@ def test_an_empty_axis_is_named(argument):
 def test_what_is_no_override_is_said():
     with pytest.raises(ConfigError, match="'seed=0,1,,2' is no override"):
         keys("seed=0,1,,2")
+
+
+@pytest.mark.parametrize("argument", ["seed=range(0,100000000)", "seed=range(0,inf)", "seed=range(1e300)"])
+def test_too_many_cells_are_refused_before_they_are_written_out(argument):
+    with pytest.raises(ConfigError, match=r"cells: allowed: up to 1e\+07"):
+        plan_sweep([argument])
+    with pytest.raises(ConfigError, match=r"a sweep of 1\.1e\+07 cells"):
+        plan_sweep(["seed=range(0,1100)", "noise.position=range(0,10000)"])
