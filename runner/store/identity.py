@@ -15,7 +15,7 @@ _LEFT_OUT = ("limits", "outputs", "preset", "sweep")
 # The rooms and modules of the physics: what a run's result follows from. All others leave it as it is.
 _PHYSICS = (
     "assembly.py", "calibration", "calibration_job.py", "config", "controllers", "environments", "execution.py",
-    "feasibility.py", "guard", "interaction.py", "metrics", "plants", "registry.py", "robots", "sensing",
+    "feasibility.py", "guard", "interaction.py", "loop", "metrics", "plants", "registry.py", "robots", "sensing",
     "simulation.py", "trace.py", "trajectories",
 )  # fmt: skip
 

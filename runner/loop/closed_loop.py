@@ -1,0 +1,48 @@
+"""All that acts together in one run."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from runner.controllers import Loop
+from runner.interaction import Interaction
+from runner.plants import Plant, PositionPlant
+from runner.robots.robot import Robot
+from runner.trace import FloatArray
+from runner.trajectories import Trajectory
+
+
+@dataclass(frozen=True)
+class ClosedLoop:
+    """The control loops around one robot.
+
+    Attributes:
+        robot: The robot, for its true end points.
+        plant: The simulated robot, which takes what the loops give.
+        loops: The control loops; together they command every joint once.
+        trajectory: The desired motion of the tip.
+        limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
+        tick: Time between two ticks of the fastest loop, in s; every loop's period is a multiple of it.
+        ticks: Number of ticks.
+        commands: Whether the loops give joint torques, or joint positions to a plant that follows them.
+        interaction: What the tip feels of the world; None where there is nothing to feel.
+        q_start: Joint positions at t = 0, shape (nq,), in rad; the robot starts at rest.
+        parallel: Whether riding stages keep the orientation of home, as the plant has it.
+        delay: Ticks from a command until it acts.
+    """
+
+    robot: Robot
+    plant: Plant | PositionPlant
+    loops: tuple[Loop, ...]
+    trajectory: Trajectory
+    limits: FloatArray
+    tick: float
+    ticks: int
+    commands: Literal["torque", "position"]
+    interaction: Interaction | None
+    q_start: FloatArray
+    parallel: bool
+    delay: int
+
+    def every(self, loop: Loop) -> int:
+        """Return the number of ticks in a loop's period."""
+        return round(loop.period / self.tick)

@@ -1,0 +1,57 @@
+"""What one control loop asks of its joints, at its own ticks."""
+
+from collections.abc import Callable
+from typing import cast
+
+import numpy as np
+
+from runner.controllers import Controller, Loop, PositionController
+from runner.loop.closed_loop import ClosedLoop
+from runner.loop.recorder import Recorder
+from runner.sensing import JointEncoders
+from runner.trace import FloatArray
+
+Law = Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray]
+
+
+class Command:
+    """A control loop at work: it reads the encoders, asks its law, and holds the answer, clipped, until its next tick.
+
+    Args:
+        closed: The closed loop.
+        loop: The control loop; its controller is reset here.
+        encoders: Its joint measurement, with a draw for each of its ticks.
+        recorder: Holds reference and time, and takes what is asked for.
+
+    Attributes:
+        every: Ticks between two of its own.
+    """
+
+    def __init__(self, closed: ClosedLoop, loop: Loop, encoders: JointEncoders, recorder: Recorder) -> None:
+        self.every = closed.every(loop)
+        self._law = _reset(closed, loop)
+        self._measure = encoders.measure
+        self._times, self._desired = recorder.times, recorder.desired
+        self._held: FloatArray = recorder.command[loop.joints]  # a view: what is written there is what is asked for
+        self._highest: FloatArray = closed.limits[loop.joints]
+        self._lowest: FloatArray = -self._highest
+        self._clipped = closed.commands == "torque" and bool(np.isfinite(self._highest).any())
+
+    def update(self, k: int, q: FloatArray, dq: FloatArray) -> None:
+        """Ask the law in tick k, from the true state, shapes (nq,)."""
+        asked = self._law(self._times[k], *self._measure(k // self.every, q, dq), self._desired[k])
+        if self._clipped:
+            np.minimum(asked, self._highest, out=asked)
+            np.maximum(asked, self._lowest, out=asked)
+        self._held[:] = asked
+
+
+def _reset(closed: ClosedLoop, loop: Loop) -> Law:
+    """Reset a loop's controller, and return its law."""
+    if closed.commands == "torque":
+        controller = cast(Controller, loop.controller)
+        controller.reset()
+        return controller.torque
+    follower = cast(PositionController, loop.controller)
+    follower.reset(closed.q_start)
+    return follower.joint_positions

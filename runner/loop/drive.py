@@ -1,0 +1,61 @@
+"""What moves the plant for one tick: torques, or joint positions that it follows."""
+
+from typing import Protocol, cast
+
+from runner.loop.closed_loop import ClosedLoop
+from runner.loop.recorder import Recorder
+from runner.plants import Plant, PositionPlant
+from runner.trace import FloatArray
+
+
+class Drive(Protocol):
+    """What carries the loops' commands to the plant."""
+
+    def advance(self, k: int, load: FloatArray | None) -> None:
+        """Move the plant from tick k to the next one, under the world's joint torques, shape (nq,), in N m."""
+
+
+class TorqueDrive:
+    """The loops' torques and the world's act on the plant together.
+
+    Args:
+        plant: The plant.
+        delay: Ticks from a command until it acts; the first one acts from the start.
+        recorder: Holds the commands.
+    """
+
+    def __init__(self, plant: Plant, delay: int, recorder: Recorder) -> None:
+        self._plant, self._delay, self._commands = plant, delay, recorder.commands
+
+    def advance(self, k: int, load: FloatArray | None) -> None:
+        """Move the plant; see Drive."""
+        acting = self._commands[max(k - self._delay, 0)]
+        self._plant.advance(acting if load is None else acting + load)
+
+
+class PositionDrive:
+    """The plant follows joint positions, and tells the torques that it took.
+
+    Args:
+        plant: The plant.
+        delay: Ticks from a command until it acts; the first one acts from the start.
+        recorder: Holds the commands, and takes the torques.
+    """
+
+    def __init__(self, plant: PositionPlant, delay: int, recorder: Recorder) -> None:
+        self._plant, self._delay, self._commands = plant, delay, recorder.commands
+        self._torques = recorder.torques
+
+    def advance(self, k: int, load: FloatArray | None) -> None:
+        """Move the plant; see Drive."""
+        if load is not None:
+            self._plant.load[:] = load
+        self._plant.advance(self._commands[max(k - self._delay, 0)])
+        self._torques[k] = self._torques[k + 1] = self._plant.tau
+
+
+def make_drive(closed: ClosedLoop, recorder: Recorder) -> Drive:
+    """Return what drives the plant of a closed loop, as its loops command it."""
+    if closed.commands == "position":
+        return PositionDrive(cast(PositionPlant, closed.plant), closed.delay, recorder)
+    return TorqueDrive(closed.plant, closed.delay, recorder)
