@@ -1,21 +1,13 @@
-"""Between arm and world: what the tip feels, what that does to the joints, and what loads the wrist's sensor."""
-
-from collections.abc import Sequence
-from dataclasses import fields
-from typing import Any
+"""The wrench of the world on the tip, the joint torques that it makes, and the load on the wrist's sensor."""
 
 import numpy as np
 import pinocchio as pin
 
-from runner.controllers.controller import FeelingController
 from runner.environments import Environment
 from runner.robots.robot import Robot
 from runner.robots.tool_link import find_tool, holding_wrench
-from runner.sensing.force_torque import ForceTorqueSensor
 from runner.sensing.wrench import wrench_transform
-from runner.trace import FloatArray, TouchSignals
-
-_NOTHING = np.zeros(6)
+from runner.trace import FloatArray
 
 
 class Interaction:
@@ -94,51 +86,3 @@ class Interaction:
         load: FloatArray = wrench_transform(from_base.homogeneous) @ self.external
         load -= holding_wrench(model, data, self._flange, self._tool, self._gravity)
         return load
-
-
-class Touch:
-    """The interaction of one run: it loads the sensor, lets the controllers feel its reading, and keeps a record.
-
-    Args:
-        interaction: Between arm and world.
-        wrist: The force/torque sensor, with a draw for each tick.
-        feeling: The controllers that feel its reading.
-        q_start: Joint positions at t = 0, shape (nq,), in rad.
-        rows: Number of ticks, the last included.
-    """
-
-    def __init__(
-        self,
-        interaction: Interaction,
-        wrist: ForceTorqueSensor,
-        feeling: Sequence[FeelingController],
-        q_start: FloatArray,
-        rows: int,
-    ) -> None:
-        self._interaction = interaction
-        self._wrist = wrist
-        self._feeling = feeling
-        self._signals = TouchSignals(*(np.zeros((rows, 6)) for _ in range(5)))
-        interaction.reset(q_start)
-
-    def update(self, k: int, time: float, q: FloatArray, dq: FloatArray, plant: Any) -> FloatArray:
-        """Take the state at tick k, and return the joint torques of the world; see Interaction.update.
-
-        A plant that makes contacts offers their `contact_wrench`, and one that computes it the `tool_reaction`.
-        """
-        interaction, signals = self._interaction, self._signals
-        torques = interaction.update(time, q, dq, getattr(plant, "contact_wrench", _NOTHING))
-        reading = self._wrist.read(k, interaction.load)
-        signals.external[k], signals.load[k], signals.reading[k] = interaction.external, interaction.load, reading
-        reaction = getattr(plant, "tool_reaction", None)
-        if reaction is not None:
-            signals.reaction[k] = interaction.to_flange_axes(reaction)
-        for controller in self._feeling:
-            controller.feel(reading)
-        if self._feeling:
-            signals.felt[k] = self._feeling[0].felt  # of its last tick
-        return torques
-
-    def signals(self, kept: slice) -> TouchSignals:
-        """Return the record of some ticks."""
-        return TouchSignals(**{field.name: getattr(self._signals, field.name)[kept] for field in fields(TouchSignals)})

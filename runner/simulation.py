@@ -1,17 +1,15 @@
 """The closed loop: plant, encoders, controllers and desired motion, tick by tick, to a trace."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from runner.errors import SimulationError
-from runner.interaction import Touch
 from runner.loop.closed_loop import ClosedLoop
 from runner.loop.command import Command
+from runner.loop.contact import Contact
 from runner.loop.drive import make_drive
 from runner.loop.recorder import Recorder
-from runner.plants import innermost
 from runner.sensing import ForceTorqueSensor, JointEncoders
 from runner.trace import Trace
 
@@ -35,21 +33,19 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
     Returns:
         The trace; one that ends early carries a failure.
     """
-    recorder, touch, load, k = Recorder(closed), None, None, 0
-    moved = innermost(closed.plant)
+    recorder, contact, load, k = Recorder(closed), None, None, 0
     try:
         recorder.desired[:] = closed.trajectory.sample(recorder.times)
         commands = [Command(closed, *pair, recorder) for pair in zip(closed.loops, encoders, strict=True)]
         if closed.interaction is not None and wrist is not None:
-            feeling: Any = [loop.controller for loop in closed.loops if loop.feels]
-            touch = Touch(closed.interaction, wrist, feeling, closed.q_start, closed.ticks + 1)
+            contact = Contact(closed, closed.interaction, wrist)
         drive = make_drive(closed, recorder)
         closed.plant.reset(closed.q_start, np.zeros_like(closed.q_start))
         with np.errstate(over="ignore", invalid="ignore"):  # a diverging run ends as a failure, not as a warning
             for k in range(closed.ticks + 1):
                 q, dq = recorder.observe(k)
-                if touch is not None:
-                    load = touch.update(k, recorder.times[k], q, dq, moved)
+                if contact is not None:
+                    load = contact.update(k, recorder.times[k], q, dq)
                 for command in commands:
                     if k % command.every == 0:
                         command.update(k, q, dq)
@@ -59,4 +55,4 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
             recorder.check_divergence(closed.ticks)
     except (np.linalg.LinAlgError, SimulationError) as error:
         recorder.stop(k, error)
-    return recorder.trace(touch)
+    return recorder.trace(contact)

@@ -24,7 +24,7 @@ class Failure:
 
 
 @dataclass(frozen=True)
-class TouchSignals:
+class ContactSignals:
     """Wrenches of one run, a row of force in N and moment in N m for each control tick, shapes (T, 6).
 
     Attributes:
@@ -61,7 +61,7 @@ class Trace:
             torques are forces, in N.
         tick_seconds: Wall-clock time that each tick took, shape (T - 1,), in s.
         q_command: Joint positions commanded, held until the next row, shape (T, nq), in rad; None under torques.
-        touch: What the tip felt, by what is meant; None where there was nothing to feel.
+        contact: What the tip felt, by what is meant; None where there was nothing to feel.
         failure: Why the run ended early, or None.
     """
 
@@ -78,7 +78,7 @@ class Trace:
     joint_units: tuple[str, ...]
     tick_seconds: FloatArray
     q_command: FloatArray | None = None
-    touch: TouchSignals | None = None
+    contact: ContactSignals | None = None
     failure: Failure | None = None
 
     @property

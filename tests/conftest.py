@@ -28,7 +28,7 @@ from runner.robots.robot import Robot, Stage  # noqa: E402
 from runner.simulation import ClosedLoop, simulate  # noqa: E402
 from runner.trace import Trace  # noqa: E402
 
-pytest_plugins = ("cost",)
+pytest_plugins = ("cost", "own_parts")
 
 settings.register_profile("runner", derandomize=True, deadline=None, max_examples=40)
 settings.load_profile("runner")
@@ -141,8 +141,8 @@ def simulated(checked_config: Callable[..., RunConfig]) -> Callable[..., Trace]:
         config = checked_config(*overrides)
         loop = assemble(config)
         try:
-            wrist = make_wrist_sensor(config, loop, repetition)
-            return simulate(loop, make_encoders(config, loop, repetition), wrist)
+            wrist = make_wrist_sensor(loop, config.wrist_sensor, config.settings.seed, repetition)
+            return simulate(loop, make_encoders(loop, config.noise, config.settings.seed, repetition), wrist)
         finally:
             loop.plant.close()
 

@@ -7,16 +7,16 @@ the run as a failure that names file and line. Parts of this package are not wat
 from runner.guard.controller import WatchedController, watch_loops
 from runner.guard.environment import WatchedEnvironment
 from runner.guard.metrics import watch_metrics
-from runner.guard.plant import WatchedPlant
+from runner.guard.plant import watch_plant
 from runner.guard.read_only import read_only
 from runner.guard.trajectory import WatchedTrajectory
 
 __all__ = [
     "WatchedController",
     "WatchedEnvironment",
-    "WatchedPlant",
     "WatchedTrajectory",
     "read_only",
     "watch_loops",
     "watch_metrics",
+    "watch_plant",
 ]

@@ -1,11 +1,11 @@
 """All that acts together in one run."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 from runner.controllers import Loop
 from runner.interaction import Interaction
 from runner.plants import Plant, PositionPlant
+from runner.registry import Commands
 from runner.robots.robot import Robot
 from runner.trace import FloatArray
 from runner.trajectories import Trajectory
@@ -37,11 +37,15 @@ class ClosedLoop:
     limits: FloatArray
     tick: float
     ticks: int
-    commands: Literal["torque", "position"]
+    commands: Commands
     interaction: Interaction | None
     q_start: FloatArray
     parallel: bool
     delay: int
+
+    def close(self) -> None:
+        """Release what the plant holds."""
+        self.plant.close()
 
     def every(self, loop: Loop) -> int:
         """Return the number of ticks in a loop's period."""

@@ -5,8 +5,8 @@ import time
 import numpy as np
 
 from runner.errors import SimulationError
-from runner.interaction import Touch
 from runner.loop.closed_loop import ClosedLoop
+from runner.loop.contact import Contact
 from runner.robots.robot import end_points
 from runner.trace import Failure, FloatArray, Trace
 
@@ -83,7 +83,7 @@ class Recorder:
         self._failure = failure
         self._kept = slice(0, int(np.searchsorted(self.times, failure.time)) + 1)
 
-    def trace(self, touch: Touch | None) -> Trace:
+    def trace(self, contact: Contact | None) -> Trace:
         """Return the record, with what the tip felt."""
         closed, kept = self._closed, self._kept
         positions = closed.commands == "position"
@@ -95,7 +95,7 @@ class Recorder:
             dq=self._dq[kept],
             tau=(self.torques if positions else acted)[kept],
             q_command=self.commands[kept] if positions else None,
-            touch=None if touch is None else touch.signals(kept),
+            contact=None if contact is None else contact.signals(kept),
             end_points=end_points(closed.robot, self._q[kept], closed.parallel),
             offsets=home[-1] - home,
             stage_names=closed.robot.stage_names,

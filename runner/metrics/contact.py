@@ -16,9 +16,9 @@ def evaluate(trace: Trace, context: MetricContext) -> dict[str, float | None]:
     - steady_force: its mean over the last 0.5 s; None for a shorter run.
     - force_error: distance of what the controller felt from it, likewise averaged.
     """
-    if trace.touch is None:
+    if trace.contact is None:
         return {}
-    force, felt = trace.touch.external[:, :3], trace.touch.felt[:, :3]
+    force, felt = trace.contact.external[:, :3], trace.contact.felt[:, :3]
     steady = trace.t >= trace.t[-1] - _STEADY_WINDOW - 1e-9
     long_enough = bool(trace.t[-1] >= _STEADY_WINDOW - 1e-9)
     mean = force[steady].mean(axis=0)

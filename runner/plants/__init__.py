@@ -1,13 +1,8 @@
 """Simulated arms: from torques, or joint positions commanded, to true motion."""
 
-from runner.guard import WatchedPlant
-from runner.plants.plant import Plant, PositionPlant, innermost
-from runner.registry import Registry
+from runner.plants.kinds import PlantConfig, Plants
+from runner.plants.plant import ContactPlant, Plant, PositionPlant, ToolReactionPlant, innermost
 
-PLANTS = Registry(
-    "plant",
-    {"bullet": "runner.plants.bullet", "kinematic": "runner.plants.kinematic", "rk4": "runner.plants.rk4"},
-    watch=WatchedPlant,
-)
+PLANTS = Plants({"bullet": "runner.plants.bullet", "kinematic": "runner.plants.kinematic", "rk4": "runner.plants.rk4"})
 
-__all__ = ["PLANTS", "Plant", "PositionPlant", "innermost"]
+__all__ = ["PLANTS", "ContactPlant", "Plant", "PlantConfig", "PositionPlant", "ToolReactionPlant", "innermost"]

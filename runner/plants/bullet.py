@@ -1,15 +1,12 @@
 """PyBullet as the plant: Featherstone's articulated bodies, semi-implicit Euler."""
 
-import tempfile
-import xml.etree.ElementTree as ET
 from typing import Literal
 
 import numpy as np
 import pinocchio as pin
 
-from runner.engine_output import caught_output, quiet_stderr
-from runner.errors import ConfigError
-from runner.plants.bullet_reading import words
+from runner.engine_output import quiet_stderr
+from runner.plants.bullet_servers import SERVERS
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
 from runner.plants.plant import FloatArray, Plant
 from runner.robots.model import RobotModel
@@ -19,10 +16,6 @@ from runner.robots.tool_link import TOOL_MOUNT
 with quiet_stderr():  # PyBullet announces its build time
     import pybullet
 
-_KEPT = 4
-_MOST_JOINTS = 127
-_idle: dict[str, tuple[int, int]] = {}
-"""Physics servers of closed plants and the arm in each, by its URDF: a server takes 15 ms of CPU time, an arm 3."""
 # Bullet clamps joint speeds at 100 rad/s by default; a Mini's free goal move is faster than that.
 _NO_SPEED_LIMIT = 1e12
 
@@ -54,13 +47,20 @@ class Bullet:
     def __init__(self, urdf: str, model: RobotModel, step: float, steps_per_tick: int) -> None:
         self.q = np.zeros(model.nq)
         self.dq = np.zeros(model.nq)
-        self._urdf = urdf
         self._steps_per_tick = steps_per_tick
         self._wall: int | None = None
-        used = urdf in _idle
-        self._client, self._body = _idle.pop(urdf) if used else self._load(urdf)
+        self._server = SERVERS.open(urdf)
+        self._client, self._body = self._server.client, self._server.body
+        try:
+            self._set_up(model, step)
+        except BaseException:
+            SERVERS.give_back(self._server, reusable=False)
+            raise
+
+    def _set_up(self, model: RobotModel, step: float) -> None:
+        """Make the server as this plant needs it, whatever an earlier one left there."""
         self._joints = self._order_joints(model.joint_names)
-        if used:
+        if self._server.used:
             self.reset(self.q, self.dq)
         else:
             self._remove_damping_and_motors()
@@ -69,31 +69,10 @@ class Bullet:
         # Bullet splits one stepSimulation into the steps: bit-identical to as many calls, and cheaper. Its own
         # "substeps" start at 2; 0 means none.
         pybullet.setPhysicsEngineParameter(
-            fixedTimeStep=step * steps_per_tick,
-            numSubSteps=steps_per_tick if steps_per_tick > 1 else 0,
+            fixedTimeStep=step * self._steps_per_tick,
+            numSubSteps=self._steps_per_tick if self._steps_per_tick > 1 else 0,
             physicsClientId=self._client,
         )
-
-    def _load(self, urdf: str) -> tuple[int, int]:
-        """Return a physics server with the arm alone in it, and the arm."""
-        client = _empty_server()
-        # Bullet caches URDFs by file name within a process, so each arm gets a file name of its own.
-        with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
-            file.write(_in_short_lines(urdf))
-            file.flush()
-            flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
-            try:
-                with caught_output(1) as said:
-                    body: int = pybullet.loadURDF(file.name, useFixedBase=True, flags=flags, physicsClientId=client)
-                joints = pybullet.getNumJoints(body, physicsClientId=client)
-                if joints > _MOST_JOINTS:
-                    said.append(f"it has {joints} joints, fixed ones included; PyBullet takes up to {_MOST_JOINTS}")
-            except pybullet.error as error:
-                said.insert(0, str(error))
-        if said:
-            pybullet.disconnect(client)
-            raise ConfigError([f"robot.urdf: PyBullet does not take it as it is: {'; '.join(words(said))}"])
-        return client, body
 
     def _feel_tool(self) -> int | None:
         """Let Bullet compute the reaction in the tool's mount, at its origin in world axes; return that joint."""
@@ -147,14 +126,7 @@ class Bullet:
         self.q[:], self.dq[:], _, _ = zip(*states, strict=True)
 
     def add_wall(self, point: FloatArray, normal: FloatArray, stiffness: float, damping: float) -> None:
-        """Put up a flat frictionless wall that gives way, for the links that have a collision shape.
-
-        Args:
-            point: A point of its face in the base frame, shape (3,), in m.
-            normal: Unit vector out of it, shape (3,).
-            stiffness: In N/m.
-            damping: In N s/m.
-        """
+        """Put up a wall for the links that have a collision shape; see ContactPlant."""
         client = self._client
         box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[1.0, 1.0, 0.5], physicsClientId=client)
         turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), normal).coeffs()
@@ -172,9 +144,8 @@ class Bullet:
             physicsClientId=client,
         )
 
-    @property
     def tool_reaction(self) -> FloatArray | None:
-        """Bullet's own reading of what the tool puts on the flange in the last step; None where there is no tool.
+        """Return Bullet's own reading of what the tool puts on the flange in the last step; None without a tool.
 
         Force in N and moment about the flange's origin in N m, along the base's axes, shape (6,). In motion it is off
         by a term in the square of the speeds, at any step.
@@ -183,9 +154,8 @@ class Bullet:
             return None
         return -np.array(pybullet.getJointState(self._body, self._tool_mount, physicsClientId=self._client)[2])
 
-    @property
     def contact_wrench(self) -> FloatArray:
-        """Wrench of the wall on the arm: force in N, moment about the base's origin in N m, its axes, shape (6,)."""
+        """Return the wrench of the wall on the arm; see ContactPlant."""
         wrench = np.zeros(6)
         if self._wall is not None:
             for contact in pybullet.getContactPoints(self._body, self._wall, physicsClientId=self._client):
@@ -203,29 +173,10 @@ class Bullet:
         return M[np.ix_(places, places)]
 
     def close(self) -> None:
-        """Leave the physics server to the next plant of the same arm."""
+        """Give back the physics server, which may serve the next plant of the same arm."""
         changed = self._wall is not None or self._tool_mount is not None  # engine parameters that would outlive it
         diverged = not (np.isfinite(self.q).all() and np.isfinite(self.dq).all())
-        if changed or diverged or self._urdf in _idle or len(_idle) == _KEPT:
-            pybullet.disconnect(self._client)
-        else:
-            _idle[self._urdf] = self._client, self._body
-
-
-def _empty_server() -> int:
-    """Return a physics server without anything in it."""
-    if len(_idle) < _KEPT:
-        return int(pybullet.connect(pybullet.DIRECT))
-    client, _ = _idle.pop(next(iter(_idle)))
-    pybullet.resetSimulation(physicsClientId=client)
-    return client
-
-
-def _in_short_lines(urdf: str) -> str:
-    """Return an XML text with an element a line: Bullet breaks lines of 1,000 characters, even within a number."""
-    root = ET.fromstring(urdf)  # noqa: S314 - our own text, checked when it was read
-    ET.indent(root)
-    return ET.tostring(root, encoding="unicode")
+        SERVERS.give_back(self._server, reusable=not (changed or diverged))
 
 
 CONFIG = BulletConfig

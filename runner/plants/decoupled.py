@@ -1,6 +1,7 @@
 """Stages simulated each with its own dynamics, as the thesis did it."""
 
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from typing import Literal
 
 import numpy as np
@@ -8,7 +9,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.config.per_joint import expand
 from runner.errors import ConfigError
-from runner.plants.friction import FrictionConfig, rub
+from runner.plants.friction import FrictionConfig, with_friction
 from runner.plants.plant import FloatArray, Plant
 from runner.plants.servo import ServoConfig
 from runner.registry import StrictModel
@@ -60,20 +61,29 @@ def assemble_plant(
     viscous = np.array(expand("plant.friction.viscous", config.friction.viscous, names))
     coulomb = np.array(expand("plant.friction.coulomb", config.friction.coulomb, names))
 
-    def make_rubbing(urdf: str, model: RobotModel, joints: slice) -> Plant:
-        return rub(make(urdf, model), model, viscous[joints], coulomb[joints], tick)
-
     parallel = config.wrist_rotation == "parallel"
-    if len(robot.stages) == 1 or config.dynamics == "coupled":
-        if parallel and len(robot.stages) > 1:
-            raise ConfigError(
-                [
-                    "plant.wrist_rotation: parallel leaves the rider's base unturned, which coupled rigid bodies "
-                    "cannot; set plant.dynamics=decoupled, or plant.wrist_rotation=real"
-                ]
-            )
-        return make_rubbing(robot.urdf, robot.model, slice(None))
-    return Decoupled(robot, [make_rubbing(stage.urdf, stage.model, stage.joints) for stage in robot.stages], parallel)
+    coupled = len(robot.stages) == 1 or config.dynamics == "coupled"
+    if coupled and parallel and len(robot.stages) > 1:
+        raise ConfigError(
+            [
+                "plant.wrist_rotation: parallel leaves the rider's base unturned, which coupled rigid bodies "
+                "cannot; set plant.dynamics=decoupled, or plant.wrist_rotation=real"
+            ]
+        )
+    with ExitStack() as on_error:
+
+        def make_arm(urdf: str, model: RobotModel, joints: slice) -> Plant:
+            plant = make(urdf, model)
+            on_error.callback(plant.close)
+            return with_friction(plant, model, viscous[joints], coulomb[joints], tick)
+
+        if coupled:
+            whole = make_arm(robot.urdf, robot.model, slice(None))
+        else:
+            stages = [make_arm(stage.urdf, stage.model, stage.joints) for stage in robot.stages]
+            whole = Decoupled(robot, stages, parallel)
+        on_error.pop_all()
+    return whole
 
 
 class Decoupled:

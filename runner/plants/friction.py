@@ -5,7 +5,7 @@ import pinocchio as pin
 from scipy.linalg.lapack import dposv
 
 from runner.config.per_joint import NonNegativePerJoint
-from runner.plants.plant import FloatArray, Plant
+from runner.plants.plant import ContactPlant, FloatArray, Plant
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 
@@ -26,7 +26,7 @@ class FrictionConfig(StrictModel):
     coulomb: NonNegativePerJoint
 
 
-def rub(plant: Plant, model: RobotModel, viscous: FloatArray, coulomb: FloatArray, tick: float) -> Plant:
+def with_friction(plant: Plant, model: RobotModel, viscous: FloatArray, coulomb: FloatArray, tick: float) -> Plant:
     """Return a plant with friction in its joints, and the plant itself where there is none; see Frictional."""
     return Frictional(plant, model, viscous, coulomb, tick) if viscous.any() or coulomb.any() else plant
 
@@ -52,6 +52,7 @@ class Frictional:
     def __init__(self, plant: Plant, model: RobotModel, viscous: FloatArray, coulomb: FloatArray, tick: float) -> None:
         self.plant = plant
         """What friction brakes."""
+        self._contacts = plant if isinstance(plant, ContactPlant) else None
         self.q, self.dq = plant.q, plant.dq
         self._model = pin.Model(model.pin_model)
         self._data = self._model.createData()
@@ -84,7 +85,7 @@ class Frictional:
 
     def _contact_torque(self) -> FloatArray:
         """Return the joint torques of contacts that the plant made in the last tick, shape (nq,), in N m."""
-        wrench = getattr(self.plant, "contact_wrench", _NO_CONTACT)
+        wrench = _NO_CONTACT if self._contacts is None else self._contacts.contact_wrench()
         if not wrench.any():
             return np.zeros(len(self.q))
         pin.computeJointJacobians(self._model, self._data, self.q)

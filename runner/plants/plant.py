@@ -1,6 +1,6 @@
 """What every plant offers."""
 
-from typing import Any, Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,15 +9,17 @@ FloatArray = NDArray[np.float64]
 
 
 class Plant(Protocol):
-    """A simulated arm under torques that are held between control ticks. It never sees the controller.
+    """A simulated arm under torques that are held between control ticks. It never sees the controller."""
 
-    Attributes:
-        q: True joint positions, shape (nq,), in rad; renewed in place by reset and advance.
-        dq: True joint velocities, shape (nq,), in rad/s; likewise.
-    """
+    @property
+    def q(self) -> FloatArray:
+        """True joint positions, shape (nq,), in rad; renewed in place by reset and advance."""
+        ...
 
-    q: FloatArray
-    dq: FloatArray
+    @property
+    def dq(self) -> FloatArray:
+        """True joint velocities, shape (nq,), in rad/s; likewise."""
+        ...
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Put the arm into a state."""
@@ -33,19 +35,68 @@ class Plant(Protocol):
 
 
 class PositionPlant(Plant, Protocol):
-    """A simulated arm whose joints follow commanded positions; `advance` takes these, shape (nq,), in rad.
+    """A simulated arm whose joints follow commanded positions; `advance` takes these, shape (nq,), in rad."""
 
-    Attributes:
-        tau: Torques of the tick that `advance` just made, shape (nq,), in N m; renewed in place.
-        load: Joint torques that the world adds in the next tick, shape (nq,), in N m; written in place.
+    @property
+    def tau(self) -> FloatArray:
+        """Torques of the tick that `advance` just made, shape (nq,), in N m; renewed in place."""
+        ...
+
+    @property
+    def load(self) -> FloatArray:
+        """Joint torques that the world adds in the next tick, shape (nq,), in N m; written in place."""
+        ...
+
+
+@runtime_checkable
+class PlantAround(Protocol):
+    """What acts on another plant, as servos and friction do."""
+
+    @property
+    def plant(self) -> Plant:
+        """The plant that it acts on."""
+        ...
+
+
+@runtime_checkable
+class ContactPlant(Protocol):
+    """A plant that makes the contact of the arm with a wall itself.
+
+    One that does not gets the wall's force on the tip as joint torques, held for a tick.
     """
 
-    tau: FloatArray
-    load: FloatArray
+    def contact_wrench(self) -> FloatArray:
+        """Return the wrench of the wall on the arm in the last tick, shape (6,).
+
+        Force in N, moment about the base's origin in N m, along its axes.
+        """
+        ...
+
+    def add_wall(self, point: FloatArray, normal: FloatArray, stiffness: float, damping: float) -> None:
+        """Put up a flat frictionless wall that gives way.
+
+        Args:
+            point: A point of its face in the base frame, shape (3,), in m.
+            normal: Unit vector out of it, shape (3,).
+            stiffness: In N/m.
+            damping: In N s/m.
+        """
 
 
-def innermost(plant: Any) -> Any:
+@runtime_checkable
+class ToolReactionPlant(Protocol):
+    """A plant that computes the reaction in the tool's mount, which stands in the trace for comparison."""
+
+    def tool_reaction(self) -> FloatArray | None:
+        """Return what the tool puts on the flange; None where there is no tool.
+
+        Force in N and moment about the flange's origin in N m, along the base's axes, shape (6,).
+        """
+        ...
+
+
+def innermost(plant: Plant) -> Plant:
     """Return the plant that moves the arm, below servos and friction."""
-    while hasattr(plant, "plant"):
+    while isinstance(plant, PlantAround):
         plant = plant.plant
     return plant

@@ -115,9 +115,9 @@ def _parquet(trace: Trace) -> bytes:
         columns += [(f"{name}{joint + 1}", units[joint], values[:, joint]) for joint in joints]
     if trace.q_command is not None:
         columns += [(f"q{joint + 1}_command", places[joint], trace.q_command[:, joint]) for joint in joints]
-    if trace.touch is not None:
+    if trace.contact is not None:
         for name in ("external", "felt", "reading", "load", "reaction"):
-            values = getattr(trace.touch, name)
+            values = getattr(trace.contact, name)
             columns += [(f"{name}_force_{axis}", "N", values[:, index]) for index, axis in enumerate("xyz")]
             columns += [(f"{name}_moment_{axis}", "N m", values[:, 3 + index]) for index, axis in enumerate("xyz")]
     tip_signals = (

@@ -32,7 +32,7 @@ def test_each_axis_answers_a_push_as_its_mass_damper_and_spring(simulated, check
 def test_a_force_through_the_tip_turns_nothing(simulated, checked_config):
     trace = simulated(*PUSH, "environment.force=[3,-2,4]")
     assert np.abs(turned(checked_config(*PUSH).arm.model, trace.q)).max() < 1e-9
-    assert np.abs(trace.touch.felt[:, 3:]).max() < 1e-12
+    assert np.abs(trace.contact.felt[:, 3:]).max() < 1e-12
 
 
 def test_taken_at_the_flange_the_same_force_turns_the_tool(simulated, checked_config):
@@ -42,12 +42,12 @@ def test_taken_at_the_flange_the_same_force_turns_the_tool(simulated, checked_co
 
 def test_a_moving_tool_is_felt_as_nothing_when_it_is_compensated_and_as_itself_when_not(simulated):
     moving = ("robot=meca500", "trajectory=circle", "trajectory.duration=2", "duration=2", "controller.tip_speed=1")
-    assert np.abs(simulated(*moving).touch.felt).max() < 1e-9
-    weight = simulated(*moving, "controller.compensation=none").touch.felt
+    assert np.abs(simulated(*moving).contact.felt).max() < 1e-9
+    weight = simulated(*moving, "controller.compensation=none").contact.felt
     assert weight[1, 2] == pytest.approx(-0.25 * 9.81)  # of the first tick, before the arm gives way to it
     gravity_only = simulated(*moving, "controller.compensation=gravity")
     inertial = 0.25 * np.linalg.norm(gravity_only.desired[:, 2], axis=1).max()  # m a of the desired motion
-    felt = np.linalg.norm(gravity_only.touch.felt[:, :3], axis=1).max()
+    felt = np.linalg.norm(gravity_only.contact.felt[:, :3], axis=1).max()
     assert 0.5 * inertial < felt < 2.0 * inertial
 
 
@@ -68,11 +68,11 @@ def test_at_a_wall_it_reads_the_force_of_the_springs_in_series(simulated, plant,
         "duration=3",
     )
     depth = trace.tip[-1, 0] - 0.185
-    assert -trace.touch.external[-1, 0] == pytest.approx(stiffness * depth, rel=1e-3)
-    assert -trace.touch.felt[-1, 0] == pytest.approx(stiffness * depth, rel=0.01)
+    assert -trace.contact.external[-1, 0] == pytest.approx(stiffness * depth, rel=1e-3)
+    assert -trace.contact.felt[-1, 0] == pytest.approx(stiffness * depth, rel=0.01)
     if plant == "kinematic":
         series = 800.0 * stiffness / (800.0 + stiffness)
-        assert -trace.touch.felt[-1, 0] == pytest.approx(series * 0.005, rel=tolerance)
+        assert -trace.contact.felt[-1, 0] == pytest.approx(series * 0.005, rel=tolerance)
 
 
 def test_guided_by_hand_it_comes_along_and_stays(simulated):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from runner.assembly import make_encoders
-from runner.guard import WatchedPlant
+from runner.guard import watch_plant
 from runner.simulation import simulate
 
 
@@ -28,16 +28,16 @@ class Plant:
 
 
 def test_a_plant_that_raises_is_a_failure_that_names_the_place(checked_config, closed_loop):
-    loop = replace(closed_loop("robot=macro", "duration=0.2"), plant=WatchedPlant(Plant()))
-    trace = simulate(loop, make_encoders(checked_config("robot=macro", "duration=0.2"), loop, 0))
+    loop = replace(closed_loop("robot=macro", "duration=0.2"), plant=watch_plant(Plant()))
+    trace = simulate(loop, make_encoders(loop, checked_config("robot=macro", "duration=0.2").noise, 0, 0))
     assert re.fullmatch(r"RuntimeError: a gear broke \(test_plant.py, line \d+, in advance\)", trace.failure.reason)
     assert trace.failure.time == pytest.approx(0.02)
     assert trace.q.tolist() == [[0.1, 0.2, 0.3]] * 3
 
 
 def test_a_watched_plant_has_what_the_plant_has_and_no_more():
-    plant = WatchedPlant(Plant())
-    assert plant.ticks == 0
+    plant = watch_plant(Plant())
+    assert plant.q.tolist() == [0.1, 0.2, 0.3]
     assert not hasattr(plant, "add_wall")
 
 
@@ -49,8 +49,8 @@ def write(*handed):
 def test_one_that_changes_what_it_is_handed_is_one_too(checked_config, closed_loop, method):
     plant = Plant()
     setattr(plant, method, write)
-    loop = replace(closed_loop("robot=macro", "duration=0.2"), plant=WatchedPlant(plant))
-    trace = simulate(loop, make_encoders(checked_config("robot=macro", "duration=0.2"), loop, 0))
+    loop = replace(closed_loop("robot=macro", "duration=0.2"), plant=watch_plant(plant))
+    trace = simulate(loop, make_encoders(loop, checked_config("robot=macro", "duration=0.2").noise, 0, 0))
     assert trace.failure.time == 0.0
     assert re.search(r"read-only \(test_plant.py, line \d+, in write\)", trace.failure.reason)
 
@@ -58,6 +58,6 @@ def test_one_that_changes_what_it_is_handed_is_one_too(checked_config, closed_lo
 def test_one_with_a_state_of_another_shape_is_one_too(checked_config, closed_loop):
     plant = Plant()
     plant.dq = np.zeros(2)
-    loop = replace(closed_loop("robot=macro", "duration=0.2"), plant=WatchedPlant(plant))
-    trace = simulate(loop, make_encoders(checked_config("robot=macro", "duration=0.2"), loop, 0))
+    loop = replace(closed_loop("robot=macro", "duration=0.2"), plant=watch_plant(plant))
+    trace = simulate(loop, make_encoders(loop, checked_config("robot=macro", "duration=0.2").noise, 0, 0))
     assert trace.failure.reason == "Plant.dq has the shape (2,); it must be (3,)"

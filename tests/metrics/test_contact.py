@@ -7,7 +7,7 @@ import pytest
 
 from runner.metrics import MetricContext
 from runner.metrics.contact import UNITS, evaluate
-from runner.trace import TouchSignals
+from runner.trace import ContactSignals
 from runner.trajectories.goal import Goal
 
 T = np.arange(101) * 0.01  # 1 s: the last half second is rows 50 to 100
@@ -22,8 +22,8 @@ def touched(hand_made_trace, external, felt=0.0, t=T):
         return np.hstack([np.zeros((len(t), 3)) + force, np.full((len(t), 3), 500.0)])
 
     other = np.full((len(t), 6), 700.0)
-    touch = TouchSignals(wrench(external), wrench(felt), other, other, other)
-    return evaluate(replace(hand_made_trace(t), touch=touch), CONTEXT)
+    signals = ContactSignals(wrench(external), wrench(felt), other, other, other)
+    return evaluate(replace(hand_made_trace(t), contact=signals), CONTEXT)
 
 
 def rows(force=(0.0, 0.0, 0.0)):

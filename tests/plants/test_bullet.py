@@ -317,4 +317,4 @@ def test_a_wall_pushes_by_stiffness_times_depth_whatever_the_steps_of_a_tick(clo
     )
     closed.plant.reset(closed.q_start, np.zeros(6))
     closed.plant.advance(closed.robot.model.gravity_torque(closed.q_start))
-    assert closed.plant.contact_wrench[0] == pytest.approx(-3.0, rel=0.01)  # it has moved by then
+    assert closed.plant.contact_wrench()[0] == pytest.approx(-3.0, rel=0.01)  # it has moved by then

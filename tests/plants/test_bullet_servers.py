@@ -1,7 +1,16 @@
-"""A physics server that another run has used gives what a fresh one gives, bit for bit."""
+"""A physics server that another run has used gives what a fresh one gives, bit for bit; none is lost."""
 
 import subprocess
 import sys
+
+import numpy as np
+import pybullet
+import pytest
+
+from runner.assembly import assemble
+from runner.errors import ConfigError
+from runner.plants import bullet, decoupled
+from runner.plants.bullet_servers import SERVERS, PhysicsServers
 
 RUN = """
 from runner.config.compose import compose
@@ -10,7 +19,7 @@ from runner.assembly import assemble, make_encoders
 from runner.simulation import simulate
 config = validate(compose(["robot=macro", "noise=thesis", "torque_limits=thesis", "duration=0.5"]).resolved)
 loop = assemble(config)
-print(simulate(loop, make_encoders(config, loop, 0)).q[-1].tobytes().hex())
+print(simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0)).q[-1].tobytes().hex())
 """
 
 
@@ -20,3 +29,102 @@ def test_a_used_server_gives_what_a_fresh_one_gives(simulated):
         simulated(other, "duration=0.1", "gravity=3.7", "plant.step=0.00025")
         trace = simulated("robot=macro", "noise=thesis", "torque_limits=thesis", "duration=0.5")
         assert trace.q[-1].tobytes().hex() == fresh
+
+
+def connected():
+    """Return how many physics servers this process has."""
+    return sum(pybullet.isConnected(client) for client in range(1000))
+
+
+@pytest.fixture
+def servers_before():
+    """Close all that wait; what is lent and connected when a test ends was so when it began."""
+    SERVERS.close()
+    before = list(SERVERS.lent), connected()
+    yield before[1]
+    SERVERS.close()
+    assert (SERVERS.lent, connected()) == before
+
+
+def test_servers_are_lent_and_given_back(servers_before, macro_urdf):
+    servers = PhysicsServers()
+    first, second = servers.open(macro_urdf), servers.open(macro_urdf)
+    assert (len(servers.lent), connected()) == (2, servers_before + 2)
+    servers.give_back(first, reusable=True)
+    servers.give_back(first, reusable=True)  # once more does no harm
+    servers.give_back(second, reusable=True)  # one of an arm is enough
+    assert (servers.lent, connected()) == ([], servers_before + 1)
+    again = servers.open(macro_urdf)
+    assert (again.client, again.body, again.used) == (first.client, first.body, True)
+    servers.give_back(first, reusable=False)  # it is another plant's by now
+    assert pybullet.isConnected(again.client)
+    servers.give_back(again, reusable=False)
+    assert connected() == servers_before
+
+
+def test_few_are_kept(servers_before, macro_urdf):
+    servers = PhysicsServers()
+    lent = [servers.open(macro_urdf.replace('name="', f'name="{number}', 1)) for number in range(7)]
+    for server in lent:
+        servers.give_back(server, reusable=True)
+    assert connected() == servers_before + 4
+    servers.close()
+    assert connected() == servers_before
+
+
+def test_a_urdf_that_bullet_refuses_leaves_none(servers_before, macro_urdf):
+    with pytest.raises(ConfigError, match="PyBullet does not take it"):
+        SERVERS.open(macro_urdf.replace("<mass", "<mess"))
+    assert connected() == servers_before
+
+
+def test_a_plant_that_raises_while_it_is_set_up_leaves_none(servers_before, monkeypatch, checked_config):
+    def broken(*_):
+        raise RuntimeError("no sensor")
+
+    monkeypatch.setattr(bullet.Bullet, "_feel_tool", broken)
+    with pytest.raises(RuntimeError, match="no sensor"):
+        assemble(checked_config("robot=macro"))
+
+
+@pytest.mark.parametrize(
+    ("overrides", "part"),
+    [
+        (("robot=meca500", "plant=bullet"), "runner.assembly.JointServo"),
+        (("robot=meca500", "plant=bullet"), "runner.assembly.Interaction"),
+        (("robot=macro", "plant.friction.coulomb=1"), "runner.plants.friction.Frictional"),
+        (("robot=combined", "plant.dynamics=decoupled"), "runner.plants.decoupled.StageBase"),
+    ],
+)
+def test_what_raises_around_a_plant_leaves_none(servers_before, monkeypatch, checked_config, overrides, part):
+    config = checked_config(*overrides)
+
+    def broken(*_):
+        raise RuntimeError("a part broke")
+
+    monkeypatch.setattr(part, broken)
+    with pytest.raises(RuntimeError, match="a part broke"):
+        assemble(config)
+
+
+def test_a_second_stage_that_raises_leaves_none(servers_before, monkeypatch, checked_config):
+    config = checked_config("robot=combined", "plant.dynamics=decoupled")
+    with_friction, made = decoupled.with_friction, []
+
+    def breaks_on_the_second(*args):
+        made.append(args)
+        if len(made) == 2:
+            args[0].close()
+            raise RuntimeError("a part broke")
+        return with_friction(*args)
+
+    monkeypatch.setattr(decoupled, "with_friction", breaks_on_the_second)
+    with pytest.raises(RuntimeError, match="a part broke"):
+        assemble(config)
+    assert len(made) == 2
+
+
+def test_a_run_that_fails_leaves_none(servers_before, simulated):
+    trace = simulated("robot=macro", "controller.natural_frequency=1e9", "trajectory=quintic", "duration=0.2")
+    assert trace.failure is not None
+    assert not np.isfinite(trace.q[-1]).all() or np.abs(trace.dq[-1]).max() > 1e5

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runner.plants.bullet import Bullet
-from runner.plants.friction import Frictional, rub, stopping_torques
+from runner.plants.friction import Frictional, stopping_torques, with_friction
 from runner.plants.rk4 import Rk4
 from runner.robots import RobotModel
 
@@ -80,7 +80,7 @@ def sliding(macro):
     """Make the Macro with friction in its joints, in motion."""
 
     def make(viscous, coulomb, tick=1e-3, speed=(2.0, -1.0, 1.5)):
-        plant = rub(Rk4(macro, tick, 1), macro, np.full(3, viscous), np.full(3, coulomb), tick)
+        plant = with_friction(Rk4(macro, tick, 1), macro, np.full(3, viscous), np.full(3, coulomb), tick)
         plant.reset(np.array([0.3, 0.4, -0.9]), np.array(speed))
         return plant
 
@@ -89,7 +89,7 @@ def sliding(macro):
 
 def test_without_friction_the_plant_is_left_as_it_is(macro):
     plant = Rk4(macro, 1e-3, 1)
-    assert rub(plant, macro, np.zeros(3), np.zeros(3), 1e-3) is plant
+    assert with_friction(plant, macro, np.zeros(3), np.zeros(3), 1e-3) is plant
 
 
 @pytest.mark.parametrize(("viscous", "coulomb"), [(3.0, 0.0), (0.0, 4.0), (2.0, 2.0)])

@@ -245,6 +245,6 @@ def test_a_coupled_base_that_does_not_turn_is_refused(make, cli, kind):
 
 
 def test_default_steps_resolve_the_fastest_loop(checked_config):
-    assert checked_config("robot=combined").step == pytest.approx(2.5e-4)
-    assert checked_config("robot=combined", "plant=rk4").step == pytest.approx(1e-3)
-    assert checked_config("robot=combined").steps_per_tick == 4
+    assert checked_config("robot=combined").timing.step == pytest.approx(2.5e-4)
+    assert checked_config("robot=combined", "plant=rk4").timing.step == pytest.approx(1e-3)
+    assert checked_config("robot=combined").timing.steps_per_tick == 4

@@ -149,7 +149,7 @@ def test_the_wrist_believes_in_a_tool_of_the_mass_that_the_link_is_believed_to_h
     """At rest, nothing touched: what is felt is the weight of tool that is not taken off, 0.25 kg of it."""
     still = ("robot=meca500", "trajectory.start=null", "trajectory.goal=[0.18795,0,0.0592]", "duration=0.02")
     trace = simulated(*still, "mismatch.mass=0.6")
-    np.testing.assert_allclose(trace.touch.felt[1, :3], [0.0, 0.0, -0.4 * 0.25 * 9.81], atol=1e-9)
+    np.testing.assert_allclose(trace.contact.felt[1, :3], [0.0, 0.0, -0.4 * 0.25 * 9.81], atol=1e-9)
 
 
 def test_what_is_measured_is_the_true_arm(simulated, checked_config):
@@ -190,7 +190,7 @@ def test_each_repetition_draws_anew_from_seed_and_repetition_alone(checked_confi
     def trace(repetition):
         closed = assemble(config, repetition)
         try:
-            return simulate(closed, make_encoders(config, closed, repetition))
+            return simulate(closed, make_encoders(closed, config.noise, config.settings.seed, repetition))
         finally:
             closed.plant.close()
 
@@ -206,7 +206,7 @@ def test_beliefs_leave_the_noise_alone(checked_config):
         config = checked_config("robot=macro", "noise=thesis", *overrides)
         closed = assemble(config)
         closed.plant.close()
-        (sensor,) = make_encoders(config, closed, 0)
+        (sensor,) = make_encoders(closed, config.noise, config.settings.seed, 0)
         return sensor.measure(0, np.zeros(3), np.zeros(3))[0]
 
     np.testing.assert_array_equal(reading("mismatch=sampled"), reading())

@@ -1,0 +1,55 @@
+"""What the tip feels in one run: the world's wrench, the wrist sensor's reading of it, and the record of both."""
+
+from dataclasses import fields
+
+import numpy as np
+
+from runner.interaction import Interaction
+from runner.loop.closed_loop import ClosedLoop
+from runner.plants import ContactPlant, ToolReactionPlant, innermost
+from runner.sensing import ForceTorqueSensor
+from runner.trace import ContactSignals, FloatArray
+
+_NOTHING = np.zeros(6)
+
+
+class Contact:
+    """The interaction of one run: it loads the sensor, lets the controllers feel its reading, and keeps a record.
+
+    Args:
+        closed: The closed loop.
+        interaction: Between arm and world; reset here.
+        wrist: The force/torque sensor, with a draw for each tick.
+    """
+
+    def __init__(self, closed: ClosedLoop, interaction: Interaction, wrist: ForceTorqueSensor) -> None:
+        moved = innermost(closed.plant)
+        self._contacts = moved if isinstance(moved, ContactPlant) else None
+        self._reactions = moved if isinstance(moved, ToolReactionPlant) else None
+        self._interaction = interaction
+        self._wrist = wrist
+        self._feeling = [loop.feeling for loop in closed.loops if loop.feeling is not None]
+        self._signals = ContactSignals(*(np.zeros((closed.ticks + 1, 6)) for _ in range(5)))
+        interaction.reset(closed.q_start)
+
+    def update(self, k: int, time: float, q: FloatArray, dq: FloatArray) -> FloatArray:
+        """Take the state at tick k, and return the joint torques of the world; see Interaction.update."""
+        interaction, signals = self._interaction, self._signals
+        contact = _NOTHING if self._contacts is None else self._contacts.contact_wrench()
+        torques = interaction.update(time, q, dq, contact)
+        reading = self._wrist.read(k, interaction.load)
+        signals.external[k], signals.load[k], signals.reading[k] = interaction.external, interaction.load, reading
+        reaction = None if self._reactions is None else self._reactions.tool_reaction()
+        if reaction is not None:
+            signals.reaction[k] = interaction.to_flange_axes(reaction)
+        for controller in self._feeling:
+            controller.feel(reading)
+        if self._feeling:
+            signals.felt[k] = self._feeling[0].felt  # of its last tick
+        return torques
+
+    def signals(self, kept: slice) -> ContactSignals:
+        """Return the record of some ticks."""
+        return ContactSignals(
+            **{field.name: getattr(self._signals, field.name)[kept] for field in fields(ContactSignals)}
+        )

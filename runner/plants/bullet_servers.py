@@ -1,0 +1,119 @@
+"""PyBullet's physics servers: who has one, and those that wait for the next plant of the same arm."""
+
+import tempfile
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass
+
+from runner.engine_output import caught_output, quiet_stderr
+from runner.errors import ConfigError
+from runner.plants.bullet_reading import words
+
+with quiet_stderr():  # PyBullet announces its build time
+    import pybullet
+
+_KEPT = 4
+_MOST_JOINTS = 127
+
+
+@dataclass(frozen=True, eq=False)
+class Server:
+    """A physics server with one arm in it.
+
+    Attributes:
+        client: PyBullet's number of the server.
+        body: PyBullet's number of the arm.
+        urdf: The arm's URDF text.
+        used: Whether an earlier plant has had it.
+    """
+
+    client: int
+    body: int
+    urdf: str
+    used: bool
+
+
+class PhysicsServers:
+    """The owner of all physics servers of a process.
+
+    A server takes 15 ms of CPU time and an arm in it 3, so a few are kept for plants to come.
+
+    Attributes:
+        lent: The servers that plants have.
+    """
+
+    def __init__(self) -> None:
+        self.lent: list[Server] = []
+        self._idle: dict[str, Server] = {}
+
+    def open(self, urdf: str) -> Server:
+        """Return a server with an arm alone in it, as an earlier plant left it or new.
+
+        Args:
+            urdf: The arm's URDF text.
+
+        Raises:
+            ConfigError: if PyBullet cannot load the URDF, or says anything while it does so.
+        """
+        server = self._idle.pop(urdf, None) or self._load(urdf)
+        self.lent.append(server)
+        return server
+
+    def give_back(self, server: Server, reusable: bool) -> None:
+        """Take a server from its plant.
+
+        Args:
+            server: The server.
+            reusable: Whether it can serve another plant of the same arm; else it is closed.
+        """
+        if server not in self.lent:
+            return
+        self.lent.remove(server)
+        if reusable and server.urdf not in self._idle and len(self._idle) < _KEPT:
+            self._idle[server.urdf] = Server(server.client, server.body, server.urdf, used=True)
+        else:
+            pybullet.disconnect(server.client)
+
+    def close(self) -> None:
+        """Close the servers that no plant has."""
+        while self._idle:
+            pybullet.disconnect(self._idle.popitem()[1].client)
+
+    def _load(self, urdf: str) -> Server:
+        client = self._empty()
+        said: list[str] = []
+        # Bullet caches URDFs by file name within a process, so each arm gets a file name of its own.
+        with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+            file.write(_in_short_lines(urdf))
+            file.flush()
+            flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_SELF_COLLISION_EXCLUDE_ALL_PARENTS
+            try:
+                with caught_output(1) as said:
+                    body = pybullet.loadURDF(file.name, useFixedBase=True, flags=flags, physicsClientId=client)
+                joints = pybullet.getNumJoints(body, physicsClientId=client)
+                if joints > _MOST_JOINTS:
+                    said.append(f"it has {joints} joints, fixed ones included; PyBullet takes up to {_MOST_JOINTS}")
+            except pybullet.error as error:
+                said.insert(0, str(error))
+        if said:
+            pybullet.disconnect(client)
+            raise ConfigError([f"robot.urdf: PyBullet does not take it as it is: {'; '.join(words(said))}"])
+        return Server(client, body, urdf, used=False)
+
+    def _empty(self) -> int:
+        """Return a server without anything in it; of those that wait the one that has done so longest is emptied."""
+        if len(self._idle) < _KEPT:
+            return int(pybullet.connect(pybullet.DIRECT))
+        client = self._idle.pop(next(iter(self._idle))).client
+        pybullet.resetSimulation(physicsClientId=client)
+        return client
+
+
+SERVERS = PhysicsServers()
+"""The physics servers of this process, which end with it."""
+
+
+def _in_short_lines(urdf: str) -> str:
+    """Return an XML text with an element a line: Bullet breaks lines of 1,000 characters, even within a number."""
+    root = ET.fromstring(urdf)  # noqa: S314 - our own text, checked when it was read
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode")

@@ -1,0 +1,64 @@
+"""What a plant's module and config may offer beside `CONFIG` and `build`, and the registry that asks for it."""
+
+from collections.abc import Mapping
+from typing import Literal, Protocol, runtime_checkable
+
+from runner.guard import watch_plant
+from runner.plants.plant import Plant
+from runner.plants.servo import ServoConfig
+from runner.registry import KindConfig, Registry
+from runner.robots.robot import Robot
+
+
+class PlantConfig(KindConfig, Protocol):
+    """The config of a plant."""
+
+    @property
+    def step(self) -> float | None:
+        """Integration step, in s; None leaves it to the plant's module."""
+        ...
+
+
+@runtime_checkable
+class TurnsBases(Protocol):
+    """A config of plants that says whether a carrier turns its rider's base; with one that does not, it does."""
+
+    wrist_rotation: Literal["real", "parallel"]
+
+
+@runtime_checkable
+class DelaysCommands(Protocol):
+    """A config of plants with the time from a controller's command until it acts, in s; else there is none."""
+
+    command_delay: float
+
+
+@runtime_checkable
+class HasServo(Protocol):
+    """A config of plants that take torques, with servos for controllers that command joint positions."""
+
+    servo: ServoConfig
+
+
+class ChoosesStep(Protocol):
+    """The part of a plant's module that chooses the integration step where the config names none."""
+
+    def default_step(self, tick: float, stages: int) -> float:
+        """Return it for a control tick, in s, and a number of stages, in s."""
+        ...
+
+
+class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
+    """The kinds of plants.
+
+    `build` gives each the robot and two numbers. Plants that take torques get their step, in s, and the steps in a
+    tick; those that follow joint positions the tick, in s, and the ticks from one command to the next.
+    """
+
+    def __init__(self, modules: Mapping[str, str]) -> None:
+        super().__init__("plant", modules, watch_plant)
+
+    def default_step(self, kind: str, tick: float, stages: int) -> float:
+        """Return the step that a kind takes when its config names none, in s."""
+        chooser: ChoosesStep = self.module(kind)
+        return chooser.default_step(tick, stages)
