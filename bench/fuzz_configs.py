@@ -98,8 +98,8 @@ def attempt(given: Case, folder: Path) -> Ended:
             resolved = _resolve(given, folder)
             config = validate(resolved, [folder])
             run_hash(resolved, config.arm.urdf)
-            if (getattr(config.trajectory, "duration", None) or 0.0) < _LONG * config.tick:
-                _run_briefly(resolved, config.tick, folder)
+            if config.path.duration < _LONG * config.timing.tick:
+                _run_briefly(resolved, config.timing.tick, folder)
     except RunnerError as error:
         refused, faults = True, judge(str(error))
     except _HangError:

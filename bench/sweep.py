@@ -68,7 +68,7 @@ def _sweep(overrides: tuple[str, ...], runs: int) -> Cost:
 def _simulating(overrides: tuple[str, ...]) -> float:
     config = validate(compose(overrides).resolved)
     loop = assemble(config)
-    return _cpu_time(lambda: simulate(loop, make_encoders(config, loop, 0)))
+    return _cpu_time(lambda: simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0)))
 
 
 def _saving(overrides: tuple[str, ...]) -> float:

@@ -40,7 +40,7 @@ def main() -> bool:
     blocks: dict[str, Callable[[], None]] = {}
     for name, (config, loop) in loops.items():
         if isinstance(loop.plant, Bullet):
-            torques = simulate(loop, make_encoders(config, loop, 0)).tau[:-1].tolist()
+            torques = simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0)).tau[:-1].tolist()
             blocks[f"F: {name}"] = _pybullet_alone(config, torques)
         blocks[name] = _whole_run(config, loop)
     times = _measure(blocks)
@@ -78,7 +78,7 @@ def _assemble(*overrides: str) -> tuple[RunConfig, ClosedLoop]:
 
 def _whole_run(config: RunConfig, loop: ClosedLoop) -> Callable[[], None]:
     def block() -> None:
-        trace = simulate(loop, make_encoders(config, loop, 0))
+        trace = simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0))
         assert trace.failure is None
 
     return block

@@ -5,7 +5,6 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -17,7 +16,6 @@ from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.errors import SimulationError
 from runner.metrics import MetricContext, evaluate, summarize
-from runner.sensing import ForceTorqueSensor
 from runner.simulation import ClosedLoop, simulate
 from runner.store.writing import timing
 from runner.trace import Failure, Trace
@@ -56,7 +54,7 @@ def execute(composed: Composed) -> store.Run:
         stored = None
     if stored is not None:
         return stored
-    ticks = config.ticks * config.settings.repetitions
+    ticks = config.timing.ticks * config.settings.repetitions
     if ticks > _SURELY_ALLOWED:
         check_cpu_time(config.limits, seconds_per_tick(config) * ticks, 1)
     store.prepare(outputs)
@@ -70,10 +68,10 @@ def seconds_per_tick(config: RunConfig) -> float:
     try:
         for _ in range(2):  # the first time warms up
             start = time.perf_counter()
-            simulate(part, make_encoders(config, part, 0), make_wrist_sensor(config, part, 0))
+            _simulate(part, config, 0)
         return (time.perf_counter() - start) / (part.ticks + 1)
     finally:
-        whole.plant.close()
+        whole.close()
 
 
 def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
@@ -88,7 +86,7 @@ def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
     """
     wall, cpu = time.perf_counter(), time.process_time()
     loop = assemble(config)
-    context = metric_context(config, loop)
+    context = metric_context(config)
     first: Trace | None = None
     failure: tuple[int, Failure] | None = None
     metrics, ticks = [], []
@@ -99,10 +97,10 @@ def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
         for repetition in range(config.settings.repetitions):
             if repetition > 0 and config.mismatch.spread > 0.0:  # other beliefs
                 last, loop = loop, assemble(config, repetition)
-                last.plant.close()
-            encoders, wrist = make_encoders(config, loop, repetition), make_wrist_sensor(config, loop, repetition)
-            trace, measured = _judge(simulate(loop, encoders, wrist), context, told)
-            notices = notices or _notices(loop, wrist)
+                last.close()
+            ran, said = _simulate(loop, config, repetition)
+            trace, measured = _judge(ran, context, told)
+            notices = notices or said
             first = trace if first is None else first
             if trace.failure is not None and failure is None:
                 failure = (repetition, trace.failure)
@@ -111,7 +109,7 @@ def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
                 ticks.append(trace.tick_seconds)
                 clocked += len(trace.tick_seconds)
     finally:
-        loop.plant.close()
+        loop.close()
     assert first is not None  # noqa: S101 - repetitions is at least 1
     return store.RunResult(
         resolved=config.resolved,
@@ -133,11 +131,13 @@ def _judge(trace: Trace, context: MetricContext, told: list[str]) -> tuple[Trace
         return replace(trace, failure=Failure(error.reason, float(trace.t[-1]))), {}
 
 
-def _notices(closed: ClosedLoop, wrist: ForceTorqueSensor | None) -> list[str]:
-    """Return what the controllers and the sensor tell of the repetition just run."""
-    feeling: Any = [loop.controller for loop in closed.loops if loop.feels]
-    told = [notice for controller in feeling for notice in controller.notices()]
-    return told + ([] if wrist is None else wrist.overloads())
+def _simulate(closed: ClosedLoop, config: RunConfig, repetition: int) -> tuple[Trace, list[str]]:
+    """Simulate a repetition; return its trace, and what the controllers and the wrist's sensor tell of it."""
+    seed = config.settings.seed
+    wrist = make_wrist_sensor(closed, config.wrist_sensor, seed, repetition)
+    trace = simulate(closed, make_encoders(closed, config.noise, seed, repetition), wrist)
+    told = [notice for loop in closed.loops if loop.feeling is not None for notice in loop.feeling.notices()]
+    return trace, told + ([] if wrist is None else wrist.overloads())
 
 
 def job_provenance(config: RunConfig, composed: Composed, notices: Sequence[str] = ()) -> dict[str, object]:
@@ -145,8 +145,8 @@ def job_provenance(config: RunConfig, composed: Composed, notices: Sequence[str]
     return {
         **provenance.made(composed),
         "choices": dict(composed.choices),
-        "plant_step": config.step,
-        "steps_per_tick": config.steps_per_tick,
+        "plant_step": config.timing.step,
+        "steps_per_tick": config.timing.steps_per_tick,
         "tip_frame": config.arm.model.tip_name,
         "stages": {stage.name: stage.base_frame for stage in config.arm.stages},
         "joints": list(config.arm.model.joint_names),

@@ -2,12 +2,12 @@
 
 import copy
 import math
-from typing import Any
+from typing import cast
 
 import numpy as np
 import pinocchio as pin
 
-from runner.controllers import CONTROLLERS
+from runner.controllers import CONTROLLERS, ControllerConfig, Loop, PositionController
 from runner.errors import ConfigError, SimulationError
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
@@ -19,7 +19,9 @@ _AT_LIMIT = 1e-6  # rad or m
 _SINGULAR = 0.1  # of the reach; damping keeps a tip from the path well before the singular posture itself
 
 
-def check_path(controller: Any, robot: Robot, trajectory: Trajectory, q_start: FloatArray, tolerance: float) -> None:
+def check_path(
+    controller: ControllerConfig, robot: Robot, trajectory: Trajectory, q_start: FloatArray, tolerance: float
+) -> None:
     """Let a controller of joint positions lead a perfect arm without speed limits along the path, without noise.
 
     Args:
@@ -35,16 +37,14 @@ def check_path(controller: Any, robot: Robot, trajectory: Trajectory, q_start: F
     """
     if not trajectory.tracked:
         return
-    if trajectory.duration < controller.period:
+    (loop,) = CONTROLLERS.build(controller, _without_speed_limits(robot))
+    if trajectory.duration < loop.period:
         raise ConfigError(
-            [
-                f"trajectory.duration: {trajectory.duration:g} s is shorter than one controller period, "
-                f"{controller.period:g} s"
-            ]
+            [f"trajectory.duration: {trajectory.duration:g} s is shorter than one controller period, {loop.period:g} s"]
         )
-    times: FloatArray = np.arange(math.floor(trajectory.duration / controller.period) + 1) * controller.period
+    times: FloatArray = np.arange(math.floor(trajectory.duration / loop.period) + 1, dtype=np.float64) * loop.period
     try:
-        q, stuck = _roll_out(controller, _without_speed_limits(robot), trajectory.sample(times), q_start)
+        q, stuck = _roll_out(loop, trajectory.sample(times), q_start)
     except SimulationError:  # of a part of the user's: the run itself ends there, and says so
         return
     problem = (
@@ -57,10 +57,9 @@ def check_path(controller: Any, robot: Robot, trajectory: Trajectory, q_start: F
         raise ConfigError([problem])
 
 
-def _roll_out(controller: Any, robot: Robot, desired: FloatArray, q_start: FloatArray) -> tuple[FloatArray, str]:
+def _roll_out(loop: Loop, desired: FloatArray, q_start: FloatArray) -> tuple[FloatArray, str]:
     """Return the joint positions reached, a row for each time, and what stopped the law before the end, or ""."""
-    (loop,) = CONTROLLERS.build(controller, robot)
-    law, q = loop.controller, q_start
+    law, q = cast(PositionController, loop.controller), q_start
     law.reset(q)
     rows = [q]
     for k, reference in enumerate(desired[:-1]):

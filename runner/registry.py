@@ -7,8 +7,9 @@ kinds of their own: see runner/plugins.py.
 
 import copy
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from types import ModuleType
-from typing import Any, Literal
+from typing import Concatenate, Generic, Literal, ParamSpec, Protocol, TypeVar, runtime_checkable
 
 from pydantic import BaseModel, ConfigDict
 
@@ -22,19 +23,56 @@ class StrictModel(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 
 
-class Registry:
+@runtime_checkable
+class HasConfig(Protocol):
+    """The module of a kind, with the pydantic model of its config."""
+
+    CONFIG: type[StrictModel]
+
+
+class KindConfig(Protocol):
+    """The config of a part, of the model that its kind names."""
+
+    @property
+    def kind(self) -> str:
+        """Name of the kind."""
+        ...
+
+
+Commands = Literal["torque", "position"]
+"""What a controller gives and a plant takes: torques of the joints, or their positions."""
+
+
+@runtime_checkable
+class CommandsJoints(Protocol):
+    """The module of a controller or plant that says what its kind gives or takes; without this it is torques."""
+
+    COMMANDS: Commands
+
+
+@lru_cache(maxsize=64)
+def _commands(module: ModuleType) -> Commands:
+    return module.COMMANDS if isinstance(module, CommandsJoints) else "torque"
+
+
+C = TypeVar("C", bound=KindConfig, contravariant=True)
+P = ParamSpec("P")
+T = TypeVar("T")
+P2 = ParamSpec("P2")
+A = TypeVar("A")
+
+
+class Kinds:
     """The kinds of one config group.
 
     Args:
         group: Name of the config group, such as "controller".
         modules: Module name of each kind.
-        watch: Makes what is watched of what a module of the user's built, given this and what `build` was given.
     """
 
-    def __init__(self, group: str, modules: Mapping[str, str], watch: Callable[..., Any] | None = None) -> None:
+    def __init__(self, group: str, modules: Mapping[str, str]) -> None:
         self.group = group
         self._modules = dict(modules)
-        self._watch = watch
 
     def names(self) -> list[str]:
         """Return the known kinds, those of the user's included, sorted."""
@@ -46,8 +84,8 @@ class Registry:
         Raises:
             ConfigError: if the kind is unknown, or its module cannot be imported or has no such model.
         """
-        module = self._module(kind)
-        model = getattr(module, "CONFIG", None)
+        module = self.module(kind)
+        model = module.CONFIG if isinstance(module, HasConfig) else None
         if not (isinstance(model, type) and issubclass(model, StrictModel)):
             raise ConfigError(
                 [
@@ -57,54 +95,20 @@ class Registry:
             )
         return model
 
-    def build(self, config: Any, *args: Any) -> Any:
-        """Make the object that a validated config describes; `args` are what every kind of this group gets.
-
-        A module of the user's gets copies of them, and what it builds is watched.
-
-        Raises:
-            ConfigError: where a part of the user's raises anything; names the place.
-        """
-        if self.is_ours(config.kind):
-            return self._module(config.kind).build(config, *args)
-        built = self._ask_theirs("build", config, *args)
-        return built if self._watch is None else self._watch(built, config, *args)
-
     def is_ours(self, kind: str) -> bool:
         """Tell whether a kind comes with this package, where no watching is needed."""
-        return self._module(kind).__name__.startswith("runner.")
+        return self.module(kind).__name__.startswith("runner.")
 
-    def commands(self, kind: str) -> Literal["torque", "position"]:
-        """Return what a kind of controller gives, or a kind of plant takes: "torque" or "position" of the joints."""
-        commands: Literal["torque", "position"] = getattr(self._module(kind), "COMMANDS", "torque")
-        return commands
+    def commands(self, kind: str) -> Commands:
+        """Return what a kind of controllers gives, or a kind of plants takes."""
+        return _commands(self.module(kind))
 
-    def follows_paths(self, kind: str) -> bool:
-        """Tell whether a kind of controller brings a perfect arm along any path that the arm can follow."""
-        return bool(getattr(self._module(kind), "FOLLOWS_PATHS", False))
+    def module(self, kind: str) -> ModuleType:
+        """Return the module of a kind.
 
-    def start_posture(self, config: Any, *args: Any) -> Any:
-        """Return where the arm stands at a trajectory's start, or None where the controller's kind has no wish."""
-        choose = getattr(self._module(config.kind), "start_posture", None)
-        if choose is None:
-            return None
-        return choose(config, *args) if self.is_ours(config.kind) else self._ask_theirs("start_posture", config, *args)
-
-    def default_step(self, kind: str, tick: float, stages: int) -> float:
-        """Return the step that a kind of plant takes when its config names none, in s."""
-        step: float = self._module(kind).default_step(tick, stages)
-        return step
-
-    def _ask_theirs(self, name: str, config: Any, *args: Any) -> Any:
-        """Return what a function of a module of the user's gives, which is handed copies alone."""
-        try:
-            return getattr(self._module(config.kind), name)(*copy.deepcopy((config, *args)))
-        except RunnerError:
-            raise
-        except Exception as error:
-            raise ConfigError([f"{self.group}.kind: '{config.kind}' cannot be built: {told(error)}"]) from error
-
-    def _module(self, kind: str) -> ModuleType:
+        Raises:
+            ConfigError: if the kind is unknown, or its module cannot be imported.
+        """
         modules = self._modules if kind in self._modules else self._plugins()
         if kind not in modules:
             known = ", ".join(self.names())
@@ -113,3 +117,47 @@ class Registry:
 
     def _plugins(self) -> dict[str, str]:
         return {point.name: point.value for point in added(self.group)}
+
+
+class Registry(Kinds, Generic[C, P, T]):
+    """The kinds of one config group, and the parts that they make: from a config and what every kind gets, a part.
+
+    Args:
+        group: Name of the config group, such as "controller".
+        modules: Module name of each kind.
+        watch: Makes what is watched of what a module of the user's built, given this and what `build` was given.
+    """
+
+    def __init__(
+        self, group: str, modules: Mapping[str, str], watch: Callable[Concatenate[T, C, P], T] | None = None
+    ) -> None:
+        super().__init__(group, modules)
+        self._watch = watch
+
+    def build(self, config: C, *args: P.args, **kwargs: P.kwargs) -> T:
+        """Make the part that a validated config describes; what follows is what every kind of this group gets.
+
+        A module of the user's gets copies of them, and what it builds is watched.
+
+        Raises:
+            ConfigError: where a part of the user's raises anything; names the place.
+        """
+        make: Callable[Concatenate[C, P], T] = self.module(config.kind).build
+        if self.is_ours(config.kind):
+            return make(config, *args, **kwargs)
+        built = self.ask(config, make, *args, **kwargs)
+        return built if self._watch is None else self._watch(built, config, *args, **kwargs)
+
+    def ask(self, config: C, function: Callable[Concatenate[C, P2], A], *args: P2.args, **kwargs: P2.kwargs) -> A:
+        """Return what a function of a user's module gives, which is handed copies alone.
+
+        Raises:
+            ConfigError: where it raises anything; names the place.
+        """
+        own, handed, named = copy.deepcopy((config, args, kwargs))
+        try:
+            return function(own, *handed, **named)
+        except RunnerError:
+            raise
+        except Exception as error:
+            raise ConfigError([f"{self.group}.kind: '{config.kind}' cannot be built: {told(error)}"]) from error

@@ -61,10 +61,10 @@ def measured(checked_config):
         config = checked_config(*overrides)
         loop = assemble(config)
         try:
-            trace = simulate(loop, make_encoders(config, loop, repetition))
+            trace = simulate(loop, make_encoders(loop, config.noise, config.settings.seed, repetition))
         finally:
             loop.plant.close()
-        return trace, evaluate(trace, metric_context(config, loop))
+        return trace, evaluate(trace, metric_context(config))
 
     return make
 

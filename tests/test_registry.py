@@ -23,7 +23,6 @@ def parts(monkeypatch):
         module = types.ModuleType(f"some_{name}")
         module.__name__ = "runner.some_own" if name == "own" else "some_foreign"
         module.CONFIG, module.build = Config, lambda config, *args, name=name: (name, config.size, *args)
-        module.default_step = lambda tick, stages: tick / 10 / stages
         monkeypatch.setitem(sys.modules, f"some_{name}", module)
     points = [EntryPoint("foreign", "some_foreign", "runner.part")]
     monkeypatch.setattr(registry, "added", lambda group: points if group == "part" else [])
@@ -38,8 +37,6 @@ def test_kinds_of_other_packages_stand_among_ours(parts):
 @pytest.mark.parametrize("kind", ["own", "foreign"])
 def test_the_kind_decides_what_is_built(parts, kind):
     assert parts.build(Config(kind=kind, size=2.0), "arm") == (kind, 2.0, "arm")
-    assert parts.default_step(kind, 0.01, 1) == 0.001
-    assert parts.default_step(kind, 0.01, 2) == 0.0005
 
 
 def test_an_unknown_kind_names_the_nearest(parts):

@@ -8,7 +8,7 @@ import pytest
 
 from runner.assembly import assemble, make_encoders
 from runner.controllers import Loop
-from runner.sensing import JointEncoders
+from runner.sensing import EncoderNoise, JointEncoders
 from runner.simulation import ClosedLoop, simulate
 
 NOISY = ("noise.position=1e-3", "duration=0.5")
@@ -70,9 +70,8 @@ def loop_of(closed_loop):
 
 
 def exact(loop):
-    return [
-        JointEncoders(loop.ticks + 1, loop.tick, np.zeros(3), "none", "exact", np.zeros(3), np.random.default_rng(0))
-    ]
+    noise = EncoderNoise(np.zeros(3), np.zeros(3), "none", "exact")
+    return [JointEncoders(loop.ticks + 1, loop.tick, noise, np.random.default_rng(0))]
 
 
 def fingerprint(trace):
@@ -154,7 +153,7 @@ def test_the_controller_reads_noise_and_the_trace_the_truth(checked_config, velo
     recorder = Recorder(lambda tick: np.array([0.0, 9.0, -9.0]))
     loop = dataclasses.replace(assemble(config), loops=(Loop("arm", slice(0, 3), 0.01, recorder),))
     try:
-        trace = simulate(loop, make_encoders(config, loop, 0))
+        trace = simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0))
     finally:
         loop.plant.close()
     noise = np.random.default_rng([0, 0]).uniform(-1e-3, 1e-3, trace.q.shape)
@@ -183,7 +182,7 @@ def test_noise_is_drawn_from_seed_and_repetition_alone(checked_config):
         config = checked_config("noise.position=1e-3", *overrides)
         loop = assemble(config)
         loop.plant.close()
-        (encoders,) = make_encoders(config, loop, repetition)
+        (encoders,) = make_encoders(loop, config.noise, config.settings.seed, repetition)
         return np.array([encoders.measure(tick, np.zeros(3), np.zeros(3))[0] for tick in range(20)])
 
     first = noise(3, "seed=5")
@@ -218,7 +217,9 @@ def test_a_repetition_does_not_depend_on_those_before(checked_config, simulated,
     config = checked_config(*overrides)
     loop = assemble(config)
     try:
-        in_a_row = [fingerprint(simulate(loop, make_encoders(config, loop, r))) for r in range(3)]
+        in_a_row = [
+            fingerprint(simulate(loop, make_encoders(loop, config.noise, config.settings.seed, r))) for r in range(3)
+        ]
     finally:
         loop.plant.close()
     assert [fingerprint(simulated(*overrides, repetition=r)) for r in range(3)] == in_a_row
@@ -234,7 +235,7 @@ def test_another_process_gives_the_same_bits(simulated):
         "from runner.config.validation import validate\n"
         "config = validate(compose(sys.argv[3:]).resolved)\n"
         "loop = t.assemble(config)\n"
-        "print(t.fingerprint(t.simulate(loop, t.make_encoders(config, loop, 1))))\n"
+        "print(t.fingerprint(t.simulate(loop, t.make_encoders(loop, config.noise, config.settings.seed, 1))))\n"
     )
     here = __file__.rpartition("/")[0]
     other = subprocess.run(

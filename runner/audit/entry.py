@@ -26,7 +26,7 @@ verdict is never stored: `verdict.py` works it out.
 """
 
 from collections.abc import Iterator
-from functools import cache
+from functools import lru_cache
 from importlib.resources import files
 from typing import Self
 
@@ -117,7 +117,7 @@ class Part(StrictModel):
     entries: list[Entry]
 
 
-@cache
+@lru_cache(maxsize=8)
 def parts(source: str) -> tuple[Part, ...]:
     """Return the data files of a source, in the order of their names.
 

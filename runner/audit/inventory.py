@@ -11,7 +11,7 @@ It is made from the source's text alone, in reading order, and not from the entr
 """
 
 from collections import Counter
-from functools import cache
+from functools import lru_cache
 from importlib.resources import files
 
 import yaml
@@ -49,7 +49,7 @@ class Inventory(StrictModel):
     places: list[Place]
 
 
-@cache
+@lru_cache(maxsize=8)
 def inventory(source: str) -> Inventory:
     """Return the inventory of a source."""
     text = (files("runner.audit") / "data" / source / "inventory.yaml").read_text(encoding="utf-8")

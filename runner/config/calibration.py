@@ -2,8 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
-from typing import Annotated, Any
+from typing import Annotated, cast
 
 import numpy as np
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
@@ -12,10 +11,11 @@ from runner.calibration import Tool
 from runner.calibration.procedures import CALIBRATIONS, Bench, Procedure
 from runner.config.arms import build_robot
 from runner.config.compose import Composed
-from runner.config.parsing import attempt, parse, parse_group
-from runner.config.robot import OneArmConfig, RobotConfig
+from runner.config.parsing import parse, parse_group, parse_kind, parse_robot
+from runner.config.problems import Problems, sure
+from runner.config.robot import RobotConfig
 from runner.errors import ConfigError, nearest
-from runner.registry import Registry, StrictModel
+from runner.registry import KindConfig, StrictModel
 from runner.robots import RobotModel
 from runner.robots.robot import Robot
 from runner.sensing import ForceTorqueConfig
@@ -37,12 +37,7 @@ class CalibrationSettings(StrictModel):
     outputs: Annotated[str, Field(min_length=1)]
 
 
-_GROUPS: Mapping[str, Registry | type[StrictModel]] = {
-    "robot": OneArmConfig,
-    "wrist_sensor": ForceTorqueConfig,
-    "calibration": CALIBRATIONS,
-}
-_KEYS = (*CalibrationSettings.model_fields, *_GROUPS)
+_KEYS = (*CalibrationSettings.model_fields, "robot", "wrist_sensor", "calibration")
 
 
 @dataclass(frozen=True)
@@ -61,7 +56,7 @@ class CalibrationConfig:
     robot: RobotConfig
     arm: Robot
     procedure: Procedure
-    resolved: Mapping[str, Any]
+    resolved: Mapping[str, object]
 
 
 def validate_calibration(composed: Composed) -> CalibrationConfig:
@@ -70,25 +65,21 @@ def validate_calibration(composed: Composed) -> CalibrationConfig:
     Raises:
         ConfigError: with every problem found: dotted key, value found, values allowed, nearest valid name.
     """
-    problems: list[str] = []
-    collect = partial(attempt, problems)
-    collect(lambda: _check_keys(composed))
+    problems = Problems()
+    problems.attempt(_check_keys, composed)
     resolved = {key: value for key, value in composed.resolved.items() if key in _KEYS}
-    settings = collect(
-        lambda: parse("", CalibrationSettings, {key: resolved.get(key) for key in CalibrationSettings.model_fields})
+    root = {key: resolved.get(key) for key in CalibrationSettings.model_fields}
+    settings = problems.attempt(parse, "", CalibrationSettings, root)
+    robot = problems.attempt(parse_robot, resolved)
+    sensor = problems.attempt(parse_group, "wrist_sensor", ForceTorqueConfig, resolved)
+    calibration = cast("KindConfig | None", problems.attempt(parse_kind, CALIBRATIONS, resolved))
+    arm = problems.attempt(
+        lambda robot, settings: build_robot(robot, settings.gravity, composed.config_dirs, sensor), robot, settings
     )
-    robot, sensor, calibration = (
-        collect(partial(parse_group, group, kinds, resolved)) for group, kinds in _GROUPS.items()
-    )
-    arm, procedure = None, None
-    if settings is not None and robot is not None:
-        arm = collect(lambda: build_robot(robot, settings.gravity, composed.config_dirs, sensor))
-    if arm is not None and sensor is not None and calibration is not None:
-        bench = collect(lambda: _make_bench(robot, arm, sensor))
-        procedure = None if bench is None else collect(lambda: CALIBRATIONS.build(calibration, bench))
-    if problems or arm is None or procedure is None:
-        raise ConfigError(problems)
-    return CalibrationConfig(settings, robot, arm, procedure, resolved)
+    bench = None if calibration is None else problems.attempt(_make_bench, robot, arm, sensor)
+    procedure = problems.attempt(CALIBRATIONS.build, calibration, bench)
+    problems.report()
+    return CalibrationConfig(sure(settings), sure(robot), sure(arm), sure(procedure), resolved)
 
 
 def _check_keys(composed: Composed) -> None:

@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import cast
 
 from hydra import compose as hydra_compose
 from hydra import initialize_config_dir
@@ -32,7 +32,7 @@ class Composed:
         root: Name of the file in conf/ that the groups hang on: "config" of a run, "calibrate" of a calibration.
     """
 
-    resolved: Mapping[str, Any]
+    resolved: Mapping[str, object]
     overrides: tuple[str, ...]
     choices: Mapping[str, str]
     config_dirs: tuple[Path, ...]
@@ -63,7 +63,7 @@ def compose(overrides: Sequence[str], config_dirs: Sequence[Path] = (), root: st
 
 def from_hydra(
     config: DictConfig,
-    chosen: Mapping[str, Any],
+    chosen: Mapping[str, str | None],
     overrides: Sequence[str],
     config_dirs: Sequence[Path],
     root: str = "config",
@@ -81,12 +81,12 @@ def from_hydra(
         ConfigError: for an interpolation of a key that does not exist, or a key that is no text.
     """
     try:
-        raw: Any = OmegaConf.to_container(config, resolve=False)
+        raw = cast("dict[str, object]", OmegaConf.to_container(config, resolve=False))
         choices = {group: name for group, name in chosen.items() if name is not None and not group.startswith("hydra/")}
         complete_stage_arms(raw.get("robot"))
         own = OmegaConf.create({key: value for key, value in raw.items() if key != "hydra"})
         complete_stages(own, choices, config_dirs)
-        resolved: Any = OmegaConf.to_container(own, resolve=True)
+        resolved = cast("dict[str, object]", OmegaConf.to_container(own, resolve=True))
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None
     problems = list(_strange_keys(resolved))
@@ -95,7 +95,7 @@ def from_hydra(
     return Composed(resolved, tuple(overrides), choices, tuple(config_dirs), root)
 
 
-def _strange_keys(value: Any, place: str = "") -> Iterator[str]:
+def _strange_keys(value: object, place: str = "") -> Iterator[str]:
     """Yield a problem for each key that is no text: no part of the runner has such a key."""
     if isinstance(value, Mapping):
         for key, item in value.items():

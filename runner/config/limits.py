@@ -2,6 +2,7 @@
 
 from pydantic import PositiveFloat
 
+from runner.config.timing import Timing
 from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
@@ -38,19 +39,20 @@ def memory_of_run(arm: Robot, ticks: int, repetitions: int, feels: bool) -> floa
     return _NUMBER * numbers * ticks + _OF_EACH_REPETITION * repetitions
 
 
-def check_memory(limits: LimitsConfig, arm: Robot, ticks: int, tick: float, repetitions: int, feels: bool) -> None:
-    """Check that a run fits into memory; see memory_of_run. `tick` is the length of a tick, in s.
+def check_memory(limits: LimitsConfig, arm: Robot, timing: Timing, repetitions: int, feels: bool) -> None:
+    """Check that a run fits into memory; see memory_of_run.
 
     Raises:
         ConfigError: if it would take more than `limits.memory`; gives the estimate.
     """
-    needed = memory_of_run(arm, ticks, repetitions, feels) / _GB
+    needed = memory_of_run(arm, timing.ticks, repetitions, feels) / _GB
     if limits.memory is not None and needed > limits.memory:
+        length = f"{timing.ticks * timing.tick:.3g} s ({timing.ticks:.3g} ticks of {timing.tick:g} s"
         raise ConfigError(
             [
-                f"limits.memory: a run of {ticks * tick:.3g} s ({ticks:.3g} ticks of {tick:g} s, repetitions: "
-                f"{repetitions:.3g}) would take about {needed:.3g} GB; allowed: {limits.memory:g} GB; shorten duration "
-                "or trajectory.duration, ask for fewer repetitions, or set limits.memory"
+                f"limits.memory: a run of {length}, repetitions: {repetitions:.3g}) would take about {needed:.3g} GB; "
+                f"allowed: {limits.memory:g} GB; shorten duration or trajectory.duration, ask for fewer repetitions, "
+                "or set limits.memory"
             ]
         )
 

@@ -6,11 +6,11 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Any, get_args
 
+from runner.config.groups import GROUPS
 from runner.config.robot import OneArmConfig, StageConfig
-from runner.config.run import RunSettings
-from runner.config.validation import GROUPS
+from runner.config.settings import RunSettings
 from runner.errors import ConfigError
-from runner.registry import Registry, StrictModel
+from runner.registry import Kinds, StrictModel
 
 _UNIT = re.compile(
     r"\b[Ii]n (N m s/rad|N m/rad|N s/m|N/m|N m|N|kg m\^2|kg|m/s\^2|m/s|rad/s\^2|rad/s|rad|m|1/s|s|Hz)(?![\w/^])"
@@ -51,7 +51,7 @@ def _models(group: str, rest: Sequence[str]) -> Iterator[type[StrictModel]]:
         yield RunSettings
     elif rest[0] == "stages":
         yield from (StageConfig, OneArmConfig)
-    elif isinstance(known, Registry):
+    elif isinstance(known, Kinds):
         for kind in known.names():
             with contextlib.suppress(ConfigError):  # a part of the user's that cannot be imported
                 yield known.config_model(kind)

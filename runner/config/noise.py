@@ -2,8 +2,14 @@
 
 from typing import Literal
 
-from runner.config.per_stage import NonNegativePerStage
+import numpy as np
+
+from runner.config.per_stage import NonNegativePerStage, by_stage
+from runner.config.problems import Problems
+from runner.errors import ConfigError
 from runner.registry import StrictModel
+from runner.robots.robot import Robot
+from runner.sensing import EncoderNoise
 
 
 class NoiseConfig(StrictModel):
@@ -21,3 +27,19 @@ class NoiseConfig(StrictModel):
     distribution: Literal["uniform", "gaussian", "none"]
     resolution: NonNegativePerStage = 0.0
     velocity: Literal["exact", "finite_difference"]
+
+    def by_joint(self, arm: Robot) -> EncoderNoise:
+        """Return the noise of each joint of a robot.
+
+        Raises:
+            ConfigError: for values that do not fit the robot's stages.
+        """
+        joints = [stage.model.nq for stage in arm.stages]
+        problems = Problems()
+        position = problems.attempt(lambda: by_stage("noise.position", self.position, arm.stage_names))
+        resolution = problems.attempt(lambda: by_stage("noise.resolution", self.resolution, arm.stage_names))
+        if position is None or resolution is None:
+            raise ConfigError(problems.found)
+        return EncoderNoise(
+            np.repeat(position, joints), np.repeat(resolution, joints), self.distribution, self.velocity
+        )

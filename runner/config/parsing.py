@@ -1,50 +1,68 @@
-"""Checking one group of a composed config against its model, and gathering problems."""
+"""Checking one group of a composed config against its model."""
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Mapping
+from typing import TypeVar
 
 from pydantic import ValidationError
 
 from runner.config.magnitudes import absurd
 from runner.config.messages import describe
-from runner.config.robot import StagedRobotConfig
+from runner.config.robot import OneArmConfig, RobotConfig, StagedRobotConfig
 from runner.errors import ConfigError
-from runner.registry import Registry, StrictModel
+from runner.registry import Kinds, StrictModel
 from runner.texts import quoted
 
-
-def attempt(problems: list[str], check: Callable[[], Any]) -> Any:
-    """Return what a check returns; where it raises ConfigError, add its problems to others and return None."""
-    try:
-        return check()
-    except ConfigError as error:
-        problems.extend(error.problems)
-        return None
+M = TypeVar("M", bound=StrictModel)
 
 
-def parse_group(group: str, kinds: Registry | type[StrictModel], resolved: Mapping[str, Any]) -> StrictModel:
+def parse_group(group: str, model: type[M], resolved: Mapping[str, object]) -> M:
     """Return a group of a config, checked.
 
     Args:
         group: Its name.
-        kinds: The registry whose kinds it holds, or the one model that it has.
+        model: The model that it has.
         resolved: The config as plain data.
 
     Raises:
         ConfigError: with every problem of the group.
     """
+    return parse(group, model, _keys(group, resolved))
+
+
+def parse_kind(kinds: Kinds, resolved: Mapping[str, object]) -> StrictModel:
+    """Return a group whose `kind` says which model it has, checked.
+
+    Args:
+        kinds: The kinds that it may have.
+        resolved: The config as plain data.
+
+    Raises:
+        ConfigError: with every problem of the group.
+    """
+    value = _keys(kinds.group, resolved)
+    if "kind" not in value:
+        raise ConfigError([f"{kinds.group}.kind: missing; known: {', '.join(kinds.names())}"])
+    return parse(kinds.group, kinds.config_model(str(value["kind"])), value)
+
+
+def parse_robot(resolved: Mapping[str, object]) -> RobotConfig:
+    """Return the group of the robot, of one arm or of several stages, checked.
+
+    Raises:
+        ConfigError: with every problem of the group.
+    """
+    value = _keys("robot", resolved)
+    return parse("robot", StagedRobotConfig, value) if "stages" in value else parse("robot", OneArmConfig, value)
+
+
+def _keys(group: str, resolved: Mapping[str, object]) -> Mapping[str, object]:
     value = resolved.get(group)
     if not isinstance(value, Mapping):
         raise ConfigError([f"{group}: must be a group of keys; found {quoted(value)}"])
-    if not isinstance(kinds, Registry):
-        staged = group == "robot" and "stages" in value
-        return parse(group, StagedRobotConfig if staged else kinds, value)
-    if "kind" not in value:
-        raise ConfigError([f"{group}.kind: missing; known: {', '.join(kinds.names())}"])
-    return parse(group, kinds.config_model(str(value["kind"])), value)
+    return value
 
 
-def parse(group: str, model: type[StrictModel], value: Mapping[str, Any]) -> StrictModel:
+def parse(group: str, model: type[M], value: Mapping[str, object]) -> M:
     """Return values checked by a model; `group` is "" for those at the root.
 
     Raises:

@@ -2,12 +2,14 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from pydantic import BeforeValidator
 
 from runner.errors import ConfigError, nearest
 from runner.texts import quoted
+
+T = TypeVar("T")
 
 
 def _number(value: Any, zero_allowed: bool) -> float:
@@ -50,7 +52,7 @@ NonNegativePerStage = Annotated[float | dict[str, float], _per_stage(lambda valu
 TorquePerStage = Annotated[float | list[float] | dict[str, float | list[float]], _per_stage(_torque)]
 
 
-def by_stage(key: str, value: Any, stages: Sequence[str]) -> list[Any]:
+def by_stage(key: str, value: T | Mapping[str, T], stages: Sequence[str]) -> list[T]:
     """Return one value for each stage, in their order.
 
     Raises:

@@ -1,5 +1,6 @@
 """Config of the robot: one arm, or arms riding on each other."""
 
+from collections.abc import Mapping
 from typing import Annotated
 
 from pydantic import Field, NonNegativeFloat, PositiveFloat
@@ -88,8 +89,8 @@ class ToolConfig(StrictModel):
     tip_radius: PositiveFloat
 
 
-class RobotValues(StrictModel):
-    """The values that a robot's sources give for it; other groups take them as `${robot.x}`.
+class RobotConfig(StrictModel):
+    """A robot of one arm or of several, by the values of its sources; other groups take them as `${robot.x}`.
 
     Attributes:
         name: Its name.
@@ -124,6 +125,11 @@ class RobotValues(StrictModel):
     settling_band: PositiveFloat
 
     @property
+    def arms(self) -> Mapping[str, ArmConfig]:
+        """Its arms by name, from the base outwards."""
+        raise NotImplementedError
+
+    @property
     def warnings(self) -> list[str]:
         """What is unusual in these values though it can be run."""
         tool = 0.0 if self.tool is None else self.tool.mass
@@ -140,7 +146,7 @@ class RobotValues(StrictModel):
         ]
 
 
-class OneArmConfig(RobotValues, ArmConfig):
+class OneArmConfig(RobotConfig, ArmConfig):
     """A robot that is one arm."""
 
     @property
@@ -149,7 +155,7 @@ class OneArmConfig(RobotValues, ArmConfig):
         return {self.name: self}
 
 
-class StagedRobotConfig(RobotValues):
+class StagedRobotConfig(RobotConfig):
     """A robot of arms riding on each other.
 
     Attributes:
@@ -162,6 +168,3 @@ class StagedRobotConfig(RobotValues):
     def arms(self) -> dict[str, StageConfig]:
         """Its stages."""
         return self.stages
-
-
-RobotConfig = OneArmConfig | StagedRobotConfig

@@ -1,41 +1,21 @@
-"""A checked config, with what the checks already had to build."""
+"""A checked config, with what the checks already had to work out."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
-
-from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveFloat, PositiveInt
 
 from runner.config.limits import LimitsConfig
-from runner.config.noise import NoiseConfig
 from runner.config.robot import RobotConfig
+from runner.config.settings import RunSettings
 from runner.config.sweep import SweepConfig
-from runner.config.torque_limits import TorqueLimitsConfig
-from runner.plants import PLANTS
-from runner.registry import StrictModel
+from runner.config.timing import Timing
+from runner.controllers import ControllerConfig, Loop
+from runner.plants import PLANTS, PlantConfig
+from runner.registry import Commands, KindConfig
 from runner.robots.mismatch import MismatchConfig
 from runner.robots.model import FloatArray, RobotModel
 from runner.robots.robot import Robot
-from runner.sensing import ForceTorqueConfig
+from runner.sensing import EncoderNoise, ForceTorqueConfig
 from runner.trajectories import Trajectory
-
-
-class RunSettings(StrictModel):
-    """The keys at the root of a config.
-
-    Attributes:
-        seed: Seed from which, with the repetition, every random number follows.
-        repetitions: Number of closed-loop runs in the job.
-        duration: Length of a run, in s; None leaves it to the trajectory.
-        gravity: Magnitude of gravity along -z of the base, in m/s^2, for the plant and the controllers' model.
-        outputs: Folder in which runs are stored.
-    """
-
-    seed: NonNegativeInt
-    repetitions: PositiveInt
-    duration: PositiveFloat | None
-    gravity: NonNegativeFloat
-    outputs: Annotated[str, Field(min_length=1)]
 
 
 @dataclass(frozen=True)
@@ -44,49 +24,48 @@ class RunConfig:
 
     Attributes:
         settings: The keys at the root.
+        robot: Config of the robot.
+        arm: Its rigid-body model, stage by stage.
         plant: Config of the plant, of the model that its kind names.
         controller: Config of the controller, likewise.
-        trajectory: Config of the trajectory, likewise.
-        noise: Config of the joint measurement.
-        torque_limits: Config of the torque limits.
-        environment: Config of the world around the tip, likewise.
+        loops: The control loops that it makes for the robot as it is.
+        commands: Whether they give joint torques, or joint positions to a plant that follows them.
+        path: The desired motion of the tip.
+        environment: Config of the world around the tip, of the model that its kind names.
+        noise: Noise and steps of each joint's encoder.
+        torque_limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
         wrist_sensor: Config of the force/torque sensor.
         mismatch: How what the controllers believe of the robot differs from it.
-        robot: Config of the robot.
+        timing: The times of a run.
+        parallel: Whether riding stages keep the orientation of home, in the plant's truth.
         sweep: How a sweep that the run is part of is run.
         limits: What a command may cost.
-        arm: The robot's rigid-body model, stage by stage.
-        tick: Period of the fastest loop, in s: of the controller, or of the servo below it.
-        commands: Whether the controller gives joint torques, or joint positions to a plant that follows them.
-        step: Integration step of the plant, in s.
-        steps_per_tick: Integration steps in one tick.
-        delay: Ticks from a command until it acts.
-        path: The desired motion of the tip.
-        ticks: Number of ticks of the run.
         resolved: The composed config as plain data, interpolations resolved.
     """
 
     settings: RunSettings
-    plant: Any
-    controller: Any
-    trajectory: Any
-    noise: NoiseConfig
-    torque_limits: TorqueLimitsConfig
-    environment: Any
+    robot: RobotConfig
+    arm: Robot
+    plant: PlantConfig
+    controller: ControllerConfig
+    loops: tuple[Loop, ...]
+    commands: Commands
+    path: Trajectory
+    environment: KindConfig
+    noise: EncoderNoise
+    torque_limits: FloatArray
     wrist_sensor: ForceTorqueConfig
     mismatch: MismatchConfig
-    robot: RobotConfig
+    timing: Timing
+    parallel: bool
     sweep: SweepConfig
     limits: LimitsConfig
-    arm: Robot
-    tick: float
-    commands: Literal["torque", "position"]
-    step: float
-    steps_per_tick: int
-    delay: int
-    path: Trajectory
-    ticks: int
-    resolved: Mapping[str, Any]
+    resolved: Mapping[str, object]
+
+    @property
+    def feels(self) -> bool:
+        """Whether the tip may feel something."""
+        return self.environment.kind != "free" or any(loop.feels for loop in self.loops)
 
     @property
     def warnings(self) -> list[str]:
@@ -97,11 +76,6 @@ class RunConfig:
         if self.commands == "position":
             found += _zero_limits("velocity", model.velocity_limits, "it stands still", model)
         return found
-
-    @property
-    def parallel(self) -> bool:
-        """Whether riding stages keep the orientation of home, in the plant's truth."""
-        return len(self.arm.stages) > 1 and self.plant.wrist_rotation == "parallel"
 
 
 def _zero_limits(kind: str, limits: FloatArray, so: str, model: RobotModel) -> list[str]:

@@ -2,13 +2,15 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import dataclass
+from typing import NamedTuple
 
 from runner.config.per_stage import by_stage
-from runner.config.run import RunSettings
-from runner.controllers import CONTROLLERS
+from runner.config.settings import RunSettings
+from runner.controllers import CONTROLLERS, ControllerConfig
 from runner.errors import ConfigError
-from runner.plants import PLANTS
+from runner.plants import PLANTS, PlantConfig
+from runner.plants.kinds import DelaysCommands, HasServo
 from runner.robots.robot import Robot
 from runner.trajectories import Trajectory
 
@@ -16,8 +18,41 @@ _MAX_TICKS = 10_000_000
 _MAX_STEPS = 100_000  # of the plant in a tick
 
 
-def count_steps(arm: Robot, plant: Any, controller: Any) -> tuple[float, float, int]:
-    """Return the fastest loop's period, the plant's step, both in s, and the number of steps in that period.
+class Steps(NamedTuple):
+    """How time is divided.
+
+    Attributes:
+        tick: Period of the fastest loop, in s: of the controller, or of the servo below it.
+        step: Integration step of the plant, in s.
+        per_tick: Integration steps in one tick.
+    """
+
+    tick: float
+    step: float
+    per_tick: int
+
+
+@dataclass(frozen=True)
+class Timing:
+    """The times of a run.
+
+    Attributes:
+        tick: Period of the fastest loop, in s: of the controller, or of the servo below it.
+        step: Integration step of the plant, in s.
+        steps_per_tick: Integration steps in one tick.
+        delay: Ticks from a command until it acts.
+        ticks: Number of ticks of the run.
+    """
+
+    tick: float
+    step: float
+    steps_per_tick: int
+    delay: int
+    ticks: int
+
+
+def count_steps(arm: Robot, plant: PlantConfig, controller: ControllerConfig) -> Steps:
+    """Return how time is divided for a plant and its controller.
 
     Raises:
         ConfigError: if a period is no multiple of the fastest one, or that no multiple of the plant's step or too many
@@ -25,15 +60,16 @@ def count_steps(arm: Robot, plant: Any, controller: Any) -> tuple[float, float, 
     """
     periods = _periods(arm, controller.period)
     slowest = max(periods.values())
-    if CONTROLLERS.commands(controller.kind) == "position" and PLANTS.commands(plant.kind) == "torque":
-        periods = {"plant.servo.period": plant.servo.period, **periods}
+    servo = plant.servo.period if isinstance(plant, HasServo) and PLANTS.commands(plant.kind) == "torque" else None
+    if servo is not None and CONTROLLERS.commands(controller.kind) == "position":
+        periods = {"plant.servo.period": servo, **periods}
     fastest = min(periods, key=lambda name: periods[name])
     tick = periods[fastest]
     step = PLANTS.default_step(plant.kind, tick, len(arm.stages)) if plant.step is None else plant.step
     problems = []
     if fastest != "plant.servo.period" and "plant.servo.period" in periods:
         problems.append(
-            f"plant.servo.period: {plant.servo.period:g} s is longer than controller.period, {slowest:g} s; the servo "
+            f"plant.servo.period: {servo:g} s is longer than controller.period, {slowest:g} s; the servo "
             "must be as fast as its commands, or faster"
         )
     problems += [
@@ -53,16 +89,16 @@ def count_steps(arm: Robot, plant: Any, controller: Any) -> tuple[float, float, 
         )
     if problems:
         raise ConfigError(problems)
-    return tick, step, steps
+    return Steps(tick, step, steps)
 
 
-def count_delay(plant: Any, tick: float) -> int:
+def count_delay(plant: PlantConfig, steps: Steps) -> int:
     """Return the number of ticks from a command until it acts; a plant whose config has no such key has none.
 
     Raises:
         ConfigError: if the delay is no multiple of the tick, or longer than any run.
     """
-    delay: float = getattr(plant, "command_delay", 0.0)
+    delay, tick = plant.command_delay if isinstance(plant, DelaysCommands) else 0.0, steps.tick
     ticks = round(delay / tick)
     if ticks > _MAX_TICKS:
         raise ConfigError(
@@ -78,22 +114,23 @@ def count_delay(plant: Any, tick: float) -> int:
     return ticks
 
 
-def count_ticks(settings: RunSettings, tick: float, path: Trajectory) -> int:
+def count_ticks(settings: RunSettings, steps: Steps, path: Trajectory) -> int:
     """Return the number of ticks of a run.
 
     Raises:
         ConfigError: if it is shorter than a tick.
     """
+    tick = steps.tick
     if settings.duration is not None and settings.duration < tick:
         raise ConfigError([f"duration: {settings.duration:g} s is shorter than one controller period, {tick:g} s"])
     duration = path.run_duration if settings.duration is None else settings.duration
     return math.ceil(duration / tick - 1e-9)
 
 
-def _periods(arm: Robot, period: Any) -> dict[str, float]:
+def _periods(arm: Robot, period: float | Mapping[str, float]) -> dict[str, float]:
     """Return the period of each loop by its key; a controller with one period has one loop, whatever the stages."""
     if isinstance(period, Mapping):
-        by_name = by_stage("controller.period", period, arm.stage_names)
+        by_name: list[float] = by_stage("controller.period", period, arm.stage_names)
         return {f"controller.period.{name}": value for name, value in zip(arm.stage_names, by_name, strict=True)}
     return {"controller.period": period}
 

@@ -1,7 +1,12 @@
 """Config of the torque limits."""
 
-from runner.config.per_stage import TorquePerStage
+import numpy as np
+
+from runner.config.per_joint import expand
+from runner.config.per_stage import TorquePerStage, by_stage
 from runner.registry import StrictModel
+from runner.robots.robot import Robot
+from runner.trace import FloatArray
 
 
 class TorqueLimitsConfig(StrictModel):
@@ -13,3 +18,19 @@ class TorqueLimitsConfig(StrictModel):
     """
 
     max: TorquePerStage | None
+
+    def by_joint(self, arm: Robot) -> FloatArray:
+        """Return the limit of each joint of a robot, shape (nq,), in N m: the URDF's effort where that is smaller.
+
+        Raises:
+            ConfigError: for values that do not fit the robot's stages and joints.
+        """
+        efforts = arm.model.effort_limits
+        if self.max is None:
+            return efforts
+        limits: list[float] = []
+        values: list[float | list[float]] = by_stage("torque_limits.max", self.max, arm.stage_names)
+        for stage, value in zip(arm.stages, values, strict=True):
+            key = f"torque_limits.max.{stage.name}" if len(arm.stages) > 1 else "torque_limits.max"
+            limits += expand(key, value, stage.model.joint_names)
+        return np.minimum(limits, efforts)

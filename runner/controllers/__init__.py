@@ -1,11 +1,9 @@
 """Control laws: from time, measurement and reference to joint torques or positions."""
 
 from runner.controllers.controller import Controller, Loop, PositionController
-from runner.guard import watch_loops
-from runner.registry import Registry
+from runner.controllers.kinds import ControllerConfig, Controllers
 
-CONTROLLERS = Registry(
-    "controller",
+CONTROLLERS = Controllers(
     {
         "admittance": "runner.controllers.admittance",
         "computed_torque": "runner.controllers.computed_torque",
@@ -15,8 +13,7 @@ CONTROLLERS = Registry(
         "three_joint": "runner.controllers.three_joint",
         "whole_body": "runner.controllers.whole_body",
         "xarm7_as_printed": "runner.controllers.xarm7_as_printed",
-    },
-    watch=watch_loops,
+    }
 )
 
-__all__ = ["CONTROLLERS", "Controller", "Loop", "PositionController"]
+__all__ = ["CONTROLLERS", "Controller", "ControllerConfig", "Loop", "PositionController"]

@@ -1,7 +1,7 @@
 """What every controller offers."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,3 +94,8 @@ class Loop:
     period: float
     controller: Controller | PositionController
     feels: bool = False
+
+    @property
+    def feeling(self) -> FeelingController | None:
+        """The control law as one that feels; None where it does not."""
+        return cast(FeelingController, self.controller) if self.feels else None

@@ -2,9 +2,9 @@
 
 from runner.environments.environment import Environment
 from runner.guard import WatchedEnvironment
-from runner.registry import Registry
+from runner.registry import KindConfig, Registry
 
-ENVIRONMENTS = Registry(
+ENVIRONMENTS = Registry[KindConfig, [], Environment | None](
     "environment",
     {
         "free": "runner.environments.free",

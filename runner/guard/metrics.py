@@ -2,7 +2,6 @@
 
 import copy
 from collections.abc import Mapping
-from types import ModuleType
 from typing import TYPE_CHECKING
 
 from runner.errors import SimulationError
@@ -11,11 +10,12 @@ from runner.guard.read_only import read_only
 
 if TYPE_CHECKING:
     from runner.metrics.context import MetricContext
+    from runner.metrics.family import MetricFamily
     from runner.trace import Trace
 
 
 def watch_metrics(
-    family: ModuleType, trace: "Trace", context: "MetricContext", notices: list[str]
+    family: "MetricFamily", trace: "Trace", context: "MetricContext", notices: list[str]
 ) -> Mapping[str, float | None]:
     """Return the values that a metric family of the user's gives; where it fails, none of its metrics has a value.
 

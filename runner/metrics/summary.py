@@ -4,17 +4,17 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from statistics import median
-from types import ModuleType
 
 from runner.errors import ConfigError
 from runner.guard import watch_metrics
 from runner.metrics import contact, effort, positioning, reaching, tracking
 from runner.metrics.context import MetricContext
+from runner.metrics.family import MetricFamily
 from runner.plugins import added, load
 from runner.trace import Trace
 from runner.trajectories.shifted import Shifted
 
-_FAMILIES: tuple[ModuleType, ...] = (positioning, tracking, effort, reaching, contact)
+_FAMILIES: tuple[MetricFamily, ...] = (positioning, tracking, effort, reaching, contact)
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Summary:
     max: float | None
 
 
-def families() -> tuple[ModuleType, ...]:
+def families() -> tuple[MetricFamily, ...]:
     """Return the metric families, those of the user's included.
 
     Raises:
@@ -45,9 +45,9 @@ def families() -> tuple[ModuleType, ...]:
     return (*_FAMILIES, *(_load_family(point.name, point.value) for point in added("metric")))
 
 
-def _load_family(name: str, place: str) -> ModuleType:
+def _load_family(name: str, place: str) -> MetricFamily:
     module = load("metric", name, place)
-    if not (isinstance(getattr(module, "UNITS", None), Mapping) and callable(getattr(module, "evaluate", None))):
+    if not (isinstance(module, MetricFamily) and isinstance(module.UNITS, Mapping) and callable(module.evaluate)):
         raise ConfigError([f"metric {name}: module {place} needs UNITS, a unit for each name, and evaluate"])
     return module
 

@@ -17,6 +17,7 @@ from runner.reporting.templating import typst_environment
 _CODE = "#"
 _SIZE = re.compile(r'viewBox="0 0 ([\d.]+) ([\d.]+)"')
 _FONT_SIZE = 10.0
+_KEPT = 5000  # formulas of one process, more than all reports have
 _drawn: dict[tuple[str, bool], "Image | None"] = {}
 
 
@@ -45,6 +46,8 @@ def draw(texts: Iterable[str], *, displayed: bool) -> dict[str, Image | None]:
         displayed: Whether they stand on a line of their own.
     """
     wanted = list(dict.fromkeys(texts))
+    if len(_drawn) + len(wanted) > _KEPT:
+        _drawn.clear()
     missing = [text for text in wanted if (text, displayed) not in _drawn]
     _drawn.update({(text, displayed): image for text, image in _compile(missing, displayed).items()})
     return {text: _drawn[text, displayed] for text in wanted}

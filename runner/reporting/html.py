@@ -2,7 +2,7 @@
 
 import base64
 import gzip
-from functools import cache
+from functools import cache, lru_cache
 from importlib import resources
 from urllib.parse import quote
 
@@ -64,7 +64,7 @@ class _Stage:
         return packed(self._player) if self._player else ""
 
 
-@cache
+@lru_cache(maxsize=16)
 def packed(text: str) -> str:
     """Return a text as base64 of its gzip, the same each time; `inflate` in report.js undoes it."""
     return base64.b64encode(gzip.compress(text.encode("utf-8"), compresslevel=9, mtime=0)).decode("ascii")

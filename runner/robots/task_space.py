@@ -38,6 +38,8 @@ def task_directions(model: RobotModel, pose: bool) -> FloatArray:
 def distance_beside(model: RobotModel, points: FloatArray) -> FloatArray:
     """Return how far points, shape (N, 3), lie beside the plane or line that holds the tip, shape (N,), in m."""
     directions = task_directions(model, pose=False)
+    if len(directions) == 3:
+        return np.zeros(len(points))
     away = points - model.tip_position(np.mean(model.usual_range, axis=0))
     return np.asarray(np.linalg.norm(away - away @ directions.T @ directions, axis=1))
 

@@ -1,11 +1,30 @@
 """Joint encoders: joint positions noisy and in steps, and velocities exact or differenced."""
 
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class EncoderNoise:
+    """Noise and steps of the encoders of a robot's joints.
+
+    Attributes:
+        position: Half-width (uniform) or standard deviation (gaussian) of each joint's position noise, shape (nq,),
+            in rad.
+        resolution: Step to which each joint's noisy position is rounded, shape (nq,), in rad; 0 for none.
+        distribution: Shape of the position noise.
+        velocity: Whether velocities are exact, or differences of the measured positions over the loop's period.
+    """
+
+    position: FloatArray
+    resolution: FloatArray
+    distribution: Literal["uniform", "gaussian", "none"]
+    velocity: Literal["exact", "finite_difference"]
 
 
 class JointEncoders:
@@ -16,34 +35,22 @@ class JointEncoders:
     Args:
         ticks: Number of measurements to come.
         period: Time between two measurements, in s.
-        amplitudes: Half-width (uniform) or standard deviation (gaussian) of each joint's position noise, shape (nq,),
-            in rad.
-        distribution: Shape of the position noise.
-        velocity: Whether velocities are exact, or differences of the measured positions over the period.
-        resolution: Step to which each joint's noisy position is rounded, shape (nq,), in rad; 0 for none.
+        noise: Noise and steps of the joints.
         generator: Source of the draws.
     """
 
-    def __init__(
-        self,
-        ticks: int,
-        period: float,
-        amplitudes: FloatArray,
-        distribution: Literal["uniform", "gaussian", "none"],
-        velocity: Literal["exact", "finite_difference"],
-        resolution: FloatArray,
-        generator: np.random.Generator,
-    ) -> None:
-        if distribution == "none":
-            self._noise = np.zeros((ticks, len(amplitudes)))
-        elif distribution == "uniform":
-            self._noise = amplitudes * generator.uniform(-1.0, 1.0, (ticks, len(amplitudes)))
+    def __init__(self, ticks: int, period: float, noise: EncoderNoise, generator: np.random.Generator) -> None:
+        shape = (ticks, len(noise.position))
+        if noise.distribution == "none":
+            self._noise = np.zeros(shape)
+        elif noise.distribution == "uniform":
+            self._noise = noise.position * generator.uniform(-1.0, 1.0, shape)
         else:
-            self._noise = amplitudes * generator.standard_normal((ticks, len(amplitudes)))
-        self._rounded = resolution > 0.0
-        self._resolution = resolution[self._rounded]
+            self._noise = noise.position * generator.standard_normal(shape)
+        self._rounded = noise.resolution > 0.0
+        self._resolution = noise.resolution[self._rounded]
         self._period = period
-        self._differenced = velocity == "finite_difference"
+        self._differenced = noise.velocity == "finite_difference"
         self._last: FloatArray | None = None
 
     def measure(self, tick: int, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:

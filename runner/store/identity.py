@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, lru_cache
 from importlib.metadata import version
 from typing import Any
 
@@ -57,7 +57,7 @@ def source_digest() -> str:
     return digest.hexdigest()
 
 
-@cache
+@lru_cache(maxsize=16)
 def _parts_digest(modules: tuple[str, ...]) -> str:
     """Return a digest of the source of the user's parts, as it is when they are first used."""
     digest = hashlib.sha256()

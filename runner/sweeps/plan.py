@@ -89,7 +89,7 @@ def check(plan: Plan) -> Checked:
                 _check_alike(first, config)
                 _check_assembly(composed, config, assembled)
                 name = store.run_hash(composed.resolved, config.arm.urdf)
-                cost = config.ticks * config.settings.repetitions
+                cost = config.timing.ticks * config.settings.repetitions
             names.append(name)
             costs.append(cost)
         except ConfigError as error:
@@ -119,11 +119,11 @@ def _check_alike(first: RunConfig, other: RunConfig) -> None:
 def _check_assembly(composed: Composed, config: RunConfig, assembled: dict[str, ConfigError | None]) -> None:
     """Assemble each robot on each plant from each start once: some problems show only there."""
     parts = [composed.resolved[group] for group in ("robot", "plant")]
-    key = json.dumps([*parts, composed.resolved["trajectory"].get("start")])
+    key = json.dumps([*parts, config.path.start.tolist()])
     if key not in assembled:
         assembled[key] = None
         try:
-            assemble(config).plant.close()
+            assemble(config).close()
         except ConfigError as error:
             assembled[key] = error
     problem = assembled[key]

@@ -1,11 +1,9 @@
 """Desired motions of the tip."""
 
-from runner.guard import WatchedTrajectory
-from runner.registry import Registry
+from runner.trajectories.kinds import Trajectories
 from runner.trajectories.trajectory import Trajectory
 
-TRAJECTORIES = Registry(
-    "trajectory",
+TRAJECTORIES = Trajectories(
     {
         "circle": "runner.trajectories.circle",
         "goal": "runner.trajectories.goal",
@@ -15,7 +13,6 @@ TRAJECTORIES = Registry(
         "square": "runner.trajectories.square",
         "waypoints": "runner.trajectories.waypoints",
     },
-    watch=WatchedTrajectory,
 )
 
 __all__ = ["TRAJECTORIES", "Trajectory"]

@@ -105,7 +105,7 @@ class TrialQueue(Queue):
         if run not in self._cell_of:
             cell = self._cell_of[run] = len(self._runs)
             self._runs.append(run)
-            self._ticks.append(config.ticks * config.settings.repetitions)
+            self._ticks.append(config.timing.ticks * config.settings.repetitions)
             self._configs[cell] = composed
             self._left.append(cell)
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
@@ -58,7 +58,7 @@ def tune(
     plan, checked = _check_ranges(loader, shared, keys)
     shown = [text for text in shared if is_simulated(text.partition("=")[0])]
     study = Study(shown, keys, objectives, at_once, command)
-    seed = plan.composed(0).resolved["seed"]
+    seed = cast(int, plan.composed(0).resolved["seed"])
     store.prepare(checked.outputs)
     with at_work(checked.outputs):
         folder = study.folder(checked.outputs, checked.names)

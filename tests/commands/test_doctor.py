@@ -91,7 +91,7 @@ def simulated_stranger():
         config = strangers.config(name, *overrides, "trajectory.duration=1", "duration=0.6")
         loop = assemble(config)
         try:
-            return simulate(loop, make_encoders(config, loop, 0))
+            return simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0))
         finally:
             loop.plant.close()
 

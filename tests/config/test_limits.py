@@ -36,7 +36,7 @@ def test_a_sweep_that_costs_too_much_is_not_begun(cli, tmp_path):
 
 def test_null_allows_all(checked_config):
     config = checked_config("robot=macro", "duration=1e6", "limits.memory=null", "limits.cpu_hours=null")
-    assert config.ticks == 10**8
+    assert config.timing.ticks == 10**8
     check_cpu_time(config.limits, 1e12, 1)
 
 

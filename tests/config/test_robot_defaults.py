@@ -18,7 +18,7 @@ robot:
   name: plain
   urdf: macro.urdf
   tip: tip
-  home: [0.0, 0.3, -1.2]
+  home: [0.0, 0.3, -0.6]
   goal: [0.4, 1.1, 0.9]
 """
 TWO_ARMS = """\

@@ -76,10 +76,10 @@ def test_limits_reach_the_joints_of_their_stage(closed_loop):
 
 def test_the_tick_is_the_fastest_stage_s(checked_config):
     config = checked_config("robot=combined", "controller.period.macro=0.03", "controller.period.mini=0.003")
-    assert config.tick == 0.003
-    assert config.step == pytest.approx(0.003 / 4)
+    assert config.timing.tick == 0.003
+    assert config.timing.step == pytest.approx(0.003 / 4)
     reverse = checked_config("robot=combined", "controller.period.macro=0.001", "controller.period.mini=0.005")
-    assert reverse.tick == 0.001
+    assert reverse.timing.tick == 0.001
 
 
 @pytest.mark.parametrize(

@@ -146,5 +146,5 @@ def test_the_error_holds_its_problems():
 )
 def test_the_step_follows_from_the_period(overrides, step, steps):
     config = validate(compose(overrides).resolved)
-    assert config.step == pytest.approx(step, rel=1e-12)
-    assert config.steps_per_tick == steps
+    assert config.timing.step == pytest.approx(step, rel=1e-12)
+    assert config.timing.steps_per_tick == steps

@@ -212,7 +212,7 @@ def alone(goal, step, *overrides):
 def test_with_the_mini_held_the_macro_is_the_macro_alone(simulated, checked_config, preset, plant):
     # Decoupled, and without singularity damping: it is scaled by the distance to x_d, and that is one rounding off.
     common = (f"preset={preset}", f"plant={plant}", "controller.singularity_damping=0")
-    goal = checked_config("robot=combined").trajectory.goal
+    goal = checked_config("robot=combined").path.goal.tolist()
     both = simulated(*TRACKED, "controller.coupling=mini_held", "plant.dynamics=decoupled", "plant.step=1e-3", *common)
     single = simulated(*alone(goal, "1e-3"), *common)
     np.testing.assert_allclose(both.q[::10, :3], single.q, atol=1e-9)

@@ -249,7 +249,7 @@ def recorded(checked_config, *overrides, repetition=0):
     loops = tuple(dataclasses.replace(loop, controller=Recorder()) for loop in closed.loops)
     closed = dataclasses.replace(closed, loops=loops)
     try:
-        trace = simulate(closed, make_encoders(config, closed, repetition))
+        trace = simulate(closed, make_encoders(closed, config.noise, config.settings.seed, repetition))
     finally:
         closed.plant.close()
     return trace, [loop.controller.calls for loop in loops]

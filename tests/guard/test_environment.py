@@ -37,7 +37,11 @@ class Wind:
 def test_an_environment_that_goes_wrong_is_a_failure_that_names_the_place(checked_config, closed_loop, answer, reason):
     config, loop = checked_config("robot=macro", "duration=0.2"), closed_loop("robot=macro", "duration=0.2")
     loop = replace(loop, interaction=Interaction(loop.robot, WatchedEnvironment(Wind(answer)), loop.tick))
-    trace = simulate(loop, make_encoders(config, loop, 0), make_wrist_sensor(config, loop, 0))
+    trace = simulate(
+        loop,
+        make_encoders(loop, config.noise, config.settings.seed, 0),
+        make_wrist_sensor(loop, config.wrist_sensor, config.settings.seed, 0),
+    )
     assert trace.failure.time == pytest.approx(0.05)
     assert re.search(reason, trace.failure.reason), trace.failure.reason
 
@@ -52,6 +56,10 @@ def test_one_that_changes_what_it_is_handed_is_one_too(checked_config, closed_lo
     setattr(wind, method, write)
     config, loop = checked_config("robot=macro", "duration=0.2"), closed_loop("robot=macro", "duration=0.2")
     loop = replace(loop, interaction=Interaction(loop.robot, WatchedEnvironment(wind), loop.tick))
-    trace = simulate(loop, make_encoders(config, loop, 0), make_wrist_sensor(config, loop, 0))
+    trace = simulate(
+        loop,
+        make_encoders(loop, config.noise, config.settings.seed, 0),
+        make_wrist_sensor(loop, config.wrist_sensor, config.settings.seed, 0),
+    )
     assert trace.failure.time == 0.0
     assert re.search(r"read-only \(test_environment.py, line \d+, in write\)", trace.failure.reason)

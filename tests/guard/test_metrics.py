@@ -37,7 +37,9 @@ def test_a_metric_that_goes_wrong_has_no_value_and_the_others_stay(
     config = checked_config("robot=macro", "duration=0.1")
     loop = closed_loop("robot=macro", "duration=0.1")
     notices = []
-    values = evaluate(simulate(loop, make_encoders(config, loop, 0)), metric_context(config, loop), notices)
+    values = evaluate(
+        simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0)), metric_context(config), notices
+    )
     assert values["own"] == value
     assert "peak_torque" in values
     assert "other" not in values
@@ -59,6 +61,6 @@ def test_a_metric_that_changes_the_trace_is_a_failure_that_names_the_place(
     family.evaluate = evaluate_own
     monkeypatch.setattr(summary, "families", lambda: (*summary._FAMILIES, family))
     config, loop = checked_config("robot=macro", "duration=0.1"), closed_loop("robot=macro", "duration=0.1")
-    trace = simulate(loop, make_encoders(config, loop, 0))
+    trace = simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0))
     with pytest.raises(SimulationError, match=r"metrics of mine: .*read-only \(test_metrics.py, line \d+, in evaluate"):
-        evaluate(trace, metric_context(config, loop))
+        evaluate(trace, metric_context(config))

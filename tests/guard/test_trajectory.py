@@ -73,7 +73,7 @@ def test_one_that_goes_wrong_later_is_a_failure(checked_config, closed_loop):
             return super().sample(times) if len(times) == 1001 else times / {}
 
     loop = replace(closed_loop("robot=macro", "duration=0.2"), trajectory=WatchedTrajectory(Tires()))
-    trace = simulate(loop, make_encoders(checked_config("robot=macro", "duration=0.2"), loop, 0))
+    trace = simulate(loop, make_encoders(loop, checked_config("robot=macro", "duration=0.2").noise, 0, 0))
     assert re.search(r"TypeError: .* \(test_trajectory.py, line \d+, in sample\)", trace.failure.reason)
     assert (trace.failure.time, len(trace.t)) == (0.0, 1)
 

@@ -161,7 +161,7 @@ def test_a_third_stage_is_one_more_entry_in_the_yaml(three, mini):
 def test_three_stages_run(three):
     loop = assemble(three)
     try:
-        trace = simulate(loop, make_encoders(three, loop, 0))
+        trace = simulate(loop, make_encoders(loop, three.noise, three.settings.seed, 0))
     finally:
         loop.plant.close()
     assert trace.failure is None

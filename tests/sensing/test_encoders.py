@@ -2,15 +2,15 @@ import numpy as np
 import pytest
 
 from runner.assembly import make_encoders
-from runner.sensing import JointEncoders
+from runner.sensing import EncoderNoise, JointEncoders
 
 PERIOD = 0.01
 
 
 def encoders(ticks=20_000, joints=3, amplitude=1e-3, distribution="uniform", velocity="exact", resolution=0.0, seed=0):
     generator = np.random.default_rng(seed)
-    amplitudes, steps = np.full(joints, amplitude), np.full(joints, resolution)
-    return JointEncoders(ticks, PERIOD, amplitudes, distribution, velocity, steps, generator)
+    noise = EncoderNoise(np.full(joints, amplitude), np.full(joints, resolution), distribution, velocity)
+    return JointEncoders(ticks, PERIOD, noise, generator)
 
 
 def read(sensor, q, dq=None):
@@ -119,7 +119,7 @@ def test_differenced_velocities_come_in_steps_over_the_period():
 
 def test_each_stage_reads_in_its_own_steps(closed_loop, checked_config):
     overrides = ("robot=combined", "noise.resolution.mini=1e-2")
-    (macro, mini) = make_encoders(checked_config(*overrides), closed_loop(*overrides), 0)
+    (macro, mini) = make_encoders(closed_loop(*overrides), checked_config(*overrides).noise, 0, 0)
     for sensor in (macro, mini):  # each loop reads every joint
         np.testing.assert_allclose(sensor.measure(0, np.full(6, 0.1234), np.zeros(6))[0], [0.1234] * 3 + [0.12] * 3)
 

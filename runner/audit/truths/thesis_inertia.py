@@ -2,7 +2,7 @@
 
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 
@@ -25,7 +25,7 @@ def _urdf(arm: Arm) -> str:
     return combined_robot().stages[0 if arm is MACRO else 1].urdf
 
 
-@cache
+@lru_cache(maxsize=4)
 def _turning_model(arm: Arm) -> RobotModel:
     """Return an arm with links 2 and 3 that resist turning."""
     tree = ET.fromstring(_urdf(arm))  # noqa: S314 - a text of ours

@@ -4,7 +4,7 @@ The first way is Pinocchio; the second takes differences of the pose of a chain 
 """
 
 from collections.abc import Callable
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from runner.robots.model import RobotModel
 _JACOBIAN_WAYS = ("Pinocchio", "differences of the chain's pose")
 
 
-@cache
+@lru_cache(maxsize=16)
 def _model_of(arm: Arm, frame: str) -> RobotModel:
     """Return an arm's model whose tip is another of its frames."""
     return RobotModel(combined_robot().stages[0 if arm is MACRO else 1].urdf, frame)

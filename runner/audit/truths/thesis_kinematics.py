@@ -5,7 +5,7 @@ product of elementary turns and shifts by the measures of Tables 2.1, 3.1 and 4.
 """
 
 from collections.abc import Callable
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -19,7 +19,7 @@ from runner.robots.denavit_hartenberg import DenavitHartenbergRow, denavit_harte
 WAYS = ("Denavit-Hartenberg frames placed on the model's joint axes", "product of elementary turns and shifts")
 
 
-@cache
+@lru_cache(maxsize=4)
 def _rows(arm: Arm) -> tuple[DenavitHartenbergRow, ...]:
     return denavit_hartenberg(arm.model())
 

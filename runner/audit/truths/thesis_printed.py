@@ -1,6 +1,6 @@
 """The Macro's matrices as the thesis means them, repaired or corrected, read from the audit's own entries."""
 
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from runner.audit.truths.thesis import symbols_at
 from runner.audit.truths.thesis_arms import along
 
 
-@cache
+@lru_cache(maxsize=16)
 def _expressions(name: str) -> dict[str, Expression]:
     entry = next(entry for _, entry in entries("thesis") if entry.id == f"thesis-{name}")
     form = entry.corrected or entry.repair or entry.printed

@@ -2,9 +2,9 @@
 
 from runner.calibration.procedures.bench import Bench
 from runner.calibration.procedures.procedure import Outcome, Procedure
-from runner.registry import Registry
+from runner.registry import KindConfig, Registry
 
-CALIBRATIONS = Registry(
+CALIBRATIONS = Registry[KindConfig, [Bench], Procedure](
     "calibration",
     {
         "gravity": "runner.calibration.procedures.gravity",

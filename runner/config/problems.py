@@ -1,0 +1,61 @@
+"""Gathering the problems that checks find, so that all of them are reported at once."""
+
+from collections.abc import Callable
+from typing import TypeVar, overload
+
+from runner.errors import ConfigError
+
+A = TypeVar("A")
+B = TypeVar("B")
+C = TypeVar("C")
+D = TypeVar("D")
+T = TypeVar("T")
+
+
+class Problems:
+    """What checks have found wrong so far.
+
+    Attributes:
+        found: A text for each problem.
+    """
+
+    def __init__(self) -> None:
+        self.found: list[str] = []
+
+    @overload
+    def attempt(self, check: Callable[[], T], /) -> T | None: ...
+    @overload
+    def attempt(self, check: Callable[[A], T], a: A | None, /) -> T | None: ...
+    @overload
+    def attempt(self, check: Callable[[A, B], T], a: A | None, b: B | None, /) -> T | None: ...
+    @overload
+    def attempt(self, check: Callable[[A, B, C], T], a: A | None, b: B | None, c: C | None, /) -> T | None: ...
+    @overload
+    def attempt(
+        self, check: Callable[[A, B, C, D], T], a: A | None, b: B | None, c: C | None, d: D | None, /
+    ) -> T | None: ...
+
+    def attempt(self, check: Callable[..., T], /, *parts: object) -> T | None:
+        """Return what a check makes of some parts; None where one of these is None, or it finds a problem."""
+        if any(part is None for part in parts):
+            return None
+        try:
+            return check(*parts)
+        except ConfigError as error:
+            self.found += error.problems
+            return None
+
+    def report(self) -> None:
+        """End the checks.
+
+        Raises:
+            ConfigError: if one of them has found a problem.
+        """
+        if self.found:
+            raise ConfigError(self.found)
+
+
+def sure(value: T | None) -> T:
+    """Return what a check gave, which is there once no problem was found."""
+    assert value is not None  # noqa: S101 - a check that gives nothing has found a problem
+    return value

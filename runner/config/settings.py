@@ -1,0 +1,25 @@
+"""Config at the root of a run."""
+
+from typing import Annotated
+
+from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveFloat, PositiveInt
+
+from runner.registry import StrictModel
+
+
+class RunSettings(StrictModel):
+    """The keys at the root of a config.
+
+    Attributes:
+        seed: Seed from which, with the repetition, every random number follows.
+        repetitions: Number of closed-loop runs in the job.
+        duration: Length of a run, in s; None leaves it to the trajectory.
+        gravity: Magnitude of gravity along -z of the base, in m/s^2, for the plant and the controllers' model.
+        outputs: Folder in which runs are stored.
+    """
+
+    seed: NonNegativeInt
+    repetitions: PositiveInt
+    duration: PositiveFloat | None
+    gravity: NonNegativeFloat
+    outputs: Annotated[str, Field(min_length=1)]

@@ -1,0 +1,96 @@
+"""What a controller's module and config may offer beside `CONFIG` and `build`, and the registry that asks for it."""
+
+from collections.abc import Mapping
+from typing import Protocol, runtime_checkable
+
+from runner.controllers.admittance_filter import Admittance
+from runner.controllers.controller import FloatArray, Loop
+from runner.errors import ConfigError
+from runner.guard import watch_loops
+from runner.guard.faults import find_fault
+from runner.registry import KindConfig, Registry
+from runner.robots.robot import Robot
+
+
+class ControllerConfig(KindConfig, Protocol):
+    """The config of a controller."""
+
+    @property
+    def period(self) -> float | Mapping[str, float]:
+        """Time between two ticks of its loop, in s; of each stage's loop by stage."""
+        ...
+
+
+@runtime_checkable
+class FollowsPaths(Protocol):
+    """A module that says whether its controllers bring a perfect arm along any path that the arm can follow.
+
+    Where they do, a path that they leave is refused before the run, with the reason.
+    """
+
+    FOLLOWS_PATHS: bool
+
+
+@runtime_checkable
+class ChoosesStart(Protocol):
+    """A module that chooses the posture in which the arm starts."""
+
+    def start_posture(self, config: ControllerConfig, robot: Robot, start: FloatArray) -> FloatArray | None:
+        """Return joint positions, shape (nq,), in rad, with the tip at start, shape (3,), in m; None for no wish.
+
+        Raises:
+            numpy.linalg.LinAlgError: where there are none.
+        """
+        ...
+
+
+@runtime_checkable
+class FollowsWithinReach(Protocol):
+    """A config of controllers whose rider follows its target up to a distance, which a metric tells the loss beyond."""
+
+    reach: float
+
+
+@runtime_checkable
+class ChecksStability(Protocol):
+    """A config of controllers that give way by a law, and may refuse a wall on which they would bounce."""
+
+    check_stability: bool
+    period: float
+
+    @property
+    def law(self) -> Admittance:
+        """The law: mass, damping and stiffness."""
+        ...
+
+
+class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
+    """The kinds of controllers."""
+
+    def __init__(self, modules: Mapping[str, str]) -> None:
+        super().__init__("controller", modules, watch_loops)
+
+    def follows_paths(self, kind: str) -> bool:
+        """Tell whether a kind follows any path that the arm can follow; see FollowsPaths."""
+        module = self.module(kind)
+        return isinstance(module, FollowsPaths) and bool(module.FOLLOWS_PATHS)
+
+    def start_posture(self, config: ControllerConfig, robot: Robot, start: FloatArray) -> FloatArray | None:
+        """Return where the arm stands at a trajectory's start, or None where the kind has no wish; see ChoosesStart.
+
+        Raises:
+            ConfigError: where a module of the user's gives no posture of the robot.
+            numpy.linalg.LinAlgError: where there is none.
+        """
+        module = self.module(config.kind)
+        if not isinstance(module, ChoosesStart):
+            return None
+        wanted: FloatArray | None
+        if self.is_ours(config.kind):
+            wanted = module.start_posture(config, robot, start)
+            return wanted
+        wanted = self.ask(config, module.start_posture, robot, start)
+        fault = None if wanted is None else find_fault(wanted, robot.home.shape)
+        if fault:
+            raise ConfigError([f"controller.kind: start_posture of '{config.kind}' gave {fault}"])
+        return wanted
