@@ -43,7 +43,6 @@ def pytest_collection_finish() -> None:
     """Leave what lives as long as the process to no later look for garbage."""
     gc.collect()
     gc.freeze()
-    gc.set_threshold(20_000, 20, 20)
 
 
 @pytest.fixture(scope="session", autouse=True)
