@@ -1,5 +1,6 @@
 import copy
 import functools
+import gc
 import signal
 import subprocess
 import sys
@@ -36,6 +37,12 @@ settings.load_profile("runner")
 
 def read_thesis_urdf(name: str) -> str:
     return read_urdf(find_urdf(f"{name}.urdf"), {})
+
+
+def pytest_collection_finish() -> None:
+    """Leave what lives as long as the process to no later look for garbage."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope="session", autouse=True)

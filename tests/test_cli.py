@@ -239,7 +239,7 @@ def test_listing_and_help_import_little():
         subprocess.run([sys.executable, "-c", lines], check=True, stdout=subprocess.DEVNULL)
 
 
-@pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("closed", [">&-", "2>&-", "<&- >&- 2>&-", pytest.param(">&- 2>&-", marks=pytest.mark.slow)])
 def test_outputs_may_be_closed(tmp_path, closed):
     command = f'"{sys.executable}" -m runner {" ".join(SHORT)} {closed}'
     ending = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, text=True, timeout=60)

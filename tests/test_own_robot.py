@@ -68,7 +68,14 @@ def test_the_check_falls_short_of_another_reference(place):
 def sweep(place):
     """A sweep over two values, one of which the controller's author did not think of."""
     return call(
-        place, "runner", "-m", *PARTS, "experiment=lamp_helix", "repetitions=1", "controller.natural_frequency=20,60"
+        place,
+        "runner",
+        "-m",
+        *PARTS,
+        "experiment=lamp_helix",
+        "repetitions=1",
+        "controller.natural_frequency=20,60",
+        "hydra.sweeper.workers=0",
     )
 
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import gammaincinv
 
 from runner.robots.model import FloatArray
 
@@ -41,5 +41,5 @@ def consistency(errors: FloatArray, covariances: FloatArray, level: float) -> Co
     """
     normalised = np.einsum("ij,ij->i", errors, np.linalg.solve(covariances, errors[..., None])[..., 0])
     freedom = errors.size
-    lower, upper = chi2.ppf([0.5 * (1.0 - level), 0.5 * (1.0 + level)], freedom) / len(errors)
+    lower, upper = 2.0 * gammaincinv(0.5 * freedom, [0.5 * (1.0 - level), 0.5 * (1.0 + level)]) / len(errors)
     return Consistency(float(normalised.mean()), float(lower), float(upper))

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from runner.calibration.orientations import check_orientations, force_matrix, moment_matrix
 from runner.errors import ConfigError
@@ -45,7 +45,7 @@ class GravityCalibration:
 
     def confidence_intervals(self, level: float) -> FloatArray:
         """Return lower and upper end of each parameter's interval at a level such as 0.95, shape (2, 11)."""
-        half = norm.ppf(0.5 * (1.0 + level)) * np.sqrt(np.diagonal(self.covariance))
+        half = ndtri(0.5 * (1.0 + level)) * np.sqrt(np.diagonal(self.covariance))
         return np.array([self.values - half, self.values + half])
 
 

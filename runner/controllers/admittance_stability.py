@@ -1,7 +1,6 @@
 """Against which wall a sampled admittance stays stable."""
 
 import numpy as np
-from scipy.optimize import brentq
 
 from runner.controllers.admittance_filter import AXES, Admittance, discretise
 from runner.controllers.controller import FloatArray
@@ -51,6 +50,7 @@ def stiffest_wall(law: Admittance, period: float, axis: int, damping: float, del
 
     Zero where no wall is soft enough, as for an axis without damping.
     """
+    from scipy.optimize import brentq  # takes longer to import than a run without a wall
 
     def excess(exponent: float) -> float:
         return _radius(contact_matrix(Phi[axis], Gamma[axis], period, 10.0**exponent, damping, delay)) - 1.0

@@ -105,9 +105,11 @@ class DifferentialInverseKinematics:
         """Return the next command; see PositionController.joint_positions."""
         off, turn = self._tip_offset(q) if self._measured else (np.zeros(3), np.eye(3))
         command, slope, motion = self._command, np.zeros_like(q), np.zeros_like(q)
+        bounds = (self._position_limits - command) / self._period
+        bounds = np.clip(bounds, -self._speed_limits, self._speed_limits)
         for place, weight in self._rule:
             ahead = place * self._period
-            slope = self._joint_velocity(command + ahead * slope, ahead, off, turn, reference)
+            slope = self._joint_velocity(command + ahead * slope, ahead, off, turn, reference, bounds)
             motion += weight * slope
         self._command = command + self._period * motion
         return self._command
@@ -119,9 +121,9 @@ class DifferentialInverseKinematics:
         return x_measured - x, R_measured @ R.T
 
     def _joint_velocity(
-        self, q: FloatArray, ahead: float, off: FloatArray, turn: FloatArray, reference: FloatArray
+        self, q: FloatArray, ahead: float, off: FloatArray, turn: FloatArray, reference: FloatArray, bounds: FloatArray
     ) -> FloatArray:
-        """Return the law's joint velocities at joint positions commanded for a time ahead, in s."""
+        """Return the law's joint velocities, within bounds, at joint positions commanded for a time ahead, in s."""
         x, R, J = self._tip_at(q)
         x_d, dx_d, ddx_d = reference
         v = self._gain * (x_d - x - off)
@@ -130,11 +132,8 @@ class DifferentialInverseKinematics:
         if self._orientation is not None:
             v = np.concatenate([v, self._gain * pin.log3(self._orientation @ (turn @ R).T)])
         dq0 = self._null_space.velocity(q, J, self._directions)
-        lower, upper = (self._position_limits - self._command) / self._period
-        lower = np.clip(lower, -self._speed_limits, self._speed_limits)
-        upper = np.clip(upper, -self._speed_limits, self._speed_limits)
         task = self._directions @ J[: len(v)]
-        return self._resolved_rate.solve(task, self._directions @ v, dq0, lower, upper)
+        return self._resolved_rate.solve(task, self._directions @ v, dq0, *bounds)
 
     def _tip_at(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return position, orientation and basic Jacobian of the tip in the base frame."""

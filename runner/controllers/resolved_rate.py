@@ -66,6 +66,6 @@ class ResolvedRate:
         A = J @ spread
         if self._damping:
             smallest = max(float(np.linalg.eigvalsh(A)[0]), 0.0)
-            A[np.diag_indices_from(A)] += max(self._damping**2 - smallest, 0.0)
+            A.flat[:: len(A) + 1] += max(self._damping**2 - smallest, 0.0)  # the diagonal
         solution: FloatArray = dq0 + spread @ np.linalg.solve(A, v - J @ dq0)
         return solution

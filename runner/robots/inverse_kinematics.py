@@ -1,10 +1,10 @@
 """Joint positions for a tip position or a tip pose, on the branch that holds the home posture."""
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 import pinocchio as pin
-from scipy.optimize import least_squares
 
 from runner.errors import ConfigError
 from runner.robots.model import FloatArray, RobotModel
@@ -45,11 +45,16 @@ def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) 
         return np.array(home, dtype=float)
     paths = (_straight(start, target), _around(model.shoulder, start, target))
     directions = task_directions(model, pose=False)
-    found = [_follow(model, (_position_task(model, point, directions) for point in path), home) for path in paths]
-    missing = [float(np.linalg.norm(model.tip_position(q) - target)) for q in found]
-    reached = [q for q, distance in zip(found, missing, strict=True) if distance <= _REACHED]
+    branch, found, reached = _branch(model, home), [], []
+    for path in paths:
+        q = _follow(model, (_position_task(model, point, directions) for point in path), home)
+        found.append(q)
+        if float(np.linalg.norm(model.tip_position(q) - target)) <= _REACHED:
+            if _branch(model, q) == branch:
+                return q
+            reached.append(q)
     if reached:
-        return next((q for q in reached if _branch(model, q) == _branch(model, home)), reached[0])
+        return reached[0]
     task = _position_task(model, target, directions)
     q = _search(model, task, [np.array(home, dtype=float), *found])
     distance = float(np.linalg.norm(target - model.tip_position(q)))
@@ -132,9 +137,9 @@ def _branch(model: RobotModel, q: FloatArray) -> float:
 
 
 def _follow(model: RobotModel, tasks: Iterable[Task], home: FloatArray) -> FloatArray:
-    q = np.array(home, dtype=float)
+    q, limits = np.array(home, dtype=float), model.position_limits
     for task in tasks:
-        q = _newton(task, q, model.position_limits)
+        q = _newton(task, q, limits)
     return q
 
 
@@ -161,11 +166,16 @@ def _newton(task: Task, q: FloatArray, limits: FloatArray) -> FloatArray:
     lower, upper = limits
     for _ in range(_MAX_NEWTON):
         error, J = task(q)
-        if np.linalg.norm(error) < TOLERANCE:
+        left = float(error @ error)
+        if math.sqrt(left) < TOLERANCE:
             break
         # The damping vanishes with the error: Newton's speed near the solution, no leaps near a singular posture.
-        damping = 1e-3 * float(error @ error) * np.eye(len(error))
+        damping = 1e-3 * left * np.eye(len(error))
         step = J.T @ np.linalg.solve(J @ J.T + damping, error)
+        moved = q + step
+        if ((moved >= lower) & (moved <= upper)).all():
+            q = moved
+            continue
         blocked = np.zeros(len(q), dtype=bool)
         while (outside := ~blocked & ((q + step < lower) | (q + step > upper))).any():
             blocked |= outside  # these joints stop at their limits, and the others do without them
@@ -179,6 +189,8 @@ def _newton(task: Task, q: FloatArray, limits: FloatArray) -> FloatArray:
 
 def _search(model: RobotModel, task: Task, guesses: Sequence[FloatArray]) -> FloatArray:
     """Return the joint positions within the limits that leave the least error, sought from guesses and at random."""
+    from scipy.optimize import least_squares  # takes longer to import than most arms to find their posture
+
     lower, upper = model.position_limits
     least_usual, most_usual = model.usual_range
     postures = np.random.default_rng(0).uniform(least_usual, most_usual, (_SEARCHES, model.nq))

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize
 
 from runner.robots.model import FloatArray, RobotModel
 
@@ -76,6 +75,7 @@ def analyse(model: RobotModel, samples: int, generator: np.random.Generator) -> 
 
 def _extreme_distance(model: RobotModel, start: FloatArray, sign: float) -> float:
     """Return the distance of the tip from the shoulder at the nearest minimum (sign 1) or maximum (sign -1)."""
+    from scipy.optimize import minimize  # takes longer to import than most commands need
 
     def cost(q: FloatArray) -> tuple[float, FloatArray]:
         arm = model.tip_position(q) - model.shoulder

@@ -73,9 +73,15 @@ def test_bad_input(cli, arguments, said):
     assert said in ending.err
 
 
-@pytest.mark.parametrize("name", strangers.STRANGERS)
-@pytest.mark.parametrize("controller", ["operational_space", "computed_torque", "differential_inverse_kinematics",
-                                        "whole_body"])  # fmt: skip
+CONTROLLERS = ("operational_space", "computed_torque", "differential_inverse_kinematics", "whole_body")
+PAIRS = [
+    pytest.param(controller, name, marks=[pytest.mark.slow] if (row + column) % 2 else [])
+    for row, controller in enumerate(CONTROLLERS)
+    for column, name in enumerate(strangers.STRANGERS)
+]  # each arm is led by two of them in any case, and each leads every other arm
+
+
+@pytest.mark.parametrize(("controller", "name"), PAIRS)
 def test_controllers_lead_strangers(simulated_stranger, name, controller):
     trace = simulated_stranger(name, f"controller={controller}")
     assert trace.failure is None

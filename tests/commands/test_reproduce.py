@@ -44,7 +44,7 @@ def test_an_unknown_flag_is_bad_input(cli):
 
 
 def test_a_second_time_nothing_is_simulated(cli, small_work, tmp_path):
-    first = cli("reproduce", "thesis")
+    first = cli("reproduce", "thesis", "hydra.sweeper.workers=1")
     assert first.code == 0
     assert first.folder == tmp_path / "outputs" / "reports" / "thesis"
     assert sorted(path.name for path in first.folder.iterdir()) == ["report.html", "report.pdf"]

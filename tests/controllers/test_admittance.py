@@ -51,8 +51,14 @@ def test_a_moving_tool_is_felt_as_nothing_when_it_is_compensated_and_as_itself_w
     assert 0.5 * inertial < felt < 2.0 * inertial
 
 
-@pytest.mark.parametrize(("plant", "tolerance"), [("kinematic", 1e-6), ("bullet", 0.01)])
-@pytest.mark.parametrize("stiffness", [1e3, 1e4, 1e5])
+@pytest.mark.parametrize(
+    ("stiffness", "plant", "tolerance"),
+    [
+        *((stiffness, "kinematic", 1e-6) for stiffness in (1e3, 1e4, 1e5)),
+        *(pytest.param(stiffness, "bullet", 0.01, marks=pytest.mark.slow) for stiffness in (1e3, 1e4)),
+        (1e5, "bullet", 0.01),
+    ],
+)
 def test_at_a_wall_it_reads_the_force_of_the_springs_in_series(simulated, plant, stiffness, tolerance):
     damping = 20.0 if stiffness < 1e5 else 200.0
     wall = ("environment=wall", f"environment.stiffness={stiffness}", f"environment.damping={damping}")

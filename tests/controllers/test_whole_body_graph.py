@@ -104,8 +104,18 @@ def test_the_picture_keeps_the_rules(flags):
     graph = graph_of(flags)
     check_structure(graph)
     check_ways(graph)
-    if flags[2] or flags[4]:  # the widest ones; drawing takes time
-        check_texts(graph)
+
+
+@pytest.mark.parametrize(
+    "flags",
+    [
+        pytest.param(flags, marks=[] if flags[2] and flags[4] else [pytest.mark.slow])
+        for flags in FLAGS
+        if flags[2] or flags[4]
+    ],  # the wide ones, of which those with both limits are the widest; drawing takes time
+)
+def test_its_texts_fit(flags):
+    check_texts(graph_of(flags))
 
 
 @pytest.mark.parametrize("flags", FLAGS[1::2])

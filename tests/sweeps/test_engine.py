@@ -17,7 +17,8 @@ from runner.errors import RunnerError
 from runner.plugins import use_plugins
 from runner.store.identity import source_digest
 from runner.sweeps import engine
-from runner.sweeps.run import Engine
+from runner.sweeps.grid import plan_sweep
+from runner.sweeps.run import Engine, run_sweep
 
 GRID = ("noise=thesis", "robot=macro,mini", "plant=rk4,bullet", "seed=range(0,4)", "repetitions=2", "duration=0.3")
 
@@ -26,9 +27,10 @@ def results(ended):
     return {run.hash: (run.metrics, run.failure) for run in store.open_sweep(ended.folder).runs()}
 
 
-@pytest.fixture
-def expected(sweep, tmp_path):
-    return results(sweep(*GRID, f"outputs={tmp_path}/expected"))
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory):
+    plan = plan_sweep([*GRID, f"outputs={tmp_path_factory.mktemp('expected')}"], ())
+    return results(run_sweep(plan, Engine(0, None), "runner -m ..."))
 
 
 @pytest.fixture
@@ -51,7 +53,7 @@ def scheduler(tmp_path):
         process.wait()
 
 
-@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize("workers", [pytest.param(1, marks=pytest.mark.slow), 2])
 def test_processes_of_this_machine_give_what_this_process_gives(sweep, expected, workers, tmp_path):
     assert results(sweep(*GRID, engine=Engine(workers, None))) == expected
     assert [path for path in tmp_path.rglob("*") if path.name.startswith(".") or path.name == "scratch"] == []
@@ -132,9 +134,17 @@ def alive(group):
 
 
 @pytest.mark.usefixtures("interruptible")
-@pytest.mark.parametrize(("number", "code", "word"), [("SIGINT", 130, "interrupted"), ("SIGTERM", 143, "terminated")])
-def test_a_signal_ends_all_processes_and_says_how_to_go_on(tmp_path, number, code, word):
-    command = [sys.executable, "-m", "runner", "-m", "robot=macro", "plant=rk4", "seed=range(0,2000)"]
+@pytest.mark.parametrize(
+    ("number", "code", "word", "workers"),
+    [
+        ("SIGINT", 130, "interrupted", 2),
+        ("SIGTERM", 143, "terminated", 1),
+        pytest.param("SIGTERM", 143, "terminated", 2, marks=pytest.mark.slow),
+    ],
+)
+def test_a_signal_ends_all_processes_and_says_how_to_go_on(tmp_path, number, code, word, workers):
+    grid = ["robot=macro", "plant=rk4", "seed=range(0,2000)", f"hydra.sweeper.workers={workers}"]
+    command = [sys.executable, "-m", "runner", "-m", *grid]
     process = subprocess.Popen(command, cwd=tmp_path, stdout=-1, stderr=-1, text=True, start_new_session=True)
     while not list(tmp_path.glob("outputs/runs/*/metrics.json")):
         assert process.poll() is None
@@ -185,7 +195,7 @@ def deadly_metric(tmp_path, monkeypatch):
 
 
 @pytest.mark.usefixtures("deadly_metric")
-@pytest.mark.parametrize("deaths", [1, pytest.param(3, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("deaths", [0, *(pytest.param(many, marks=pytest.mark.slow) for many in (1, 3))])
 def test_a_run_that_brings_its_workers_down_is_cut_short_and_the_others_are_made(sweep, monkeypatch, deaths):
     monkeypatch.setattr(engine, "_DEATHS", deaths)
     ended = sweep("duration=0.1,0.2,0.3,0.4,0.5", engine=Engine(1, None))

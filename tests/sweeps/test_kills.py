@@ -8,8 +8,9 @@ from bench.kills import torture
 @pytest.mark.parametrize(
     ("trace", "kills", "processes"),
     [
-        ("all", 1, 2),
+        ("all", 1, 1),
         ("never", 1, 1),
+        pytest.param("all", 1, 2, marks=pytest.mark.slow),
         pytest.param("all", 4, 2, marks=pytest.mark.slow),
         pytest.param("never", 4, 2, marks=pytest.mark.slow),
     ],
