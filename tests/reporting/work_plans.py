@@ -10,8 +10,8 @@ from runner.reporting.thesis.plan import plan as thesis_plan
 from runner.reporting.xarm7.studies_plan import studies_jobs
 
 MOMENT = 0.08  # s
-_MECA500 = {"step": 0.2, "sine": 0.8, "tip": 0.2, "wall": 0.6, "map": 0.6, "hand": 0.6, "limit": 0.7, "noise": 0.3,
-            "inertials": 0.4, "plants": 0.4}  # s, by what the names begin with  # fmt: skip
+_MECA500 = {"step": 0.2, "sine": 0.8, "tip": 0.2, "wall": 0.4, "map": 0.4, "hand": 0.4, "swing": 1.0, "limit": 0.7,
+            "noise": 0.3, "inertials": 0.4, "plants": 0.4}  # s, by what the names begin with  # fmt: skip
 
 
 def cut(overrides: Overrides, duration: float) -> Overrides:

@@ -15,12 +15,12 @@ INDEPENDENT = [
     ("experiment=thesis/figure_3_5,thesis/figure_3_9", "noise.position=0,1e-3,2e-3"),
     ("robot=combined", "preset=sound,as_reported", "controller.period.macro=0.01,0.02", "robot.period.mini=1e-3,2e-3"),
     (
-        "robot.period=0.01,0.02,0.03",
+        "robot.period=0.01,0.02",
         "noise=none,thesis",
         "torque_limits.max=null,40,[1,2,3]",
         "robot.goal=[0,0,1],[0,1,1]",
     ),
-    ("preset.feedforward=true,false,true", "seed=range(0,4)", "+new.key=1,2", "~torque_limits"),
+    ("preset.feedforward=true,false,true", "seed=range(0,2)", "+new.key=1,2", "~torque_limits"),
     ("noise.position=0,1,1.0,true", "robot.name='a b','c,d'", "seed=0"),
     ("robot.natural_frequency=1,2", "controller.natural_frequency=3,4", "controller.natural_frequency=5,6"),
 ]
