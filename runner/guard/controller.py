@@ -12,7 +12,7 @@ from runner.guard.faults import ask, checked
 from runner.guard.read_only import read_only
 
 if TYPE_CHECKING:
-    from runner.controllers import Loop
+    from runner.controllers.controller import Loop
     from runner.robots.robot import Robot
 
 FloatArray = NDArray[np.float64]
@@ -75,7 +75,7 @@ def watch_loops(loops: Any, _: Any, robot: "Robot") -> "tuple[Loop, ...]":
     Raises:
         ConfigError: if they are no loops, or do not command every joint once.
     """
-    from runner.controllers import Loop
+    from runner.controllers.controller import Loop
 
     if not (isinstance(loops, Sequence) and loops and all(isinstance(loop, Loop) for loop in loops)):
         raise ConfigError([f"controller.kind: build gave {loops!r:.200}; it must give a tuple of Loop"])

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from runner.trajectories import Trajectory
+from runner.trajectories.trajectory import Trajectory
 
 
 @dataclass(frozen=True)
