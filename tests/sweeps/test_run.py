@@ -109,7 +109,7 @@ def test_one_in_a_hundred_is_sampled(tmp_path):
 
 def test_failures_in_shards_are_made_again_whatever_the_clock_says(sweep, simulated_runs, tmp_path):
     """The clock was ahead when the first shards were written; their names have nothing of it."""
-    given = ("seed=1,2", "sweep.trace=never")
+    given = ("seed=1,2", "duration=10", "sweep.trace=never")  # long enough to be interrupted
     first = sweep(*given, "sweep.time_limit=1e-9")
     assert [why.startswith("cut short") for _, why, _ in first.failures] == [True, True]
     for path in (tmp_path / "outputs" / "shards").iterdir():
