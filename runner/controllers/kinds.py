@@ -46,7 +46,7 @@ class ChoosesStart(Protocol):
 
 @runtime_checkable
 class FollowsWithinReach(Protocol):
-    """A config of controllers whose rider follows its target up to a distance, which a metric tells the loss beyond."""
+    """A config of controllers whose rider follows its target up to a distance; a metric tells how often it is out."""
 
     reach: float
 
