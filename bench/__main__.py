@@ -5,7 +5,7 @@ from importlib import import_module
 
 from runner.config.compose import quiet_environment
 
-NAMES = ("tick", "cold_start", "reproduce", "sweep", "kills", "mutants", "fuzz")
+NAMES = ("tick", "caveats", "cold_start", "reproduce", "sweep", "kills", "mutants", "fuzz")
 
 chosen = sys.argv[1:] or NAMES
 if not set(chosen) <= set(NAMES):

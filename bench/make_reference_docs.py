@@ -19,6 +19,7 @@ from bench.allowed_values import describe
 from runner.calibration.procedures import CALIBRATIONS
 from runner.cli import COMMANDS
 from runner.config.calibration import CalibrationSettings
+from runner.config.caveats import CaveatsConfig
 from runner.config.meanings import meanings, nested_model
 from runner.config.noise import NoiseConfig
 from runner.config.options import group_options
@@ -77,6 +78,8 @@ def _keys() -> Iterator[str]:
     yield "Of a sweep, `runner -m`:\n\n"
     yield _table("sweep", SweepConfig, _read("run")["sweep"])
     yield "".join(_sweeper())
+    yield "Of [caveats](caveats.md), why a result may mislead:\n\n"
+    yield _table("caveats", CaveatsConfig, _read("caveats")["caveats"])
     yield "Of `runner calibrate`:\n\n"
     yield _table("", CalibrationSettings, _read("calibrate"))
     yield "### robot\n\n" + _options("robot")

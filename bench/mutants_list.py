@@ -105,10 +105,14 @@ MUTANTS = [
         ("differences of true positions", "self._last = measured", "self._last = q.copy()"),
     ),
     *_of(
-        "statistics/effects.py",
+        "statistics/permutation.py",
         "statistics/test_effects.py",
-        ("p without its + 1", "(1 + as_large) / (1 + PERMUTATIONS)", "as_large / PERMUTATIONS"),
-        ("p with its + 1 above alone", "(1 + as_large) / (1 + PERMUTATIONS)", "(1 + as_large) / PERMUTATIONS"),
+        ("p without its + 1", "(1 + as_large) / (1 + self._permutations)", "as_large / self._permutations"),
+        (
+            "p with its + 1 above alone",
+            "(1 + as_large) / (1 + self._permutations)",
+            "(1 + as_large) / self._permutations",
+        ),
         ("ties taken for smaller", ">= observed * (1 - 1e-9)", "> observed"),
     ),
     *_of(

@@ -10,6 +10,7 @@ import numpy as np
 
 from runner import provenance, store
 from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
+from runner.caveats import Watch, setting_of, signals_of
 from runner.config.compose import Composed, compose
 from runner.config.limits import check_cpu_time
 from runner.config.run import RunConfig
@@ -87,6 +88,7 @@ def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
     wall, cpu = time.perf_counter(), time.process_time()
     loop = assemble(config)
     context = metric_context(config)
+    watch = Watch(setting_of(config), config.caveats)
     first: Trace | None = None
     failure: tuple[int, Failure] | None = None
     metrics, ticks = [], []
@@ -104,6 +106,8 @@ def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
             first = trace if first is None else first
             if trace.failure is not None and failure is None:
                 failure = (repetition, trace.failure)
+            if trace.failure is None:
+                watch.look(signals_of(trace, measured))
             metrics.append(measured)
             if clocked < _CLOCKED_TICKS:
                 ticks.append(trace.tick_seconds)
@@ -116,6 +120,7 @@ def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
         urdf=config.arm.urdf,
         trace=first,
         metrics=summarize(metrics),
+        caveats=watch.found(),
         repetitions=config.settings.repetitions,
         failure=failure,
         timing=timing(np.concatenate(ticks), time.perf_counter() - wall, time.process_time() - cpu),

@@ -1,9 +1,10 @@
 """`runner reproduce [NAME] [OVERRIDES]`: run what is missing for a published work, and write its report.
 
 OVERRIDES say how the runs are made: hydra.sweeper.workers and .address, sweep.time_limit, .attempts, .retry and
-.on_failure, limits.cpu_hours and .memory. What is simulated is the work's own.
+.on_failure, limits.cpu_hours and .memory; caveats.RULE.KEY, what is told of them. What is simulated is the work's own.
 """
 
+import json
 import shlex
 import sys
 from collections.abc import Mapping, Sequence
@@ -17,10 +18,11 @@ from runner.config.compose import quiet_environment
 from runner.errors import RunnerError, nearest
 
 if TYPE_CHECKING:
+    from runner.reporting.document import Document
     from runner.reporting.job import Job, Made
     from runner.store import Calibration, Run
 
-_FREE = ("hydra.sweeper.", "sweep.", "limits.")
+_FREE = ("hydra.sweeper.", "sweep.", "limits.", "caveats.")
 
 
 @dataclass(frozen=True)
@@ -32,12 +34,23 @@ class _Way:
     command: str
 
 
+@dataclass(frozen=True)
+class _Reproduced:
+    """What came of a work: its report, the runs behind it by name, and why others are missing."""
+
+    document: "Document"
+    runs: "Mapping[str, Run]"
+    missing: Mapping[str, str]
+
+
 def main(arguments: Sequence[str]) -> int:
     """Reproduce one work or all; print the report's folder as the last line."""
     parser = Parser("reproduce", __doc__)
     parser.add_argument("work", nargs="?", default="all", metavar="NAME", help=f"{', '.join(WORKS)} or all")
     parser.add_argument("overrides", nargs="*", metavar="OVERRIDE", help="such as hydra.sweeper.workers=1")
     parser.add_argument("--outputs", type=Path, default=Path("outputs"), help="folder of runs and reports")
+    parser.add_argument("--check", action="store_true", help="exit 1 where a finding of the report no longer holds")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write verdicts, findings and numbers to a file")
     options = parser.parse_intermixed_args(arguments)
     if options.work not in (*WORKS, "all"):
         raise RunnerError(
@@ -48,65 +61,82 @@ def main(arguments: Sequence[str]) -> int:
         raise RunnerError(f"reproduce: {others[0]}: what is simulated is the work's own; free are {', '.join(_FREE)}")
     quiet_environment()
     way = _Way(options.outputs, options.overrides, shlex.join(["runner", "reproduce", *arguments]))
-    return max(_reproduce(work, way) for work in (WORKS if options.work == "all" else (options.work,)))
+    made = {}
+    for work in WORKS if options.work == "all" else (options.work,):
+        made[work] = _reproduce(work, way)
+    if options.json is not None:
+        _write_conclusions(made, options.json)
+    fallen = _tell_fallen(made) if options.check else False
+    return 1 if fallen or any(each.missing for each in made.values()) else 0
 
 
-def _reproduce(work: str, way: _Way) -> int:
+def _reproduce(work: str, way: _Way) -> _Reproduced:
     from runner import store
+    from runner.reporting.render import write_report
 
     folder = way.outputs / "reports" / work
     store.prepare(way.outputs)
-    missing = _WORKS[work](work, way, folder)
-    for name, why in missing.items():
+    made = _WORKS[work](work, way, folder)
+    print("writing the report ...", file=sys.stderr)
+    write_report(made.document, folder)
+    for name, why in made.missing.items():
         print(f"runner: {work}: {name} is missing in the report: {why}", file=sys.stderr)
     print(folder)
-    return 1 if missing else 0
+    return made
 
 
-def _reproduce_runs(work: str, way: _Way, folder: Path) -> Mapping[str, str]:
+def _tell_fallen(made: Mapping[str, _Reproduced]) -> bool:
+    """Print the findings that no longer hold; return whether there are any."""
+    from runner.reporting.conclusions import fallen
+
+    lines = [f"{work}: {line}" for work, each in made.items() for line in fallen(each.document)]
+    for line in lines:
+        print(f"runner: {line}", file=sys.stderr)
+    return bool(lines)
+
+
+def _write_conclusions(made: Mapping[str, _Reproduced], path: Path) -> None:
+    from runner.reporting.conclusions import conclusions
+    from runner.store.atomic import write_atomically
+
+    content = {work: conclusions(each.document, each.runs) for work, each in made.items()}
+    write_atomically(path, (json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())
+
+
+def _reproduce_runs(work: str, way: _Way, folder: Path) -> _Reproduced:
     """Reproduce a work by its package in reporting: `plan` says which jobs to run, `report` what to write of them."""
-    from runner.reporting.render import write_report
-
     plan = import_module(f"runner.reporting.{work}.plan").plan
     document = getattr(import_module(f"runner.reporting.{work}.report"), f"{work}_document")
     runs, _ = make_all(plan(), {}, way.outputs, way.overrides, way.command)
-    print("writing the report ...", file=sys.stderr)
-    write_report(document(runs), folder)
-    return runs.missing
+    return _Reproduced(document(runs), runs, runs.missing)
 
 
-def _reproduce_thesis(work: str, way: _Way, folder: Path) -> Mapping[str, str]:
+def _reproduce_thesis(work: str, way: _Way, folder: Path) -> _Reproduced:
     from runner.reporting.thesis.dynamics_benchmark import FILE, measure
 
     measure(way.outputs / FILE)
     return _reproduce_runs(work, way, folder)
 
 
-def _reproduce_meca500(work: str, way: _Way, folder: Path) -> Mapping[str, str]:
+def _reproduce_meca500(work: str, way: _Way, folder: Path) -> _Reproduced:
     from runner.reporting.meca500.calibration_plan import calibration_jobs
     from runner.reporting.meca500.plan import plan
     from runner.reporting.meca500.report import meca500_document
-    from runner.reporting.render import write_report
 
     runs, calibrations = make_all(plan(), calibration_jobs(), way.outputs, way.overrides, way.command)
-    print("writing the report ...", file=sys.stderr)
-    write_report(meca500_document(runs, calibrations), folder)
-    return runs.missing | calibrations.missing
+    return _Reproduced(meca500_document(runs, calibrations), runs, runs.missing | calibrations.missing)
 
 
-def _audit(work: str, way: _Way, folder: Path) -> Mapping[str, str]:
+def _audit(work: str, way: _Way, folder: Path) -> _Reproduced:
     from runner.audit.audit import as_csv, audit_all
     from runner.reporting.audit.report import audit_document
-    from runner.reporting.render import write_report
+    from runner.store.atomic import write_atomically
 
     print("auditing the equations ...", file=sys.stderr)
     judged = audit_all()
-    print("writing the report ...", file=sys.stderr)
-    write_report(audit_document(judged), folder)
-    folder.joinpath("equations.csv").write_text(
-        as_csv([each for source in judged.values() for each in source]), encoding="utf-8"
-    )
-    return {}
+    table = as_csv([each for source in judged.values() for each in source])
+    write_atomically(folder / "equations.csv", table.encode())
+    return _Reproduced(audit_document(judged), {}, {})
 
 
 _WORKS = {

@@ -41,6 +41,7 @@ class _Task:
         self.run: Run | None = None
         self.ended: Ended | None = None
         self.error: Exception | None = None
+        self.thresholds: Any = None
 
     def __call__(self, config: DictConfig) -> None:
         """Make one run."""
@@ -52,7 +53,9 @@ class _Task:
         overrides = tuple(override.removeprefix("++") for override in typed)
         own = [Path(source.path) for source in hydra_config.runtime.config_sources if source.provider == "command-line"]
         try:
-            self.run = execute(from_hydra(config, hydra_config.runtime.choices, overrides, own))
+            composed = from_hydra(config, hydra_config.runtime.choices, overrides, own)
+            self.thresholds = composed.resolved.get("caveats")
+            self.run = execute(composed)
         except Exception as error:
             self.error = error
 
@@ -85,16 +88,28 @@ def main(arguments: Sequence[str]) -> int:
         return _tell_sweep(task.ended)
     if task.run is None:
         return 0  # --cfg, --hydra-help and the like
-    return _tell_run(task.run)
+    return _tell_run(task.run, task.thresholds)
 
 
-def _tell_run(run: "Run") -> int:
+def _tell_run(run: "Run", thresholds: Any) -> int:
     for warning in run.provenance["warnings"]:
         print(one_line(f"runner: warning: {warning}"), file=sys.stderr)
+    _tell_caveats(run, thresholds)
     if run.failure:
         print(one_line(f"runner: {run.failure_text}"), file=sys.stderr)
     print(run.folder)
     return 1 if run.failure else 0
+
+
+def _tell_caveats(run: "Run", thresholds: Any) -> None:
+    """Print why a run's result may mislead, and where other thresholds than those asked for were used."""
+    from runner.caveats import changes_since
+
+    for caveat in run.caveats:
+        print(one_line(f"runner: caveat: {caveat['rule']}: {caveat['text']}"), file=sys.stderr)
+    changes = changes_since(run.caveat_rules, thresholds)
+    if changes:
+        print(one_line(f"runner: stored before; its caveats were looked for by {'; '.join(changes)}"), file=sys.stderr)
 
 
 def _tell_sweep(ended: "Ended") -> int:
@@ -107,10 +122,28 @@ def _tell_sweep(ended: "Ended") -> int:
         print(aligned([["run", "why", "more in"], *rows]), file=sys.stderr)
         if len(ended.failures) > len(rows):
             print(f"  and {len(ended.failures) - len(rows)} more", file=sys.stderr)
+    counts = [ended.ends[name].caveats for name in ended.names if name in ended.ends]
+    if any(counts):
+        with_some = sum(count > 0 for count in counts)
+        told = f"{with_some} of {len(counts)} cells have caveats, {max(counts)} at most"
+        print(f"runner: {told}; `runner table {ended.folder}` says which", file=sys.stderr)
     if ended.left:
         print(f"runner: stopped at a failure; {ended.left} runs are left", file=sys.stderr)
+    _tell_differences(ended)
     print(ended.folder)
     return 1 if ended.failures else 0
+
+
+def _tell_differences(ended: "Ended") -> None:
+    """Say in a line that cells differ beyond what was swept, where they do."""
+    from runner.store import open_sweep
+    from runner.sweeps.differing import in_words
+    from runner.sweeps.measurements import axes_of
+
+    axes, _ = axes_of(open_sweep(ended.folder).overrides)
+    also = in_words(ended.resolved.differences(axes))
+    if also:
+        print(one_line(f"runner: {also}; the report lists their values"), file=sys.stderr)
 
 
 def _config_dirs(arguments: Sequence[str]) -> list[Path]:

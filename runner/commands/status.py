@@ -9,7 +9,7 @@ from runner.config.compose import quiet_environment
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Print how many runs are done, how many failed, what is left and for how long, and how to go on."""
+    """Print how many runs are done, failed or have caveats, what is left and for how long, and how to go on."""
     parser = Parser("status", __doc__)
     parser.add_argument("folder", type=Path, metavar="DIR", help="folder of a sweep")
     options = parser.parse_args(arguments)
@@ -23,6 +23,9 @@ def main(arguments: Sequence[str]) -> int:
         print(f"runner: {damage}", file=sys.stderr)
     failed = f" ({status.failed} of them failed)" if status.failed else ""
     print(f"{status.done + status.left} runs: {status.done} done{failed}, {status.left} left")
+    if any(status.caveats):
+        with_some = sum(count > 0 for count in status.caveats)
+        print(f"{with_some} of {len(status.caveats)} stored cells have caveats; `runner table` says which")
     if status.left and status.at_work:
         print("at work" + ("" if status.seconds is None else f", about {in_words(status.seconds)} to go"))
     elif status.left:

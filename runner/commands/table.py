@@ -5,6 +5,7 @@ from pathlib import Path
 
 from runner.commands.arguments import Parser
 from runner.config.compose import quiet_environment
+from runner.texts import one_line
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -14,12 +15,19 @@ def main(arguments: Sequence[str]) -> int:
     options = parser.parse_args(arguments)
     quiet_environment()
     from runner import store
+    from runner.sweeps.differing import in_words
     from runner.sweeps.measurements import measure
     from runner.sweeps.table import write_table
 
     sweep = store.open_sweep(options.folder)
-    frame = write_table(measure(sweep.overrides, sweep.runs()), options.folder)
+    measurements = measure(sweep.overrides, sweep.runs())
+    frame = write_table(measurements, options.folder)
     failed = int((frame["status"] != "ok").sum())
-    print(f"{len(frame)} cells, {failed} of them failed; {len(frame.columns)} columns: table.parquet, table.csv")
+    doubted = int((frame["caveats"] > 0).sum())
+    count = f"{len(frame)} cells, {failed} of them failed, {doubted} with caveats"
+    print(f"{count}; {len(frame.columns)} columns: table.parquet, table.csv")
+    also = in_words(measurements.differences)
+    if also:
+        print(one_line(f"{also}; `runner report {options.folder}` lists their values"))
     print(options.folder)
     return 0

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import cast
 
+from runner.config.caveats import CaveatsConfig
 from runner.config.limits import LimitsConfig
 from runner.config.noise import NoiseConfig
 from runner.config.parsing import parse, parse_group, parse_kind, parse_robot
@@ -32,6 +33,7 @@ GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
     "preset": PresetConfig,
     "sweep": SweepConfig,
     "limits": LimitsConfig,
+    "caveats": CaveatsConfig,
 }
 _SETTINGS = tuple(RunSettings.model_fields)
 
@@ -53,6 +55,7 @@ class Groups:
         robot: Config of the robot.
         sweep: How a sweep that the run is part of is run.
         limits: What a command may cost.
+        caveats: When a run tells that its result may mislead.
     """
 
     settings: RunSettings | None
@@ -67,6 +70,7 @@ class Groups:
     robot: RobotConfig | None
     sweep: SweepConfig | None
     limits: LimitsConfig | None
+    caveats: CaveatsConfig | None
 
 
 def read_groups(resolved: Mapping[str, object], problems: Problems) -> Groups:
@@ -92,6 +96,7 @@ def read_groups(resolved: Mapping[str, object], problems: Problems) -> Groups:
         robot=problems.attempt(parse_robot, resolved),
         sweep=problems.attempt(parse_group, "sweep", SweepConfig, resolved),
         limits=problems.attempt(parse_group, "limits", LimitsConfig, resolved),
+        caveats=problems.attempt(parse_group, "caveats", CaveatsConfig, resolved),
     )
 
 

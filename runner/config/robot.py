@@ -130,10 +130,15 @@ class RobotConfig(StrictModel):
         raise NotImplementedError
 
     @property
+    def burden(self) -> float:
+        """Mass of what its tip carries, tool and payload, in kg."""
+        return self.payload.mass + (0.0 if self.tool is None else self.tool.mass)
+
+    @property
     def warnings(self) -> list[str]:
-        """What is unusual in these values though it can be run."""
+        """What is unusual in these values though a calibration goes on; a run has a caveat in their place."""
         tool = 0.0 if self.tool is None else self.tool.mass
-        if self.rated_payload is None or self.payload.mass + tool <= self.rated_payload:
+        if self.rated_payload is None or self.burden <= self.rated_payload:
             return []
         borne = (
             f"robot.payload.mass: {self.payload.mass:g} kg is"

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from runner.config.caveats import CaveatsConfig
 from runner.config.limits import LimitsConfig
 from runner.config.robot import RobotConfig
 from runner.config.settings import RunSettings
@@ -40,6 +41,7 @@ class RunConfig:
         parallel: Whether riding stages keep the orientation of home, in the plant's truth.
         sweep: How a sweep that the run is part of is run.
         limits: What a command may cost.
+        caveats: When a run tells that its result may mislead.
         resolved: The composed config as plain data, interpolations resolved.
     """
 
@@ -60,6 +62,7 @@ class RunConfig:
     parallel: bool
     sweep: SweepConfig
     limits: LimitsConfig
+    caveats: CaveatsConfig
     resolved: Mapping[str, object]
 
     @property
@@ -70,7 +73,8 @@ class RunConfig:
     @property
     def warnings(self) -> list[str]:
         """What is unusual in the config though it can be run."""
-        model, found = self.arm.model, list(self.robot.warnings)
+        model = self.arm.model
+        found: list[str] = []
         if PLANTS.commands(self.plant.kind) == "torque":
             found += _zero_limits("effort", model.effort_limits, "nothing pushes it", model)
         if self.commands == "position":

@@ -75,6 +75,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         parallel=sure(parallel),
         sweep=sure(groups.sweep),
         limits=sure(groups.limits),
+        caveats=sure(groups.caveats),
         resolved=resolved,
     )
     check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.feels)

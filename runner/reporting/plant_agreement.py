@@ -1,10 +1,12 @@
 """How far PyBullet and Runge-Kutta are apart on one and the same case."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from runner.reporting.figures import columns
+from runner.reporting.quantities import above_rounding
 from runner.store import Run, find_run, run_hash
 
 _TWINS = {"bullet": "rk4", "rk4": "bullet"}
@@ -60,8 +62,15 @@ def describe_agreement(run: Run) -> str:
             f"run it with plant={other} and repetitions=1, and make this report again."
         )
     apart = disagreement(run, twin)
+    case = "On this case, with the same noise," if _noisy(run) else "On this case"
     return (
-        f"{head} On this case, with the same noise, the tips of bullet and rk4 are at most {apart.tip:.2g} m "
-        "apart, and "
-        f"{apart.final:.2g} m at the end."
+        f"{head} {case} the tips of bullet and rk4 are at most {above_rounding(apart.tip, 'm', 2)} apart, and "
+        f"{above_rounding(apart.final, 'm', 2)} at the end."
     )
+
+
+def _noisy(run: Run) -> bool:
+    """Tell whether the encoders of a run err at random; a noise of none has no effect."""
+    noise = run.config["noise"]
+    widths = noise["position"].values() if isinstance(noise["position"], Mapping) else (noise["position"],)
+    return noise["distribution"] != "none" and any(widths)

@@ -4,16 +4,30 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+ROUNDING = 1e-12
+"""What double precision leaves of zero after some operations on lengths, angles and torques of this size."""
+
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_ROUNDING = "0 (rounding)"
 _UNITS = {"1": "", "N^2 m^2 s": "N² m² s", "N^2 s": "N² s", "m/s^2": "m/s²"}
 
 
-def number(value: float | None, digits: int = 3) -> str:
-    """Return a number with so many significant digits, such as 0.0735 or 8.73·10⁻³; a dash for a missing one."""
-    if value is None:
+def number(value: float | None, digits: int = 3, rounding: float = 0.0) -> str:
+    """Return a number with so many significant digits, such as 0.0735 or 8.73·10⁻³; a dash for a missing one.
+
+    Args:
+        value: The number.
+        digits: How many digits.
+        rounding: What is smaller is rounding of the arithmetic, and said to be that.
+    """
+    if value is None or math.isnan(value):
         return "–"
+    if math.isinf(value):
+        return "∞" if value > 0.0 else "-∞"
     if value == 0.0:
         return "0"
+    if 0.0 < abs(value) < rounding:
+        return _ROUNDING
     if 1e-2 <= abs(value) < 1e4:
         text = f"{value:.{digits}g}"
         return f"{value:.0f}" if "e" in text else text
@@ -28,9 +42,17 @@ def unit_text(unit: str) -> str:
     return _UNITS.get(unit, unit)
 
 
-def quantity(value: float | None, unit: str, digits: int = 3) -> str:
-    """Return a number with its unit."""
-    return f"{number(value, digits)} {unit_text(unit)}".strip()
+def quantity(value: float | None, unit: str, digits: int = 3, rounding: float = 0.0) -> str:
+    """Return a number with its unit; rounding has none."""
+    text = number(value, digits, rounding)
+    if text == _ROUNDING or unit == "°":
+        return text if text == _ROUNDING else f"{text}°"
+    return f"{text} {unit_text(unit)}".strip()
+
+
+def above_rounding(value: float | None, unit: str = "1", digits: int = 3) -> str:
+    """Return a number with its unit, "0 (rounding)" for one that is of the size of rounding errors, in SI units."""
+    return quantity(value, unit, digits, ROUNDING)
 
 
 def labelled(name: str, unit: str) -> str:

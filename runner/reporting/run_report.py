@@ -4,6 +4,7 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from runner.caveats import changes_since
 from runner.reporting.document import Block, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import desired_motion, playback, torque_and_error
 from runner.reporting.plant_agreement import describe_agreement
@@ -38,8 +39,9 @@ def _overview(runs: Sequence[Run]) -> Table:
             quantity(run.metrics[name]["median"], run.metrics[name]["unit"]) if name in run.metrics else "–"
             for name in names
         ]
-        rows.append([str(index), *(literal(str(config.get(key, "–"))) for key in varying), run.status, *values])
-    header = ["run", *varying, "status", *names]
+        keys = (literal(str(config.get(key, "–"))) for key in varying)
+        rows.append([str(index), *keys, run.status, str(len(run.caveats)), *values])
+    header = ["run", *varying, "status", "caveats", *names]
     first = len(varying) + 2
     return Table("Runs, with what distinguishes them; medians.", header, rows, tuple(range(first, len(header))))
 
@@ -58,6 +60,7 @@ def _section(run: Run, index: int) -> Section:
                 f"{run.failure['reason']}. The curves end there.",
             )
         )
+    blocks += caveat_notices(run)
     blocks.append(torque_and_error(run, "Torque of each joint and tip position error, repetition 0."))
     if config["trajectory"]["kind"] != "goal":
         blocks.append(desired_motion(run, "Desired motion of the tip."))
@@ -66,6 +69,23 @@ def _section(run: Run, index: int) -> Section:
         blocks.append(_metrics(run))
     blocks += [Text(describe_agreement(run)), _config(run), provenance([run])]
     return Section(title, blocks)
+
+
+def caveat_notices(run: Run) -> list[Block]:
+    """Return a notice for each reason why a run's result may not be what it seems, and of how these were looked for."""
+    notices: list[Block] = [
+        Notice("warning", f"Caveat: {caveat['rule']}", literal(f"{_sentence(str(caveat['text']))}."))
+        for caveat in run.caveats
+    ]
+    changes = changes_since(run.caveat_rules)
+    if changes:
+        text = f"This run's caveats were looked for by {'; '.join(changes)}. The same command would not look again."
+        notices.append(Notice("warning", "Caveats by other rules than today's", literal(text)))
+    return notices
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]
 
 
 def _metrics(run: Run) -> Table:
@@ -113,7 +133,9 @@ def provenance(runs: Sequence[Run]) -> Provenance:
 
 def _varying(runs: Sequence[Run]) -> list[str]:
     flat = [_flatten(run.config) for run in runs]
-    keys = dict.fromkeys(key for config in flat for key in config if key != "outputs")
+    keys = dict.fromkeys(
+        key for config in flat for key in config if key != "outputs" and not key.startswith("caveats.")
+    )
     return [
         key
         for key in keys

@@ -6,7 +6,8 @@ import numpy as np
 
 from runner.reporting.document import Block, FloatArray, Notice
 from runner.reporting.figures import columns
-from runner.reporting.quantities import number
+from runner.reporting.measured import Measured
+from runner.reporting.quantities import above_rounding
 from runner.store import Run
 
 
@@ -16,9 +17,21 @@ def median(run: Run, metric: str) -> float | None:
     return None if stored is None or stored["median"] is None else float(stored["median"])
 
 
+def measured(run: Run, metric: str, name: str) -> Measured:
+    """Return the median of a metric as a measured value, of which findings state conditions.
+
+    Args:
+        run: The run.
+        metric: Name of the metric.
+        name: What the value is called in conditions.
+    """
+    stored = run.metrics.get(metric)
+    return Measured(name, median(run, metric), "1" if stored is None else str(stored["unit"]))
+
+
 def cell(run: Run, metric: str, digits: int = 3) -> str:
     """Return the median of a metric for a table: "failed" for a failed run, a dash for a value that is missing."""
-    return "failed" if run.status == "failed" else number(median(run, metric), digits)
+    return "failed" if run.status == "failed" else above_rounding(median(run, metric), digits=digits)
 
 
 def values(runs: Iterable[Run], metric: str) -> FloatArray:

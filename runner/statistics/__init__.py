@@ -1,10 +1,11 @@
 """What repeated runs allow to be said: intervals, paired comparisons, and which axis of a sweep matters."""
 
-from runner.statistics.effects import Effect, EffectAnalysis, axis_effects
-from runner.statistics.interval import SMALLEST_SAMPLE, Interval, median_interval
+from runner.statistics.effects import PERMUTATIONS, Effect, EffectAnalysis, axis_effects
+from runner.statistics.interval import SMALLEST_SAMPLE, Interval, median_interval, median_intervals
 from runner.statistics.paired import Comparison, compare_paired
 
 __all__ = [
+    "PERMUTATIONS",
     "SMALLEST_SAMPLE",
     "Comparison",
     "Effect",
@@ -13,4 +14,5 @@ __all__ = [
     "axis_effects",
     "compare_paired",
     "median_interval",
+    "median_intervals",
 ]

@@ -1,6 +1,7 @@
 """Confidence interval of a median by the bootstrap."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,13 +49,53 @@ def median_interval(values: FloatArray, seed: int = 0) -> Interval:
     median = float(np.median(values))
     if n < SMALLEST_SAMPLE:
         return Interval(median, None, None, n)
+    low, high = median_intervals(values[None, :], seed)
+    return Interval(median, float(low[0]), float(high[0]), n)
+
+
+def median_intervals(samples: FloatArray, seed: int = 0) -> tuple[FloatArray, FloatArray]:
+    """Return the ends of the intervals of many samples of one size, as median_interval has them.
+
+    Args:
+        samples: The samples, shape (m, n), n as large as SMALLEST_SAMPLE or larger.
+        seed: Seed of the resampling.
+
+    Returns:
+        Lower and upper ends, each of shape (m,).
+    """
+    n = samples.shape[1]
+    places, counts = _resampled(n, seed)
+    tail = stats.norm.cdf(np.sqrt(n / (n - 1)) * stats.t.ppf((1 - CONFIDENCE) / 2, n - 1))
+    ends = np.empty((2, len(samples)))
+    rows = max(1, _VALUES_AT_ONCE // len(counts))
+    for start in range(0, len(samples), rows):
+        ordered = np.sort(samples[start : start + rows], axis=1)
+        medians = (ordered[:, places[0]] + ordered[:, places[1]]) / 2
+        order = np.argsort(medians, axis=1)  # NaN, between two infinities, comes last
+        reached = np.cumsum(counts[order], axis=1) / RESAMPLES
+        for end, share in zip(ends, (tail, 1 - tail), strict=True):
+            # An actual median of a resample, not a value between two of them, one of which may be infinite.
+            place = order[np.arange(len(order)), np.argmax(reached >= share, axis=1)]
+            end[start : start + rows] = medians[np.arange(len(order)), place]
+    return ends[0], ends[1]
+
+
+@lru_cache(maxsize=64)
+def _resampled(n: int, seed: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return which two values of an ordered sample a resample's median lies between, and how often.
+
+    All samples of one size are resampled alike, so that this is done once.
+
+    Returns:
+        Places of the two values (the same where n is odd), shape (2, pairs), and how many of the resamples have them.
+    """
     rng = np.random.default_rng(seed)
     rows = max(1, _VALUES_AT_ONCE // n)
-    parts = [
-        np.median(values[rng.integers(0, n, (min(rows, RESAMPLES - start), n))], axis=1)
+    middle = [(n - 1) // 2, n // 2]
+    drawn = [
+        np.partition(rng.integers(0, n, (min(rows, RESAMPLES - start), n)), middle, axis=1)[:, middle]
         for start in range(0, RESAMPLES, rows)
     ]
-    tail = stats.norm.cdf(np.sqrt(n / (n - 1)) * stats.t.ppf((1 - CONFIDENCE) / 2, n - 1))
-    # An actual median of a resample, not a value between two of them, one of which may be infinite.
-    low, high = np.quantile(np.concatenate(parts), [tail, 1 - tail], method="inverted_cdf")
-    return Interval(median, float(low), float(high), n)
+    low, high = np.concatenate(drawn).T
+    pairs, counts = np.unique(low * n + high, return_counts=True)
+    return np.stack(np.divmod(pairs, n)), counts

@@ -10,8 +10,8 @@ from typing import Any
 from runner.paths import package_dir
 from runner.plugins import GROUPS, added, source_files
 
-# These say where and under which name a run is kept, not what is simulated.
-_LEFT_OUT = ("limits", "outputs", "preset", "sweep")
+# These say where and under which name a run is kept, and what is told of it, not what is simulated.
+_LEFT_OUT = ("caveats", "limits", "outputs", "preset", "sweep")
 # The rooms and modules of the physics: what a run's result follows from. All others leave it as it is.
 _PHYSICS = (
     "assembly.py", "calibration", "calibration_job.py", "config", "controllers", "environments", "execution.py",
@@ -23,8 +23,9 @@ _PHYSICS = (
 def run_hash(resolved: Mapping[str, Any], urdf: str) -> str:
     """Return the name of a run's folder: SHA-256 over all that its result follows from.
 
-    That is the resolved config (without outputs, sweep, limits, and preset, whose values the groups have taken), the
-    URDF's text, the source of the physics and of the user's parts, and the versions of PyBullet and Pinocchio.
+    That is the resolved config (without outputs, sweep, limits, caveats, and preset, whose values the groups have
+    taken), the URDF's text, the source of the physics and of the user's parts, and the versions of PyBullet and
+    Pinocchio.
     """
     content = {
         "config": simulated_part(resolved),

@@ -1,6 +1,6 @@
 """Reading a stored run."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -44,6 +44,18 @@ class Run(Stored):
         """Metrics by name: unit, median, min, max and values of each repetition."""
         metrics: Mapping[str, Mapping[str, Any]] = self.record["metrics"]
         return metrics
+
+    @property
+    def caveats(self) -> Sequence[Mapping[str, Any]]:
+        """Why its metrics may not be what they seem: rule, text, value and number of repetitions of each."""
+        caveats: Sequence[Mapping[str, Any]] = self.record.get("caveats", ())
+        return caveats
+
+    @property
+    def caveat_rules(self) -> Mapping[str, Any] | None:
+        """Digest of the rules, and thresholds, that found its caveats; None where none has looked for any."""
+        rules: Mapping[str, Any] | None = self.record.get("caveat_rules")
+        return rules
 
     @cached_property
     def trace(self) -> "pd.DataFrame":

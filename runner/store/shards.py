@@ -1,8 +1,9 @@
 """Shards: finished runs of large sweeps that kept no trace, some hundred to a file.
 
-`outputs/shards/NUMBER-PLACE.DIGEST.parquet` has a row for each run: its hash, what went wrong, and config, URDF and
-record as a run's folder holds them. A shard is written once and whole, and its name holds its content's digest. The
-numbers count the commands that wrote shards, so that the later of two is known without a clock.
+`outputs/shards/NUMBER-PLACE.DIGEST.parquet` has a row for each run: its hash, what went wrong, the number of its
+caveats, and config, URDF and record as a run's folder holds them. A shard is written once and whole, and its name holds
+its content's digest. The numbers count the commands that wrote shards, so that the later of two is known without a
+clock.
 """
 
 import io
@@ -20,6 +21,7 @@ from runner.store.run import Run, describe_failure
 from runner.store.seal import SCHEMA, DamagedError, digest
 
 _COLUMNS = ("run", "failure", "cut_short", "config", "urdf", "record")
+_CAVEATS = "caveats"  # a column that shards from before there were any lack
 _HEX = 24  # digits of the digest in a name
 _MEND = "remove it, and the sweep's command makes its runs again"
 
@@ -32,11 +34,13 @@ class Outcome:
         name: Its hash.
         failure: When, where and why it failed, in words; empty for a good run.
         cut_short: Whether something else than its physics ended it, as its time limit.
+        caveats: Number of reasons why its result may not be what it seems; 0 where none has looked for any.
     """
 
     name: str
     failure: str
     cut_short: bool
+    caveats: int = 0
 
     @property
     def rank(self) -> int:
@@ -76,8 +80,8 @@ def outcome(run: Run) -> Outcome:
     """Return how a run ended."""
     failure = run.failure
     if failure is None:
-        return Outcome(run.hash, "", False)
-    return Outcome(run.hash, describe_failure(failure), failure["time"] is None)
+        return Outcome(run.hash, "", False, len(run.caveats))
+    return Outcome(run.hash, describe_failure(failure), failure["time"] is None, len(run.caveats))
 
 
 def shard_files(outputs: Path) -> list[Path]:
@@ -118,10 +122,11 @@ def write_shard(outputs: Path, name: str, runs: Sequence[ShardRun]) -> Path:
         "config": [json.dumps(run.config) for run in runs],
         "urdf": [run.urdf for run in runs],
         "record": [json.dumps(run.record, allow_nan=False) for run in runs],
+        _CAVEATS: [end.caveats for end in ends],
     }
+    kinds = {"cut_short": pyarrow.bool_(), _CAVEATS: pyarrow.int32()}
     arrays = [
-        pyarrow.array(values, pyarrow.bool_() if name == "cut_short" else pyarrow.string(), from_pandas=False)
-        for name, values in columns.items()
+        pyarrow.array(values, kinds.get(name, pyarrow.string()), from_pandas=False) for name, values in columns.items()
     ]
     table = pyarrow.Table.from_arrays(arrays, names=list(columns)).replace_schema_metadata({"schema": str(SCHEMA)})
     buffer = io.BytesIO()
@@ -138,9 +143,10 @@ def read_outcomes(path: Path) -> list[Outcome]:
     Raises:
         DamagedError: if it cannot be read, or is not as it was written.
     """
-    table = _read(path, _COLUMNS[:3])
-    rows = zip(*(table[name].to_pylist() for name in _COLUMNS[:3]), strict=True)
-    return [Outcome(name, failure, cut_short) for name, failure, cut_short in rows]
+    table = _read(path, _COLUMNS[:3], _CAVEATS)
+    counts = table[_CAVEATS].to_pylist() if _CAVEATS in table.column_names else [0] * len(table)
+    rows = zip(*(table[name].to_pylist() for name in _COLUMNS[:3]), counts, strict=True)
+    return [Outcome(*row) for row in rows]
 
 
 def open_row(path: Path, row: int) -> ShardRun:
@@ -171,7 +177,8 @@ def _read_rows(path: Path) -> Any:
     return _read(path, _COLUMNS)
 
 
-def _read(path: Path, columns: Sequence[str]) -> Any:
+def _read(path: Path, columns: Sequence[str], newer: str = "") -> Any:
+    """Return columns of a shard, and one that older shards lack where it is there."""
     import pyarrow
     import pyarrow.parquet
 
@@ -182,9 +189,10 @@ def _read(path: Path, columns: Sequence[str]) -> Any:
         file = pyarrow.parquet.ParquetFile(pyarrow.BufferReader(content))
         if not is_sealed_shard(path) and b"schema" in (file.schema_arrow.metadata or {}):
             raise DamagedError(f"cannot read {path}: its name has lost its digest; {_MEND}")
-        table = file.read(list(columns))
+        wanted = [*columns, *(name for name in file.schema_arrow.names if name == newer)]
+        table = file.read(wanted)
     except (OSError, pyarrow.ArrowException) as error:
         raise DamagedError(f"cannot read {path}: {str(error).splitlines()[0]}; {_MEND}") from error
-    if table.column_names != list(columns):
+    if table.column_names != wanted:
         raise DamagedError(f"cannot read {path}: it is no shard: it needs columns {', '.join(columns)}; {_MEND}")
     return table

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import yaml
 
+from runner.caveats import Found
 from runner.errors import StoreError
 from runner.metrics import Summary
 from runner.store.atomic import write_atomically
@@ -26,6 +27,7 @@ class RunResult:
         urdf: The URDF's text.
         trace: The trace of repetition 0.
         metrics: Metrics over the repetitions.
+        caveats: Why they may not be what they seem.
         repetitions: Number of repetitions.
         failure: The first failure and its repetition, or None.
         timing: What a clock measured.
@@ -36,6 +38,7 @@ class RunResult:
     urdf: str
     trace: Trace
     metrics: Mapping[str, Summary]
+    caveats: Found
     repetitions: int
     failure: tuple[int, Failure] | None
     timing: Mapping[str, float | None]
@@ -82,6 +85,7 @@ def make_record(result: RunResult) -> dict[str, Any]:
     if result.failure is not None:
         repetition, failure = result.failure
         record["failure"] = {**asdict(failure), "repetition": repetition}
+    record |= result.caveats.record()
     record["metrics"] = {metric: vars(summary) for metric, summary in result.metrics.items()}
     record["timing"] = dict(result.timing)
     record["provenance"] = dict(result.provenance)

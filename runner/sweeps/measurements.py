@@ -1,12 +1,17 @@
 """All that a sweep measured, cell by cell: swept axes, status, and every metric in every repetition."""
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.caveats import changes_since
 from runner.store import Run
+from runner.sweeps.differing import Difference, Resolved
+from runner.sweeps.resolved import Resolver
 from runner.sweeps.swept import is_simulated
 
 FloatArray = NDArray[np.float64]
@@ -46,6 +51,10 @@ class Measurements:
         values: Each metric in each repetition, shape (cells, repetitions): infinite, that is beyond every number,
             where the repetition failed or never settled; NaN where the run has no such metric or repetition.
         provenance: What made the runs: plant, commit, machine, date and so on, each with its distinct values.
+        caveats: Why the result of each cell may not be what it seems, as stored: rule, text, value, repetitions.
+        caveat_changes: With what else than today these were looked for, each with the number of cells.
+        seeds: Seed of each cell; empty where all have the same.
+        differences: Resolved config values that differ between cells beyond the axes.
     """
 
     axes: Sequence[Axis]
@@ -56,6 +65,19 @@ class Measurements:
     units: Mapping[str, str]
     values: Mapping[str, FloatArray]
     provenance: Mapping[str, Sequence[str]]
+    caveats: Sequence[Sequence[Mapping[str, Any]]] = ()
+    caveat_changes: Mapping[str, int] = field(default_factory=dict)
+    seeds: Sequence[int] = ()
+    differences: Sequence[Difference] = ()
+
+    @property
+    def draws(self) -> NDArray[np.intp]:
+        """Number of the random draws behind each value, shape (cells, repetitions).
+
+        Equal for the same repetition of cells of one seed, and different else.
+        """
+        seeds = np.unique(self.seeds, return_inverse=True)[1] if len(self.seeds) else np.zeros(len(self.hashes), int)
+        return seeds[:, None] * self.repetitions + np.arange(self.repetitions)
 
     @property
     def repetitions(self) -> int:
@@ -94,15 +116,23 @@ def measure(overrides: Sequence[Sequence[str]], runs: Iterable[Run]) -> Measurem
     units: dict[str, str] = {}
     provenance: dict[str, dict[str, None]] = {}
     rows: list[Mapping[str, FloatArray]] = []
-    for run in runs:
+    caveats: list[Sequence[Mapping[str, Any]]] = []
+    changes: Counter[str] = Counter()
+    seeds: list[int] = []
+    resolver, resolved = Resolver(), Resolved()
+    for run, given in zip(runs, overrides, strict=True):
+        resolved.add(resolver.resolve(run), given)
+        seeds.append(int(run.provenance["seed"]))
         hashes.append(run.hash)
         statuses.append(run.status)
         failures.append(run.failure_text)
         units |= {name: str(metric["unit"]) for name, metric in run.metrics.items()}
         rows.append(_values(run))
+        caveats.append(run.caveats)
+        changes.update(changes_since(run.caveat_rules))
         for key, text in _made_by(run):
             provenance.setdefault(key, {})[text] = None
-    axes, fixed = _axes(overrides)
+    axes, fixed = axes_of(overrides)
     width = max((len(values) for row in rows for values in row.values()), default=1)
     values = {name: np.full((len(rows), width), np.nan) for name in units}
     for cell, row in enumerate(rows):
@@ -111,7 +141,20 @@ def measure(overrides: Sequence[Sequence[str]], runs: Iterable[Run]) -> Measurem
         for name, found in (row or lost).items():
             values[name][cell, : len(found)] = found
     made_by = {key: sorted(texts) for key, texts in provenance.items()}
-    return Measurements(axes, fixed, hashes, statuses, failures, units, values, made_by)
+    return Measurements(
+        axes,
+        fixed,
+        hashes,
+        statuses,
+        failures,
+        units,
+        values,
+        made_by,
+        caveats,
+        changes,
+        seeds,
+        resolved.differences(axes),
+    )
 
 
 def _made_by(run: Run) -> Iterator[tuple[str, str]]:
@@ -133,7 +176,7 @@ def _values(run: Run) -> dict[str, FloatArray]:
     }
 
 
-def _axes(overrides: Sequence[Sequence[str]]) -> tuple[list[Axis], list[str]]:
+def axes_of(overrides: Sequence[Sequence[str]]) -> tuple[list[Axis], list[str]]:
     """Return the keys whose values differ between jobs as axes, and the other overrides."""
     given = [dict(override.lstrip("+").partition("=")[::2] for override in job) for job in overrides]
     keys = list(dict.fromkeys(key for job in given for key in job if is_simulated(key)))

@@ -19,6 +19,8 @@ from runner.config.run import RunConfig
 from runner.config.sweep import SweepConfig
 from runner.config.validation import validate
 from runner.errors import ConfigError
+from runner.sweeps.differing import Resolved
+from runner.sweeps.resolved import is_one_arm, resolve
 
 _PROBLEMS_SHOWN = 20
 _TICKS_OF_A_CALIBRATION = 200  # that take as long as one repetition of it
@@ -55,6 +57,7 @@ class Checked:
         outputs: Folder in which they are stored.
         settings: How the runs are made.
         limits: What they may cost.
+        resolved: What differs between the configs of the runs.
     """
 
     names: Sequence[str]
@@ -63,6 +66,7 @@ class Checked:
     outputs: Path
     settings: SweepConfig
     limits: LimitsConfig
+    resolved: Resolved
 
 
 def check(plan: Plan) -> Checked:
@@ -76,6 +80,7 @@ def check(plan: Plan) -> Checked:
     calibrations: set[int] = set()
     problems: dict[str, list[int]] = {}
     first: RunConfig | None = None
+    resolved = Resolved()
     assembled: dict[str, ConfigError | None] = {}
     for cell in tqdm(range(len(plan)), desc="checking", unit="run", delay=1.0, disable=None):
         try:
@@ -90,6 +95,8 @@ def check(plan: Plan) -> Checked:
                 _check_assembly(composed, config, assembled)
                 name = store.run_hash(composed.resolved, config.arm.urdf)
                 cost = config.timing.ticks * config.settings.repetitions
+                start = config.path.start.tolist() if is_one_arm(composed.resolved) else None
+                resolved.add(resolve(composed.resolved, config.timing.step, start), composed.overrides)
             names.append(name)
             costs.append(cost)
         except ConfigError as error:
@@ -101,7 +108,7 @@ def check(plan: Plan) -> Checked:
         hint = "  nothing was started" if more <= 0 else f"  and {more} more problems; nothing was started"
         raise ConfigError([_describe(plan, *item) for item in shown], hint)
     outputs = Path(first.settings.outputs)
-    return Checked(names, costs, frozenset(calibrations), outputs, first.sweep, first.limits)
+    return Checked(names, costs, frozenset(calibrations), outputs, first.sweep, first.limits, resolved)
 
 
 def _check_calibration(composed: Composed) -> tuple[str, int]:
@@ -112,8 +119,13 @@ def _check_calibration(composed: Composed) -> tuple[str, int]:
 
 
 def _check_alike(first: RunConfig, other: RunConfig) -> None:
-    if (first.settings.outputs, first.sweep, first.limits) != (other.settings.outputs, other.sweep, other.limits):
-        raise ConfigError(["outputs, sweep.*, limits.*: must have one value in all runs of a sweep"])
+    if _shared(first) != _shared(other):
+        raise ConfigError(["outputs, sweep.*, limits.*, caveats.*: must have one value in all runs of a sweep"])
+
+
+def _shared(config: RunConfig) -> tuple[object, ...]:
+    """Return what is the same in all runs of a sweep."""
+    return config.settings.outputs, config.sweep, config.limits, config.caveats
 
 
 def _check_assembly(composed: Composed, config: RunConfig, assembled: dict[str, ConfigError | None]) -> None:

@@ -3,7 +3,7 @@
 import shutil
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from runner import store
@@ -12,6 +12,7 @@ from runner.config.sweep import SweepConfig
 from runner.errors import ConfigError, StoreError
 from runner.plugins import in_use
 from runner.store.atomic import remove_leftovers
+from runner.sweeps.differing import Resolved
 from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
 from runner.sweeps.lock import at_work
 from runner.sweeps.plan import Checked, Plan, check
@@ -52,6 +53,7 @@ class Ended:
         ends: How those ended that are made, by hash.
         failures: Overrides, reason and where to read on, of each cell that failed.
         left: Number of runs that were not made, as the sweep was to stop at the first failure.
+        resolved: What differs between the configs of the runs.
     """
 
     folder: Path
@@ -60,6 +62,7 @@ class Ended:
     ends: Mapping[str, store.Outcome]
     failures: Sequence[tuple[Sequence[str], str, Path]]
     left: int
+    resolved: Resolved = field(compare=False)
 
 
 def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool = True) -> Ended:
@@ -96,7 +99,7 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
         clean(rules, set(names))
     failed = [(cell, ends[name]) for cell, name in enumerate(names) if name in ends and ends[name].failure]
     failures = [(plan.overrides(cell), end.failure, _where(end.name, outputs, folder)) for cell, end in failed]
-    return Ended(folder, outputs, names, ends, failures, len(set(names) - ends.keys()))
+    return Ended(folder, outputs, names, ends, failures, len(set(names) - ends.keys()), checked.resolved)
 
 
 def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:

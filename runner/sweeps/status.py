@@ -21,6 +21,7 @@ class Status:
     Attributes:
         done: Number of its distinct runs that are stored, failed ones included.
         failed: Number of stored runs that failed.
+        caveats: Number of caveats of the run of each cell that is stored, in the order of the cells.
         left: Number of runs that are not stored.
         at_work: Whether a sweep is at work in its outputs folder.
         seconds: How long what is left will take at the last pace noted, in s; None where none is.
@@ -29,6 +30,7 @@ class Status:
 
     done: int
     failed: int
+    caveats: Sequence[int]
     left: int
     at_work: bool
     seconds: float | None
@@ -43,8 +45,8 @@ def find_status(sweep: store.Sweep) -> Status:
     """
     finished = store.Finished(sweep.outputs)
     names = set(sweep.hashes)
-    ends = [finished.outcome(name) for name in names]
-    stored = [end for end in ends if end is not None]
+    ends = {name: finished.outcome(name) for name in names}
+    stored = [end for end in ends.values() if end is not None]
     left = len(names) - len(stored)
     pace = None
     with contextlib.suppress(store.DamagedError):  # it is written again every few seconds
@@ -52,6 +54,7 @@ def find_status(sweep: store.Sweep) -> Status:
     return Status(
         done=len(stored),
         failed=sum(bool(end.failure) for end in stored),
+        caveats=[end.caveats for name in sweep.hashes if (end := ends[name]) is not None],
         left=left,
         at_work=is_at_work(sweep.outputs),
         seconds=None if pace is None else pace * left,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from runner.statistics import SMALLEST_SAMPLE, median_intervals
 from runner.store.atomic import write_atomically
 from runner.sweeps.measurements import FloatArray, Measurements
 from runner.texts import table_cell
@@ -21,10 +22,13 @@ QUANTILES = (0.05, 0.25, 0.75, 0.95)
 def table(measurements: Measurements) -> "pd.DataFrame":
     """Return the table of a sweep.
 
-    The columns are the swept axes under their keys; status, failure and hash; and of every metric `NAME.median`,
-    `NAME.q05`, `.q25`, `.q75`, `.q95`, and `NAME.n`, the number of repetitions that have a value. A repetition
+    The columns are the swept axes under their keys; status, failure and hash; the number of caveats, and the
+    rules that were sprung; and of every metric `NAME.median`;
+    `NAME.low` and `.high`, the ends of the median's 95 % interval by the bootstrap, missing where the repetitions are
+    too few; `NAME.q05`, `.q25`, `.q75`, `.q95`; and `NAME.n`, the number of repetitions that have a value. A repetition
     without one counts as beyond every number; what is itself beyond every number is missing. A quantile is the
-    smallest value that so large a share of the repetitions does not exceed, never a value between two of them.
+    smallest value that so large a share of the repetitions does not exceed, never a value between two of them: NumPy's
+    inverted_cdf. The median of an even number is the mean of the two in the middle.
     """
     import pandas as pd
 
@@ -34,6 +38,9 @@ def table(measurements: Measurements) -> "pd.DataFrame":
         "failure": list(measurements.failures),
         "hash": list(measurements.hashes),
     }
+    caveats = measurements.caveats or [()] * len(measurements.hashes)
+    columns["caveats"] = [len(found) for found in caveats]
+    columns["caveats.rules"] = [" ".join(str(caveat["rule"]) for caveat in found) for found in caveats]
     for name in measurements.values:
         columns |= dict(_columns(measurements, name))
     return pd.DataFrame(columns)
@@ -70,6 +77,12 @@ def _columns(measurements: Measurements, name: str) -> Iterator[tuple[str, Float
     ordered = np.sort(measurements.values[name], axis=1)  # NaN, which is no repetition, comes last
     count = np.sum(~np.isnan(ordered), axis=1)
     yield f"{name}.median", _finite(measurements.medians(name))
+    low, high = np.full((2, len(ordered)), np.nan)
+    for n in np.unique(count[count >= SMALLEST_SAMPLE]).tolist():
+        cells = np.flatnonzero(count == n)
+        low[cells], high[cells] = median_intervals(ordered[cells, :n])
+    yield f"{name}.low", _finite(low)
+    yield f"{name}.high", _finite(high)
     for share in QUANTILES:
         place = np.array([max(math.ceil(share * n - 1e-9) - 1, 0) for n in count.tolist()], dtype=np.intp)
         yield f"{name}.q{round(100 * share):02d}", _finite(ordered[np.arange(len(ordered)), place])

@@ -61,3 +61,14 @@ def test_the_table_has_a_line_for_each_equation(everything):
 def test_fewer_samples_give_the_same_verdicts(everything):
     few = {each.entry.id: each.verdict for each in audit("meca500", samples=60)}
     assert few == {each.entry.id: each.verdict for each in everything["meca500"]}
+
+
+def test_with_the_inverse_rotation_the_meca500_s_gravity_equations_are_right(everything):
+    verdicts = {each.entry.id: each.verdict for each in everything["meca500"]}
+    undefined = [f"meca500-{name}-{axis}" for name in ("rotated", "fit", "weight") for axis in "xyz"]
+    assert {name: verdicts[name] for name in undefined} == dict.fromkeys(undefined, "correct")
+
+
+def test_damaged_indices_are_mended_and_told(everything):
+    repaired = {each.entry.id for each in everything["meca500"] if each.verdict == "correct after repair"}
+    assert {"meca500-chain", "meca500-origin", "meca500-Jg054"} <= repaired

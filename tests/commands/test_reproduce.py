@@ -1,4 +1,5 @@
 import csv
+import json
 from functools import partial
 
 import pytest
@@ -6,9 +7,12 @@ import pytest
 from runner.audit import entry
 from runner.audit.audit import audit
 from runner.audit.verdict import VERDICTS
+from runner.commands import reproduce
 from runner.commands.reproduce import WORKS, make_all
-from runner.reporting.document import Section, Text
+from runner.reporting.document import Document, Section, Text
+from runner.reporting.findings import finding
 from runner.reporting.job import Job
+from runner.reporting.measured import Measured
 from runner.reporting.run_report import run_document
 from runner.reporting.work_report import parts, work_document
 from runner.sweeps import work as workers
@@ -140,7 +144,9 @@ def test_the_audit_is_a_report_and_a_table(cli, monkeypatch, tmp_path):
 
 
 def test_all_reproduces_every_work(cli, small_work, monkeypatch, tmp_path):
-    monkeypatch.setattr("runner.commands.reproduce._WORKS", {name: lambda *_: {} for name in WORKS})
+    empty = reproduce._Reproduced(Document("", "", "", (), "2026-01-01"), {}, {})
+    monkeypatch.setattr("runner.commands.reproduce._WORKS", {name: lambda *_: empty for name in WORKS})
+    monkeypatch.setattr("runner.reporting.render.write_report", lambda *_: None)
     assert cli("reproduce").out.split() == [f"outputs/reports/{name}" for name in WORKS]
 
 
@@ -149,3 +155,28 @@ def test_outputs_that_cannot_be_written_are_told_before_anything_is_simulated(cl
     ending = cli("reproduce", "thesis", "--outputs", "file")
     assert ending.code == 2
     assert ending.err.startswith("runner: cannot write file/runs")
+
+
+@pytest.fixture
+def one_finding(monkeypatch):
+    """Let the thesis' report be one finding that no longer holds, and one that does."""
+    error = Measured("tip error", 2e-3, "m")
+    section = Section("One", (finding("Small", f"It is {error}.", error < 1e-3), finding("Not zero", "-", error > 0.0)))
+    made = reproduce._Reproduced(Document("The thesis", "", "", (section,), "2026-01-01"), {}, {})
+    monkeypatch.setitem(reproduce._WORKS, "thesis", lambda *_: made)
+
+
+def test_check_lists_the_findings_that_no_longer_hold(cli, one_finding):
+    assert cli("reproduce", "thesis").code == 0
+    ending = cli("reproduce", "thesis", "--check")
+    assert ending.code == 1
+    assert "thesis: section 1: Small: not so: tip error < 1·10⁻³ m (tip error: 2·10⁻³ m)" in ending.err
+    assert "Not zero" not in ending.err
+
+
+def test_conclusions_are_written_for_programs(cli, one_finding, tmp_path):
+    assert cli("reproduce", "thesis", "--json", tmp_path / "thesis.json").code == 0
+    small, other = json.loads((tmp_path / "thesis.json").read_text())["thesis"]["findings"]
+    assert (small["section"], small["title"], small["text"]) == ("1", "Small", "It is 2·10⁻³ m.")
+    assert (small["holds"], other["holds"]) == (False, True)
+    assert small["conditions"][0]["text"] == "tip error < 1·10⁻³ m"

@@ -132,5 +132,5 @@ def test_bad_input_names_what_is_wrong(cli, overrides, text):
 def test_a_tool_beyond_the_rating_and_an_overloaded_sensor_are_warned_of(cli):
     ending = cli(*STILL, "robot.tool.mass=0.7", "wrist_sensor=mini40", "environment=push", "environment.force=[30,0,0]")
     assert ending.code == 0
-    assert "more than the 0.5 kg that meca500 is rated for" in ending.err
+    assert "times the 0.5 kg that meca500 is rated for" in ending.err
     assert "beyond the sensor's range of 20 N" in ending.err

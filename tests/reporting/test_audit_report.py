@@ -52,7 +52,7 @@ def test_every_formula_is_valid(document):
 
 
 def test_each_wrong_formula_that_is_run_has_its_curves(document):
-    assert len(tables(document, Curves)) == 12
+    assert len(tables(document, Curves)) == 11
 
 
 def test_the_page_can_be_searched_by_what_is_printed(page, judged):

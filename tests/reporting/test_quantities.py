@@ -1,6 +1,6 @@
 import pytest
 
-from runner.reporting.quantities import digits_between, labelled, number, quantity, spread
+from runner.reporting.quantities import above_rounding, digits_between, labelled, number, quantity, spread
 
 
 @pytest.mark.parametrize(
@@ -46,6 +46,14 @@ def test_a_missing_value_keeps_its_unit():
 
 
 @pytest.mark.parametrize(
+    ("value", "text"),
+    [(2.66e-15, "0 (rounding)"), (-5.6e-17, "0 (rounding)"), (0.0, "0 m"), (2e-12, "2·10⁻¹² m"), (None, "– m")],
+)
+def test_what_is_of_the_size_of_rounding_errors_is_told_as_such(value, text):
+    assert above_rounding(value, "m") == text
+
+
+@pytest.mark.parametrize(
     ("values", "median", "low", "high", "text"),
     [
         ([1.5], 1.5, 1.5, 1.5, "1.5 s"),
@@ -69,3 +77,15 @@ def test_so_many_digits_tell_values_apart_that_lie_between_two(low, high):
     places = [low + part * (high - low) for part in (0.0, 0.25, 0.5, 0.75, 1.0)]
     texts = [number(place, digits_between(low, high)) for place in places]
     assert len(set(texts)) == len(set(places))
+
+
+def test_what_is_below_rounding_is_said_to_be_that():
+    assert number(3.2e-18, rounding=1e-9) == "0 (rounding)"
+    assert quantity(-4.4e-12, "%", rounding=1e-9) == "0 (rounding)"
+    assert quantity(2e-9, "m", rounding=1e-9) == "2·10⁻⁹ m"
+    assert number(0.0, rounding=1e-9) == "0"
+    assert number(3.2e-18) == "3.20·10⁻¹⁸"
+
+
+def test_degrees_stand_by_their_number():
+    assert quantity(22.92, "°") == "22.9°"

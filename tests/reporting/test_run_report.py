@@ -31,6 +31,7 @@ def test_a_finished_run_is_told_whole(finished):
     document = run_document([finished])
     assert document.abstract == "1 run, all of them finished."
     assert [type(block) for block in outline.blocks(document)] == [
+        Notice,
         Curves,
         Curves,
         Playback,

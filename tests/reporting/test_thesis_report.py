@@ -4,6 +4,7 @@ import re
 from collections import Counter
 
 import pytest
+from mutated_runs import mutants, never_failing
 from thin_plans import make_runs, stand_ins
 from work_plans import thesis_jobs, thesis_moments
 
@@ -12,6 +13,7 @@ from runner.reporting.document import Claim, Curves, Picture, Table, Text
 from runner.reporting.formulas import faulty
 from runner.reporting.job import PRESETS
 from runner.reporting.render import write_report
+from runner.reporting.thesis import claims, mini_accuracy, questions
 from runner.reporting.thesis.report import thesis_document
 
 ONCE = (
@@ -54,7 +56,7 @@ def test_every_published_figure_carries_its_command(document):
 
 def test_every_number_has_a_finding_for_each_preset(document):
     claims = blocks_of(document, Claim)
-    assert [claim.number for claim in claims] == [str(number) for number in range(1, 17)]
+    assert [claim.number for claim in claims] == [str(number) for number in range(1, 18)]
     for claim in claims:
         assert tuple(finding.preset for finding in claim.findings) == PRESETS
         assert claim.reason
@@ -91,3 +93,19 @@ def test_html_and_pdf_are_written(document, tmp_path):
         assert f"figure {number}" in page.lower()
     assert not re.findall(r"(?:src|href)=[\"']?(?:https?:)?//", page)
     assert pdf.read_bytes().startswith(b"%PDF")
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        claims._what_falls,
+        questions._strategy,
+        questions._independent,
+        questions._effect,
+        questions._together,
+        mini_accuracy.mini_accuracy,
+    ],
+    ids=lambda make: make.__name__,
+)
+def test_every_condition_of_a_finding_can_fail(runs, make):
+    assert never_failing(list(mutants(make, runs))) == []

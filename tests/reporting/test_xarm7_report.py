@@ -2,11 +2,13 @@
 
 import re
 
+import numpy as np
 import pytest
 from thin_plans import make_runs
 
 from runner.reporting import outline
 from runner.reporting.document import Claim, Curves, Notice, Picture, Playback, Section, Table, Text
+from runner.reporting.findings import findings
 from runner.reporting.formulas import faulty
 from runner.reporting.job import PRESETS
 from runner.reporting.render import write_report
@@ -98,7 +100,30 @@ def test_seven_joints_meet_what_is_asked_of_them(runs, preset):
 def test_both_values_of_x_are_reached_with_room_at_every_joint(document):
     rows = {row[0]: row[1:] for row in table(document, "Both values of X").rows}
     assert rows["smallest margin to a joint limit (rad)"] == ["1.14 (q2)", "1.25 (q2)"]
-    assert any("1.14 (q2)" in notice.text and "1.25 (q2)" in notice.text for notice in blocks_of(document, Notice))
+    assert any("1.14 rad" in notice.text and "1.25 rad" in notice.text for notice in blocks_of(document, Notice))
+
+
+def test_the_findings_that_need_no_study_hold(document):
+    """These runs are those of the plan; the studies' runs take longer."""
+    held = [found for _, found in findings(document)]
+    assert [found.title for found in held if not found.holds] == []
+    assert len(held) == 8
+
+
+def test_what_is_rounding_is_told_as_rounding(document):
+    rows = {row[0]: row[1:] for row in table(document, "Errors and efforts").rows}
+    assert rows["cross_track_error"][0] == "0 (rounding)"
+    cells = [cell for each in blocks_of(document, Table) for row in each.rows for cell in row]
+    assert not [cell for cell in cells if re.search("10⁻¹[2-9]", cell)]
+
+
+def test_a_motion_is_shown_from_a_to_b_as_its_caption_says(document):
+    shown = blocks_of(document, Playback)
+    assert len(shown) == 2
+    for playback in shown:
+        assert playback.caption.endswith("from A to B.")
+        assert playback.times[-1] == pytest.approx(5.0)
+        np.testing.assert_allclose(playback.path[-1], [0.643, 0.2, 0.1508], atol=1e-4)
 
 
 def test_the_plants_disagreement_is_measured_and_shrinks_with_the_step(document):

@@ -12,7 +12,87 @@ def grid(*sizes, repetitions):
 
 
 def effects_of(axes, values, seed=0):
-    return {effect.axes: effect for effect in axis_effects(axes, values, seed).effects}
+    return {effect.axes: effect for effect in axis_effects(axes, values, seed=seed).effects}
+
+
+def rates(*sizes, repetitions, effect=0.0, scatter=0.05, blocked=True, trials=1000):
+    """Share of sweeps with p <= 0.05 for each effect: `effect` per level of a, a spread of 1 that seeds share."""
+    cells = np.indices((*sizes, repetitions)).reshape(len(sizes) + 1, -1)
+    axes, repetition = dict(zip("abc", cells[:-1], strict=False)), cells[-1]
+    found = []
+    for trial in range(trials):
+        rng = np.random.default_rng([14, trial])
+        shared = rng.normal(size=repetitions)[repetition]
+        y = 10.0 + effect * axes["a"] + shared + np.asarray(scatter) * rng.normal(size=len(repetition))
+        analysis = axis_effects(axes, y, repetition if blocked else None, seed=trial, permutations=199)
+        found.append([tested.p_value <= 0.05 for tested in analysis.effects])
+    return np.mean(found, axis=0)
+
+
+@pytest.mark.parametrize("sizes", [{"sizes": (3,), "repetitions": 10}, {"sizes": (2, 3), "repetitions": 6}])
+def test_one_test_in_twenty_is_below_five_per_cent_where_cells_share_their_seeds(sizes):
+    found = rates(*sizes["sizes"], repetitions=sizes["repetitions"])
+    assert ((found >= 0.03) & (found <= 0.07)).all()
+
+
+def test_an_effect_smaller_than_what_seeds_share_is_found():
+    # 0.15 per level, a shared spread of 1 and scatter of 0.05: lost where the shared spread counts as scatter.
+    blocked, pooled = (rates(3, repetitions=10, effect=0.15, blocked=which, trials=100) for which in (True, False))
+    assert blocked[0] > 0.9
+    assert pooled[0] < 0.05
+
+
+def test_unequal_scatter_makes_small_p_values_more_frequent():
+    # What the test assumes: here the levels differ in their scatter by a factor of 50, and in nothing else.
+    found = rates(3, repetitions=10, scatter=np.repeat([0.01, 0.05, 0.5], 10), trials=500)
+    assert 0.07 < found[0] < 0.15
+
+
+def test_without_shared_seeds_nothing_is_blocked():
+    axes = grid(3, repetitions=10)
+    values = axes["a"] + np.random.default_rng(11).normal(size=30)
+    own = axis_effects(axes, values, np.arange(30))
+    assert own == axis_effects(axes, values)
+    assert own.shared is None
+
+
+def test_what_seeds_share_is_told_as_a_share():
+    axes, block = grid(2, repetitions=8), np.tile(np.arange(8), 2)
+    values = axes["a"] + 2.0 * block  # sums of squares 4 and 4 * 84, by hand
+    assert axis_effects(axes, values, block).shared == pytest.approx(336.0 / 340.0)
+
+
+def test_blocks_against_the_f_test_of_a_randomised_block_design():
+    rng = np.random.default_rng(15)
+    level, block = np.indices((3, 20)).reshape(2, -1)
+    y = (0.3 * level + 3.0 * rng.normal(size=20)[block] + rng.normal(size=60)).reshape(3, 20)
+    rest = y - y.mean(axis=0) - y.mean(axis=1, keepdims=True) + y.mean()
+    between = 20 * np.sum((y.mean(axis=1) - y.mean()) ** 2)
+    exact = stats.f(2, 38).sf((between / 2) / (np.sum(rest**2) / 38))
+    assert 0.02 < exact < 0.5
+    (effect,) = axis_effects({"a": level}, y.ravel(), block).effects
+    assert effect.p_value == pytest.approx(exact, abs=4 * np.sqrt(exact / 999))
+
+
+def test_an_axis_that_changes_between_blocks_alone_is_tested_over_their_means():
+    # Eight copies of each of twelve draws are twelve values, not ninety-six.
+    seed, method, repetition = np.indices((2, 8, 6)).reshape(3, -1)
+    block = seed * 6 + repetition
+    found = []
+    for trial in range(200):
+        values = np.random.default_rng([15, trial]).normal(size=12)[block] + 0.01 * method
+        effects = axis_effects({"seed": seed, "method": method}, values, block, permutations=99).effects
+        found.append(effects[0].p_value <= 0.05)
+    assert np.mean(found) < 0.1
+
+
+def test_a_large_sweep_is_drawn_from_in_whole_blocks():
+    level, block = np.indices((2, 5000)).reshape(2, -1)
+    rng = np.random.default_rng(13)
+    values = 0.05 * level + rng.normal(size=5000)[block] + 0.05 * rng.normal(size=10_000)
+    analysis = axis_effects({"a": level}, values, block, permutations=99)
+    assert analysis.n == 5000
+    assert analysis.effects[0].p_value == 0.01
 
 
 def test_shares_by_hand():

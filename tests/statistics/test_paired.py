@@ -40,7 +40,7 @@ def test_the_effect_by_hand():
 
 
 def test_without_a_difference_one_in_twenty_is_shown():
-    verdicts = [compare_paired(*pairs(10, 0.0, seed=seed), seed=seed).verdict for seed in range(300)]
+    verdicts = [compare_paired(*pairs(10, 0.0, seed=seed)).verdict for seed in range(300)]
     shown = np.mean([verdict != "no difference shown" for verdict in verdicts])
     assert 0.0 < shown < 0.05 + 3 * np.sqrt(0.05 * 0.95 / 300)
 

@@ -34,7 +34,8 @@ def refuse(code):
 
 def test_the_record_follows_its_schema(run):
     record = json.loads((run.folder / "metrics.json").read_text())
-    assert list(record) == ["schema", "digest", "files", "status", "repetitions", "metrics", "timing", "provenance"]
+    of_result = ["status", "repetitions", "caveats", "caveat_rules", "metrics", "timing", "provenance"]
+    assert list(record) == ["schema", "digest", "files", *of_result]
     assert (record["schema"], record["status"], record["repetitions"]) == (2, "ok", 2)
     for metric in record["metrics"].values():
         assert set(metric) == {"unit", "values", "median", "min", "max"}

@@ -97,3 +97,12 @@ def test_medians_are_those_of_numpy(count):
 def test_a_median_beyond_every_number_is_infinite_as_in_the_store():
     runs = [stored("a", {"rms": [1.0, None]}), stored("b", {"rms": [1.0, None, 2.0]})]
     assert measure([("seed=0",), ("seed=1",)], runs).medians("rms").tolist() == [np.inf, 2.0]
+
+
+def test_the_same_repetition_of_one_seed_has_the_same_draws():
+    metrics = {"rms": [1.0, 2.0]}
+    runs = [stored(name, metrics) for name in "abc"]
+    runs[2].record["provenance"]["seed"] = 7
+    draws = measure([("robot=macro",), ("robot=mini",), ("robot=xarm7",)], runs).draws
+    assert draws[0].tolist() == draws[1].tolist()
+    assert len({*draws[0].tolist(), *draws[2].tolist()}) == 4

@@ -6,6 +6,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from runner import run
+from runner.statistics import median_interval
 from runner.store import write_sweep
 from runner.sweeps.measurements import Axis, Measurements
 from runner.sweeps.table import table, write_table
@@ -63,12 +64,26 @@ def test_quantiles_are_the_smallest_values_that_so_many_do_not_exceed(count):
 def test_both_files_hold_the_table_and_parquet_the_units(measurements, tmp_path):
     frame = write_table(measurements, tmp_path)
     pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / "table.parquet"), frame)
-    from_csv = pd.read_csv(tmp_path / "table.csv", keep_default_na=True).fillna({"failure": ""})
+    texts = {"failure": "", "caveats.rules": ""}
+    from_csv = pd.read_csv(tmp_path / "table.csv", dtype=dict.fromkeys(texts, str)).fillna(texts)
     pd.testing.assert_frame_equal(from_csv, frame, check_dtype=False, check_exact=True)
     schema = pq.read_schema(tmp_path / "table.parquet")
     assert schema.field("settling_time.q75").metadata == {b"unit": b"s"}
+    assert schema.field("rms.low").metadata == {b"unit": b"m"}
     assert schema.field("rms.n").metadata is None
     assert schema.field("noise.position").metadata is None
+
+
+def test_the_interval_of_the_median_is_that_of_reports():
+    values = np.random.default_rng(0).normal(size=(4, 8))
+    values[1, 5:], values[2, :] = np.nan, np.inf
+    values[3, 4:] = np.inf
+    frame = table(Measurements([], [], list("abcd"), ["ok"] * 4, [""] * 4, {"m": "m"}, {"m": values}, {}))
+    found = median_interval(values[0])
+    assert frame[["m.low", "m.median", "m.high"]].iloc[0].tolist() == [found.low, found.median, found.high]
+    # Too few repetitions; all of them beyond every number; half of them.
+    assert frame[["m.low", "m.high"]].isna().values.tolist()[1:] == [[True, True], [True, True], [False, True]]
+    assert frame["m.n"].tolist() == [8, 5, 0, 4]
 
 
 CASE = (
@@ -126,3 +141,14 @@ def test_the_csv_holds_no_formula_and_numbers_stay_numbers(measurements, tmp_pat
     assert frame["trajectory.goal"].tolist() == [-0.5, 0.25]
     assert frame["failure"].iloc[1] == "'-1+1\\x1b[2J\\nis no number"
     assert pd.read_parquet(tmp_path / "table.parquet")["robot.name"].tolist() == axes[0].values
+
+
+def test_cells_that_differ_beyond_the_axes_are_told_in_a_line(cli):
+    short = ("trajectory=quintic", "noise=thesis", "duration=0.05", "outputs=o")
+    swept = cli("-m", "robot=macro,xarm7", *short, "hydra.sweeper.workers=0")
+    line = "config values differ beyond the swept axes with robot: robot.settling_band, "
+    assert line in swept.err
+    (said,) = [text for text in cli("table", swept.folder).out.splitlines() if line in text]
+    assert said.endswith(f"`runner report {swept.folder}` lists their values")
+    plain = cli("-m", "robot=macro", "noise.position=1e-4,1e-3", *short[:1], *short[2:], "hydra.sweeper.workers=0")
+    assert "beyond the swept axes" not in plain.err + cli("table", plain.folder).out

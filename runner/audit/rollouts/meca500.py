@@ -100,40 +100,6 @@ def summed_angles() -> Rollout:
     )
 
 
-def contact() -> Rollout:
-    """Return the push that a free tool seems to get, with the weight as printed and the right one."""
-    times = _times()
-    share = (times / _DURATION)[:, None]
-    q = _START + share * np.array([0.5, 0.6, 0.3, -0.8, 0.4, 1.0])
-    R = meca500.model_poses(q)[:, :3, :3]
-    G, theta = np.full(len(times), 3.0), np.full(len(times), 0.3)
-    real = weight(R, theta, G)
-    printed = weight(R.transpose(0, 2, 1), theta, G)  # the third column of R in the place of its third row
-    felt = real - printed
-    drift = _admitted(felt)
-    return Rollout(
-        "A free tool, its weight by the printed equations",
-        f"A tool of 3 N turns with the wrist and touches nothing. The printed third column of the rotation leaves a "
-        f"force of up to {np.linalg.norm(felt, axis=1).max():.1f} N that is not there; an admittance of 1 kg, 20 N s/m "
-        f"and 100 N/m follows it by up to {drift.max():.0f} mm. The right row leaves nothing.",
-        "time (s)",
-        "tool movement (mm)",
-        times,
-        {"as printed": drift, "corrected": np.linalg.norm(real - weight(R, theta, G), axis=1)},
-    )
-
-
-def _admitted(force: FloatArray) -> FloatArray:
-    """Return how far a mass of 1 kg, damped by 20 N s/m and held by 100 N/m, follows a force, shape (T,), in mm."""
-    position, speed = np.zeros(3), np.zeros(3)
-    path = np.empty(len(force))
-    for i, push in enumerate(force):
-        path[i] = 1000 * np.linalg.norm(position)
-        speed = speed + _STEP * (push - 20 * speed - 100 * position)
-        position = position + _STEP * speed
-    return path
-
-
 def swapped_axes() -> Rollout:
     """Return the force that a free tool seems to feel when G_y and G_z of the calibration are swapped."""
     times = _times()

@@ -174,6 +174,12 @@ jacobian_6 = Truth(
 )
 
 
+def chained_as_printed(values: Symbols) -> Elements:
+    """Return the product with 5 over 5 for its last factor: frame 5 in itself, which is the identity."""
+    each = _steps_by_model(values)
+    return {"T": product([each[f"T_{i + 1}"] for i in range(JOINTS - 1)])}
+
+
 def chained(values: Symbols) -> Elements:
     """Return the product of the six transforms, each from the maker's joints."""
     each = _steps_by_model(values)

@@ -19,8 +19,8 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
 
     `F_x` to `M_z` are readings, with the offsets `F_x0` to `M_z0`; `x`, `y`, `z` the centre of gravity; `k1` to `k3`
     what the report calls so; `G` the weight, `theta` the sensor's turn, `Gcos` and `Gsin` their products; `r00` to
-    `r22` the elements of the flange's rotation 0R6, counted from 0, `r13` to `r33` those of its last column and row
-    counted from 1.
+    `r22` the elements of the inverse of the flange's rotation, 6R0, counted from 0, `r13` to `r33` those of its last
+    column counted from 1. The report does not define r; with 6R0 its equations hold, with 0R6 they do not.
 
     Args:
         count: How many configurations.
@@ -47,8 +47,8 @@ def _symbols(count: int, generator: np.random.Generator, contact: float) -> Symb
     values |= {f"F_{a}0": F0[:, i] for i, a in enumerate("xyz")} | {f"M_{a}0": M0[:, i] for i, a in enumerate("xyz")}
     values |= {a: r[:, i] for i, a in enumerate("xyz")} | {"G": G, "theta": theta}
     values |= {"Gcos": G * np.cos(theta), "Gsin": G * np.sin(theta)}
-    values |= {f"r{i}{j}": R[:, i, j] for i in range(3) for j in range(3)}
-    values |= {"r13": R[:, 0, 2], "r23": R[:, 1, 2], "r31": R[:, 2, 0], "r32": R[:, 2, 1], "r33": R[:, 2, 2]}
+    values |= {f"r{i}{j}": R[:, j, i] for i in range(3) for j in range(3)}
+    values |= {f"r{i + 1}3": R[:, 2, i] for i in range(3)}
     k = M0 + np.cross(F0, r)
     return values | {f"k{i + 1}": k[:, i] for i in range(3)}
 
@@ -70,7 +70,8 @@ def _vectors(values: Symbols, names: Sequence[str]) -> FloatArray:
 
 
 def _flange(values: Symbols) -> FloatArray:
-    return np.array([[values[f"r{i}{j}"] for j in range(3)] for i in range(3)]).transpose(2, 0, 1)
+    """Return 0R6, shape (T, 3, 3)."""
+    return np.array([[values[f"r{j}{i}"] for j in range(3)] for i in range(3)]).transpose(2, 0, 1)
 
 
 def _loads(values: Symbols, force: FloatArray, moment: FloatArray) -> Elements:

@@ -54,8 +54,9 @@ _FOUND = {
         "reason. The report takes an attitude to be the sum of the joint angles along their axes, "
         "$sum_i theta_i z_i$, and differentiates that: the elements carry bare angles, and in the base frame agree "
         "with this derivative to the last digit. The table has lost two offsets. In the gravity compensation two names "
-        "are swapped, three moments lose a force's offset, and the third column of the rotation stands where its third "
-        "row belongs. The appendix's text is damaged beyond reading in places."
+        "are swapped and three moments lose a force's offset; its equations with the elements of a rotation are right "
+        "if that is the inverse one, which the report does not define. The appendix's text is damaged beyond reading "
+        "in places."
     ),
 }
 
@@ -105,7 +106,8 @@ def _reading() -> str:
         "A form is judged as it stands wherever it can be read, even where the text is more likely to be at fault "
         "than the author: we have the text of the three works as a machine read it, not their pages. It is repaired "
         "only where it cannot be read, or where a line is plainly damaged, and then the repair is stated and keeps "
-        "every other sign. Verdicts are worked out, not written down: the printed form, the repaired and the "
+        "every other sign; a wrong label, too, is judged as it stands unless those around it are plainly "
+        "misread. Verdicts are worked out, not written down: the printed form, the repaired and the "
         "corrected one are evaluated at the same configurations and compared with the truth, once from Pinocchio's "
         "model or the like and once in a way that shares nothing with it but the arm's measures. The largest error is "
         "over all configurations and elements, the typical one the median over configurations of the largest "

@@ -49,7 +49,7 @@ def _draw_sphere(axes: Axes, workspace: Workspace, camera: Camera) -> None:
     start, end = camera.project(centre), camera.project(centre + radius * direction)
     arrow(axes, start, end, INK)
     write(axes, 0.3 * start + 0.7 * end + radius * np.array([0.18, 0.03]), f"{radius:.4g} m")
-    axes.set_title(f"{min(_SHOWN, len(workspace.tips))} random postures", fontsize=8.5)
+    axes.set_title(f"{min(_SHOWN, len(workspace.tips))} of {len(workspace.tips)} random postures", fontsize=8.5)
 
 
 def _draw_section(figure: Figure, axes: Axes, workspace: Workspace) -> None:

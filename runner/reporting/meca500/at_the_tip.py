@@ -5,12 +5,14 @@ from collections.abc import Mapping
 import numpy as np
 
 from runner.controllers.admittance_filter import AdmittanceFilter
-from runner.reporting.document import Formula, Notice, Section, Table, Text
+from runner.reporting.document import Formula, Section, Table, Text
 from runner.reporting.figures import origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import ROUNDING, Measured
 from runner.reporting.meca500.plan import TIP_CASES
 from runner.reporting.meca500.signals import turns, wrenches
 from runner.reporting.meca500.step_response import law_of
-from runner.reporting.quantities import number, quantity
+from runner.reporting.quantities import number
 from runner.store import Run
 
 
@@ -20,13 +22,13 @@ def at_the_tip_section(runs: Mapping[str, Run]) -> Section:
     rows = [
         [
             case,
-            number(float(np.abs(wrenches(run, "felt")[:, 3:]).max())),
-            number(filtered_turn(run)) if case != "at the flange" else "–",
-            number(tool_turn(run)),
+            number(float(np.abs(wrenches(run, "felt")[:, 3:]).max()), rounding=ROUNDING),
+            number(filtered_turn(run), rounding=ROUNDING) if case != "at the flange" else "–",
+            number(tool_turn(run), rounding=ROUNDING),
         ]
         for case, run in cases.items()
     ]
-    tip, flange, servo, noisy = cases.values()
+    tip = cases["at the tip"]
     force = tip.config["environment"]["force"]
     return Section(
         "Work at the tool tip",
@@ -52,16 +54,41 @@ def at_the_tip_section(runs: Mapping[str, Run]) -> Section:
                 (1, 2, 3),
                 origin(tip),
             ),
-            Notice(
-                "finding",
-                "A pure force through the tip turns nothing",
-                f"Through transform and filter it turns {number(filtered_turn(tip))} rad, and the tool itself "
-                f"{number(tool_turn(tip))} rad. Taken at the flange the same force turns the tool by "
-                f"{quantity(tool_turn(flange), 'rad')}. Joint servos do not hold orientation under a force: they add "
-                f"{quantity(tool_turn(servo), 'rad')} by their springs, with no rotation asked for; the noise of a "
-                f"Mini40 adds {quantity(tool_turn(noisy), 'rad')}.",
-            ),
+            tip_finding(**tip_values(runs)),
         ),
+    )
+
+
+def tip_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
+    """Return what the finding on a force through the tip is about."""
+    tip, flange, servo, noisy = (runs[f"tip/{case}"] for case in TIP_CASES)
+    return {
+        "law": Measured("rotation that the law makes of it", filtered_turn(tip), "rad"),
+        "tool": Measured("rotation of the tool", tool_turn(tip), "rad"),
+        "flange": Measured("rotation of the tool where the wrench is taken at the flange", tool_turn(flange), "rad"),
+        "servo_law": Measured("rotation that the law makes of it on joint servos", filtered_turn(servo), "rad"),
+        "servo": Measured("rotation of the tool on joint servos", tool_turn(servo), "rad"),
+        "noisy": Measured("rotation of the tool under a Mini40's noise", tool_turn(noisy), "rad"),
+    }
+
+
+def tip_finding(
+    law: Measured, tool: Measured, flange: Measured, servo_law: Measured, servo: Measured, noisy: Measured
+) -> Finding:
+    """Return what a pure force through the tip turns."""
+    return finding(
+        "A pure force through the tip turns nothing",
+        f"Through transform and filter it turns {law.shown}, and the tool itself {tool.shown}. Taken at the flange the "
+        f"same force turns the tool by {flange}. Joint servos do not hold orientation under a force: the law asks for "
+        f"{servo_law.shown} there, and the tool turns by {servo}, by their springs. The noise of a Mini40 turns it by "
+        f"{noisy}.",
+        law < ROUNDING,
+        tool < ROUNDING,
+        flange > 0.01,
+        servo > 10.0 * servo_law,
+        servo < 0.2 * flange,
+        noisy < 0.1 * flange,
+        noisy > 1e-7,
     )
 
 

@@ -44,8 +44,12 @@ def name_of(variation: str, value: float) -> str:
 
 
 def calibration_jobs() -> Calibrations:
-    """Return the overrides of every calibration by name."""
-    return {**_tool_centre_point(), **_tool_direction(), **_gravity()}
+    """Return the overrides of every calibration by name; each draws from a seed of its own.
+
+    With one seed for all they would be the same draws rescaled, and what is counted over them one test.
+    """
+    jobs = {**_tool_centre_point(), **_tool_direction(), **_gravity()}
+    return {name: (*overrides, f"seed={seed}") for seed, (name, overrides) in enumerate(jobs.items())}
 
 
 def _tool_centre_point() -> Calibrations:

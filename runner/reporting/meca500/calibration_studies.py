@@ -5,7 +5,9 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from runner.errors import ConfigError
-from runner.reporting.document import FloatArray, Notice, Panel, Series
+from runner.reporting.document import FloatArray, Panel, Series
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
 from runner.reporting.meca500.calibration_plan import name_of
 from runner.reporting.quantities import number, quantity
 from runner.robots import RobotModel
@@ -48,6 +50,8 @@ def error_curves(
     y_label: str,
     *names: str,
     log: bool = True,
+    x_factor: float = 1.0,
+    y_factor: float = 1.0,
 ) -> Panel:
     """Return errors over what was varied: found as points, predicted as lines.
 
@@ -58,15 +62,18 @@ def error_curves(
         y_label: Label of the errors.
         names: The components that make the error; none for all.
         log: Whether the axes are logarithmic.
+        x_factor: From the values as they are to those shown.
+        y_factor: From errors in m, rad, kg to those shown.
     """
     series = []
     for color, (variation, all_values) in enumerate(variations.items()):
         values = [value for value in all_values if value > 0.0]
         done = [calibrations[name_of(variation, value)] for value in values]
         label = f"{variation.rpartition('/')[2]}, " if len(variations) > 1 else ""
-        x = np.array(values, dtype=float)
+        x = x_factor * np.array(values, dtype=float)
         found, predicted = (
-            np.array([error(calibration, *names) for calibration in done]) for error in (found_error, predicted_error)
+            y_factor * np.array([error(calibration, *names) for calibration in done])
+            for error in (found_error, predicted_error)
         )
         series += [
             Series(f"{label}found", x, found, "points", color=color),
@@ -75,22 +82,36 @@ def error_curves(
     return Panel("", x_label, y_label, series, x_log=log, y_log=log)
 
 
-def consistency_notice(calibrations: Calibrations, kind: str) -> Notice:
+def consistency_values(calibrations: Calibrations, kind: str) -> dict[str, Measured]:
     """Return in how many calibrations of a kind the errors are as large as predicted."""
-    judged = {
-        name: calibration.consistency
+    judged = [
+        calibration.consistency
         for name, calibration in calibrations.items()
         if name.startswith(f"{kind}/") and calibration.consistency is not None
+    ]
+    inside = sum(bool(consistency["holds"]) for consistency in judged)
+    level = 100.0 * min(consistency["level"] for consistency in judged)
+    return {
+        "inside": Measured("calibrations with NEES inside its band", inside),
+        "count": Measured("calibrations", len(judged)),
+        "outside": Measured("calibrations with NEES outside its band", len(judged) - inside),
+        "level": Measured("band", level, "%"),
+        "chance": Measured("what chance puts outside", 100.0 - level, "%"),
     }
-    outside = [name for name, consistency in judged.items() if not consistency["holds"]]
-    text = (
-        "The mean normalised estimation error squared (NEES) $e^T P^(-1) e$ lies in its 99 % chi-square band in "
-        f"{len(judged) - len(outside)} of {len(judged)} of these calibrations"
-        + (f", and not in {', '.join(outside)}" if outside else "")
-        + ". Chance alone puts one of a hundred outside."
+
+
+def consistency_finding(
+    inside: Measured, count: Measured, outside: Measured, level: Measured, chance: Measured
+) -> Finding:
+    """Return whether errors are as large as predicted; of so few calibrations chance puts one outside at most."""
+    return finding(
+        "Errors are as large as predicted",
+        f"The mean normalised estimation error squared (NEES) $e^T P^(-1) e$ lies in its {level} chi-square band in "
+        f"{inside} of {count} of these calibrations. Each draws from a seed of its own: they share no draws, and "
+        f"chance alone puts {chance} of them outside.",
+        outside < 2.0,
+        inside >= 0.8 * count,
     )
-    title = "Errors are as large as predicted" if not outside else "Some errors are not as large as predicted"
-    return Notice("warning" if outside else "finding", title, text)
 
 
 def refusal(attempt: Callable[[], object]) -> str:

@@ -4,13 +4,15 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.reporting.document import Curves, Formula, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, Formula, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import ROUNDING, Measured
 from runner.reporting.meca500.plan import PLANTS, WALLS
 from runner.reporting.meca500.servo_compliance import servo_compliance
 from runner.reporting.meca500.signals import wrenches
 from runner.reporting.meca500.step_response import law_of
-from runner.reporting.quantities import number, quantity
+from runner.reporting.quantities import number
 from runner.reporting.run_values import clock
 from runner.store import Run
 
@@ -23,15 +25,13 @@ def contact_section(runs: Mapping[str, Run]) -> Section:
             plant,
             number(stiffness),
             number(felt_force(run), 5),
-            number(reading_error(run)),
+            number(100.0 * reading_error(run), rounding=ROUNDING),
             number(_in_series(run), 5),
-            f"{100.0 * (felt_force(run) / _in_series(run) - 1.0):+.2g} %",
-            number(float(-wrenches(run, "external")[:, 0].min())),
+            number(100.0 * (felt_force(run) / _in_series(run) - 1.0), 2, rounding=ROUNDING),
+            number(peak_force(run)),
         ]
         for (plant, stiffness), run in walls.items()
     ]
-    worst = max(reading_error(run) for run in walls.values())
-    series = max(abs(felt_force(run) / _in_series(run) - 1.0) for run in walls.values())
     first = walls["kinematic", 1e3]
     law, way = law_of(first), _way(first)
     return Section(
@@ -55,26 +55,59 @@ def contact_section(runs: Mapping[str, Run]) -> Section:
                     "plant",
                     "wall (N/m)",
                     "force felt (N)",
-                    "off the true force (share)",
+                    "off the true force (%)",
                     "springs in series (N)",
-                    "off that",
+                    "off that (%)",
                     "peak (N)",
                 ],
                 rows,
                 tuple(range(1, 7)),
                 origin(first),
             ),
-            Notice(
-                "finding",
-                "The force that is felt is the true one",
-                f"From {number(min(WALLS))} to {number(max(WALLS))} N/m the force felt is within {number(worst)} of "
-                "stiffness times depth, on both plants, and within "
-                f"{quantity(100.0 * series, '%', 2)} of the springs in series. The first touch is harder than what "
-                "stays: the law's mass arrives with the speed at which the goal is approached, and on servos softer, "
-                "as the joints give way.",
-            ),
+            contact_finding(**contact_values(runs)),
         ),
     )
+
+
+def contact_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
+    """Return what the finding on contact is about."""
+    walls = {(plant, k): runs[f"wall/{plant}/{k:g}"] for plant in PLANTS for k in WALLS}
+    series = max(abs(felt_force(run) / _in_series(run) - 1.0) for run in walls.values())
+    first = min(peak_force(run) / felt_force(run) for run in walls.values())
+    softer = max(peak_force(walls["bullet", k]) / peak_force(walls["kinematic", k]) for k in WALLS)
+    return {
+        "softest": Measured("stiffness of the softest wall", min(WALLS), "N/m"),
+        "stiffest": Measured("stiffness of the stiffest wall", max(WALLS), "N/m"),
+        "reading": Measured("largest distance of the force felt from stiffness times depth", _worst(walls), "%"),
+        "series": Measured("largest distance of the force felt from springs in series", 100.0 * series, "%"),
+        "first": Measured("least ratio of the peak to the force at rest", first),
+        "softer": Measured("largest ratio of the peaks with servos and without", softer),
+    }
+
+
+def contact_finding(
+    softest: Measured, stiffest: Measured, reading: Measured, series: Measured, first: Measured, softer: Measured
+) -> Finding:
+    """Return what walls of known stiffness say of the force that is felt."""
+    return finding(
+        "The force that is felt is the true one",
+        f"From {softest} to {stiffest} the force felt at rest is within {reading} of stiffness times depth, on both "
+        f"plants, and within {series} of the springs in series. The first touch is harder than what stays, {first} "
+        f"times or more; behind servos it is softer than where joints go as they are told, {softer} times or less.",
+        reading < 1e-3,
+        series < 0.2,
+        first > 1.2,
+        softer < 0.98,
+    )
+
+
+def _worst(walls: Mapping[tuple[str, float], Run]) -> float:
+    return 100.0 * max(reading_error(run) for run in walls.values())
+
+
+def peak_force(run: Run) -> float:
+    """Return the wall's largest push against the way in, in N."""
+    return float(-wrenches(run, "external")[:, 0].min())
 
 
 def felt_force(run: Run) -> float:

@@ -6,13 +6,14 @@ import numpy as np
 
 from runner.controllers.admittance_filter import AXES
 from runner.controllers.admittance_response import ComplexArray, frequency_response, sampled_frequency_response
-from runner.reporting.document import Curves, FloatArray, Formula, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, FloatArray, Formula, Panel, Section, Series, Table, Text
 from runner.reporting.figures import origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
 from runner.reporting.meca500.plan import FREQUENCIES, REPORTED, SINE_CASES
 from runner.reporting.meca500.servo_compliance import servo_compliance
 from runner.reporting.meca500.signals import displacement
 from runner.reporting.meca500.step_response import law_of
-from runner.reporting.quantities import number
 from runner.reporting.run_values import clock
 from runner.store import Run
 
@@ -27,10 +28,6 @@ def frequency_response_section(runs: Mapping[str, Run]) -> Section:
     first = runs[f"sine/kinematic, 1 ms/{FREQUENCIES[0]}"]
     exact = frequency_response(law_of(first), omega)
     measured = {case: _responses(runs, case) for case in SINE_CASES}
-    sampled = {
-        case: sampled_frequency_response(law_of(first), REPORTED if "16.7" in case else 0.001, omega)
-        for case in SINE_CASES
-    }
     rows = [
         [
             f"{frequency:g}",
@@ -39,11 +36,6 @@ def frequency_response_section(runs: Mapping[str, Run]) -> Section:
         ]
         for index, frequency in enumerate(FREQUENCIES)
     ]
-    sampled["servo, 1 ms"] = sampled["servo, 1 ms"] + _give(runs)
-    apart = {case: float(np.abs(measured[case] / sampled[case] - 1.0).max()) for case in SINE_CASES}
-    slow = np.array(FREQUENCIES) <= _SLOW
-    servo = float(np.abs(measured["servo, 1 ms"] / sampled["servo, 1 ms"] - 1.0)[slow].max())
-    off = {case: float(np.abs(measured[case] / exact - 1.0).max()) for case in SINE_CASES}
     return Section(
         "Frequency response",
         (
@@ -67,20 +59,69 @@ def frequency_response_section(runs: Mapping[str, Run]) -> Section:
                 tuple(range(7)),
                 origin(first),
             ),
-            Notice(
-                "finding",
-                "The sampled law answers as its theory says; what is left is the half period of a held load",
-                "On all six axes the kinematic plant is within "
-                f"{number(apart['kinematic, 1 ms'])} of the sampled law's own frequency response at 1 ms, and within "
-                f"{number(apart['kinematic, 16.7 ms'])} at {1e3 * REPORTED:g} ms (complex, relative). Against the "
-                f"continuous law that is up to {_share(off['kinematic, 1 ms'])} and "
-                f"{_share(off['kinematic, 16.7 ms'])}, at {FREQUENCIES[-1]:g} Hz, where a period of 16.7 ms holds "
-                f"only {1.0 / (REPORTED * FREQUENCIES[-1]):.1f} samples of the sine. Joint servos at 1 ms add the give "
-                "of their springs under all six loads, which the law knows nothing of: with it added to the law, they "
-                f"are within {_share(servo)} up to {_SLOW:g} Hz. Above, where the law itself hardly moves, the give is "
-                "most of the answer.",
-            ),
+            frequency_finding(**frequency_values(runs)),
         ),
+    )
+
+
+def frequency_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
+    """Return what the finding on the frequency response is about."""
+    omega = 2.0 * np.pi * np.array(FREQUENCIES)
+    law = law_of(runs[f"sine/kinematic, 1 ms/{FREQUENCIES[0]}"])
+    exact, give = frequency_response(law, omega), _give(runs)
+    periods = {case: REPORTED if "16.7" in case else 0.001 for case in SINE_CASES}
+    expected = {case: sampled_frequency_response(law, period, omega) for case, period in periods.items()}
+    expected["servo, 1 ms"] = expected["servo, 1 ms"] + give
+    measured = {case: _responses(runs, case) for case in SINE_CASES}
+    apart = {case: 100.0 * np.abs(measured[case] / expected[case] - 1.0) for case in SINE_CASES}
+    off = {case: 100.0 * float(np.abs(measured[case] / exact - 1.0).max()) for case in SINE_CASES}
+    slow = np.array(FREQUENCIES) <= _SLOW
+    half = 200.0 * float(np.sin(omega[-1] * periods["kinematic, 1 ms"] / 4.0))
+    return {
+        "fast": Measured("distance from the sampled law at 1 ms", float(apart["kinematic, 1 ms"].max()), "%"),
+        "slow": Measured("distance from the sampled law at 16.7 ms", float(apart["kinematic, 16.7 ms"].max()), "%"),
+        "period": Measured("period of the real controller", 1e3 * REPORTED, "ms"),
+        "off_fast": Measured("distance from the continuous law at 1 ms", off["kinematic, 1 ms"], "%"),
+        "off_slow": Measured("distance from the continuous law at 16.7 ms", off["kinematic, 16.7 ms"], "%"),
+        "half": Measured("what a delay of half a period makes at 1 ms", half, "%"),
+        "highest": Measured("highest frequency", FREQUENCIES[-1], "Hz"),
+        "samples": Measured("samples of the sine in a period of 16.7 ms", 1.0 / (REPORTED * FREQUENCIES[-1])),
+        "servo": Measured("distance of servos from law and give", float(apart["servo, 1 ms"][slow].max()), "%"),
+        "bound": Measured("frequency up to which servos give way as at rest", _SLOW, "Hz"),
+        "most": Measured("least ratio of the give to the law's own answer at the highest frequency",
+                         float((np.abs(give) / np.abs(exact[-1])).min())),
+    }  # fmt: skip
+
+
+def frequency_finding(
+    fast: Measured,
+    slow: Measured,
+    period: Measured,
+    off_fast: Measured,
+    off_slow: Measured,
+    half: Measured,
+    highest: Measured,
+    samples: Measured,
+    servo: Measured,
+    bound: Measured,
+    most: Measured,
+) -> Finding:
+    """Return how the sampled law answers sines, on ideal joints and on servos."""
+    return finding(
+        "The sampled law answers as its theory says",
+        f"On all six axes the kinematic plant is within {fast} of the sampled law's own frequency response at 1 ms, "
+        f"and within {slow} at {period} (complex, relative). Against the continuous law it is off by up to {off_fast} "
+        f"at 1 ms, where half a period of delay makes {half} at {highest}, and by up to {off_slow} at {period}, which "
+        f"holds {samples} samples of that sine. Joint servos at 1 ms add the give of their springs under all six "
+        f"loads, which the law knows nothing of: with it added to the law, they are within {servo} up to {bound}. At "
+        f"{highest} the give is {most} times the law's own answer, or more.",
+        fast < 0.01,
+        slow < 0.1,
+        off_fast.near(half, 0.1),
+        off_slow > 5.0 * off_fast,
+        samples < 4.0,
+        servo < 30.0,
+        most > 1.0,
     )
 
 
@@ -113,10 +154,6 @@ def _give(runs: Mapping[str, Run]) -> FloatArray:
 
 def _of(ratio: ComplexArray, axis: int) -> str:
     return f"{abs(ratio[axis]):.3f}, {np.degrees(np.angle(ratio[axis])):+.1f}°"
-
-
-def _share(value: float) -> str:
-    return f"{number(100.0 * value, 2)} %"
 
 
 def _bode(runs: Mapping[str, Run], measured: Mapping[str, ComplexArray]) -> Curves:

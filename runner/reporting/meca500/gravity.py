@@ -5,12 +5,15 @@ from collections.abc import Mapping
 import numpy as np
 
 from runner.calibration import identify_gravity
-from runner.reporting.document import Curves, Formula, Notice, Section, Table, Text
+from runner.reporting.document import Curves, Formula, Section, Table, Text
 from runner.reporting.figures import columns, joint_columns, origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import ROUNDING, Measured
 from runner.reporting.meca500.calibration_plan import NOISES, SAMPLES, name_of
 from runner.reporting.meca500.calibration_studies import (
     Calibrations,
-    consistency_notice,
+    consistency_finding,
+    consistency_values,
     error_curves,
     flange_of,
     found_error,
@@ -48,13 +51,7 @@ def gravity_section(calibrations: Calibrations, runs: Mapping[str, Run]) -> Sect
 
 
 def _identification(calibrations: Calibrations, base: Calibration, exact: Calibration) -> Section:
-    config, consistency = base.config["calibration"], base.consistency
-    relative = np.abs(exact.values("errors")[0]) / np.abs(np.array(list(exact.truth.values())))
-    judged = "" if consistency is None else (
-        f"NEES over its {base.record['repetitions']} repetitions is {number(consistency['mean'])}, "
-        f"{'inside' if consistency['holds'] else 'outside'} the 99 % band of {number(consistency['lower'])} to "
-        f"{number(consistency['upper'])}. "
-    )  # fmt: skip
+    config = base.config["calibration"]
     return Section(
         "Tool and sensor identified",
         (
@@ -76,18 +73,54 @@ def _identification(calibrations: Calibrations, base: Calibration, exact: Calibr
                 "enters the moment step twice, in its matrix and its right side."
             ),
             _parameters(base, exact),
-            Notice(
-                "finding",
-                "What is not known is said",
-                f"Without noise and quantisation every value is found within {number(float(relative.max()))} of "
-                f"itself. With the Mini40's, the mass is found to {number(1e3 * found_error(base, 'mass'))} g, the "
-                f"mounting angle to {number(1e3 * found_error(base, 'theta'))} mrad and the centre of mass to "
-                f"{number(1e6 * found_error(base, 'r_x', 'r_y', 'r_z'))} µm. {judged}The {100 * _INTERVAL:g} % "
-                f"intervals hold the truth in {100 * float(np.mean(_held(base))):.0f} % of all cases.",
-            ),
+            identification_finding(**identification_values(calibrations)),
             _noise_curves(calibrations),
-            consistency_notice(calibrations, "gravity"),
+            consistency_finding(**consistency_values(calibrations, "gravity")),
         ),
+    )
+
+
+def identification_values(calibrations: Calibrations) -> dict[str, Measured]:
+    """Return what the finding on the identified tool and sensor is about."""
+    base, exact = calibrations["gravity/base"], calibrations[name_of("gravity/noise", 0.0)]
+    relative = np.abs(exact.values("errors")[0]) / np.abs(np.array(list(exact.truth.values())))
+    found = {"mass": ("mass", "g", 1e3), "theta": ("mounting angle", "mrad", 1e3), "r": ("centre of mass", "µm", 1e6)}
+    values = {"exact": Measured("largest relative error without noise", float(relative.max()))}
+    for key, (title, unit, factor) in found.items():
+        names = ("r_x", "r_y", "r_z") if key == "r" else (key,)
+        values[key] = Measured(f"error of the {title}", factor * found_error(base, *names), unit)
+        values[f"{key}_predicted"] = Measured(
+            f"predicted error of the {title}", factor * predicted_error(base, *names), unit
+        )
+    return values | {
+        "interval": Measured("interval", 100.0 * _INTERVAL, "%"),
+        "held": Measured("intervals that hold the truth", 100.0 * float(np.mean(_held(base))), "%"),
+    }
+
+
+def identification_finding(
+    exact: Measured,
+    mass: Measured,
+    mass_predicted: Measured,
+    theta: Measured,
+    theta_predicted: Measured,
+    r: Measured,
+    r_predicted: Measured,
+    interval: Measured,
+    held: Measured,
+) -> Finding:
+    """Return how well tool and sensor are found, and whether the covariance tells it."""
+    return finding(
+        "The covariance tells how far the estimates are off",
+        f"Without noise and quantisation every value is found to rounding: {exact.shown}, relative. With the Mini40's, "
+        f"the mass is found to {mass} (predicted: {mass_predicted}), the mounting angle to {theta} (predicted: "
+        f"{theta_predicted}) and the centre of mass to {r} (predicted: {r_predicted}). The {interval} intervals hold "
+        f"the truth in {held} of all cases.",
+        exact < ROUNDING,
+        mass.near(mass_predicted, 0.35),
+        theta.near(theta_predicted, 0.35),
+        r.near(r_predicted, 0.35),
+        held.near(interval, 0.04),
     )
 
 
@@ -112,7 +145,7 @@ def _parameters(base: Calibration, exact: Calibration) -> Table:
                 number(factor * found_error(base, name)),
                 number(factor * predicted_error(base, name)),
                 f"{100 * float(np.mean(_held(base)[:, column])):.0f} %",
-                number(abs(factor * exact.values("errors", name)[0, 0]), 2),
+                number(abs(factor * exact.values("errors", name)[0, 0]), 2, rounding=ROUNDING),
             ]
         )
     return Table(
@@ -130,9 +163,15 @@ def _noise_curves(calibrations: Calibrations) -> Curves:
     return Curves(
         "Errors over the sensor's noise (times the Mini40's) and over the number of readings averaged.",
         (
-            error_curves(calibrations, {"gravity/noise": NOISES}, "noise, times the Mini40's", "mass (kg)", "mass"),
-            error_curves(calibrations, {"gravity/samples": SAMPLES}, "readings averaged", "mass (kg)", "mass"),
-            error_curves(calibrations, {"gravity/samples": SAMPLES}, "readings averaged", "angle (rad)", "theta"),
+            error_curves(
+                calibrations, {"gravity/noise": NOISES}, "noise, times the Mini40's", "mass (g)", "mass", y_factor=1e3
+            ),
+            error_curves(
+                calibrations, {"gravity/samples": SAMPLES}, "readings averaged", "mass (g)", "mass", y_factor=1e3
+            ),
+            error_curves(
+                calibrations, {"gravity/samples": SAMPLES}, "readings averaged", "angle (mrad)", "theta", y_factor=1e3
+            ),
         ),
         3,
         origin(calibrations["gravity/base"]),
@@ -161,7 +200,7 @@ def _weighed_in_bullet(runs: list[Run], base: Calibration) -> Section:
             Table(
                 "Identified from PyBullet's joint reaction, in the flange's frame, less the truth.",
                 ["mass (kg)", "$theta$ (rad)", "centre of mass (m)", "force biases (N)", "moment biases (N m)"],
-                [[number(float(part.max()), 2) for part in np.split(off, [1, 2, 5, 8])]],
+                [[number(float(part.max()), 2, rounding=ROUNDING) for part in np.split(off, [1, 2, 5, 8])]],
                 tuple(range(5)),
                 origin(runs[0]),
             ),

@@ -34,15 +34,15 @@ def misprints_section(exact: Calibration) -> Section:
         (
             Text(
                 f"Exact readings in the {len(orientations)} orientations, put through the equations as printed and as "
-                "they must be. $rho$ is the third row of the rotation of frame 6 in frame 0, the vertical in the "
-                "flange's frame."
+                "they must be; where a symbol is not defined, as it can be read. $rho$ is the third row of the "
+                "rotation of frame 6 in frame 0, the vertical in the flange's frame."
             ),
             Table(
-                "Section 4 as printed, put right, and what each gives for the tool of "
-                f"{quantity(truth[0], 'kg')} with $theta = {truth[1]:g}$ rad.",
-                ["printed", "right", "printed gives", "right gives"],
+                "Section 4 as printed or read in one way, put right or read in another, and what each gives for the "
+                f"tool of {quantity(truth[0], 'kg')} with $theta = {truth[1]:g}$ rad.",
+                ["printed, or one reading", "right", "printed gives", "right gives"],
                 [
-                    _third_column(readings, orientations, gravity),
+                    _undefined_rotation(readings, orientations, gravity),
                     _swapped_axes(readings, truth),
                     _wrong_bias(truth),
                     _theta(truth),
@@ -54,7 +54,7 @@ def misprints_section(exact: Calibration) -> Section:
     )
 
 
-def _third_column(readings: FloatArray, orientations: FloatArray, gravity: float) -> list[str]:
+def _undefined_rotation(readings: FloatArray, orientations: FloatArray, gravity: float) -> list[str]:
     cells = []
     for R in (orientations.transpose(0, 2, 1), orientations):
         step = force_step(readings[:, :3], R)
@@ -64,8 +64,8 @@ def _third_column(readings: FloatArray, orientations: FloatArray, gravity: float
             "forces left over"
         )
     return [
-        "$r_02, r_12, r_22$ of the rotation: its third column",
-        "its third row $rho$, as the printed product of matrices lacks a transposition",
+        '$r_02, r_12, r_22$, where $r$ is not defined, read as elements of $""_6^0 R$: its third column',
+        'read as elements of the inverse rotation $""_0^6 R$, whose third column is $rho$',
         *cells,
     ]
 

@@ -4,8 +4,10 @@ import numpy as np
 import pinocchio as pin
 
 from runner.calibration.orientations import check_orientations
-from runner.reporting.document import Curves, FloatArray, Formula, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, FloatArray, Formula, Panel, Section, Series, Table, Text
 from runner.reporting.figures import origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
 from runner.reporting.meca500.calibration_plan import CHOICES, ORIENTATIONS, WEIGHING_SPREADS, name_of
 from runner.reporting.meca500.calibration_studies import (
     CONSISTENCY_HEADER,
@@ -15,7 +17,7 @@ from runner.reporting.meca500.calibration_studies import (
     predicted_error,
     refusal,
 )
-from runner.reporting.quantities import number, quantity
+from runner.reporting.quantities import number
 from runner.store import Calibration
 
 _TITLES = {"best": "by conditioning", "first": "evenly over the joints"}
@@ -55,7 +57,7 @@ def orientations_section(calibrations: Calibrations) -> Section:
                 origin(base),
             ),
             _curves(calibrations),
-            _finding(calibrations),
+            orientations_finding(**orientations_values(calibrations)),
             _refused(),
         ),
     )
@@ -104,22 +106,62 @@ def _curves(calibrations: Calibrations) -> Curves:
     )
 
 
-def _finding(calibrations: Calibrations) -> Notice:
-    few = ORIENTATIONS[0]
+def orientations_values(calibrations: Calibrations) -> dict[str, Measured]:
+    """Return what the finding on the choice of orientations is about."""
+    few, many = ORIENTATIONS[0], ORIENTATIONS[-1]
     best, first = (calibrations[name_of(f"gravity/{choice}", few)] for choice in CHOICES)
+    best_many, first_many = (calibrations[name_of(f"gravity/{choice}", many)] for choice in CHOICES)
     narrow, base = calibrations[name_of("gravity/spread", WEIGHING_SPREADS[0])], calibrations["gravity/base"]
-    return Notice(
-        "finding",
+    return {
+        "few": Measured("smallest number of orientations", few),
+        "best": _mass("those chosen by conditioning", best),
+        "first": _mass("the first of an even spread", first),
+        "many": Measured("largest number of orientations", many),
+        "best_many": _mass("many chosen by conditioning", best_many),
+        "first_many": _mass("many of an even spread", first_many),
+        "spread": Measured("narrowest spread of gravity", float(np.degrees(WEIGHING_SPREADS[0])), "°"),
+        "count": Measured("orientations of the base case", base.config["calibration"]["orientations"]),
+        "narrow": _mass("the narrowest spread", narrow),
+        "wide": _mass("the base case", base),
+        "narrow_condition": Measured("condition number of the narrowest spread", _condition(narrow)),
+        "wide_condition": Measured("condition number of the base case", _condition(base)),
+    }
+
+
+def orientations_finding(
+    few: Measured,
+    best: Measured,
+    first: Measured,
+    many: Measured,
+    best_many: Measured,
+    first_many: Measured,
+    spread: Measured,
+    count: Measured,
+    narrow: Measured,
+    wide: Measured,
+    narrow_condition: Measured,
+    wide_condition: Measured,
+) -> Finding:
+    """Return which orientations weigh a tool well."""
+    return finding(
         "Few orientations must be chosen, many need not; but they must be spread",
-        f"Of {few} orientations those chosen by conditioning know the mass to "
-        f"{quantity(1e3 * predicted_error(best, 'mass'), 'g')}, the first ones of an even spread to "
-        f"{quantity(1e3 * predicted_error(first, 'mass'), 'g')}; with {ORIENTATIONS[-1]} the choice hardly counts. "
-        f"With gravity within {np.degrees(WEIGHING_SPREADS[0]):.0f}° of where it is at home, "
-        f"{base.config['calibration']['orientations']} orientations leave "
-        f"{quantity(1e3 * predicted_error(narrow, 'mass'), 'g')} in place of "
-        f"{quantity(1e3 * predicted_error(base, 'mass'), 'g')}: the weight and the bias along z can hardly be told "
-        "apart.",
+        f"Of {few} orientations those chosen by conditioning know the mass to {best}, the first ones of an even spread "
+        f"to {first}; with {many} it is {best_many} and {first_many}. With gravity within {spread} of where it is at "
+        f"home, {count} orientations leave {narrow} in place of {wide}: the condition number of the force step is "
+        f"{narrow_condition} in place of {wide_condition}, as weight and bias along z can hardly be told apart.",
+        best < 0.85 * first,
+        best_many.near(first_many, 0.2),
+        narrow > 5.0 * wide,
+        narrow_condition > 5.0 * wide_condition,
     )
+
+
+def _mass(of: str, done: Calibration) -> Measured:
+    return Measured(f"predicted error of the mass by {of}", 1e3 * predicted_error(done, "mass"), "g")
+
+
+def _condition(done: Calibration) -> float:
+    return float(done.summary("measures", "condition_force")["median"])
 
 
 def _refused() -> Table:

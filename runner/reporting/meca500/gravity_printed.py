@@ -28,8 +28,8 @@ class ForceStep:
 def force_step(forces: FloatArray, orientations: FloatArray) -> ForceStep:
     """Solve the force step with the third rows of the orientations.
 
-    Read as row and column, as the general matrix beside them is, r_02, r_12, r_22 are the third column: that is this
-    function with each orientation transposed.
+    The report does not define r. With r the inverse rotation its r_02, r_12, r_22 are these rows; with r = 0R6 they are
+    the third columns: that is this function with each orientation transposed.
 
     Args:
         forces: Read in the sensor's frame, shape (N, 3), in N.

@@ -3,8 +3,10 @@
 import numpy as np
 
 from runner.calibration.procedures.gravity import even_postures
-from runner.reporting.document import Curves, FloatArray, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, FloatArray, Panel, Section, Series, Table, Text
 from runner.reporting.figures import origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
 from runner.reporting.meca500.calibration_studies import flange_of
 from runner.reporting.quantities import number
 from runner.store import Calibration
@@ -32,24 +34,11 @@ def exact_readings(parameters: FloatArray, orientations: FloatArray, gravity: fl
 
 def residual_section(base: Calibration) -> Section:
     """Return what is left over orientations all over the joint limits, in every repetition of a calibration."""
-    model = flange_of(base)
-    orientations = np.array([model.tip_pose(q)[:3, :3] for q in even_postures(model, _ORIENTATIONS)])
-    truth, gravity = np.array(list(base.truth.values())), float(base.config["gravity"])
-    true = exact_readings(truth, orientations, gravity)
-    left = true - exact_readings(base.values("estimates"), orientations, gravity)
-    cases = {
-        "nothing taken off": true[None],
-        "biases alone": (true - truth[5:])[None],
-        "identified tool and biases": left,
-    }
-    norms = {case: np.linalg.norm(values.reshape(*values.shape[:-1], 2, 3), axis=-1) for case, values in cases.items()}
+    orientations, norms = _left_over(base)
     rows = [
         [case, *(number(value) for part in (0, 1) for value in (_rms(norm[..., part]), float(norm[..., part].max())))]
         for case, norm in norms.items()
     ]
-    noise = np.array(base.config["wrist_sensor"]["noise"])
-    single = [float(np.linalg.norm(part)) for part in np.split(noise, 2)]
-    rms = [_rms(norms["identified tool and biases"][..., part]) for part in (0, 1)]
     return Section(
         "What compensation leaves",
         (
@@ -66,14 +55,49 @@ def residual_section(base: Calibration) -> Section:
                 origin(base),
             ),
             _curves(base, orientations, norms["identified tool and biases"]),
-            Notice(
-                "finding",
-                "Less than the noise of a single reading",
-                f"The compensation leaves {1e3 * rms[0]:.2g} mN and {1e3 * rms[1]:.2g} mN m (root mean square); a "
-                f"single reading's noise is {1e3 * single[0]:.2g} mN and {1e3 * single[1]:.2g} mN m.",
-            ),
+            residual_finding(**residual_values(base)),
         ),
     )
+
+
+def residual_values(base: Calibration) -> dict[str, Measured]:
+    """Return what the finding on the compensation is about."""
+    left = _left_over(base)[1]["identified tool and biases"]
+    single = [float(np.linalg.norm(part)) for part in np.split(np.array(base.config["wrist_sensor"]["noise"]), 2)]
+    return {
+        "force": Measured("force left over", 1e3 * _rms(left[..., 0]), "mN"),
+        "moment": Measured("moment left over", 1e3 * _rms(left[..., 1]), "mN m"),
+        "force_noise": Measured("noise of a single reading's force", 1e3 * single[0], "mN"),
+        "moment_noise": Measured("noise of a single reading's moment", 1e3 * single[1], "mN m"),
+    }
+
+
+def residual_finding(force: Measured, moment: Measured, force_noise: Measured, moment_noise: Measured) -> Finding:
+    """Return what compensation leaves beside the noise of a reading."""
+    return finding(
+        "Less than the noise of a single reading",
+        f"The compensation leaves {force} and {moment} (root mean square); a single reading's noise is {force_noise} "
+        f"and {moment_noise}.",
+        force < 0.5 * force_noise,
+        moment < 0.5 * moment_noise,
+    )
+
+
+def _left_over(base: Calibration) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Return orientations, shape (N, 3, 3), and by what is taken off the force and moment left, shape (..., N, 2)."""
+    model = flange_of(base)
+    orientations = np.array([model.tip_pose(q)[:3, :3] for q in even_postures(model, _ORIENTATIONS)])
+    truth, gravity = np.array(list(base.truth.values())), float(base.config["gravity"])
+    true = exact_readings(truth, orientations, gravity)
+    left = true - exact_readings(base.values("estimates"), orientations, gravity)
+    cases = {
+        "nothing taken off": true[None],
+        "biases alone": (true - truth[5:])[None],
+        "identified tool and biases": left,
+    }
+    return orientations, {
+        case: np.linalg.norm(values.reshape(*values.shape[:-1], 2, 3), axis=-1) for case, values in cases.items()
+    }
 
 
 def _rms(values: FloatArray) -> float:

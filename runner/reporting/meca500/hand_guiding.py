@@ -4,23 +4,23 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.reporting.document import Curves, Notice, Panel, Section, Series, Text
+from runner.reporting.document import Curves, Panel, Section, Series, Text
 from runner.reporting.figures import AXES, columns, origin, playback
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import ROUNDING, Measured
 from runner.reporting.meca500.signals import turns, wrenches
-from runner.reporting.quantities import quantity
 from runner.reporting.run_values import clock
 from runner.store import Run
 
+_PEAK_OVER_MEAN = 1.875  # speed of a quintic from rest to rest
 _CASES = {"hand/ideal": "exact sensor and joints", "hand/lab": "Mini40 and joint servos"}
 
 
 def hand_guiding_section(runs: Mapping[str, Run]) -> Section:
     """Return the tool led by a hand, played back, and the force that it takes."""
-    ideal, lab = (runs[name] for name in _CASES)
+    ideal = runs["hand/ideal"]
     environment, controller = ideal.config["environment"], ideal.config["controller"]
     travel = float(np.linalg.norm(environment["travel"]))
-    mean_speed = travel / float(environment["duration"])
-    damped = 1.875 * mean_speed * float(controller["damping"][0])
     return Section(
         "Hand-guiding",
         (
@@ -32,16 +32,51 @@ def hand_guiding_section(runs: Mapping[str, Run]) -> Section:
             ),
             playback(ideal, "The tool follows the hand."),
             _curves(runs),
-            Notice(
-                "finding",
-                "It comes along, takes little force, and stays",
-                f"The hand pulls with at most {quantity(_peak(ideal), 'N')}; damping at the hand's peak speed alone is "
-                f"{quantity(damped, 'N')}. At the end the tip is {quantity(left_at_end(ideal), 'm')} from where the "
-                f"hand wants it, and has turned by {quantity(_turned(ideal), 'rad')} at most. With the noise of a "
-                f"Mini40 and joint servos: {quantity(_peak(lab), 'N')}, {quantity(left_at_end(lab), 'm')} and "
-                f"{quantity(_turned(lab), 'rad')}.",
-            ),
+            guiding_finding(**guiding_values(runs)),
         ),
+    )
+
+
+def guiding_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
+    """Return what the finding on hand-guiding is about."""
+    ideal, lab = (runs[name] for name in _CASES)
+    environment, damping = ideal.config["environment"], float(ideal.config["controller"]["damping"][0])
+    travel = float(np.linalg.norm(environment["travel"]))
+    damped = _PEAK_OVER_MEAN * travel / float(environment["duration"]) * damping
+    return {
+        "travel": Measured("way of the hand", 1e3 * travel, "mm"),
+        "damped": Measured("force of the damping at the hand's peak speed", damped, "N"),
+        "pull": Measured("largest pull of the hand", _peak(ideal), "N"),
+        "left": Measured("distance at the end from where the hand wants it", 1e3 * left_at_end(ideal), "mm"),
+        "turned": Measured("largest turn of the tool", _turned(ideal), "rad"),
+        "lab_pull": Measured("largest pull with a Mini40 and joint servos", _peak(lab), "N"),
+        "lab_left": Measured("distance at the end with a Mini40 and joint servos", 1e3 * left_at_end(lab), "mm"),
+        "lab_turned": Measured("largest turn with a Mini40 and joint servos", 1e3 * _turned(lab), "mrad"),
+    }
+
+
+def guiding_finding(
+    travel: Measured,
+    damped: Measured,
+    pull: Measured,
+    left: Measured,
+    turned: Measured,
+    lab_pull: Measured,
+    lab_left: Measured,
+    lab_turned: Measured,
+) -> Finding:
+    """Return how the tool follows a hand."""
+    return finding(
+        "The tool comes along, takes little more force than its damping, and stays",
+        f"The hand pulls with at most {pull}; damping at the hand's peak speed alone is {damped}. After a way of "
+        f"{travel} the tip is {left} from where the hand wants it, and has turned by {turned.shown} at most. With the "
+        f"noise of a Mini40 and joint servos it is {lab_pull}, {lab_left} and {lab_turned}.",
+        pull.near(damped, 0.1),
+        left < 1e-3 * travel,
+        turned < ROUNDING,
+        lab_pull.near(damped, 0.1),
+        lab_left < 0.01 * travel,
+        lab_turned < 2.0,
     )
 
 

@@ -5,10 +5,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.reporting.document import FloatArray, Notice, Section, Table, Text
+from runner.reporting.document import FloatArray, Section, Table, Text
 from runner.reporting.figures import joint_columns, model_of, origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import ROUNDING, Measured
 from runner.reporting.meca500.plan import INERTIALS
-from runner.reporting.quantities import number, quantity
+from runner.reporting.quantities import number
 from runner.reporting.run_values import apart, median
 from runner.store import Run
 
@@ -19,20 +21,16 @@ _LIGHT = 0.1  # kg and N m, below which a share means little
 def inertials_section(runs: Mapping[str, Run]) -> Section:
     """Return the two sets of inertials side by side: masses, gravity torques over postures, torques of a motion."""
     first, second = (runs[f"inertials/{name}"] for name in INERTIALS)
-    masses = [_masses(run) for run in (first, second)]
-    moving = [link for link in masses[0] if link.startswith("link")]
-    pairs = {link: (masses[0][link], masses[1][link]) for link in moving}
-    worst = max((link for link in moving if max(pairs[link]) > _LIGHT), key=lambda link: _larger(pairs[link]))
+    pairs = _moving(runs)
+    worst = _most_different(runs)
     gravity = [_gravity(run) for run in (first, second)]
-    loaded = [joint for joint in range(6) if np.abs(gravity[0][:, joint]).max() > _LIGHT]
-    share = np.abs(gravity[1] - gravity[0]).max(axis=0)[loaded] / np.abs(gravity[0]).max(axis=0)[loaded]
-    pairs["all that move"] = (sum(masses[0][link] for link in moving), sum(masses[1][link] for link in moving))
+    pairs["all that move"] = (sum(pair[0] for pair in pairs.values()), sum(pair[1] for pair in pairs.values()))
     rows = [[link, number(a), number(b), f"{100.0 * _larger((a, b)):.0f} %"] for link, (a, b) in pairs.items()]
     torque_rows = [
         [
             f"joint {joint + 1}",
-            number(float(np.abs(gravity[0][:, joint]).max())),
-            number(float(np.abs(gravity[1] - gravity[0])[:, joint].max())),
+            number(float(np.abs(gravity[0][:, joint]).max()), rounding=ROUNDING),
+            number(float(np.abs(gravity[1] - gravity[0])[:, joint].max()), rounding=ROUNDING),
             number(median(first, f"peak_torque_q{joint + 1}")),
             number(median(second, f"peak_torque_q{joint + 1}")),
             number(float(model_of(first).effort_limits[joint])),
@@ -49,8 +47,8 @@ def inertials_section(runs: Mapping[str, Run]) -> Section:
                 "of the arm simulated, so that here only what the arm needs changes."
             ),
             Table(
-                "Masses of the moving links, in kg.",
-                ["link", *INERTIALS, "larger by"],
+                "Masses of the moving links, in kg, and by how much the larger exceeds the smaller.",
+                ["link", *INERTIALS, "larger over smaller, less one"],
                 rows,
                 (1, 2, 3),
                 origin(first),
@@ -70,18 +68,59 @@ def inertials_section(runs: Mapping[str, Run]) -> Section:
                 tuple(range(1, 6)),
                 origin(second),
             ),
-            Notice(
-                "finding",
-                "Dynamics of this arm are known to a third, its admittance does not depend on it",
-                f"Of the links above {1e3 * _LIGHT:g} g the sets differ most in {worst}, by "
-                f"{100.0 * _larger(pairs[worst]):.0f} %; gravity torques differ by up to "
-                f"{quantity(100.0 * float(share.max()), '%', 2)} of a joint's largest. The tip's motion under "
-                "admittance control differs by "
-                f"{quantity(float(apart(first, second, 'tip').max()), 'm', 2)} at most: a position-controlled arm does "
-                "not ask for masses. What is said of torques in this report holds to that uncertainty.",
-            ),
+            inertials_finding(worst, **inertials_values(runs)),
         ),
     )
+
+
+def inertials_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
+    """Return what the finding on the two sets of inertials is about."""
+    first, second = (runs[f"inertials/{name}"] for name in INERTIALS)
+    pair = _moving(runs)[_most_different(runs)]
+    gravity = [_gravity(run) for run in (first, second)]
+    loaded = np.abs(gravity[0]).max(axis=0) > _LIGHT
+    share = (np.abs(gravity[1] - gravity[0]).max(axis=0) / np.abs(gravity[0]).max(axis=0, initial=1e-12))[loaded]
+    return {
+        "light": Measured("mass below which links are left out", 1e3 * _LIGHT, "g"),
+        "mass": Measured("largest difference of a link's masses", 100.0 * _larger(pair), "%"),
+        "gravity": Measured(
+            "largest difference of gravity torques over the joint's largest", 100.0 * float(share.max()), "%"
+        ),
+        "tip": Measured("largest distance of the tips", 1e3 * float(apart(first, second, "tip").max()), "mm"),
+    }
+
+
+def inertials_finding(link: str, light: Measured, mass: Measured, gravity: Measured, tip: Measured) -> Finding:
+    """Return what the two sets of inertials leave unknown.
+
+    Args:
+        link: Which link's masses differ most.
+        light: The mass below which links are left out.
+        mass: By how much the larger mass of that link exceeds the smaller.
+        gravity: By how much gravity torques differ.
+        tip: How far the tips are apart under admittance control.
+    """
+    return finding(
+        "Torques of this arm are known as well as its masses, its admittance hardly depends on them",
+        f"Of the links above {light} the sets differ most in {link}, where the larger mass exceeds the smaller by "
+        f"{mass}; gravity torques differ by up to {gravity} of a joint's largest. The tip's motion under admittance "
+        f"control differs by {tip} at most. What is said of torques in this report holds to that uncertainty.",
+        mass > 20.0,
+        mass < 50.0,
+        gravity < 30.0,
+        tip < 0.1,
+    )
+
+
+def _moving(runs: Mapping[str, Run]) -> dict[str, tuple[float, float]]:
+    """Return both masses of each link that moves, by its name, in kg."""
+    first, second = (_masses(runs[f"inertials/{name}"]) for name in INERTIALS)
+    return {link: (first[link], second[link]) for link in first if link.startswith("link")}
+
+
+def _most_different(runs: Mapping[str, Run]) -> str:
+    pairs = _moving(runs)
+    return max((link for link in pairs if max(pairs[link]) > _LIGHT), key=lambda link: _larger(pairs[link]))
 
 
 def _masses(run: Run) -> dict[str, float]:

@@ -4,8 +4,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.reporting.document import Curves, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, Panel, Section, Series, Table, Text
 from runner.reporting.figures import joint_columns, model_of, origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import ROUNDING, Measured
 from runner.reporting.meca500.plan import LIMITS
 from runner.reporting.quantities import number
 from runner.reporting.run_values import clock
@@ -23,20 +25,16 @@ def limits_section(runs: Mapping[str, Run]) -> Section:
     found = {name: runs[f"limit/{name}"] for name in LIMITS}
     rows = []
     for name, run in found.items():
-        model = model_of(run)
-        speeds = np.abs(joint_columns(run.trace, "dq")) / model.velocity_limits
         rows.append(
             [
                 _TITLES[name],
-                number(smallest_margin(run)),
-                f"{100.0 * float(speeds.max()):.4g} %",
-                f"{100.0 * hardest_change(run):.3g} %",
-                f"{100.0 * nearest_singular(run):.3g} %",
+                number(smallest_margin(run), rounding=ROUNDING),
+                f"{number(100.0 * fastest(run), 4)} %",
+                f"{number(100.0 * hardest_change(run))} %",
+                f"{number(100.0 * nearest_singular(run))} %",
                 "; ".join(str(text) for text in run.provenance["warnings"]),
             ]
         )
-    margin = min(smallest_margin(run) for run in found.values())
-    hardest = max(hardest_change(run) for run in found.values())
     return Section(
         "At the limits",
         (
@@ -56,16 +54,42 @@ def limits_section(runs: Mapping[str, Run]) -> Section:
                 origin(found["joint_limit"]),
             ),
             _curves(found),
-            Notice(
-                "finding",
-                "Never outside, and it says so",
-                f"No joint passes its position limit: the smallest margin is {number(margin)} rad. None is faster than "
-                "its speed limit, and none changes its speed by more than "
-                f"{100.0 * hardest:.3g} % of that from one tick to the next. Each run names what has held the tool "
-                "back, and when it first did.",
-            ),
+            limits_finding(**limits_values(runs)),
         ),
     )
+
+
+def limits_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
+    """Return what the finding on limits is about."""
+    found = [runs[f"limit/{name}"] for name in LIMITS]
+    telling = sum(any("has held the tool back" in str(text) for text in run.provenance["warnings"]) for run in found)
+    return {
+        "margin": Measured("smallest margin to a position limit", min(map(smallest_margin, found)), "rad"),
+        "speed": Measured("largest speed over its limit", 100.0 * max(map(fastest, found)), "%"),
+        "change": Measured("largest change of speed in a tick", 100.0 * max(map(hardest_change, found)), "%"),
+        "told": Measured("runs that name what has held the tool back", telling),
+        "count": Measured("runs into limits", len(found)),
+    }
+
+
+def limits_finding(margin: Measured, speed: Measured, change: Measured, told: Measured, count: Measured) -> Finding:
+    """Return what arms do at the limits of joints and reach."""
+    return finding(
+        "No joint passes a limit, and the run says what has held the tool",
+        f"No joint passes its position limit: the smallest margin is {margin.shown}. None is faster than its speed "
+        f"limit (the fastest has {speed} of it), and none changes its speed by more than {change} of that from one "
+        f"tick to the next. {told} of {count} runs name what has held the tool back, and when it first did.",
+        margin > -ROUNDING,
+        margin < 1.0,
+        speed < 100.0 * (1.0 + 1e-6),
+        change < 30.0,
+        told >= count,
+    )
+
+
+def fastest(run: Run) -> float:
+    """Return the largest speed of a joint, as a share of its limit."""
+    return float((np.abs(joint_columns(run.trace, "dq")) / model_of(run).velocity_limits).max())
 
 
 def smallest_margin(run: Run) -> float:

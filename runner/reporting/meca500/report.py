@@ -36,10 +36,10 @@ def meca500_document(runs: Mapping[str, Run], calibrations: Mapping[str, Calibra
         title="Meca500: Kinematics and Force Control",
         subtitle="A report on a small arm for dental work, in simulation against known truth",
         abstract=(
-            "A Mecademic Meca500 with a force/torque sensor at its wrist learns where its tool is and what it weighs, "
-            "and gives way to the world as a mass on a damper and a spring would. The report behind it has formulas "
-            "and no results; a simulation has what its laboratory lacked, the truth, and every method is judged "
-            "against it. Its misprints are put right and shown in numbers."
+            "How a Mecademic Meca500 with a force/torque sensor at its wrist is to learn where its tool is and what it "
+            "weighs, and to give way to the world as a mass on a damper and a spring would. The report behind it has "
+            "formulas and no results; a simulation has what its laboratory lacked, the truth, and every method is "
+            "judged against it. Where its equations are misprinted, what follows is shown in numbers."
         ),
         chapters=parts(
             runs,
@@ -54,8 +54,8 @@ def meca500_document(runs: Mapping[str, Run], calibrations: Mapping[str, Calibra
             plants_section,
         ),
         behind=(
-            f"{len(runs)} runs and {len(calibrations)} calibrations lie behind this report, stored under "
-            "outputs/runs and outputs/calibrations."
+            f"{len({run.hash for run in runs.values()})} runs and {len(calibrations)} calibrations lie behind this "
+            "report, stored under outputs/runs and outputs/calibrations."
         ),
         runs=runs,
         checklist=CHECKLIST.section,

@@ -20,9 +20,29 @@ def servo_compliance(run: Run) -> FloatArray:
     """
     servo = run.config["plant"]["servo"]
     model, q = model_of(run), joint_columns(run.trace, "q")[0]
-    K, h = float(servo["stiffness"]), float(servo["period"])
-    inertia = np.diagonal(model.mass_matrix(np.array(run.config["robot"]["home"])))
-    added = np.diag(2.0 * h * float(servo["damping_ratio"]) * np.sqrt(K * inertia) + h**2 * K)
+    K = float(servo["stiffness"])
     M, J = model.mass_matrix(q), model.tip_jacobian(q)
+    added = np.diag(_added(run, float(servo["period"])))
     compliance: FloatArray = J @ np.linalg.solve(M @ np.linalg.inv(M + added) * K, J.T)
     return compliance
+
+
+def kept_stiffness(run: Run, period: float) -> FloatArray:
+    """Return the share of its stiffness that each servo keeps against a load on its joint alone, shape (nq,).
+
+    Args:
+        run: A run on joint servos; its first posture is taken.
+        period: Of the servos, in s.
+    """
+    inertia = np.diagonal(model_of(run).mass_matrix(joint_columns(run.trace, "q")[0]))
+    kept: FloatArray = inertia / (inertia + _added(run, period))
+    return kept
+
+
+def _added(run: Run, period: float) -> FloatArray:
+    """Return h D + h^2 K of each servo, in kg m^2."""
+    servo = run.config["plant"]["servo"]
+    K = float(servo["stiffness"])
+    inertia = np.diagonal(model_of(run).mass_matrix(np.array(run.config["robot"]["home"])))
+    added: FloatArray = 2.0 * period * float(servo["damping_ratio"]) * np.sqrt(K * inertia) + period**2 * K
+    return added

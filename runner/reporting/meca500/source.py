@@ -67,6 +67,12 @@ def source_section(runs: Mapping[str, Run]) -> Section:
                         "not said: gravity alone is compensated",
                         "compensated too, by velocity and differenced acceleration",
                     ],
+                    [
+                        "$r_(i j)$ of section 4",
+                        "not defined",
+                        'elements of the inverse rotation $""_0^6 R$, with which the section\'s equations are right; '
+                        'with $""_6^0 R$ they are not',
+                    ],
                     ["walls, hands, limits of joints", "not said", "springs and dampers of known numbers"],
                 ],
                 origin=origin(run),
@@ -104,12 +110,6 @@ def source_section(runs: Mapping[str, Run]) -> Section:
                         "$M_(g x) = M_x - F_(x 0)$, and likewise y, z",
                         "$M_(x 0)$, $M_(y 0)$, $M_(z 0)$",
                         "N taken from N m",
-                    ],
-                    [
-                        "4, stacked equation",
-                        "$r_(0 2), r_(1 2), r_(2 2)$ of a matrix that is not named",
-                        '$""_6^0 R$\'s third row, gravity seen from frame 6',
-                        "with the third column, another direction",
                     ],
                     [
                         "4, last line",

@@ -5,8 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from runner.controllers.admittance_stability import stiffest_wall
-from runner.reporting.document import Curves, Formula, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, Formula, Panel, Section, Series, Table, Text
 from runner.reporting.figures import origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
 from runner.reporting.meca500.plan import DAMPING, MAP_PERIODS, MAP_SHARES, MASS, STIFFNESS, law
 from runner.reporting.meca500.servo_compliance import servo_compliance
 from runner.reporting.meca500.signals import wrenches
@@ -48,7 +50,6 @@ def stability_map_section(runs: Mapping[str, Run]) -> Section:
                 ]
             )
     first = runs[f"map/kinematic/0.001/{MAP_SHARES['kinematic'][0]}"]
-    right, count = agreement(runs)
     return Section(
         "Stability at a wall over its stiffness and the sample time",
         (
@@ -56,8 +57,9 @@ def stability_map_section(runs: Mapping[str, Run]) -> Section:
                 "In contact the sampled law and the wall close a loop: what the tip does in one period is felt in the "
                 "next, and a stiff wall answers more than it is asked. One period takes the state of velocity and "
                 "positions from one tick to the next by a matrix, and contact is stable where its eigenvalues lie "
-                "inside the unit circle. The arm reaches each command by the next tick (delay 0), or a tick later "
-                "(delay 1), which is what a wall is refused by before a run on servos:"
+                "inside the unit circle. That holds for ideal joints, which go where they are told: they reach each "
+                "command by the next tick (delay 0), or a tick later (delay 1). The masses and servos of an arm are "
+                "not in it:"
             ),
             Formula(
                 "vec(dot(x)_(k+1), x_(k+1)) = Phi vec(dot(x)_k, x_k) - Gamma k_w x_(k-d), quad "
@@ -68,11 +70,12 @@ def stability_map_section(runs: Mapping[str, Run]) -> Section:
             Text(
                 f"The law has $M = {MASS:g}$ kg, $B = {DAMPING:g}$ N s/m, $K = {STIFFNESS:g}$ N/m; the wall has no "
                 "damping. The tip stands at the wall, and its goal goes 10 mm into it. A run counts as unstable when "
-                "in its last third the tip leaves the wall, or the force swings more widely than in the third before."
+                "in its last third the tip leaves the wall, or the force swings more widely than in the third before. "
+                "The spring of the servos is what the arm gives way by at the tip, along the wall's normal."
             ),
             _map(runs),
             Table(
-                "Stiffest wall, in N/m: predicted, and between which runs the observed bound lies.",
+                "Stiffest wall, in N/m: predicted for ideal joints, and between which runs the observed bound lies.",
                 [
                     "plant",
                     "period (ms)",
@@ -86,18 +89,87 @@ def stability_map_section(runs: Mapping[str, Run]) -> Section:
                 tuple(range(1, 7)),
                 origin(first),
             ),
-            Notice(
-                "finding",
-                "Where the arm follows, the bound is exact; on servos it is on the safe side",
-                f"On the kinematic plant {right} of {count} runs, from half the bound to twice it, are stable or not "
-                "as predicted, the nearest 10 % from the bound. The bound falls with the sample time: about "
-                f"2 B / h, so that the real controller's 16.7 ms stands "
-                f"{number(stiffest_wall(law(), MAP_PERIODS['kinematic'][-1], 0, 0.0, 0))} N/m at this damping. On "
-                "joint servos no run has bounced, far beyond both bounds: the servos' own springs, in series with the "
-                "wall, keep what the law feels softer than any wall. The check before a run, with a delay of a tick, "
-                "does not count on that.",
-            ),
+            ideal_wall_finding(**ideal_wall_values(runs)),
+            servo_wall_finding(**servo_wall_values(runs)),
         ),
+    )
+
+
+def ideal_wall_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
+    """Return what the finding on walls before ideal joints is about."""
+    right, count = agreement(runs)
+    shares, periods = MAP_SHARES["kinematic"], MAP_PERIODS["kinematic"]
+    about = [stiffest_wall(law(), period, 0, 0.0, 0) * period / (2.0 * DAMPING) for period in periods]
+    return {
+        "right": Measured("runs stable or not as predicted", right),
+        "count": Measured("runs on the kinematic plant", count),
+        "nearest": Measured("least distance from the bound", 100.0 * min(abs(share - 1.0) for share in shares), "%"),
+        "least": Measured("least wall over the bound", min(shares)),
+        "most": Measured("largest wall over the bound", max(shares)),
+        "period": Measured("longest sample time", 1e3 * periods[-1], "ms"),
+        "bound": Measured("bound at the longest sample time", stiffest_wall(law(), periods[-1], 0, 0.0, 0), "N/m"),
+        "low": Measured("least ratio of the bound to 2 B / h", min(about)),
+        "high": Measured("largest ratio of the bound to 2 B / h", max(about)),
+    }
+
+
+def ideal_wall_finding(
+    right: Measured,
+    count: Measured,
+    nearest: Measured,
+    least: Measured,
+    most: Measured,
+    period: Measured,
+    bound: Measured,
+    low: Measured,
+    high: Measured,
+) -> Finding:
+    """Return how well the bound tells which walls an arm of ideal joints stands."""
+    return finding(
+        "For ideal joints the bound tells which wall the law stands",
+        f"On the kinematic plant, whose joints go where they are told, {right} of {count} runs, from {least} to {most} "
+        f"times the bound, are stable or not as predicted, the nearest {nearest} from it. Here filter and wall alone "
+        f"close the loop. The bound falls with the sample time: it is {low} to {high} times $2 B slash h$, and "
+        f"{bound} at {period} and this damping.",
+        right >= count,
+        count >= 20.0,
+        least < 0.9,
+        most > 1.1,
+        nearest < 20.0,
+        low > 0.9,
+        high < 1.25,
+    )
+
+
+def servo_wall_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
+    """Return what the finding on walls before an arm with servos is about."""
+    found = [
+        (runs[f"map/bullet/{period}/{share}"], period)
+        for period in MAP_PERIODS["bullet"]
+        for share in MAP_SHARES["bullet"]
+    ]
+    over = {delay: max(_wall(run) / stiffest_wall(law(), h, 0, 0.0, delay) for run, h in found) for delay in (0, 1)}
+    return {
+        "count": Measured("runs on servos", len(found)),
+        "bounced": Measured("runs on servos that bounced", sum(bounces(run) for run, _ in found)),
+        "stiffest": Measured("stiffest wall tried on servos", max(_wall(run) for run, _ in found), "N/m"),
+        "over": Measured("stiffest wall over the bound without delay", over[0]),
+        "over_late": Measured("stiffest wall over the bound with a delay of a tick", over[1]),
+    }
+
+
+def servo_wall_finding(
+    count: Measured, bounced: Measured, stiffest: Measured, over: Measured, over_late: Measured
+) -> Finding:
+    """Return that the bound says little of an arm with masses and servos."""
+    return finding(
+        "Behind servos the bound is not where contact becomes unstable",
+        f"Of {count} runs on joint servos {bounced} bounced, on walls up to {stiffest}: {over} times the bound without "
+        f"delay, and {over_late} times the one with a delay of a tick. So the bound is far on the safe side there, and "
+        "does not tell which wall such an arm stands: that depends on servos, masses, filter and wall together.",
+        bounced < 1.0,
+        over > 10.0,
+        over_late > 10.0,
     )
 
 
@@ -139,7 +211,7 @@ def _map(runs: Mapping[str, Run]) -> Curves:
                 series.append(Series(name, x, y, "points"))
         panels.append(Panel(plant, "sample time (ms)", "stiffness of the wall (N/m)", series, x_log=True, y_log=True))
     return Curves(
-        "Stability of contact over sample time and stiffness of the wall.",
+        "Stability of contact over sample time and stiffness of the wall; the predictions are for ideal joints.",
         panels,
         2,
         origin(runs[f"map/kinematic/0.001/{MAP_SHARES['kinematic'][0]}"]),

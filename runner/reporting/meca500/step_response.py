@@ -6,10 +6,12 @@ import numpy as np
 
 from runner.controllers.admittance_filter import AXES, Admittance
 from runner.controllers.admittance_response import step_response
-from runner.reporting.document import Curves, FloatArray, Formula, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, FloatArray, Formula, Panel, Section, Series, Table, Text
 from runner.reporting.figures import origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
 from runner.reporting.meca500.plan import FORCE, MOMENT, REPORTED, STEP_CASES
-from runner.reporting.meca500.servo_compliance import servo_compliance
+from runner.reporting.meca500.servo_compliance import kept_stiffness, servo_compliance
 from runner.reporting.meca500.signals import displacement
 from runner.reporting.quantities import number, quantity
 from runner.reporting.run_values import clock
@@ -31,13 +33,9 @@ def step_response_section(runs: Mapping[str, Run]) -> Section:
     for axis in AXES:
         _, answer, _ = _answers(runs[f"step/kinematic, 1 ms/{axis}"], axis)
         unit = "mm" if AXES.index(axis) < 3 else "mrad"
-        cells = [
-            number(errors[case, axis]) if case == "kinematic, 1 ms" else _percent(errors[case, axis])
-            for case in STEP_CASES
-        ]
+        cells = [_percent(errors[case, axis]) for case in STEP_CASES]
         rows.append([axis, quantity(1e3 * float(np.abs(answer).max()), unit), *cells, _percent(_give(runs, axis))])
     law = law_of(runs["step/kinematic, 1 ms/x"])
-    worst = {case: max(errors[case, axis] for axis in AXES) for case in STEP_CASES}
     return Section(
         "Step response of each axis",
         (
@@ -55,22 +53,14 @@ def step_response_section(runs: Mapping[str, Run]) -> Section:
             ),
             _curves(runs),
             Table(
-                "Largest distance from the analytic answer, in its peak: as a share, and then in per cent. Answers are "
-                "joined by straight lines between ticks.",
+                "Largest distance from the analytic answer, in per cent of its peak. Answers are joined by straight "
+                "lines between ticks.",
                 ["axis", "peak", *STEP_CASES, "give of the servos at 1 ms"],
                 rows,
                 tuple(range(1, 8)),
                 origin(runs["step/kinematic, 1 ms/x"]),
             ),
-            Notice(
-                "finding",
-                "On every axis the analytic answer, at 1 ms to rounding and at 16.7 ms as far as it can be",
-                f"At 1 ms the kinematic plant is within {number(worst['kinematic, 1 ms'])} of the peak on every axis. "
-                f"At the real controller's {1e3 * REPORTED:g} ms the sampled law is exact where it is sampled; the "
-                f"straight lines between are off by {_percent(worst['kinematic, 16.7 ms'])} of the peak, and a load "
-                "that sets in just after a tick is felt a period late, which makes it "
-                f"{_percent(worst['kinematic, 16.7 ms, felt late'])}.",
-            ),
+            ideal_step_finding(**ideal_step_values(runs)),
             Text(
                 "Servos at joints with mass give way to the load, by their springs. They evaluate spring and damper at "
                 "the end of their period $h$, which no stiffness makes unstable, and which leaves of the springs' "
@@ -81,17 +71,92 @@ def step_response_section(runs: Mapping[str, Run]) -> Section:
                 "C f equals J times the inverse of K e times J transposed times f, with K e equal M times the inverse "
                 "of M plus h D plus h squared K s, times K s",
             ),
-            Notice(
-                "finding",
-                "What the servos add is their springs' give",
-                f"At 1 ms they are off by {_percent(worst['servo, 1 ms'])} of the peak on the worst axis, "
-                f"{max(AXES, key=lambda axis: errors['servo, 1 ms', axis])}, where the closed form of their give has "
-                f"{_percent(max(_give(runs, axis) for axis in AXES))}, and at 16.7 ms by "
-                f"{_percent(worst['servo, 16.7 ms'])}. The last joint bears so little inertia that it keeps little of "
-                "its stiffness; a shorter plant.servo.period gives it back.",
-            ),
+            servo_step_finding(**servo_step_values(runs)),
         ),
     )
+
+
+def ideal_step_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
+    """Return what the finding on joints that go where they are told is about."""
+    worst = {case: _worst(runs, case) for case in STEP_CASES}
+    sampled = max(_error_at_ticks(runs[f"step/kinematic, 16.7 ms/{axis}"], axis) for axis in AXES)
+    return {
+        "fast": Measured("largest error at 1 ms", worst["kinematic, 1 ms"], "%"),
+        "period": Measured("period of the real controller", 1e3 * REPORTED, "ms"),
+        "slow": Measured("largest error at 16.7 ms", worst["kinematic, 16.7 ms"], "%"),
+        "ticks": Measured("largest error at the ticks of 16.7 ms", 100.0 * sampled, "%"),
+        "late": Measured(
+            "largest error at 16.7 ms of a load just after a tick", worst["kinematic, 16.7 ms, felt late"], "%"
+        ),
+    }
+
+
+def ideal_step_finding(fast: Measured, period: Measured, slow: Measured, ticks: Measured, late: Measured) -> Finding:
+    """Return how far the answer to a push is from that of a mass on a damper and a spring, on ideal joints."""
+    return finding(
+        "On every axis the answer is that of a mass on a damper and a spring",
+        f"On the kinematic plant it is within {fast} of the peak at 1 ms, on every axis. At the real controller's "
+        f"{period} it is within {ticks} at the ticks; the straight lines between are off by {slow} of the peak, "
+        f"and a load that sets in just after a tick is felt a period late, which makes it {late}.",
+        fast < 0.01,
+        slow < 2.0,
+        ticks < 0.05,
+        late > 5.0 * slow,
+        late < 20.0,
+    )
+
+
+def servo_step_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
+    """Return what the finding on servos is about."""
+    gives = {axis: 100.0 * _give(runs, axis) for axis in AXES}
+    errors = {axis: 100.0 * step_error(runs[f"step/servo, 1 ms/{axis}"], axis) for axis in AXES}
+    run = runs["step/servo, 1 ms/x"]
+    period = float(run.config["plant"]["servo"]["period"])
+    return {
+        "fast": Measured("largest error on servos at 1 ms", max(errors.values()), "%"),
+        "give": Measured("largest give of the servos by the closed form", max(gives.values()), "%"),
+        "apart": Measured(
+            "largest distance of error and give on an axis", max(abs(errors[a] - gives[a]) for a in AXES), "%"
+        ),
+        "slow": Measured("largest error on servos at 16.7 ms", _worst(runs, "servo, 16.7 ms"), "%"),
+        "kept": Measured("stiffness that the last joint keeps", 100.0 * float(kept_stiffness(run, period)[-1]), "%"),
+        "shorter": Measured(
+            "stiffness that it keeps with a tenth of the period",
+            100.0 * float(kept_stiffness(run, 0.1 * period)[-1]),
+            "%",
+        ),
+    }
+
+
+def servo_step_finding(
+    fast: Measured, give: Measured, apart: Measured, slow: Measured, kept: Measured, shorter: Measured
+) -> Finding:
+    """Return that servos give way by their springs."""
+    return finding(
+        "What the servos add is their springs' give",
+        f"At 1 ms they are off by {fast} of the peak on the worst axis, where the closed form of their give has "
+        f"{give}; on no axis do the two part by more than {apart} of the peak. At 16.7 ms they are off by {slow}. The "
+        f"last joint bears so little inertia that it keeps {kept} of its stiffness; with a tenth of "
+        f"plant.servo.period it keeps {shorter}.",
+        fast.near(give, 0.1),
+        apart < 2.0,
+        slow < 40.0,
+        kept < 10.0,
+        shorter > 5.0 * kept,
+    )
+
+
+def _worst(runs: Mapping[str, Run], case: str) -> float:
+    return 100.0 * max(step_error(runs[f"step/{case}/{axis}"], axis) for axis in AXES)
+
+
+def _error_at_ticks(run: Run, axis: str) -> float:
+    """Return the largest distance from the analytic answer at the ticks, as a share of its peak."""
+    index = AXES.index(axis)
+    loads = np.array([*run.config["environment"]["force"], *run.config["environment"]["moment"]])
+    since = np.maximum(clock(run) - float(run.config["environment"]["begin"]), 0.0)
+    expected = step_response(law_of(run), loads, since)[:, index]
+    return float(np.abs(displacement(run)[:, index] - expected).max() / np.abs(expected).max())
 
 
 def _answers(run: Run, axis: str) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -4,14 +4,17 @@ import numpy as np
 import pinocchio as pin
 
 from runner.calibration import consistency, identify_tool_centre_point, joint_deviation, pose_covariances
-from runner.reporting.document import Block, Curves, FloatArray, Formula, Notice, Section, Table, Text
+from runner.reporting.document import Block, Curves, FloatArray, Formula, Section, Table, Text
 from runner.reporting.figures import origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import ROUNDING, Measured
 from runner.reporting.meca500.calibration_plan import POSES, REPEATABILITIES, SPREADS, name_of
 from runner.reporting.meca500.calibration_studies import (
     CONSISTENCY_HEADER,
     Calibrations,
     consistency_cells,
-    consistency_notice,
+    consistency_finding,
+    consistency_values,
     error_curves,
     fit,
     flange_of,
@@ -24,6 +27,8 @@ from runner.reporting.quantities import number
 from runner.store import Calibration
 
 _KIND = "tool_centre_point"
+_DEGREES = float(np.degrees(1.0))
+_FEW = 4  # poses, of the base case
 
 
 def tool_centre_point_section(calibrations: Calibrations) -> Section:
@@ -63,9 +68,9 @@ def tool_centre_point_section(calibrations: Calibrations) -> Section:
             origin(base),
         ),
         _curves(calibrations),
-        _finding(calibrations),
-        consistency_notice(calibrations, _KIND),
-        _shared_pose(calibrations[name_of(f"{_KIND}/poses", POSES[-1])]),
+        spread_finding(**spread_values(calibrations)),
+        consistency_finding(**consistency_values(calibrations, _KIND)),
+        shared_pose_finding(**shared_pose_values(calibrations[name_of(f"{_KIND}/poses", POSES[-1])])),
         _refused(base),
     ]
     return Section("Tool centre point", blocks)
@@ -81,7 +86,7 @@ def _rows(calibrations: Calibrations) -> list[list[str]]:
     variations = (
         ("repeatability", "repeatability (µm)", REPEATABILITIES, 1e6),
         ("poses", "number of poses", POSES, 1.0),
-        ("spread", "spread (deg)", SPREADS, np.degrees(1.0)),
+        ("spread", "spread (deg)", SPREADS, _DEGREES),
     )
     rows = []
     for key, title, values, factor in variations:
@@ -91,7 +96,7 @@ def _rows(calibrations: Calibrations) -> list[list[str]]:
                 [
                     title,
                     number(float(factor * value)),
-                    number(1e6 * found_error(done)),
+                    number(1e6 * found_error(done), rounding=ROUNDING),
                     number(1e6 * predicted_error(done)),
                     number(done.summary("measures", "condition_number")["median"]),
                     number(done.summary("measures", "smallest_singular_value")["median"]),
@@ -102,41 +107,100 @@ def _rows(calibrations: Calibrations) -> list[list[str]]:
 
 
 def _curves(calibrations: Calibrations) -> Curves:
-    y_label = "error of the tip (m)"
+    y_label = "error of the tip (µm)"
+    panels = (
+        error_curves(
+            calibrations,
+            {f"{_KIND}/repeatability": REPEATABILITIES},
+            "repeatability (µm)",
+            y_label,
+            x_factor=1e6,
+            y_factor=1e6,
+        ),
+        error_curves(calibrations, {f"{_KIND}/poses": POSES}, "number of poses", y_label, log=False, y_factor=1e6),
+        error_curves(
+            calibrations, {f"{_KIND}/spread": SPREADS}, "spread (deg)", y_label, x_factor=_DEGREES, y_factor=1e6
+        ),
+    )
     return Curves(
         "Error of the tool centre point over repeatability, number and spread of the poses.",
-        (
-            error_curves(calibrations, {f"{_KIND}/repeatability": REPEATABILITIES}, "repeatability (m)", y_label),
-            error_curves(calibrations, {f"{_KIND}/poses": POSES}, "number of poses", y_label, log=False),
-            error_curves(calibrations, {f"{_KIND}/spread": SPREADS}, "spread (rad)", y_label),
-        ),
+        panels,
         3,
         origin(calibrations[f"{_KIND}/base"]),
     )
 
 
-def _finding(calibrations: Calibrations) -> Notice:
+def spread_values(calibrations: Calibrations) -> dict[str, Measured]:
+    """Return what the finding on number and spread of the poses is about."""
     exact = calibrations[name_of(f"{_KIND}/repeatability", 0.0)]
     narrow, wide = (calibrations[name_of(f"{_KIND}/spread", value)] for value in (SPREADS[0], SPREADS[-1]))
-    few, many = (calibrations[name_of(f"{_KIND}/poses", count)] for count in (4, POSES[-1]))
+    few, many = (calibrations[name_of(f"{_KIND}/poses", count)] for count in (_FEW, POSES[-1]))
     spread_errors = [predicted_error(calibrations[name_of(f"{_KIND}/spread", value)]) for value in SPREADS]
-    power = fit(np.array(SPREADS), np.array(spread_errors))
-    worst = float(np.abs(exact.values("errors")).max())
-    return Notice(
-        "finding",
+    measures = {
+        (name, place): float(done.summary("measures", name)["median"])
+        for name in ("condition_number", "smallest_singular_value")
+        for place, done in (("narrow", narrow), ("wide", wide))
+    }
+    return {
+        "exact": Measured("largest error without noise", float(np.abs(exact.values("errors")).max()), "m"),
+        "wide_spread": Measured("widest spread", float(np.degrees(SPREADS[-1])), "°"),
+        "wide": Measured("error of the widest spread", 1e6 * found_error(wide), "µm"),
+        "narrow_spread": Measured("narrowest spread", float(np.degrees(SPREADS[0])), "°"),
+        "narrow": Measured("error of the narrowest spread", 1e6 * found_error(narrow), "µm"),
+        "power": Measured(
+            "power of the spread in the predicted error", fit(np.array(SPREADS), np.array(spread_errors))
+        ),
+        "condition": Measured("condition number of the narrowest spread", measures["condition_number", "narrow"]),
+        "wide_condition": Measured("condition number of the widest spread", measures["condition_number", "wide"]),
+        "singular": Measured(
+            "least singular value of the narrowest spread", measures["smallest_singular_value", "narrow"]
+        ),
+        "wide_singular": Measured(
+            "least singular value of the widest spread", measures["smallest_singular_value", "wide"]
+        ),
+        "few_poses": Measured("poses of the base case", _FEW),
+        "few": Measured("predicted error of the base case", 1e6 * predicted_error(few), "µm"),
+        "many_poses": Measured("largest number of poses", POSES[-1]),
+        "many": Measured("predicted error with the most poses", 1e6 * predicted_error(many), "µm"),
+    }
+
+
+def spread_finding(
+    exact: Measured,
+    wide_spread: Measured,
+    wide: Measured,
+    narrow_spread: Measured,
+    narrow: Measured,
+    power: Measured,
+    condition: Measured,
+    wide_condition: Measured,
+    singular: Measured,
+    wide_singular: Measured,
+    few_poses: Measured,
+    few: Measured,
+    many_poses: Measured,
+    many: Measured,
+) -> Finding:
+    """Return what the spread of the poses and their number do to the error of the tip."""
+    return finding(
         "The spread of the poses counts, their number little",
-        f"Without noise the tip is found within {number(worst)} m. Four poses err by {metres(found_error(wide))} when "
-        f"tilted by {np.degrees(SPREADS[-1]):.0f}° and by {metres(found_error(narrow))} at "
-        f"{np.degrees(SPREADS[0]):.1f}°: the error goes with the power {number(power, 2)} of the spread, while the "
-        f"condition number stays at {number(narrow.summary('measures', 'condition_number')['median'], 2)}, as it sees "
-        "the shape of the set and not its size. The smallest singular value is what falls. "
-        f"{POSES[-1]} poses in place of 4 lower the predicted error from {metres(predicted_error(few))} to "
-        f"{metres(predicted_error(many))} only: all are measured against pose 1, whose error stays.",
+        f"Without noise the tip is found to rounding: {exact.shown}. {few_poses} poses err by {wide} when tilted by "
+        f"{wide_spread} and by {narrow} at {narrow_spread}: the error goes with the power {power} of the spread, while "
+        f"the condition number, {condition} and {wide_condition}, sees the shape of the set and not its size. The "
+        f"smallest singular value is what falls, from {wide_singular} to {singular}. {many_poses} poses in place of "
+        f"{few_poses} lower the predicted error from {few} to {many}.",
+        exact < ROUNDING,
+        narrow > 5.0 * wide,
+        power.near(-1.0, 0.1),
+        condition.near(wide_condition, 0.1),
+        wide_singular > 5.0 * singular,
+        many < 0.9 * few,
+        many > 0.6 * few,
     )
 
 
-def _shared_pose(many: Calibration) -> Notice:
-    """Return what happens when pose 1 is taken as new in every row, and when no pose is singled out."""
+def shared_pose_values(many: Calibration) -> dict[str, Measured]:
+    """Return what the finding on pose 1, which stands in every row, is about."""
     model, postures = flange_of(many), many.postures
     poses = np.array([model.tip_pose(q) for q in postures])
     covariances = pose_covariances(model, postures, _deviation(many))
@@ -145,16 +209,46 @@ def _shared_pose(many: Calibration) -> Notice:
     wrong, together = independent_rows_covariance(poses, tips), common_point_covariance(poses, tips)
     errors, level = many.values("errors"), 0.99
     judged = consistency(errors, np.repeat(wrong[None], len(errors), axis=0), level)
-    predicted = [metres(float(np.sqrt(np.trace(covariance)))) for covariance in (wrong, right, together)]
-    return Notice(
-        "finding",
+    predicted = {"wrong": wrong, "right": right, "together": together}
+    titles = {
+        "wrong": "with rows taken as independent",
+        "right": "with pose 1 shared",
+        "together": "with no pose singled out",
+    }
+    return {
+        key: Measured(f"predicted error {titles[key]}", 1e6 * float(np.sqrt(np.trace(covariance))), "µm")
+        for key, covariance in predicted.items()
+    } | {
+        "poses": Measured("poses", len(poses)),
+        "errors": Measured("errors", len(errors)),
+        "nees": Measured("NEES with rows taken as independent", float(judged.mean)),
+        "lower": Measured("lower end of its band", float(judged.lower)),
+        "upper": Measured("upper end of its band", float(judged.upper)),
+    }
+
+
+def shared_pose_finding(
+    wrong: Measured,
+    right: Measured,
+    together: Measured,
+    poses: Measured,
+    errors: Measured,
+    nees: Measured,
+    lower: Measured,
+    upper: Measured,
+) -> Finding:
+    """Return what happens when pose 1 is taken as new in every row, and when no pose is singled out."""
+    return finding(
         "Rows that share pose 1 are not independent",
         "Taken as new in every row, as least squares with $sigma^2 (A^T A)^(-1)$ does, pose 1 would be averaged away: "
-        f"for {len(poses)} poses the predicted error would be {predicted[0]} in place of {predicted[1]}, and NEES of "
-        f"the same {len(errors)} errors is {number(judged.mean)}, {'inside' if judged.holds else 'outside'} its band "
-        f"of {number(judged.lower)} to {number(judged.upper)}. The equation itself can be mended: solved for the tip "
-        f"and the point touched together, $R_k p - c = -P_k$, no pose is singled out, and {len(poses)} poses would "
-        f"leave {predicted[2]}.",
+        f"for {poses} poses the predicted error would be {wrong} in place of {right}, and NEES of the same {errors} "
+        f"errors is {nees}, above its band of {lower} to {upper}. The equation itself can be mended: solved for the "
+        f"tip and the point touched together, $R_k p - c = -P_k$, no pose is singled out, and {poses} poses would "
+        f"leave {together}.",
+        wrong < 0.8 * right,
+        nees > 1.2 * upper,
+        lower < upper,
+        together < 0.7 * right,
     )
 
 

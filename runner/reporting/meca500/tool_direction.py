@@ -3,21 +3,25 @@
 import numpy as np
 
 from runner.calibration.tool_direction import alignment, alignment_angles
-from runner.reporting.document import Block, Curves, Formula, Notice, Section, Table, Text
+from runner.reporting.document import Block, Curves, FloatArray, Formula, Section, Table, Text
 from runner.reporting.figures import origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import ROUNDING, Measured
 from runner.reporting.meca500.calibration_plan import DIRECTION_POSES, DIRECTION_REPEATABILITIES, SHORTER, name_of
 from runner.reporting.meca500.calibration_studies import (
     CONSISTENCY_HEADER,
     Calibrations,
     consistency_cells,
-    consistency_notice,
+    consistency_finding,
+    consistency_values,
     error_curves,
     found_error,
     predicted_error,
 )
-from runner.reporting.quantities import number, quantity
+from runner.reporting.quantities import number
 
 _KIND = "tool_direction"
+_INSERTED = 0.02  # m, about the length of a root canal file
 
 
 def tool_direction_section(calibrations: Calibrations) -> Section:
@@ -56,20 +60,29 @@ def tool_direction_section(calibrations: Calibrations) -> Section:
         Curves(
             "Error of the tool's direction over what the tools differ by, and over the arm's repeatability.",
             (
-                error_curves(calibrations, {f"{_KIND}/shorter": SHORTER}, "difference of the tools (m)", "error (rad)"),
+                error_curves(
+                    calibrations,
+                    {f"{_KIND}/shorter": SHORTER},
+                    "difference of the tools (mm)",
+                    "error (mrad)",
+                    x_factor=1e3,
+                    y_factor=1e3,
+                ),
                 error_curves(
                     calibrations,
                     {f"{_KIND}/repeatability": DIRECTION_REPEATABILITIES},
-                    "repeatability (m)",
-                    "error (rad)",
+                    "repeatability (µm)",
+                    "error (mrad)",
+                    x_factor=1e6,
+                    y_factor=1e3,
                 ),
             ),
             2,
             origin(base),
         ),
-        _finding(calibrations),
-        consistency_notice(calibrations, _KIND),
-        _misprint(np.array(config["direction"])),
+        direction_finding(**direction_values(calibrations)),
+        consistency_finding(**consistency_values(calibrations, _KIND)),
+        alignment_finding(**alignment_values(np.array(config["direction"]))),
     ]
     return Section("Tool direction and alignment", blocks)
 
@@ -84,34 +97,71 @@ def _rows(calibrations: Calibrations) -> list[list[str]]:
     for key, title, values, factor in variations:
         for value in values:
             done = calibrations[name_of(f"{_KIND}/{key}", value)]
-            errors = (number(1e3 * error(done)) for error in (found_error, predicted_error))
+            errors = (number(1e3 * error(done), rounding=ROUNDING) for error in (found_error, predicted_error))
             rows.append([title, number(factor * value), *errors, *consistency_cells(done)])
     return rows
 
 
-def _finding(calibrations: Calibrations) -> Notice:
+def direction_values(calibrations: Calibrations) -> dict[str, Measured]:
+    """Return what the finding on the tool's direction is about."""
     exact = calibrations[name_of(f"{_KIND}/repeatability", 0.0)]
     short, long = (calibrations[name_of(f"{_KIND}/shorter", value)] for value in (SHORTER[0], SHORTER[-1]))
-    over = 0.02  # m, about the length of a root canal file
-    return Notice(
-        "finding",
-        "The direction is as good as the tools differ in length",
-        f"Without noise the direction is found within {number(float(np.abs(exact.values('errors')).max()))} rad. Tools "
-        f"that differ by {1e3 * SHORTER[0]:g} mm leave {quantity(1e3 * found_error(short), 'mrad')}, by "
-        f"{1e3 * SHORTER[-1]:g} mm {quantity(1e3 * found_error(long), 'mrad')}: the tips' error over their "
-        f"distance. Over {1e3 * over:g} mm of insertion the first is "
-        f"{quantity(1e6 * over * found_error(short), 'µm')} aside.",
+    return {
+        "exact": Measured("largest error without noise", float(np.abs(exact.values("errors")).max()), "rad"),
+        "short_by": Measured("least difference of the tools", 1e3 * SHORTER[0], "mm"),
+        "long_by": Measured("largest difference of the tools", 1e3 * SHORTER[-1], "mm"),
+        "short": Measured("error with the least difference", 1e3 * found_error(short), "mrad"),
+        "short_predicted": Measured("predicted error with the least difference", 1e3 * predicted_error(short), "mrad"),
+        "long": Measured("error with the largest difference", 1e3 * found_error(long), "mrad"),
+        "long_predicted": Measured("predicted error with the largest difference", 1e3 * predicted_error(long), "mrad"),
+        "over": Measured("way of insertion", 1e3 * _INSERTED, "mm"),
+        "aside": Measured("how far the insertion ends aside", 1e6 * _INSERTED * found_error(short), "µm"),
+    }
+
+
+def direction_finding(
+    exact: Measured,
+    short_by: Measured,
+    long_by: Measured,
+    short: Measured,
+    short_predicted: Measured,
+    long: Measured,
+    long_predicted: Measured,
+    over: Measured,
+    aside: Measured,
+) -> Finding:
+    """Return what the difference of the tools in length does to the error of the direction."""
+    return finding(
+        "The error of the direction falls as the tools differ more in length",
+        f"Without noise the direction is found to rounding: {exact.shown}. Tools that differ by {short_by} leave "
+        f"{short} (predicted: {short_predicted}), by {long_by} {long} (predicted: {long_predicted}): the tips' error "
+        f"over their distance. Over {over} of insertion the first is {aside} aside.",
+        exact < ROUNDING,
+        (short_predicted / long_predicted).near(long_by / short_by, 0.15),
+        short.near(short_predicted, 0.35),
+        long.near(long_predicted, 0.35),
+        aside < 100.0,
     )
 
 
-def _misprint(direction: np.ndarray) -> Notice:
+def alignment_values(direction: FloatArray) -> dict[str, Measured]:
+    """Return what the finding on equation 7 is about."""
     t = direction / np.linalg.norm(direction)
     R = alignment(*alignment_angles(t))
-    off = float(np.degrees(np.arccos(np.clip(R.T[:, 2] @ t, -1.0, 1.0))))
-    return Notice(
-        "warning",
-        "Which frame stands in which",
+    printed, described = (float(np.degrees(np.arccos(np.clip(turned[:, 2] @ t, -1.0, 1.0)))) for turned in (R.T, R))
+    return {
+        "printed": Measured("angle to the tool, read as printed", printed, "°"),
+        "described": Measured("angle to the tool, read as described", described, "°"),
+    }
+
+
+def alignment_finding(printed: Measured, described: Measured) -> Finding:
+    """Return which frame stands in which in equation 7."""
+    return finding(
+        "The alignment is the tool's frame in frame 6",
         'Equation 7 calls the product the rotation of frame 6 in the tool\'s, $""_6^T R$. The turns that the text '
         'describes, z onto the projection and then onto $t$, make it the tool\'s frame in frame 6, $""_T^6 R$. Read as '
-        f"printed, the tool of the example would be sent {off:.1f}° away from $t$.",
+        f"printed, the tool of the example would be sent {printed} away from $t$.",
+        printed > 10.0,
+        described < 1e-3,
     )

@@ -6,12 +6,14 @@ import numpy as np
 from scipy.linalg import solve_discrete_lyapunov
 
 from runner.controllers.admittance_filter import AXES, discretise
-from runner.reporting.document import Curves, FloatArray, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, FloatArray, Panel, Section, Series, Table, Text
 from runner.reporting.figures import joint_columns, origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import ROUNDING, Measured
 from runner.reporting.meca500.plan import ORIENTATIONS, SWINGS
 from runner.reporting.meca500.signals import displacement, wrenches
 from runner.reporting.meca500.step_response import law_of
-from runner.reporting.quantities import number, quantity
+from runner.reporting.quantities import number
 from runner.reporting.run_values import median, values
 from runner.sensing.force_torque import AXES as SENSOR_AXES
 from runner.sensing.force_torque import ForceTorqueConfig
@@ -24,11 +26,7 @@ _MINI40_STEP = 0.005  # N, the finest of a Mini40's forces
 def wrist_sensor_section(runs: Mapping[str, Run]) -> Section:
     """Return what the sensor bears at rest and in motion, from two independent sources, and its noise."""
     at_rest = [runs[f"rest/{number}"] for number in range(ORIENTATIONS)]
-    apart = np.array([_apart(run)[-1] for run in at_rest])
     tool = at_rest[0].config["robot"]["tool"]
-    weight = float(tool["mass"]) * float(at_rest[0].config["gravity"])
-    weighed = np.array([np.linalg.norm(wrenches(run, "reaction")[-1, :3]) for run in at_rest])
-    fastest, fine = runs[f"swing/{SWINGS[-1]}"], runs["swing/fine"]
     return Section(
         "What the wrist's sensor feels",
         (
@@ -41,17 +39,7 @@ def wrist_sensor_section(runs: Mapping[str, Run]) -> Section:
             ),
             _motion(runs),
             _curves(runs),
-            Notice(
-                "finding",
-                "At rest the reaction is exact; in motion it is wrong by a term that grows with the speed",
-                f"In all {ORIENTATIONS} orientations the two are within {number(float(apart[:, :3].max()))} N and "
-                f"{number(float(apart[:, 3:].max()))} N m, and the tool weighs {quantity(weight, 'N', 5)} to "
-                f"{number(float(np.abs(weighed - weight).max()))} N. In motion they part, with the power "
-                f"{_power(runs)} of the peak joint speed, up to {quantity(_largest(fastest), 'N')} at "
-                f"{quantity(median(fastest, 'peak_joint_speed'), 'rad/s')}. It is no error of the step: half the step "
-                f"leaves {quantity(_largest(fine), 'N')}. The runs' sensor therefore takes the balance, from the true "
-                "motion.",
-            ),
+            reaction_finding(**reaction_values(runs)),
             Text(
                 "A Mini40's readings have noise and steps. The same orientations, read by it: what is left when its "
                 "bias and the true load, seen from its own frame, are taken off, against noise and quantisation "
@@ -65,6 +53,56 @@ def wrist_sensor_section(runs: Mapping[str, Run]) -> Section:
     )
 
 
+def reaction_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
+    """Return what the finding on PyBullet's joint reaction is about."""
+    at_rest = [runs[f"rest/{number}"] for number in range(ORIENTATIONS)]
+    apart = np.array([_apart(run)[-1] for run in at_rest])
+    weight = float(at_rest[0].config["robot"]["tool"]["mass"]) * float(at_rest[0].config["gravity"])
+    weighed = np.array([np.linalg.norm(wrenches(run, "reaction")[-1, :3]) for run in at_rest])
+    fastest = runs[f"swing/{SWINGS[-1]}"]
+    return {
+        "count": Measured("orientations at rest", ORIENTATIONS),
+        "force": Measured("largest difference of the forces at rest", float(apart[:, :3].max()), "N"),
+        "moment": Measured("largest difference of the moments at rest", float(apart[:, 3:].max()), "N m"),
+        "weight": Measured("weight of the tool", weight, "N"),
+        "weighed": Measured("largest error of the weight", float(np.abs(weighed - weight).max()), "N"),
+        "power": Measured("power of the joint speed with which the forces part", _power(runs)),
+        "moving": Measured("largest difference of the forces in motion", _largest(fastest), "N"),
+        "speed": Measured("peak joint speed", median(fastest, "peak_joint_speed"), "rad/s"),
+        "fine": Measured("largest difference with half the step", _largest(runs["swing/fine"]), "N"),
+    }
+
+
+def reaction_finding(
+    count: Measured,
+    force: Measured,
+    moment: Measured,
+    weight: Measured,
+    weighed: Measured,
+    power: Measured,
+    moving: Measured,
+    speed: Measured,
+    fine: Measured,
+) -> Finding:
+    """Return where PyBullet's joint reaction is the tool's balance, and where it is not."""
+    return finding(
+        "At rest the reaction is exact; in motion it is wrong by a term that grows with the speed",
+        f"In all {count} orientations reaction and balance differ by {force.shown} in force and {moment.shown} in "
+        f"moment, and the tool's weight of {weight} is found with an error of {weighed.shown}. In motion they part, "
+        f"with the power {power} of the peak joint speed, up to {moving} at {speed}. It is no error of the step: half "
+        f"the step leaves {fine}. The runs' sensor therefore takes the balance, from the true motion.",
+        force < ROUNDING,
+        moment < ROUNDING,
+        weighed < ROUNDING,
+        power > 2.0,
+        power < 3.0,
+        moving > 0.01,
+        speed > 1.0,
+        fine.near(moving, 0.2),
+        weight > 1.0,
+    )
+
+
 def _apart(run: Run) -> FloatArray:
     """Return |load - reaction| of each component at each tick, shape (T, 6)."""
     difference: FloatArray = np.abs(wrenches(run, "load") - wrenches(run, "reaction"))
@@ -75,11 +113,11 @@ def _largest(run: Run) -> float:
     return float(np.linalg.norm(_apart(run)[1:, :3], axis=1).max())  # there is no reaction before the first step
 
 
-def _power(runs: Mapping[str, Run]) -> str:
+def _power(runs: Mapping[str, Run]) -> float:
     """Return the power of the peak joint speed with which the forces part, by a line through the logarithms."""
     swings = [runs[f"swing/{duration}"] for duration in SWINGS]
     speeds, forces = values(swings, "peak_joint_speed"), np.array([_largest(run) for run in swings])
-    return number(float(np.polyfit(np.log(speeds), np.log(forces), 1)[0]), 2)
+    return float(np.polyfit(np.log(speeds), np.log(forces), 1)[0])
 
 
 def _motion(runs: Mapping[str, Run]) -> Table:

@@ -2,11 +2,15 @@
 
 import math
 
+from runner.config.meanings import key_unit
 from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
+from runner.reporting.quantities import labelled
 from runner.reporting.sweep.subject import Subject, axis_label, value_names
 from runner.statistics import SMALLEST_SAMPLE
+from runner.sweeps.resolved import UNITS
 
 _MOST_VALUES = 12
+_MOST_ROWS, _MOST_PLACES, _LONGEST = 16, 6, 60  # of the table of what also differs, and characters of a value
 
 
 def section(subject: Subject, command: str) -> Section:
@@ -27,6 +31,7 @@ def section(subject: Subject, command: str) -> Section:
     cells = len(measurements.hashes)
     if rows:
         blocks.append(Table("Swept axes.", ["axis", "number", "values"], [_literal(row) for row in rows], (1,), origin))
+    blocks += _also_differs(subject)
     grid = math.prod(len(axis.values) for axis in subject.axes)
     whole = "every combination of their values" if grid == cells else f"not all of the {grid} combinations"
     fixed = ", ".join(measurements.fixed)
@@ -56,6 +61,29 @@ def section(subject: Subject, command: str) -> Section:
             )
         )
     return Section("Axes", blocks)
+
+
+def _also_differs(subject: Subject) -> list[Block]:
+    """Return the table of config values that are not the same in all cells, though nobody swept them."""
+    rows = []
+    for difference in subject.measurements.differences[:_MOST_ROWS]:
+        values = [f"{levels}: {_short(text)}" if levels else _short(text) for levels, text in difference.values]
+        shown = values if len(values) <= _MOST_PLACES else [*values[: _MOST_PLACES - 2], "...", values[-1]]
+        label = labelled(difference.key, UNITS.get(difference.key) or key_unit(difference.key))
+        rows.append([label, ", ".join(difference.axes) or "none", "; ".join(shown)])
+    left = [difference.key for difference in subject.measurements.differences[_MOST_ROWS:]]
+    if not rows:
+        return []
+    more = f" {len(left)} more: {', '.join(left)}.".replace("$", "$$") if left else ""
+    caption = (
+        "Also differs: config values that are not the same in all cells, though they were not swept. What an axis "
+        f"seems to do may be done by what goes with it.{more}"
+    )
+    return [Table(caption, ["key", "goes with", "values"], [_literal(row) for row in rows])]
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
 
 
 def _literal(cells: list[str]) -> list[str]:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from runner.reporting.document import Block, Curves, Panel, Section, Series
-from runner.reporting.sweep.subject import Subject, spans_decades, value_name
+from runner.reporting.sweep.subject import QUANTILE_RULE, Subject, spans_decades, value_name
 from runner.sweeps.measurements import Axis, FloatArray
 
 _MOST_LINES = 8
@@ -59,7 +59,8 @@ def _in_order(subject: Subject, metric: str) -> Curves:
     series = Series("", rank, medians, "points_line", low, high, hints=hints, runs=runs)
     panel = Panel("", "cells from best to worst", subject.label(metric), [series], y_log=spans_decades(values.ravel()))
     return Curves(
-        "Median of each cell in order; shaded the range of its repetitions, from their 5 % to their 95 % quantile.",
+        "Median of each cell in order; shaded the range of its repetitions, from their 5 % to their 95 % quantile. "
+        + QUANTILE_RULE,
         [panel],
         columns=1,
     )

@@ -5,8 +5,8 @@ import numpy as np
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.quantities import number
 from runner.reporting.sweep.intervals import axis_panel, cells_with_intervals, places
-from runner.reporting.sweep.subject import Subject
-from runner.statistics import EffectAnalysis
+from runner.reporting.sweep.subject import QUANTILE_RULE, Subject
+from runner.statistics import PERMUTATIONS, EffectAnalysis
 from runner.sweeps.measurements import Axis
 
 
@@ -29,7 +29,10 @@ def summary(subject: Subject) -> str:
     said = f"{strongest.axes[0]} explains {_percent(strongest.share)} of the variation of {subject.metrics[0]}"
     if strongest.p_value > 0.05:
         return f"{said}, the most of all axes, but no more than chance may (p = {strongest.p_value:.2g})."
-    return f"{said}, the most of all axes (p = {strongest.p_value:.2g})."
+    along = [found.key for found in subject.measurements.differences if strongest.axes[0] in found.axes]
+    named = ", ".join(along[:3]) + (f" and {len(along) - 3} more" if len(along) > 3 else "")
+    beside = f" With it go {named}, which may be the cause: see Also differs." if along else ""
+    return f"{said}, the most of all axes (p = {strongest.p_value:.2g}).{beside}"
 
 
 def _table(analyses: dict[str, EffectAnalysis]) -> Table:
@@ -53,15 +56,33 @@ def _explained(analyses: dict[str, EffectAnalysis]) -> str:
     logs = [name for name, analysis in analyses.items() if analysis.logarithmic]
     lost = [f"{analysis.left_out} of {name}" for name, analysis in analyses.items() if analysis.left_out]
     used = ", ".join(dict.fromkeys(str(analysis.n) for analysis in analyses.values()))
+    shared = [
+        f"{_percent(analysis.shared)} of the variation of {name}"
+        for name, analysis in analyses.items()
+        if analysis.shared is not None
+    ]
+    tests = sum(effect.p_value is not None for analysis in analyses.values() for effect in analysis.effects)
     texts = [
-        "A share is the sum of squares of an effect over the total; p is the share of 999 permutations of the "
-        f"residuals with as large an effect. Values used: {used}.",
+        f"A share is the sum of squares of an effect over the total; p is the share of {PERMUTATIONS} permutations of "
+        f"the residuals, and the order found, with as large an effect. Values used: n = {used}.",
         f"Of {', '.join(logs)} the logarithms were taken, as the values span decades." if logs else "",
         f"Left out, as beyond every number: {', '.join(lost)}; shares of what is left may overlap." if lost else "",
-        "Equal seeds in all cells make the test careful: what they share counts as scatter. One in twenty tests "
-        "falls below p = 0.05 by chance.",
+        f"Cells of one seed share the random draws of a repetition, which make {', '.join(shared)}. This is no scatter "
+        "between cells: the test takes it out first, and permutes within a repetition only."
+        if shared
+        else "",
+        _on_chance(tests) if tests else "",
     ]
     return " ".join(text for text in texts if text).replace("$", "$$")
+
+
+def _on_chance(tests: int) -> str:
+    """Return what so many tests find by chance, and under which condition."""
+    count = "One test stands here" if tests == 1 else f"{tests} tests stand here"
+    return (
+        "Where an axis has no effect and the values scatter alike at all of its levels, p falls below 0.05 in one test "
+        f"in twenty. {count}. Where they scatter more at some levels than at others, p is too small too often."
+    )
 
 
 def _main_effects(subject: Subject) -> Curves:
@@ -70,7 +91,8 @@ def _main_effects(subject: Subject) -> Curves:
         panels += [_main_effect(subject, metric, axis) for axis in subject.axes]
     return Curves(
         "Main effects: median of all repetitions at each value of an axis, over the values of the others; shaded, or a "
-        "bar, the half of them between the quartiles. No point stands where half of the runs or more failed.",
+        "bar, the half of them between the quartiles. " + QUANTILE_RULE + " No point stands where half of the runs or "
+        "more failed.",
         panels,
         columns=3 if len(subject.axes) in (3, 5, 6) else 2,
     )

@@ -8,8 +8,9 @@ from runner.errors import StoreError
 from runner.reporting.document import Block, Notice, Section, Table, Text
 from runner.reporting.figures import playback, torque_and_error
 from runner.reporting.quantities import number, quantity
+from runner.reporting.sweep.pairs import HEADER, columns, compare
 from runner.reporting.sweep.subject import Subject
-from runner.statistics import compare_paired, median_interval
+from runner.statistics import median_interval
 from runner.store import Run
 
 _BEHIND = 5
@@ -41,7 +42,7 @@ def _medians(subject: Subject, cells: Sequence[int]) -> Table:
         rows.append([name, *(_with_interval(subject.measurements.of_cell(name, cell), unit) for cell in cells)])
     header = ["metric", *(subject.cell_name(cell).replace("$", "$$") for cell in cells)]
     return Table(
-        "Best and worst cell: medians, in brackets their 95 % intervals by the bootstrap over the repetitions.",
+        "Best and worst cell: medians, in brackets their 95 % intervals by the bootstrap over n repetitions.",
         header,
         rows,
         tuple(range(1, len(header))),
@@ -53,38 +54,31 @@ def _with_interval(values: np.ndarray, unit: str) -> str:
         return "–"
     interval = median_interval(values)
     text = quantity(interval.median, unit) if np.isfinite(interval.median) else "never"
-    return text if interval.low is None else f"{text} ({_end(interval.low)} to {_end(interval.high)})"
+    ends = "" if interval.low is None else f"{_end(interval.low)} to {_end(interval.high)}, "
+    return f"{text} ({ends}n = {interval.n})"
 
 
 def _behind(subject: Subject, ranked: Sequence[int]) -> list[Block]:
     """Compare the cells next to the best with it, repetition by repetition."""
-    if any(axis.name == "seed" for axis in subject.axes):
+    shared = [cell for cell in ranked[1:] if subject.share_seeds(ranked[0], cell)]
+    if not shared:
         return [Text("Cells are not compared in pairs: the sweep varies the seed, so that no two share their noise.")]
     metric, unit = subject.metrics[0], subject.measurements.units[subject.metrics[0]]
-    values = subject.measurements.values[metric]
     rows = []
-    for cell in ranked[1 : 1 + _BEHIND]:
-        paired = ~np.isnan(values[ranked[0]]) & ~np.isnan(values[cell])
-        comparison = compare_paired(values[ranked[0]][paired], values[cell][paired])
-        difference = comparison.difference
-        rows.append(
-            [
-                subject.cell_name(cell).replace("$", "$$"),
-                quantity(difference.median, unit) if np.isfinite(difference.median) else "beyond every number",
-                "–" if difference.low is None else f"{_end(difference.low)} to {_end(difference.high)}",
-                f"{comparison.effect:.2f}",
-                "–" if comparison.p_value is None else f"{comparison.p_value:.2g}",
-                comparison.verdict,
-            ]
-        )
+    for cell in shared[:_BEHIND]:
+        comparison = compare(subject, metric, ranked[0], cell)
+        if comparison is not None:
+            name = subject.cell_name(cell).replace("$", "$$")
+            rows.append([name, *columns(comparison, unit), comparison.verdict])
     return [
         Table(
             f"The next cells against the best, by {metric} on the same seeds: median of the differences, its 95 % "
-            "interval, effect size (rank-biserial correlation, 1 where the best is better in every repetition), and p "
-            "of the signed-rank test.",
-            ["cell", "difference", "interval", "effect", "p", "than the best"],
+            "interval from n pairs, effect size (rank-biserial correlation, 1 where the best is better in every "
+            "repetition), and p of the signed-rank test. The best was chosen by the same values, which makes it look "
+            "better than it is.",
+            ["cell", *HEADER, "than the best"],
             rows,
-            (1, 2, 3, 4),
+            tuple(range(1, 1 + len(HEADER))),
         )
     ]
 

@@ -34,7 +34,9 @@ def cells_with_intervals(subject: Subject, metric: str) -> Curves | None:
         hints, runs = subject.hints(cells), subject.hashes(cells)
         curves.append(Series(name, x, median, "points_line", low, high, group, hints, runs))
     panel = axis_panel("", along, subject.label(metric), curves, np.concatenate([series.y for series in curves]))
-    caption = "Median of each cell; shaded its 95 % interval by the bootstrap over the repetitions, if they are enough."
+    sizes = sorted({subject.measurements.of_cell(metric, cell).size for cell in range(len(groups))})
+    n = f"n = {sizes[0]}" if len(sizes) == 1 else f"n = {sizes[0]} to {sizes[-1]}"
+    caption = f"Median of each cell; shaded its 95 % interval by the bootstrap over the repetitions ({n}), if enough."
     return Curves(caption, [panel], columns=1)
 
 

@@ -1,69 +1,78 @@
-"""Heat maps over two axes, and small multiples over three."""
+"""Heat maps over two axes, and small multiples over more."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from runner.reporting.document import Block, Map, Maps, Section, Text
+from runner.reporting.document import Block, Map, Maps, Section
 from runner.reporting.sweep import theory
 from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_name, value_names
 from runner.sweeps.measurements import Axis, FloatArray
 
+_POOLED = "seed"  # the one axis over which maps take a median: its values mean nothing
 _FEWEST_FOR_CONTOURS = 3
 _MOST_MULTIPLES = 9
 _MOST_POINTED = 5000  # cells that tell about themselves; a page with more would be slow
 
 
 def section(subject: Subject) -> Section:
-    """Return the maps of a sweep over two axes or more."""
-    axes = _chosen(subject)
-    blocks: list[Block] = []
-    others = [axis.name for axis in subject.axes if axis not in axes]
-    if others:
-        blocks.append(
-            Text(
-                f"Shown are the three axes that explain most of {subject.metrics[0]}; over {', '.join(others)} the "
-                "median is taken.".replace("$", "$$")
-            )
-        )
-    for metric in subject.metrics:
-        if np.isfinite(subject.medians[metric]).any():
-            blocks.append(_maps(subject, metric, axes))
-    blocks += theory.explained(axes[:2])
-    return Section("Maps", blocks)
+    """Return the maps of a sweep over two axes or more, in which every value is that of one cell."""
+    x, y, *others = _chosen(subject)
+    blocks: list[Block] = [
+        _maps(subject, metric, x, y, others) for metric in subject.metrics if np.isfinite(subject.medians[metric]).any()
+    ]
+    return Section("Maps", [*blocks, *theory.explained([x, y])])
 
 
 def _chosen(subject: Subject) -> list[Axis]:
-    """Return the axes of the maps: horizontal, vertical, and where there are more that of the multiples."""
-    if len(subject.axes) <= 2:
+    """Return the axes of the maps: horizontal, vertical, and where there are more those of the multiples."""
+    axes = [axis for axis in subject.axes if axis.name != _POOLED]
+    if len(axes) < 2:
         return list(subject.axes)
+    if len(axes) == 2:
+        return axes
     effects = subject.effects[subject.metrics[0]].effects
     share = {effect.axes[0]: effect.share for effect in effects if len(effect.axes) == 1}
-    strongest = sorted(subject.axes, key=lambda axis: -share[axis.name])[:3]
-    # The one with fewest values makes the multiples.
-    multiple = min(strongest, key=lambda axis: len(axis.values))
-    return [*(axis for axis in strongest if axis is not multiple), multiple]
+    ordered = sorted(axes, key=lambda axis: -share[axis.name])
+    numbers = [axis for axis in ordered if axis.numbers is not None]
+    if len(numbers) == 2:  # a map of each arm, task or law
+        return [*numbers, *(axis for axis in ordered if axis.numbers is None)]
+    if len(numbers) > 2:
+        ordered = [*numbers, *(axis for axis in ordered if axis.numbers is None)]
+    # Of the three that explain most the one with fewest values makes the multiples.
+    multiple = min(ordered[:3], key=lambda axis: len(axis.values))
+    return [*(axis for axis in ordered[:3] if axis is not multiple), multiple, *ordered[3:]]
 
 
-def _maps(subject: Subject, metric: str, axes: list[Axis]) -> Maps:
+def _maps(subject: Subject, metric: str, x: Axis, y: Axis, others: Sequence[Axis]) -> Maps:
+    """Return a map for each combination of the values of the other axes, as tasks or arms are not to be averaged."""
     medians, columns = subject.medians[metric], 1
-    if len(axes) == 2:
-        cells = _map(subject, metric, axes[0], axes[1], range(len(medians)), "")
+    pooled = next((axis for axis in subject.axes if axis.name == _POOLED and axis not in (x, y)), None)
+    what = "Median of each cell" if pooled is None else (
+        f"Of the medians of the cells of {len(pooled.values)} seeds the middle one, of an even number the lower"
+    )  # fmt: skip
+    if not others:
+        cells = _map(subject, metric, x, y, range(len(medians)), "")
         panels = [cells]
-        if metric == subject.metrics[0] and _has_contours(axes[0], axes[1], cells.values):
+        if metric == subject.metrics[0] and _has_contours(x, y, cells.values):
             panels.append(replace(cells, contours=True))
-        what = "Median of each cell, and lines of equal value" if len(panels) > 1 else "Median of each cell"
+            what += ", and lines of equal value"
     else:
-        multiple = axes[2]
-        levels = np.unique(np.linspace(0, len(multiple.values) - 1, _MOST_MULTIPLES).round().astype(int))
+        levels = np.column_stack([axis.level for axis in others])
+        combinations = np.unique(levels, axis=0)
+        shown = np.unique(np.linspace(0, len(combinations) - 1, _MOST_MULTIPLES).round().astype(int))
         panels = [
-            _map(subject, metric, axes[0], axes[1], np.flatnonzero(multiple.level == level).tolist(),
-                 f"{multiple.name} = {value_name(multiple, level)}")
-            for level in levels.tolist()
+            _map(subject, metric, x, y, np.flatnonzero((levels == some).all(axis=1)).tolist(),
+                 ", ".join(f"{axis.name} = {value_name(axis, int(level))}"
+                           for axis, level in zip(others, some, strict=True)))
+            for some in combinations[shown]
         ]  # fmt: skip
-        columns = min(3, len(panels))
-        what = f"Median of each cell, a map for each value of {multiple.name}"
+        columns = min(3 if len(others) == 1 else 2, len(panels))
+        names = " and ".join(axis.name for axis in others)
+        what += f", a map for each value of {names}"
+        if len(shown) < len(combinations):
+            what += f" ({len(shown)} of {len(combinations)}, evenly chosen; All runs has the others)"
     crosses = " A cross marks failed runs." if any(panel.failed.any() for panel in panels) else ""
     caption = f"{what}: {metric}.{crosses}".replace("$", "$$")
     return Maps(caption, subject.label(metric), panels, spans_decades(medians), columns)
@@ -94,8 +103,9 @@ def _map(subject: Subject, metric: str, x: Axis, y: Axis, cells: Sequence[int], 
 
 
 def _median(values: FloatArray) -> float:
+    """Return the middle one of some values, of an even number the lower: a value that one of the cells has."""
     present = values[~np.isnan(values)]
-    return float(np.median(present)) if present.size else float("nan")
+    return float(np.quantile(present, 0.5, method="inverted_cdf")) if present.size else float("nan")
 
 
 def _has_contours(x: Axis, y: Axis, values: FloatArray) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from runner.reporting.document import Document, Provenance, RunList, Section, Text
-from runner.reporting.sweep import axes, distributions, effects, extremes, failures, maps, tradeoff
+from runner.reporting.sweep import axes, caveats, distributions, effects, extremes, failures, maps, pairs, tradeoff
 from runner.reporting.sweep.subject import Subject, choose, value_names
 from runner.store import Sweep
 from runner.sweeps.measurements import measure
@@ -30,10 +30,13 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     """
     subject = choose(measure(sweep.overrides, sweep.runs()), metrics)
     measurements = subject.measurements
-    sections = [axes.section(subject, sweep.command)]
+    doubts = [caveats.section(subject)] if caveats.is_needed(subject) else []
+    sections = [*doubts, axes.section(subject, sweep.command)]
     ranked = subject.ranked
     if subject.metrics and subject.axes:
         sections.append(effects.section(subject))
+        compared = pairs.section(subject)
+        sections += [compared] if compared is not None else []
     if subject.metrics and len(subject.axes) > 1:
         sections.append(maps.section(subject))
     traded = tradeoff.pair(subject) if subject.metrics else None
@@ -63,6 +66,9 @@ def _abstract(subject: Subject) -> str:
     ends = f"{failed} of them failed" if failed else "all of them finished"
     over = f" over {sizes}" if sizes else ""
     texts = [f"{cells} cells{over}, {ends}; repetitions in each: {measurements.repetitions}."]
+    doubted = sum(bool(found) for found in measurements.caveats)
+    if doubted:
+        texts.append(f"{doubted} of {cells} cells have caveats.")
     ranked = subject.ranked
     if ranked and subject.axes:
         metric = subject.metrics[0]
@@ -80,6 +86,11 @@ def _all_runs(subject: Subject, sweep: Sweep, address: str) -> Section:
         caption = f"The {MOST_RUNS // 2} best and the {MOST_RUNS // 2} worst of {len(measurements.hashes)} runs."
     names = list(dict.fromkeys([*subject.metrics, *measurements.values]))
     medians = [subject.medians[name][order] for name in names]
+    shown = [(name, measurements.units[name]) for name in names]
+    if any(measurements.caveats):  # behind the metrics that are compared
+        counts = np.array([len(found) for found in measurements.caveats], dtype=float)
+        medians.insert(len(subject.metrics), counts[order])
+        shown.insert(len(subject.metrics), ("caveats", "1"))
     values = np.column_stack(medians) if medians else np.zeros((len(order), 0))
     cells = order.tolist()
     levels = np.column_stack([axis.level[order] for axis in subject.axes] or [np.zeros((len(order), 0), dtype=np.intp)])
@@ -87,7 +98,7 @@ def _all_runs(subject: Subject, sweep: Sweep, address: str) -> Section:
         caption,
         [(axis.name, value_names(axis)) for axis in subject.axes],
         levels,
-        [(name, measurements.units[name]) for name in names],
+        shown,
         np.where(np.isfinite(values), values, np.nan),
         subject.hashes(cells),
         [measurements.failures[cell] for cell in cells],

@@ -17,6 +17,12 @@ from runner.sweeps.measurements import Axis, FloatArray, Measurements
 MOST_METRICS = 4
 """Metrics that a report compares when nobody has named any."""
 
+QUANTILE_RULE = (
+    "A quantile is the smallest value that so large a share of the repetitions does not exceed: the value of one of "
+    "them, never one between two (NumPy's inverted_cdf)."
+)
+"""What reports say of their quantiles."""
+
 _PREFERRED = (
     "max_tracking_error",
     "settling_time",
@@ -63,7 +69,7 @@ class Subject:
     def _analyse(self, values: FloatArray) -> EffectAnalysis:
         present = ~np.isnan(values).ravel()
         levels = {axis.name: np.repeat(axis.level, values.shape[1])[present] for axis in self.axes}
-        return axis_effects(levels, values.ravel()[present])
+        return axis_effects(levels, values.ravel()[present], self.measurements.draws.ravel()[present])
 
     @cached_property
     def order(self) -> NDArray[np.intp]:
@@ -80,6 +86,11 @@ class Subject:
             return []
         medians, statuses = self.medians[self.metrics[0]], self.measurements.statuses
         return [cell for cell in self.order.tolist() if np.isfinite(medians[cell]) and statuses[cell] == "ok"]
+
+    def share_seeds(self, a: int, b: int) -> bool:
+        """Return whether two cells have the same random draws in each repetition."""
+        seeds = self.measurements.seeds
+        return not len(seeds) or seeds[a] == seeds[b]
 
     def label(self, metric: str) -> str:
         """Return the name of a metric with its unit, as on the axis of a figure."""

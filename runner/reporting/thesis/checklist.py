@@ -83,9 +83,9 @@ def checklist_section(sections: Sequence[Section]) -> Section:
         f"{sum(n.startswith('table') for n, *_ in _LIST)} tables. {ours - len(missing)} of the {ours} that can be "
         "remade stand in this report, "
         + (f"all but {', '.join(missing)}. " if missing else "none is missing. ")
-        + "Reproduced: made again from simulation or model, with the thesis' axes. Drawn anew: made from the "
-        "model or from the graph of the controller that ran. The images of the thesis are lost in the text that has "
-        "come down to us; only captions and the numbers in its text can be compared."
+        + "Reproduced: made again from simulation or model, with the quantities that the thesis' captions name. "
+        "Drawn anew: made from the model or from the graph of the controller that ran. The images of the thesis are "
+        "lost in the text that has come down to us; only captions and the numbers in its text can be compared."
     )
     table = Table("All figures and tables of the thesis.", ["number", "what it shows", "state", "where"], rows)
     return Section("Checklist: every figure and table of the thesis", (Text(text), table))

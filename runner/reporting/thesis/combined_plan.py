@@ -9,6 +9,7 @@ VANISHING = (0.1, 0.01, 0.001)  # kg, each of the Mini's two point masses
 NOMINAL_MASS = 0.2  # kg, the thesis' Mini
 MASSES = (0.01, 0.05, NOMINAL_MASS, 0.5, 1.0, 1.5, 1.75, 2.0, 2.5, 3.0)  # kg, the whole Mini
 PAYLOADS = ("unknown", "known")
+NOISY_MASSES = (1.5, 1.75)  # kg, with the thesis' noise, near the mass at which one-way control breaks without
 MACRO_PERIODS = (0.01, 0.02, 0.03, 0.032, 0.033, 0.034, 0.036)  # s
 MINI_PERIODS = (0.001, 0.002, 0.003, 0.0032, 0.0033, 0.0034, 0.0036)  # s
 EULER_PERIODS = {1: (0.0026, 0.0027, 0.0028, 0.0029), 4: (0.003, 0.0031, 0.0032, 0.0033)}  # s, by steps in a period
@@ -45,9 +46,11 @@ COMPARED_RATES = {
         "controller.natural_frequency.mini=30",
     ),
     "two_way, 10 ms and 1 ms": ("controller.coupling=two_way",),
+    "two_way, both 1 ms": ("controller.coupling=two_way", "controller.period.macro=0.001"),
 }
 _STAGED = {"goal": "experiment=thesis/figure_5_8", "quintic": "experiment=thesis/figure_5_12"}
 _ONCE = ("repetitions=1", "noise=none")
+_SEVEN, _EIGHT = "repetitions=7", "repetitions=8"
 _BULLET_STEP = "plant.step=0.00025"
 
 
@@ -93,13 +96,16 @@ def _mini_mass(mass: float) -> tuple[str, ...]:
 
 
 def _masses() -> Jobs:
-    return {
+    jobs = {
         f"mass/{mass}/{payload}": Job(
             (_STAGED["quintic"], *_ONCE, *_mini_mass(mass), f"controller.payload={payload}"),
         )
         for mass in MASSES
         for payload in PAYLOADS
     }
+    for mass in NOISY_MASSES:
+        jobs[f"mass_noise/{mass}"] = Job((_STAGED["quintic"], _EIGHT, *_mini_mass(mass)))
+    return jobs
 
 
 def _sampling() -> Jobs:
@@ -178,10 +184,10 @@ def _whole_body() -> Jobs:
     for rate, overrides in COMPARED_RATES.items():
         for motion in MOTIONS:
             base = (f"trajectory={motion}",) if "experiment=thesis/whole_body" in overrides else (_STAGED[motion],)
-            jobs[f"whole_body/{motion}/{rate}"] = Job((*base, *overrides, "repetitions=3", _BULLET_STEP))
+            jobs[f"whole_body/{motion}/{rate}"] = Job((*base, *overrides, _SEVEN, _BULLET_STEP))
     for speed in TIP_SPEEDS:
         overrides = ("experiment=thesis/whole_body", "trajectory=goal", f"controller.max_tip_speed={speed:g}")
-        jobs[f"whole_body/speed/{speed}"] = Job((*overrides, "repetitions=3"))
+        jobs[f"whole_body/speed/{speed}"] = Job((*overrides, _SEVEN))
     slow = ("experiment=thesis/whole_body", "controller.period=0.01", f"trajectory.duration={SLOW_DURATION:g}")
     jobs["whole_body/slow"] = Job((*slow, "repetitions=1", _BULLET_STEP))
     for coupling in ("one_way", "mini_held"):

@@ -4,11 +4,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.reporting.document import Block, Curves, Formula, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Block, Curves, Formula, Panel, Section, Series, Table, Text
 from runner.reporting.figures import origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
 from runner.reporting.quantities import number, quantity
-from runner.reporting.run_values import cell, clock, failures
+from runner.reporting.run_values import cell, clock, failures, measured
 from runner.reporting.thesis.combined_plan import FOLDING, MOTIONS, TARGETS
+from runner.reporting.thesis.left_out_gravity import missing_acceleration
 from runner.reporting.thesis.studies import extension, mini_dexterity
 from runner.store import Run
 
@@ -104,45 +107,46 @@ def _series(name: str, t: np.ndarray, y: np.ndarray, style: str, color: int) -> 
     return Series(name, t, np.where(y > 0.0, y, np.nan), "dashed" if style == "dashed" else "line", color=color)
 
 
-def _finding(runs: Mapping[str, Run], dexterity: Mapping[str, np.ndarray]) -> Notice:
-    def at_rest(case: str) -> str:
-        name = f"folding/{case}/tip_goal/quintic"
-        run, share = runs[name], dexterity[name][:, 0]
-        if run.status == "failed":
-            return f"With preset {case} the run ends: {run.failure_text}"
-        error = cell(run, "steady_state_error")
-        return (
-            f"With preset {case} the Mini ends {quantity(float(extension(run)[-1]), 'm', 2)} from its base, with a "
-            f"smallest singular value of {quantity(float(share[-1]), 'm', 2)} and a tip error of {error} m"
+def _finding(runs: Mapping[str, Run], dexterity: Mapping[str, np.ndarray]) -> Finding:
+    tips = {
+        (case, target, motion): measured(
+            runs[f"folding/{case}/{target}/{motion}"],
+            "steady_state_error",
+            f"tip at rest ({case}, {target}, {_MOTION[motion]})",
         )
-
-    lost = [
-        case
         for case in _CASES
+        for target in TARGETS
         for motion in MOTIONS
-        if _worse(runs[f"folding/{case}/tip_goal/{motion}"], runs[f"folding/{case}/minus_home/{motion}"])
-    ]
-    who = [case for case in _CASES if case in lost]
-    title = (
-        f"Folding costs the control with preset {' and '.join(who)}"
-        if who
-        else "Folding costs neither preset its control"
+    }
+    sound, reported = (runs[f"folding/{case}/tip_goal/quintic"] for case in _CASES)
+    folded, kept = (Measured(f"|p| at the end ({case})", float(extension(run)[-1]), "m")
+                    for case, run in zip(_CASES, (sound, reported), strict=True))  # fmt: skip
+    singular = {
+        case: Measured(
+            f"singular value at the end ({case})", float(dexterity[f"folding/{case}/tip_goal/quintic"][-1, 0]), "m"
+        )
+        for case in _CASES
+    }
+    sag = Measured("sag of the Macro (as_reported), closed form", _sag(reported), "m")
+    lost, spared = (tips[case, "tip_goal", "quintic"] for case in _CASES)
+    return finding(
+        "Folding costs the control with preset sound, not with as_reported",
+        f"On the trajectory with preset sound the Mini ends {folded} from its base, with a smallest singular value of "
+        f"{singular['sound']} and a tip error of {lost}; on the goal move the error is "
+        f"{tips['sound', 'tip_goal', 'goal']}. With preset as_reported the Mini ends {kept} from its base, with a "
+        f"smallest singular value of {singular['as_reported']} and a tip error of {spared}. What spares as_reported is "
+        f"its error: without gravity term the Macro sags, by {sag} in closed form, and that sag keeps the Mini "
+        "unfolded.",
+        *(tips["sound", "tip_goal", motion] > 10.0 * tips["sound", "minus_home", motion] for motion in MOTIONS),
+        *(tips["sound", "tip_goal", motion] > 2e-3 for motion in MOTIONS),
+        *(tips["as_reported", "tip_goal", m].near(tips["as_reported", "minus_home", m], 0.2) for m in MOTIONS),
+        folded < 0.1 * kept,
+        singular["sound"] < 0.5 * singular["as_reported"],
+        kept.near(sag, 0.1),
     )
-    spared = [case for case in _CASES if case not in who]
-    sag = (
-        " What spares as_reported is its error: without gravity term the Macro sags, and that sag keeps the Mini "
-        "unfolded."
-        if spared == ["as_reported"]
-        else ""
-    )
-    return Notice("finding", title, ". ".join(at_rest(case) for case in _CASES) + "." + sag)
 
 
-def _worse(folded: Run, home: Run) -> bool:
-    """Tell whether folding ends a run, or leaves an error ten times that of x_d - r_0 and above a millimetre."""
-    if folded.status == "failed":
-        return home.status != "failed"
-    ours, theirs = (run.metrics.get("steady_state_error", {}).get("median") for run in (folded, home))
-    if ours is None or theirs is None:
-        return False
-    return bool(ours > max(10.0 * theirs, 1e-3))
+def _sag(run: Run) -> float:
+    """Return the closed form of the Macro's sag at the end of a run, in m."""
+    rate = float(run.config["controller"]["natural_frequency"]["macro"])
+    return missing_acceleration(run, len(run.trace) - 1) / rate**2

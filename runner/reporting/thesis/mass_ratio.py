@@ -4,11 +4,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.figures import origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
 from runner.reporting.quantities import number, quantity
-from runner.reporting.run_values import cell, failures, median, values
-from runner.reporting.thesis.combined_plan import MASSES, NOMINAL_MASS, PAYLOADS
+from runner.reporting.run_values import cell, failures, measured, median, values
+from runner.reporting.thesis.combined_plan import MASSES, NOISY_MASSES, NOMINAL_MASS, PAYLOADS
 from runner.store import Run
 
 _FACTOR = 10.0  # of the tip error of the thesis' own Mini
@@ -23,8 +25,9 @@ _COLUMNS = {
 
 def mass_ratio_section(runs: Mapping[str, Run]) -> Section:
     """Return tracking errors and saturation over the mass of the Mini, and where one-way control breaks."""
-    ours = {name: run for name, run in runs.items() if name.startswith("mass/")}
-    carrier = _macro_mass(runs[f"mass/{MASSES[0]}/{PAYLOADS[0]}"])
+    ours = {name: run for name, run in runs.items() if name.startswith(("mass/", "mass_noise/"))}
+    first = runs[f"mass/{MASSES[0]}/{PAYLOADS[0]}"]
+    carrier = _macro_mass(first)
     rows = [
         [
             payload,
@@ -58,18 +61,20 @@ def mass_ratio_section(runs: Mapping[str, Run]) -> Section:
     blocks: list[Block] = [
         Text(
             "One-way tracking (preset sound, coupled, $t_f = 3$ s, thesis torque limits, no noise) with ever "
-            "heavier Minis, which the Macro's model either does not know or knows as a point mass at its end. We "
+            "heavier Minis, which the Macro's model either does not know or knows as a point mass at its end: one run "
+            "of each. We "
             f"call one-way control broken from that mass on whose largest tip error exceeds {_FACTOR:g} times that "
-            "of the thesis' Mini."
+            "of the thesis' Mini. A run under noise is compared with the thesis' Mini under noise."
         ),
-        Curves("Largest axis error over 0 to $t_f$.", panels, 2, origin(next(iter(ours.values())))),
+        Curves("Largest axis error over 0 to $t_f$.", panels, 2, origin(first)),
         *(_breaking(runs, payload, carrier) for payload in PAYLOADS),
+        _noisy(runs, carrier),
         Table(
-            "All masses.",
+            "All masses, without noise.",
             ["payload", "Mini (kg)", "ratio", *_COLUMNS.values()],
             rows,
             tuple(range(1, len(_COLUMNS) + 3)),
-            origin(next(iter(ours.values()))),
+            origin(first),
         ),
         *failures(ours),
     ]
@@ -77,7 +82,7 @@ def mass_ratio_section(runs: Mapping[str, Run]) -> Section:
 
 
 def breaking_masses(runs: Mapping[str, Run], payload: str) -> tuple[float | None, float | None]:
-    """Return the largest mass with which one-way control works and the next one, with which it is broken, in kg."""
+    """Return the largest mass with which one-way control works without noise and the next, with which not, in kg."""
     nominal = runs[f"mass/{NOMINAL_MASS}/{payload}"]
     threshold = median(nominal, "max_tracking_error")
     works = None
@@ -89,32 +94,87 @@ def breaking_masses(runs: Mapping[str, Run], payload: str) -> tuple[float | None
     return works, None
 
 
-def _breaking(runs: Mapping[str, Run], payload: str, carrier: float) -> Notice:
+def _breaking(runs: Mapping[str, Run], payload: str, carrier: float) -> Finding:
+    """Return between which masses one-way control breaks in single runs without noise."""
     works, broken = breaking_masses(runs, payload)
-    if broken is None:
-        return Notice("finding", f"Payload {payload}: not broken", f"One-way control works up to {works:g} kg.")
-    if works is None:
-        return Notice("finding", f"Payload {payload}: broken throughout", "One-way control works with no mass tried.")
-    run = runs[f"mass/{broken}/{payload}"]
-    lost, limited = median(run, "reach_loss_fraction"), median(run, "saturation_fraction")
-    before = median(runs[f"mass/{works}/{payload}"], "saturation_fraction")
-    if lost:
-        reason = f"The target is out of the Mini's reach for {number(100 * lost, 2)} % of the ticks"
-    else:
-        reason = "The Mini still reaches its target at every tick"
-    if limited is not None and before is not None:
-        reason += (
-            f"; some joint stands at its limit for {number(100 * limited)} % of them ({number(100 * before)} % with "
-            "the last mass that works)"
-        )
-    return Notice(
-        "finding",
-        f"Payload {payload}: breaks between a ratio of {number(works / carrier)} and {number(broken / carrier)}",
-        f"With {works:g} kg the tip error is "
-        f"{quantity(median(runs[f'mass/{works}/{payload}'], 'max_tracking_error'), 'm')}, with {broken:g} kg "
-        f"{quantity(median(run, 'max_tracking_error'), 'm')}. {reason}. The thesis' ratio is "
-        f"{number(NOMINAL_MASS / carrier)}.",
+    nominal = _error(runs, NOMINAL_MASS, payload)
+    before, after = _error(runs, works, payload), _error(runs, broken, payload)
+    heavier = [_error(runs, mass, payload) for mass in MASSES if broken is not None and mass > broken]
+    lost, never_lost = (_percent(runs, mass, payload, "reach_loss_fraction") for mass in (broken, works))
+    limited, before_limited = (_percent(runs, mass, payload, "saturation_fraction") for mass in (broken, works))
+    common = (
+        before < 0.5 * _FACTOR * nominal,
+        after > 2.0 * _FACTOR * nominal,
+        *(error > _FACTOR * nominal for error in heavier),
+        lost > 0.2,
+        never_lost <= 0.0,
     )
+    known = payload == "known"
+    at_limit = (
+        f"Some joint stands at its torque limit for {limited} of the ticks, against {before_limited} before."
+        if known
+        else f"Torque limits are not what changes: some joint stands at its limit for {limited} of the ticks, and for "
+        f"{before_limited} before."
+    )
+    return finding(
+        f"Payload {payload}, single runs without noise: breaks between a ratio of {_ratio(works, carrier)} and "
+        f"{_ratio(broken, carrier)}",
+        f"Without noise the tip error is {before} with {_kilograms(works)} and {after} with {_kilograms(broken)}, "
+        f"where the target is out of the Mini's reach for {lost} of the ticks; with the lighter one it never is. "
+        f"{at_limit} Every heavier Mini tried is broken, too. The thesis' ratio is {number(NOMINAL_MASS / carrier)}.",
+        *common,
+        limited > 2.0 * before_limited if known else limited.near(before_limited, 0.2),
+    )
+
+
+def _noisy(runs: Mapping[str, Run], carrier: float) -> Finding:
+    """Return what the thesis' noise makes of the masses just below the one that breaks without noise."""
+    nominal = measured(runs["figure_5_12/sound"], "max_tracking_error", f"tip error with noise, {NOMINAL_MASS:g} kg")
+    light, heavy = NOISY_MASSES
+    errors = {
+        mass: measured(runs[f"mass_noise/{mass}"], "max_tracking_error", f"tip error with noise, {mass:g} kg")
+        for mass in NOISY_MASSES
+    }
+    highest = {mass: _highest(runs[f"mass_noise/{mass}"], mass) for mass in NOISY_MASSES}
+    exact = _error(runs, heavy, "unknown")
+    return finding(
+        f"Under noise one-way control breaks with a lighter Mini: {heavy:g} kg, a ratio of {_ratio(heavy, carrier)}",
+        f"With the thesis' noise over {runs[f'mass_noise/{heavy}'].record['repetitions']} seeds, payload unknown, the "
+        f"median tip error is {errors[light]} with {light:g} kg (largest {highest[light]}) and {errors[heavy]} with "
+        f"{heavy:g} kg (largest {highest[heavy]}), {errors[heavy] / nominal} times the {nominal} of the thesis' Mini. "
+        f"Without noise {heavy:g} kg still works, with {exact}.",
+        errors[light] < 0.5 * _FACTOR * nominal,
+        highest[light] < 2.0 * _FACTOR * nominal,
+        errors[heavy] > 0.5 * _FACTOR * nominal,
+        highest[heavy] > 2.0 * _FACTOR * nominal,
+        errors[heavy] > 2.0 * errors[light],
+        exact < 0.5 * _FACTOR * _error(runs, NOMINAL_MASS, "unknown"),
+    )
+
+
+def _highest(run: Run, mass: float) -> Measured:
+    stored = run.metrics.get("max_tracking_error")
+    return Measured(f"largest tip error with noise, {mass:g} kg", None if stored is None else stored["max"], "m")
+
+
+def _error(runs: Mapping[str, Run], mass: float | None, payload: str) -> Measured:
+    if mass is None:
+        return Measured(f"tip error at the mass that breaks, payload {payload}", None, "m")
+    return measured(runs[f"mass/{mass}/{payload}"], "max_tracking_error", f"tip error, {mass:g} kg, payload {payload}")
+
+
+def _percent(runs: Mapping[str, Run], mass: float | None, payload: str, metric: str) -> Measured:
+    share = None if mass is None else median(runs[f"mass/{mass}/{payload}"], metric)
+    name = f"{_COLUMNS[metric]}, {_kilograms(mass)}, payload {payload}"
+    return Measured(name, None if share is None else 100.0 * share, "%")
+
+
+def _ratio(mass: float | None, carrier: float) -> str:
+    return number(None if mass is None else mass / carrier)
+
+
+def _kilograms(mass: float | None) -> str:
+    return quantity(mass, "kg")
 
 
 def _macro_mass(run: Run) -> float:

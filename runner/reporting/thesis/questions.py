@@ -2,15 +2,15 @@
 
 from collections.abc import Mapping
 
-from runner.reporting.document import Block, Notice, Section, Table, Text
+from runner.reporting.document import Block, Section, Table, Text
 from runner.reporting.figures import origin
+from runner.reporting.findings import Finding, finding
 from runner.reporting.job import PRESETS
-from runner.reporting.quantities import number, quantity
-from runner.reporting.run_values import cell, median
+from runner.reporting.measured import Measured
+from runner.reporting.run_values import cell, measured
 from runner.reporting.thesis.combined_plan import NOMINAL_MASS
 from runner.reporting.thesis.mass_ratio import breaking_masses
 from runner.reporting.thesis.mini_accuracy import mini_accuracy
-from runner.reporting.thesis.studies import ratio
 from runner.reporting.thesis.whole_body import fastest_method_3, fastest_speed
 from runner.store import Run
 
@@ -34,55 +34,51 @@ def questions_section(runs: Mapping[str, Run]) -> Section:
     )
 
 
-def _strategy(runs: Mapping[str, Run]) -> Notice:
-    tracked = {name: median(runs[f"{figure}/sound"], "max_tracking_error") for name, figure in _TRACKING.items()}
-    alone = median(runs["macro_alone/sound"], "macro_max_tracking_error")
-    known = {name: error for name, error in tracked.items() if error is not None}
-    best = min(known, key=lambda name: known[name]) if known else None
+def _strategy(runs: Mapping[str, Run]) -> Finding:
+    one, two = (_tracking(runs, name) for name in ("one-way", "two-way"))
+    independent, alone = _tracking(runs, "independent"), _alone(runs)
     works, broken = breaking_masses(runs, "unknown")
-    good = best is not None and alone is not None and known[best] < alone
-    listed = ", ".join(f"{name} {quantity(error, 'm')}" for name, error in tracked.items())
-    conditions = (
-        "Each arm needs its own dynamics alone, as long as the Macro's target leaves the Mini room ($x_d - r_0$) "
-        "and the Mini knows its target's velocity, and gravity in its turning base. "
-        if good
-        else ""
+    heaviest = Measured("heaviest Mini with which one-way control works, without noise", works, "kg")
+    first_broken = Measured("lightest Mini tried with which it breaks", broken, "kg")
+    return finding(
+        "3. An overall strategy from the dynamics of two separate arms? Yes: one-way",
+        f"Largest tracking error of the tip: one-way {one}, two-way {two}, independent {independent}; the Macro alone "
+        f"{alone}. Each arm needs its own dynamics alone, as long as the Macro's target leaves the Mini room "
+        "($x_d - r_0$) and the Mini knows its target's velocity, and gravity in its turning base. In single runs "
+        f"without noise one-way control works up to a Mini of {heaviest} and breaks with {first_broken}; the thesis' "
+        f"weighs {NOMINAL_MASS:g} kg.",
+        one < 0.1 * alone,
+        one < two,
+        one < independent,
+        heaviest > NOMINAL_MASS,
+        first_broken > heaviest,
     )
-    return Notice(
-        "finding",
-        f"3. An overall strategy from the dynamics of two separate arms? {f'Yes: {best}' if good else 'No'}",
-        f"Largest tracking error of the tip: {listed}; the Macro alone {quantity(alone, 'm')}. {conditions}"
-        + (
-            f"One-way control works up to a Mini of {works:g} kg"
-            if works is not None
-            else "One-way control works with no Mini"
-        )
-        + (f" and breaks with {broken:g} kg" if broken is not None else "")
-        + f"; the thesis' weighs {NOMINAL_MASS:g} kg.",
-    )
+
+
+def _tracking(runs: Mapping[str, Run], coupling: str, preset: str = "sound") -> Measured:
+    return measured(runs[f"{_TRACKING[coupling]}/{preset}"], "max_tracking_error", f"{coupling} ({preset})")
+
+
+def _alone(runs: Mapping[str, Run], preset: str = "sound") -> Measured:
+    return measured(runs[f"macro_alone/{preset}"], "macro_max_tracking_error", f"the Macro alone ({preset})")
 
 
 _TRACKING = {"one-way": "figure_5_12", "two-way": "figure_5_13", "independent": "figure_5_3"}
 
 
-def _independent(runs: Mapping[str, Run]) -> Notice:
-    pairs = {
-        p: [median(runs[f"{f}/{p}"], "max_tracking_error") for f in ("figure_5_3", "figure_5_12")] for p in PRESETS
-    }
-    independent, coupled = pairs["sound"]
-    better = independent is not None and coupled is not None and coupled < independent
-    macro = median(runs["figure_5_3/sound"], "macro_max_tracking_error")
-    verdict = (
-        f"Coupled, by a factor of {ratio(independent, coupled)} in the largest tracking error "
-        f"({ratio(*pairs['as_reported'])} with as_reported). "
-        if better
-        else f"Independent: coupling makes the largest tracking error {ratio(coupled, independent)} times larger. "
-    )
-    return Notice(
-        "finding",
-        "4. Independent or coupled controllers?",
-        verdict + f"Independent, the tip misses by {quantity(independent, 'm')} where the Macro's end point misses by "
-        f"{quantity(macro, 'm')}: it bears all the Macro's errors, and its offset turns with the wrist.",
+def _independent(runs: Mapping[str, Run]) -> Finding:
+    independent, coupled = _tracking(runs, "independent"), _tracking(runs, "one-way")
+    fitted = _tracking(runs, "independent", "as_reported") / _tracking(runs, "one-way", "as_reported")
+    macro = measured(runs["figure_5_3/sound"], "macro_max_tracking_error", "the Macro's end point, independent")
+    return finding(
+        "4. Independent or coupled controllers? Coupled",
+        f"The largest tracking error is {independent / coupled} times smaller with one-way coupling ({fitted} times "
+        f"with as_reported). Independent, the tip misses by {independent} where the Macro's end point misses by "
+        f"{macro}: it bears all the Macro's errors, and as the Mini keeps its offset $r_0$ in its own frame, which "
+        "turns with the wrist, it misses by that turn, too.",
+        independent > 10.0 * coupled,
+        fitted > 2.0,
+        independent > 1.2 * macro,
     )
 
 
@@ -106,7 +102,7 @@ def _effectiveness(runs: Mapping[str, Run]) -> list[Block]:
                 ]
             )
     return [
-        Notice("finding", "5. How effective is the overall controller in simulation?", _summary(runs)),
+        _effect(runs),
         Table(
             "Medians over the repetitions.",
             [
@@ -124,57 +120,48 @@ def _effectiveness(runs: Mapping[str, Run]) -> list[Block]:
     ]
 
 
-def _summary(runs: Mapping[str, Run]) -> str:
-    sentences = []
-    for preset in PRESETS:
-        alone = median(runs[f"macro_alone/{preset}"], "macro_max_tracking_error")
-        pairs = [
-            (name, median(runs[f"{_TRACKING[name]}/{preset}"], "max_tracking_error")) for name in ("one-way", "two-way")
-        ]
-        found = ", ".join(
-            f"{ratio(alone, tip)} times better with {name} coupling"
-            if tip is not None and alone is not None and tip < alone
-            else f"not better with {name} coupling"
-            for name, tip in pairs
-        )
-        sentences.append(f"with preset {preset} tracking is {found}{'.' if preset == PRESETS[-1] else ';'}")
-    return " ".join(("Measured against the Macro's end point with the Mini held still:", *sentences))
+def _effect(runs: Mapping[str, Run]) -> Finding:
+    ratios = {
+        (preset, name): _alone(runs, preset) / _tracking(runs, name, preset)
+        for preset in PRESETS
+        for name in ("one-way", "two-way")
+    }
+    fitted, sound = ([ratios[preset, name] for name in ("one-way", "two-way")] for preset in PRESETS)
+    return finding(
+        "5. How effective is the overall controller in simulation?",
+        "Measured against the Macro's end point with the Mini held still, tracking is "
+        f"{sound[0]} times better with one-way and {sound[1]} times with two-way coupling (preset sound), and "
+        f"{fitted[0]} times with one-way coupling where preset as_reported is taken, with two-way {fitted[1]} times.",
+        sound[0] > 10.0,
+        sound[1] > 2.0,
+        fitted[0] > 2.0,
+        fitted[1] > 0.5,
+    )
 
 
-def _together(runs: Mapping[str, Run]) -> Notice:
-    tip = median(runs["figure_5_12/sound"], "max_tracking_error")
-    alone = median(runs["macro_alone/sound"], "macro_max_tracking_error")
-    times = {
-        preset: (
-            median(runs[f"figure_5_8/{preset}"], "settling_time"),
-            median(runs[f"macro_alone_goal/{preset}"], "macro_settling_time"),
+def _together(runs: Mapping[str, Run]) -> Finding:
+    tip, alone = _tracking(runs, "one-way"), _alone(runs)
+    limited = measured(runs["macro_alone/sound"], "saturation_fraction_q1", "share of ticks with joint 1 at its limit")
+    best, other = fastest_speed(runs), fastest_method_3(runs)
+    whole = Measured("whole body with a limited tip speed", None if best is None else best[1], "s")
+    tried = Measured("fastest of the variants of method 3 that were tried", None if other is None else other[1], "s")
+    pairs = [
+        (
+            measured(runs[f"figure_5_8/{preset}"], "settling_time", f"one-way ({preset})"),
+            measured(runs[f"macro_alone_goal/{preset}"], "macro_settling_time", f"the Macro alone ({preset})"),
         )
         for preset in PRESETS
-    }
+    ]
     settling = "; ".join(
-        f"{number(one)} against {number(other)} s ({preset}: {_faster(one, other)})"
-        for preset, (one, other) in times.items()
+        f"{one} against {macro} ({preset})" for preset, (one, macro) in zip(PRESETS, pairs, strict=True)
     )
-    best, other = fastest_speed(runs), fastest_method_3(runs)
-    whole = (
-        f" One law for the whole arm with a largest tip speed of {best[0]:g} m/s takes {quantity(best[1], 's')}, the "
-        f"fastest variant of method 3 {quantity(other[1], 's')}."
-        if best is not None and other is not None
-        else ""
+    return finding(
+        "6a. How good is the pair, compared with a Macro whose Mini holds still? Far better on a trajectory",
+        f"The tip errs by {tip} where the Macro alone errs by {alone}, joint 1 being at its torque limit for a share "
+        f"of {limited} of the run. To a goal, one-way against Macro alone: {settling}. One law for the whole arm with "
+        f"a limited tip speed takes {whole}, the fastest of the variants of method 3 that were tried {tried}.",
+        tip < 0.1 * alone,
+        limited > 0.01,
+        whole < 0.9 * tried,
+        *(one / macro > 0.0 for one, macro in pairs),
     )
-    gain = tip is not None and alone is not None and tip < alone
-    limited = median(runs["macro_alone/sound"], "saturation_fraction_q1")
-    stuck = f", joint 1 being at its torque limit for {number(100 * limited, 2)} % of the run" if limited else ""
-    return Notice(
-        "finding",
-        "6a. How good is the pair, compared with a Macro whose Mini holds still?",
-        f"On a trajectory {f'{ratio(alone, tip)} times better' if gain else 'no better'}: the tip errs by "
-        f"{quantity(tip, 'm')} where the Macro alone errs by {quantity(alone, 'm')}{stuck}. To a goal, one-way "
-        f"against Macro alone: {settling}.{whole}",
-    )
-
-
-def _faster(one: float | None, other: float | None) -> str:
-    if one is None or other is None:
-        return "no comparison"
-    return "faster" if one < 0.9 * other else "slower" if one > 1.1 * other else "alike"

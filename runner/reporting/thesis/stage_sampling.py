@@ -1,11 +1,13 @@
 """How slowly each stage of the combined arm may be sampled, against the closed forms."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from runner.reporting.document import Block, Curves, FloatArray, Formula, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Block, Curves, FloatArray, Formula, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Condition, Measured
 from runner.reporting.quantities import number
 from runner.reporting.run_values import clock, failures
 from runner.reporting.thesis.combined_plan import DYNAMICS, EULER_PERIODS, MACRO_PERIODS, MINI_PERIODS
@@ -29,14 +31,15 @@ def stage_sampling_section(runs: Mapping[str, Run]) -> Section:
         ("mini", "mini", None, MINI_PERIODS),
         *((f"euler{steps}", "mini", steps, periods) for steps, periods in EULER_PERIODS.items()),
     ]
-    rows, kept = [], []
+    rows: list[list[str]] = []
+    kept: list[Condition] = []
     for case, stage, steps, periods in cases:
         limit = _limit(steps) / rates[stage]
         plant = "Runge-Kutta" if steps is None else f"Euler, {steps} step{'s' if steps > 1 else ''} per period"
         found = {d: _bracket(runs, case, stage, d, periods) for d in DYNAMICS}
-        kept += [_holds(limit, *found[d]) for d in DYNAMICS]
+        for d in DYNAMICS:
+            kept += _holds(limit, *found[d], f"{stage}, {plant}, {d}")
         rows.append([stage, plant, number(1e3 * limit), *(_range(*found[d]) for d in DYNAMICS)])
-    missed = kept.count(False)
     blocks: list[Block] = [
         Text(
             "One-way control, a goal step of a millimetre, no noise and no torque limit. One stage's period is "
@@ -59,15 +62,7 @@ def stage_sampling_section(runs: Mapping[str, Run]) -> Section:
             (2,),
             origin(runs[f"stage_sampling/macro/coupled/{MACRO_PERIODS[0]}"]),
         ),
-        Notice(
-            "finding",
-            "The closed forms of one arm hold for both stages"
-            if not missed
-            else f"The closed forms hold in {len(kept) - missed} of {len(kept)} cases",
-            f"The thesis' periods lie a factor of {number(1.0 / (rates['macro'] * MACRO_PERIODS[0]), 2)} (Macro) and "
-            f"{number(1.0 / (rates['mini'] * MINI_PERIODS[0]), 2)} (Mini) below the limit. "
-            + _coupling_effect(runs, rates["macro"]),
-        ),
+        _finding(runs, rates, kept),
         _curves(runs, rates["macro"]),
         *_expected_failures(ours),
     ]
@@ -131,8 +126,12 @@ def _bracket(
     return last, None
 
 
-def _holds(limit: float, last: float | None, first: float | None) -> bool:
-    return (last is None or last <= limit) and (first is None or first >= limit) and (last, first) != (None, None)
+def _holds(limit: float, last: float | None, first: float | None, case: str) -> tuple[Condition, Condition]:
+    """Return the conditions that the last period that decays lies below the closed form, the first that grows above."""
+    closed = Measured(f"closed form ({case})", 1e3 * limit, "ms")
+    decays = Measured(f"last period that decays ({case})", None if last is None else 1e3 * last, "ms")
+    grows = Measured(f"first period that grows ({case})", None if first is None else 1e3 * first, "ms")
+    return decays <= closed, grows >= closed
 
 
 def _range(last: float | None, first: float | None) -> str:
@@ -141,18 +140,24 @@ def _range(last: float | None, first: float | None) -> str:
     return f"below {number(1e3 * first)}" if last is None else f"{number(1e3 * last)} to {number(1e3 * first)}"
 
 
-def _coupling_effect(runs: Mapping[str, Run], rate: float) -> str:
-    """Return a sentence on how well the closed form gives the decay below the limit, on both plants."""
+def _finding(runs: Mapping[str, Run], rates: Mapping[str, float], kept: Sequence[Condition]) -> Finding:
+    """Return whether the closed forms give the limits, and the decay below the limit, on both plants."""
     h = MACRO_PERIODS[4]
-    predicted = _predicted(rate * h)
-    measured = {d: _growth(runs[f"stage_sampling/macro/{d}/{h}"], "macro") for d in DYNAMICS}
-    off = max(abs(value / predicted - 1.0) for value in measured.values())
-    if not np.isfinite(off):
-        return ""
-    return (
-        f"At a Macro period of {number(1e3 * h)} ms a deviation is multiplied by {predicted:.4f} in each period by "
-        f"the closed form, by {measured['decoupled']:.4f} on the decoupled plant and by {measured['coupled']:.4f} on "
-        f"the coupled one: riding on each other {'does not move' if off < 0.01 else 'moves'} the limit of this arm."
+    predicted = Measured("factor of a period, closed form", _predicted(rates["macro"] * h))
+    coupled, decoupled = (
+        Measured(f"factor of a period, {d}", _growth(runs[f"stage_sampling/macro/{d}/{h}"], "macro")) for d in DYNAMICS
+    )
+    factors = [number(factor.value, 4) for factor in (predicted, decoupled, coupled)]
+    return finding(
+        "The closed forms of one arm hold for both stages, riding on each other or not",
+        f"The thesis' periods lie a factor of {number(1.0 / (rates['macro'] * MACRO_PERIODS[0]), 2)} (Macro) and "
+        f"{number(1.0 / (rates['mini'] * MINI_PERIODS[0]), 2)} (Mini) below the limit. At a Macro period of "
+        f"{number(1e3 * h)} ms a deviation is multiplied by {factors[0]} in each period by the closed form, by "
+        f"{factors[1]} on the decoupled plant and by {factors[2]} on the coupled one: riding on each other does not "
+        "move the limit of this arm.",
+        *kept,
+        coupled.near(predicted, 0.01),
+        decoupled.near(predicted, 0.01),
     )
 
 
@@ -191,5 +196,5 @@ def _expected_failures(ours: Mapping[str, Run]) -> list[Block]:
         steps = int(case.removeprefix("euler")) if case.startswith("euler") else None
         if h < _limit(steps) / _natural_frequency(run, stage):
             below[name] = run
-    text = f"{len(failed) - len(below)} of {len(ours)} runs, all above the limit, end as diverged, as they should."
+    text = f"{len(failed) - len(below)} of the {len(ours)} runs lie above the limit and end as diverged."
     return [Text(text), *failures(below)]

@@ -4,10 +4,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.reporting.document import Block, Curves, Formula, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Block, Curves, Formula, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, origin
+from runner.reporting.findings import Finding, finding
 from runner.reporting.job import PRESETS
-from runner.reporting.quantities import number, quantity
+from runner.reporting.measured import Condition, Measured
+from runner.reporting.quantities import above_rounding, number
 from runner.reporting.run_values import cell, clock, failures
 from runner.reporting.thesis.combined_plan import STRETCHING
 from runner.reporting.thesis.left_out_gravity import missing_acceleration
@@ -31,9 +33,9 @@ def stretch_section(runs: Mapping[str, Run]) -> Section:
         rows.append(
             [
                 case,
-                number(missing),
-                _speed(predicted),
-                _speed(None if window is None else _drift(run, window)),
+                above_rounding(missing),
+                above_rounding(predicted),
+                above_rounding(None if window is None else _drift(run, window)),
                 "never" if lost is None else f"{lost:.2f}",
                 cell(run, "steady_state_error"),
             ]
@@ -77,10 +79,6 @@ def _damping(run: Run) -> float:
     """Return the Macro's k_v, in 1/s."""
     controller = run.config["controller"]
     return 2.0 * float(controller["damping_ratio"]["macro"]) * float(controller["natural_frequency"]["macro"])
-
-
-def _speed(value: float | None) -> str:
-    return "0" if value is not None and value < 1e-9 else number(value)
 
 
 def _lost(run: Run, reach: float) -> float | None:
@@ -145,29 +143,54 @@ def _quintic_curves(runs: Mapping[str, Run], reach: float) -> Curves:
     )
 
 
-def _finding(runs: Mapping[str, Run], reach: float) -> Notice:
-    lost = {case: _lost(runs[f"stretch/{case}"], reach) for case in STRETCHING}
-    sinks = [f"{case} ({time:.2f} s)" for case, time in lost.items() if time is not None]
-    stays = [case for case, time in lost.items() if time is None and runs[f"stretch/{case}"].status != "failed"]
-    gains = []
-    for case in ("sound", "as_reported"):
-        share = np.mean(rest_of_way(runs[f"stretch/quintic/{case}"]) > reach)
-        gains.append(f"{number(100 * float(share))} % ({case})")
-    title = "A weight that the Macro's law leaves out stretches the Mini" if sinks else "The Mini does not stretch"
-    without, term = lost["as_reported"], lost["as_reported with gravity term"]
-    known, unknown = lost["sound, payload known"], lost["sound"]
-    reasons = ""
-    if without is not None and term is None:
-        reasons += " With as_reported the gravity term alone makes the difference."
-    if unknown is not None and known is None:
-        reasons += (
-            " With sound it is the Mini's own weight, which the Macro's model does not know: told of it, or on the "
-            "decoupled plant, the Mini keeps within reach over this time."
+def _finding(runs: Mapping[str, Run], reach: float) -> Finding:
+    lost = {
+        case: Measured(f"out of reach for good from ({case})", _lost(runs[f"stretch/{case}"], reach), "s")
+        for case in _SINKING
+    }
+    end = float(clock(runs["stretch/sound"])[-1])
+    left = {case: _way_left(runs[f"stretch/{case}"], case) for case in STRETCHING if case not in _SINKING}
+    shares = {
+        preset: Measured(
+            f"share of the trajectory out of reach ({preset})",
+            100.0 * float(np.mean(rest_of_way(runs[f"stretch/quintic/{preset}"]) > reach)),
+            "%",
         )
-    return Notice(
-        "finding",
-        title,
-        f"The goal is lost for good with {', '.join(sinks) or 'no case'}; it stays within reach with "
-        f"{', '.join(stays) or 'none'}.{reasons} On the quintic trajectory the target is out of reach for "
-        f"{' and '.join(gains)} of the run; the reach is {quantity(reach, 'm')}.",
+        for preset in PRESETS
+    }
+    bound = Measured("reach", reach, "m")
+    return finding(
+        "A weight that the Macro's law leaves out stretches the Mini",
+        f"The goal is lost for good with sound after {lost['sound']} and with as_reported after "
+        f"{lost['as_reported']}; until then the Macro sinks at the predicted speed. With as_reported the gravity term "
+        "alone makes the difference. With sound it is the Mini's own weight, which the Macro's model does not know: "
+        f"told of it, or on the decoupled plant, the Mini keeps within reach over the {number(end)} s. On the quintic "
+        f"trajectory the target is out of reach for {shares['sound']} (sound) and {shares['as_reported']} "
+        f"(as_reported) of the run; the reach is {bound}.",
+        *(time < 0.9 * end for time in lost.values()),
+        *(way < 0.95 * bound for way in left.values()),
+        *_as_predicted(runs, reach),
+        *(share > 10.0 for share in shares.values()),
     )
+
+
+_SINKING = ("sound", "as_reported")
+
+
+def _way_left(run: Run, case: str) -> Measured:
+    """Return the distance from the Macro's end point to the goal at the end of a run."""
+    whole = run.status != "failed"
+    return Measured(f"way left at the end ({case})", float(rest_of_way(run)[-1]) if whole else None, "m")
+
+
+def _as_predicted(runs: Mapping[str, Run], reach: float) -> list[Condition]:
+    """Return the conditions that the Macro sinks at the speed at which its damping bears what its law leaves out."""
+    conditions = []
+    for case in _SINKING:
+        run = runs[f"stretch/{case}"]
+        window = _window(run, reach)
+        drift = None if window is None else _drift(run, window)
+        speed = None if window is None else missing_acceleration(run, sum(window) // 2) / _damping(run)
+        measured, predicted = Measured(f"drift ({case})", drift, "m/s"), Measured(f"predicted ({case})", speed, "m/s")
+        conditions.append(measured.near(predicted, 0.2))
+    return conditions

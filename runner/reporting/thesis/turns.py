@@ -4,13 +4,15 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, origin
+from runner.reporting.findings import Finding, finding
 from runner.reporting.job import PRESETS
+from runner.reporting.measured import Measured
 from runner.reporting.quantities import number, quantity
-from runner.reporting.run_values import cell, clock, failures, median
+from runner.reporting.run_values import cell, clock, failures, measured
 from runner.reporting.thesis.combined_plan import SCHEDULES, TURN_DURATIONS
-from runner.reporting.thesis.studies import ratio, settled
+from runner.reporting.thesis.studies import settled
 from runner.store import Run
 
 
@@ -33,7 +35,8 @@ def turns_section(runs: Mapping[str, Run]) -> Section:
         Text(
             "Method 3 as the thesis words it: Macro and Mini take turns to move. Taken physically, while the target "
             f"is within the Mini's reach each arm moves for a Macro period of {number(1e3 * period)} ms and holds "
-            "its posture for the next, and an arm that holds brakes. One-way coupling, no noise."
+            "its posture for the next, and an arm that holds brakes. One-way coupling, no noise. Both arms move at "
+            "any time in all other chapters."
         ),
         Table(
             "Both arms at any time against turns.",
@@ -80,37 +83,35 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
     return Curves("Tracking with preset sound.", panels, 2, origin(runs["turns/sound/quintic/turns"]))
 
 
-def _finding(runs: Mapping[str, Run]) -> Notice:
-    errors = {
-        preset: [median(runs[f"turns/{preset}/quintic/{schedule}"], "max_tracking_error") for schedule in SCHEDULES]
-        for preset in PRESETS
-    }
-    both, turns = errors["sound"]
-    damaged = both is not None and (turns is None or turns > 10.0 * both)
-    last = [median(runs[f"turns/{TURN_DURATIONS[-1]}/{schedule}"], "max_tracking_error") for schedule in SCHEDULES]
-    recovers = None not in last and turns is not None and last[1] is not None and last[1] < 0.1 * turns
-    goal = [median(runs[f"turns/sound/goal/{schedule}"], "settling_time") for schedule in SCHEDULES]
-    return Notice(
-        "finding",
-        f"Taking turns destroys tracking on a {_duration(runs)} trajectory"
-        if damaged
-        else "Taking turns does little harm",
-        f"Largest tip error with turns: {ratio(errors['sound'][1], errors['sound'][0])} times that of both (sound), "
-        f"{ratio(errors['as_reported'][1], errors['as_reported'][0])} times (as_reported). The Macro moves half of "
-        f"the time and starts each turn from rest. Given {TURN_DURATIONS[-1]:g} s it "
-        f"{'recovers' if recovers else 'does not recover'}: {quantity(last[1], 'm')} against "
-        f"{quantity(last[0], 'm')}. The goal move {_minds(goal)} ({number(goal[1])} against {number(goal[0])} s): "
-        "the Mini's turns begin only once the goal is within its reach. Both arms move at any time in all other "
-        "chapters.",
+def _finding(runs: Mapping[str, Run]) -> Finding:
+    both, turns = (_error(runs, f"turns/sound/quintic/{schedule}", f"{schedule} (sound)") for schedule in SCHEDULES)
+    reported = [
+        _error(runs, f"turns/as_reported/quintic/{schedule}", f"{schedule} (as_reported)") for schedule in SCHEDULES
+    ]
+    longest = TURN_DURATIONS[-1]
+    slow_both, slow_turns = (
+        _error(runs, f"turns/{longest}/{schedule}", f"{schedule}, {longest:g} s") for schedule in SCHEDULES
+    )
+    goal_both, goal_turns = (
+        measured(runs[f"turns/sound/goal/{schedule}"], "settling_time", f"settling time, {schedule}")
+        for schedule in SCHEDULES
+    )
+    duration = quantity(float(runs["turns/sound/quintic/turns"].config["trajectory"]["duration"]), "s")
+    return finding(
+        f"Taking turns destroys tracking on a {duration} trajectory",
+        f"With turns the tip errs by {turns}, {turns / both} times as much as when both arms move at any time (sound), "
+        f"and {reported[1] / reported[0]} times as much with as_reported. The Macro moves half of the time and starts "
+        f"each turn from rest. Given {longest:g} s tracking does not recover: {slow_turns} against {slow_both}. The "
+        f"goal move takes hardly longer, {goal_turns} against {goal_both}: the Mini's turns begin only once the goal "
+        "is within its reach.",
+        turns > 100.0 * both,
+        turns > 0.02,
+        reported[1] > 2.0 * reported[0],
+        slow_turns > 100.0 * slow_both,
+        slow_turns > 0.2 * turns,
+        goal_turns.near(goal_both, 0.15),
     )
 
 
-def _minds(times: list[float | None]) -> str:
-    both, turns = times
-    if both is None or turns is None:
-        return "does not settle in one of the two"
-    return "hardly minds" if abs(turns / both - 1.0) < 0.1 else "takes longer" if turns > both else "is faster"
-
-
-def _duration(runs: Mapping[str, Run]) -> str:
-    return quantity(float(runs["turns/sound/quintic/turns"].config["trajectory"]["duration"]), "s")
+def _error(runs: Mapping[str, Run], name: str, words: str) -> Measured:
+    return measured(runs[name], "max_tracking_error", f"tip error, {words}")

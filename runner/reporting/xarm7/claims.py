@@ -1,12 +1,18 @@
 """What the xArm7 report says of the tip's motion, with verdicts."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+
+import numpy as np
 
 from runner.claims import PublishedClaim, judge_motion, load_claims
 from runner.reporting.document import Claim, Finding, Section, Table, Text
 from runner.reporting.figures import columns
+from runner.reporting.findings import Finding as Conclusion
+from runner.reporting.findings import finding
 from runner.reporting.job import PRESETS
+from runner.reporting.measured import Measured
 from runner.reporting.quantities import quantity
+from runner.reporting.run_values import measured
 from runner.store import Run
 
 
@@ -20,7 +26,9 @@ def claims_section(runs: Mapping[str, Run]) -> Section:
             Text(
                 "The report prints no errors, only where the tip stays and how far it moves. A statement holds when "
                 "the least and the largest coordinate of our tip, over two periods, agree with it to half a unit of "
-                "the last digit that it prints. The verdict cannot marks what contradicts the report's own path. "
+                "the last digit that it prints, and is worse when they do not. Of a failure that the report tells of, "
+                "holds means that it is met here, too, and better that it is not. The verdict cannot marks a statement "
+                "that contradicts the report's own path, whatever the arm does. "
                 "Preset as_reported is a controller that knows the desired position alone and so is late; preset "
                 "sound also takes desired velocity and acceleration."
             ),
@@ -29,8 +37,55 @@ def claims_section(runs: Mapping[str, Run]) -> Section:
                 ["claim", "statement", "printed", *PRESETS],
                 rows,
             ),
+            _concluded(claims, runs),
             *claims,
         ),
+    )
+
+
+def _concluded(claims: Sequence[Claim], runs: Mapping[str, Run]) -> Conclusion:
+    given = [{finding.verdict for finding in claim.findings} for claim in claims]
+    late = runs["three_joints/as_reported"]
+    trajectory, period = late.config["trajectory"], float(late.config["controller"]["period"])
+    length = float(np.linalg.norm(np.subtract(trajectory["goal"], trajectory["start"])))
+    speed = np.pi * length / float(trajectory["duration"])
+    off = [
+        measured(runs[f"{name}/{preset}"], "cross_track_error", f"distance from the line, {name}, {preset}")
+        for name in ("three_joints", "seven_joints")
+        for preset in PRESETS
+    ]
+    return conclude(
+        len(claims),
+        Measured("statements that hold under both presets", float(given.count({"holds"}))),
+        Measured("statements that contradict the report's own path", float(given.count({"cannot"}))),
+        off,
+        measured(late, "max_tracking_error", "tip error of three joints without feedforward"),
+        Measured("way within one period of the controller", speed * period, "m"),
+    )
+
+
+def conclude(
+    count: int, holding: Measured, contradicting: Measured, off: Sequence[Measured], late: Measured, way: Measured
+) -> Conclusion:
+    """Return what comes of the report's statements.
+
+    Args:
+        count: How many there are.
+        holding: How many hold under both presets.
+        contradicting: How many contradict the report's own path.
+        off: Distances of the tip from the line, by three joints and by seven, under each preset.
+        late: Tip error of three joints without feedforward.
+        way: What the desired tip goes at most within one period of the controller.
+    """
+    return finding(
+        f"{holding} of {count} statements hold under both presets, {contradicting} contradicts the report's own path",
+        "By three joints and by seven, with feedforward and without, the tip is on the line. Without feedforward it is "
+        f"late on the line: by {late} where three joints move, which is the way that the desired tip goes within one "
+        "period of the controller.",
+        holding >= count - 1.0,
+        contradicting >= 1.0,
+        *(each < 1e-5 for each in off),
+        late.near(way, 0.02),
     )
 
 

@@ -1,13 +1,15 @@
 """Joint motion that the tip does not feel: how still the tip stands."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from runner.reporting.document import Block, Curves, FloatArray, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Block, Curves, FloatArray, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, joint_columns, model_of, origin
-from runner.reporting.quantities import number, quantity
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
+from runner.reporting.quantities import above_rounding, number, quantity
 from runner.reporting.run_values import clock, failures, median
 from runner.reporting.xarm7.null_space_cycles import cycles_section
 from runner.reporting.xarm7.null_space_manipulability import manipulability_section
@@ -87,7 +89,7 @@ def _fixed_tip(runs: Mapping[str, Run]) -> Section:
             origin(fastest),
         ),
         _curves(runs),
-        _finding(runs),
+        _concluded(runs),
         *failures(ours),
     ]
     return Section("Null-space motion at fixed tip", blocks)
@@ -101,8 +103,8 @@ def _row(run: Run) -> list[str]:
         "kinematic" if plant == "kinematic" else f"{plant}, servo",
         number(median(run, "peak_joint_speed")),
         number(tip.travel),
-        number(tip.at_ticks),
-        number(tip.between) if plant == "kinematic" else "–",
+        above_rounding(tip.at_ticks),
+        above_rounding(tip.between) if plant == "kinematic" else "–",
     ]
 
 
@@ -128,23 +130,62 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
     )
 
 
-def _finding(runs: Mapping[str, Run]) -> Notice:
-    speed = SPEEDS[-1]
-    moved = {rule: standing(runs[f"null_space/{rule}/{speed}"]) for rule in RULES}
-    good = [rule for rule in RULES if moved[rule].at_ticks < BOUND]
-    parts = ", ".join(f"{rule} {quantity(moved[rule].at_ticks, 'm')}" for rule in RULES)
-    often = standing(runs["null_space/fastest rate"])
-    servo = standing(runs["null_space/servo"])
-    rk4 = moved["rk4"]
-    needed = FASTEST_RATE * float(np.sqrt(often.between / BOUND))
-    return Notice(
-        "finding",
-        f"At {speed:g} rad/s the tip stays within {quantity(BOUND, 'm')} with {' or '.join(good) or 'no rule'}",
-        f"At the commands the tip moves by {parts}. Our law's own rule is midpoint, which is enough for slower motion "
-        "and for the line; fast null-space motion asks for controller.integration=rk4. Between two commands the "
-        "joints move evenly, along a chord of that curved surface, and the tip leaves its place by up to "
-        f"{quantity(rk4.between, 'm')}, whatever the rule: it falls with the square of the rate, to "
-        f"{quantity(often.between, 'm')} at {FASTEST_RATE} Hz, and below {quantity(BOUND, 'm')} from "
-        f"{number(needed, 2)} Hz on. With servos on an arm with mass it is "
-        f"the servos that move the tip, by {quantity(servo.at_ticks, 'm')} as the motion sets in.",
+def _concluded(runs: Mapping[str, Run]) -> Finding:
+    moved = {rule: standing(runs[f"null_space/{rule}/{SPEEDS[-1]}"]) for rule in RULES}
+    slower = standing(runs[f"null_space/midpoint/{SPEEDS[-2]}"])
+    often, servo = (standing(runs[f"null_space/{name}"]) for name in ("fastest rate", "servo"))
+    period = float(runs[f"null_space/rk4/{SPEEDS[-1]}"].config["controller"]["period"])
+    return conclude(
+        [Measured(f"tip's way at the commands, {rule}", moved[rule].at_ticks, "m") for rule in RULES],
+        Measured(f"tip's way at the commands, midpoint, {SPEEDS[-2]:g} rad/s", slower.at_ticks, "m"),
+        [Measured(f"tip's way between the commands, {rule}", moved[rule].between, "m") for rule in RULES],
+        Measured(f"tip's way between the commands at {FASTEST_RATE} Hz", often.between, "m"),
+        FASTEST_RATE * period,
+        Measured("tip's way with servos", servo.at_ticks, "m"),
+        Measured("time of the tip's largest distance with servos", _time_of_farthest(runs["null_space/servo"]), "s"),
     )
+
+
+def conclude(
+    at_ticks: Sequence[Measured],
+    slower: Measured,
+    between: Sequence[Measured],
+    often: Measured,
+    more: float,
+    servo: Measured,
+    farthest: Measured,
+) -> Finding:
+    """Return how still the tip stands at the largest speed.
+
+    Args:
+        at_ticks: Largest distance of the tip from its place at the commands, by each rule.
+        slower: The same by the midpoint rule at the next lower speed.
+        between: The same between the commands, by each rule.
+        often: The same by the best rule at the largest rate of commands.
+        more: How many times the usual rate that is.
+        servo: Largest distance with servos on an arm with mass.
+        farthest: When that is.
+    """
+    euler, midpoint, rk4 = at_ticks
+    return finding(
+        f"At {SPEEDS[-1]:g} rad/s the tip stays within {quantity(BOUND, 'm')} by {RULES[-1]} alone",
+        f"At the commands the tip moves by {euler} by the rule euler, {midpoint} by midpoint, and {rk4} by "
+        f"{RULES[-1]}. Our law's own rule is midpoint, which is enough at {SPEEDS[-2]:g} rad/s ({slower}); faster "
+        f"null-space motion asks for controller.integration={RULES[-1]}. Between two commands the joints move evenly, "
+        f"along a chord of that curved surface, and the tip leaves its place by {between[-1]} or more, whatever the "
+        f"rule: it falls with the square of the rate, to {often} at {FASTEST_RATE} Hz. With servos on an arm with "
+        f"mass it is the servos that move the tip, by {servo} as the motion sets in, {farthest} after the start.",
+        rk4 < 0.1 * BOUND,
+        midpoint > 2.0 * BOUND,
+        euler > 2.0 * BOUND,
+        slower < 0.7 * BOUND,
+        *(each > 0.9 * between[-1] for each in between[:-1]),
+        (between[-1] / often).near(more**2, 0.05),
+        servo > 30.0 * between[-1],
+        farthest < 0.2,
+    )
+
+
+def _time_of_farthest(run: Run) -> float:
+    tip = columns(run.trace, "tip")
+    return float(clock(run)[int(np.argmax(np.linalg.norm(tip - tip[0], axis=1)))])

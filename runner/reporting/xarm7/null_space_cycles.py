@@ -1,13 +1,15 @@
 """Joints that do not come back where the tip does, and what a null-space task does about it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from runner.reporting.document import Block, Curves, FloatArray, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Block, Curves, FloatArray, Panel, Section, Series, Table, Text
 from runner.reporting.figures import joint_columns, origin
-from runner.reporting.quantities import number, quantity
-from runner.reporting.run_values import cell, failures
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
+from runner.reporting.quantities import above_rounding
+from runner.reporting.run_values import cell, failures, measured
 from runner.reporting.xarm7.studies import rate, smallest_margin
 from runner.reporting.xarm7.studies_plan import CYCLE, CYCLES, NULL_SPACE_TASKS, PATHS
 from runner.store import Run
@@ -29,9 +31,9 @@ def cycles_section(runs: Mapping[str, Run]) -> Section:
         for task in NULL_SPACE_TASKS:
             run = runs[f"cycles/{path}/{task}"]
             drift = drifts(run)
-            first, last = (number(float(drift[k])) if drift.size else "–" for k in (0, -1))
+            first, last = (above_rounding(float(drift[k])) if drift.size else "–" for k in (0, -1))
             error = cell(run, "max_tracking_error")
-            rows.append([path, task, first, last, number(float(drift.sum())), error, smallest_margin(run)])
+            rows.append([path, task, first, last, above_rounding(float(drift.sum())), error, smallest_margin(run)])
     circle = runs["cycles/circle/none"]
     radius = float(circle.config["trajectory"]["radius"])
     gain = float(circle.config["controller"]["null_space"]["gain"])
@@ -60,7 +62,7 @@ def cycles_section(runs: Mapping[str, Run]) -> Section:
             origin(runs["cycles/circle/none"]),
         ),
         _curves(runs),
-        _finding(runs),
+        _concluded(runs),
         *failures(ours),
     ]
     return Section("Joints over several cycles", blocks)
@@ -76,36 +78,66 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
             series.append(Series(task, np.arange(1.0, drift.size + 1.0), shown, "points_line"))
         panels.append(Panel(path.capitalize(), "cycle", "drift of the joints (rad)", series, y_log=True))
     return Curves(
-        "Drift of the joints from cycle to cycle; what is below 10⁻¹⁵ rad is rounding.",
+        "Drift of the joints from cycle to cycle.",
         panels,
         2,
         origin(runs["cycles/circle/none"]),
     )
 
 
-def _finding(runs: Mapping[str, Run]) -> Notice:
-    last = {task: _last(runs[f"cycles/circle/{task}"]) for task in NULL_SPACE_TASKS}
-    line = _last(runs["cycles/line/none"])
-    free = last["none"]
-    held = [task for task in NULL_SPACE_TASKS if task != "none" and _below(last[task], free)]
-    return Notice(
-        "finding",
-        "Plain pseudo-inverse motion is not cyclic; any null-space task makes it so"
-        if len(held) == len(NULL_SPACE_TASKS) - 1
-        else f"Plain pseudo-inverse motion is not cyclic; cyclic with {', '.join(held) or 'no task tried'}",
-        f"Around the circle the joints of the plain pseudo-inverse are {quantity(free, 'rad')} further in cycle "
-        f"{CYCLES}, a tenth of a turn after {number(0.2 * np.pi / free, 2) if free else '–'} cycles at this pace; "
-        f"along the line {quantity(line, 'rad', 2)}, which is integration error. With a task they settle on a closed "
-        "way: in that cycle "
-        + ", ".join(f"{task} {quantity(last[task], 'rad', 2)}" for task in NULL_SPACE_TASKS if task != "none")
-        + ". The first cycle leads from the start to that way, and the tip does not feel it.",
+def _concluded(runs: Mapping[str, Run]) -> Finding:
+    free = runs["cycles/circle/none"]
+    held = [task for task in NULL_SPACE_TASKS if task != "none"]
+    q = joint_columns(free.trace, "q")
+    return conclude(
+        Measured("drift in the first cycle of the circle, no task", _nth(free, 0), "rad"),
+        Measured("drift in the last cycle of the circle, no task", _nth(free, -1), "rad"),
+        Measured("distance of the joints from where they began, no task", float(np.linalg.norm(q[-1] - q[0])), "rad"),
+        Measured("drift in the last cycle of the line, no task", _nth(runs["cycles/line/none"], -1), "rad"),
+        [
+            (task, Measured(f"drift in the last cycle, {task}", _nth(runs[f"cycles/circle/{task}"], -1), "rad"))
+            for task in held
+        ],
+        measured(free, "max_tracking_error", "tip error, no task"),
+        [measured(runs[f"cycles/circle/{task}"], "max_tracking_error", f"tip error, {task}") for task in held],
     )
 
 
-def _last(run: Run) -> float | None:
+def conclude(
+    first: Measured,
+    free: Measured,
+    away: Measured,
+    line: Measured,
+    held: Sequence[tuple[str, Measured]],
+    free_error: Measured,
+    errors: Sequence[Measured],
+) -> Finding:
+    """Return whether the joints come back where the tip does.
+
+    Args:
+        first: How far the joints of the plain pseudo-inverse are on after the first cycle of the circle.
+        free: The same after the last cycle, against the one before.
+        away: How far they are then from where they began.
+        line: As `free`, along the line.
+        held: As `free`, by null-space task.
+        free_error: Tip error of the plain pseudo-inverse around the circle.
+        errors: The same with each null-space task.
+    """
+    settled = ", ".join(f"{task} {drift}" for task, drift in held)
+    return finding(
+        "Plain pseudo-inverse motion is not cyclic; each null-space task tried leads to a closed way",
+        f"Around the circle the joints of the plain pseudo-inverse are {first} further after the first cycle, {free} "
+        f"in cycle {CYCLES}, and {away} in all: always the same way. Along the line it is {line}. With a task they "
+        f"settle towards a closed way, at less than a tenth of the drift without: in cycle {CYCLES} {settled}. What "
+        "the first cycles take to lead there the tip does not feel.",
+        free.near(first, 0.1),
+        away.near(CYCLES * free, 0.1),
+        line < 1e-3 * free,
+        *(drift < 0.1 * free for _, drift in held),
+        *(error.near(free_error, 0.1) for error in errors),
+    )
+
+
+def _nth(run: Run, cycle: int) -> float | None:
     drift = drifts(run)
-    return float(drift[-1]) if drift.size else None
-
-
-def _below(drift: float | None, free: float | None) -> bool:
-    return drift is not None and free is not None and drift < 0.1 * free
+    return float(drift[cycle]) if drift.size else None

@@ -5,15 +5,19 @@ from collections.abc import Mapping
 import numpy as np
 
 from runner.controllers.null_space import manipulability
-from runner.reporting.document import Block, Curves, FloatArray, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Block, Curves, FloatArray, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, joint_columns, model_of, origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
 from runner.reporting.quantities import number
-from runner.reporting.run_values import cell, clock, failures
+from runner.reporting.run_values import cell, clock, failures, measured
 from runner.reporting.xarm7.studies import smallest_margin
-from runner.reporting.xarm7.studies_plan import CLIMB_CYCLE, CLIMB_CYCLES, SOUGHT, TASKS
+from runner.reporting.xarm7.studies_plan import CLIMB_CYCLE, CLIMB_CYCLES, TASKS
 from runner.reporting.xarm7.why_it_failed import ROWS
 from runner.store import Run
 
+_ASIDE = [2, 4]  # the joints that lead the elbow out of the arm's vertical plane
+_ELBOW = 4  # the one of them that shows it
 _LABELS = {"posture": "home's posture sought", "manipulability": "manipulability sought"}
 
 
@@ -61,7 +65,7 @@ def manipulability_section(runs: Mapping[str, Run]) -> Section:
             origin(runs["climb/pose/manipulability"]),
         ),
         _curves(ours, dexterity),
-        _finding(ours, dexterity),
+        _concluded(ours, dexterity),
         *failures(ours),
     ]
     return Section("Manipulability along the line", blocks)
@@ -93,22 +97,71 @@ def _curves(ours: Mapping[str, Run], dexterity: Mapping[str, FloatArray]) -> Cur
     )
 
 
-def _finding(ours: Mapping[str, Run], dexterity: Mapping[str, FloatArray]) -> Notice:
-    gains = {}
-    for task in TASKS:
-        least = {sought: _least(ours, dexterity, task, sought) for sought in SOUGHT}
-        gains[task] = 100.0 * (least["manipulability"] / least["posture"] - 1.0)
+def _concluded(ours: Mapping[str, Run], dexterity: Mapping[str, FloatArray]) -> Finding:
     run = ours["climb/pose/manipulability"]
     q = joint_columns(run.trace, "q")
-    moved = int(np.argmax(np.abs(q[-1] - q[0])))
-    return Notice(
-        "finding",
-        f"Seeking it lifts the least w by {gains['position']:.2g} % (position) and {gains['pose']:.2g} % (pose)",
-        "For the position alone the round posture is near the best there is. For the pose the arm begins next to a "
-        "vertical plane, where by symmetry a sideways motion of the elbow changes $w$ to second order only: a "
-        "stationary point, and not the best. It takes the line's own asymmetry, and a while, until the elbow falls "
-        f"out of the plane (q{moved + 1} goes by {number(float(abs(q[-1] - q[0])[moved]))} rad); the tip stays on its "
-        "line.",
+    elbow = np.abs(q[:, _ELBOW] - q[0, _ELBOW])
+    away = elbow > 0.5 * elbow[-1]
+    least = {
+        f"{task}/{sought}": Measured(f"least w, {task}, {label}", _least(ours, dexterity, task, sought), "m³")
+        for task in TASKS
+        for sought, label in _LABELS.items()
+    }
+    return conclude(
+        least["position/posture"],
+        least["position/manipulability"],
+        least["pose/posture"],
+        least["pose/manipulability"],
+        Measured(
+            f"larger of {' and '.join(f'q{joint + 1}' for joint in _ASIDE)} at the start",
+            float(np.abs(q[0, _ASIDE]).max()),
+            "rad",
+        ),
+        Measured(f"way of q{_ELBOW + 1}", float(elbow[-1]), "rad"),
+        Measured(f"time until q{_ELBOW + 1} has gone half its way", float(clock(run)[int(np.argmax(away))]), "s"),
+        measured(run, "max_tracking_error", "tip error, pose, manipulability sought"),
+    )
+
+
+def conclude(
+    position: Measured,
+    position_sought: Measured,
+    pose: Measured,
+    pose_sought: Measured,
+    aside: Measured,
+    fallen: Measured,
+    half: Measured,
+    error: Measured,
+) -> Finding:
+    """Return what it gains to seek manipulability.
+
+    Args:
+        position: Least manipulability in the last cycle with home's posture sought, position task.
+        position_sought: The same with manipulability sought.
+        pose: The same with home's posture sought, pose task.
+        pose_sought: The same with manipulability sought.
+        aside: How far the joints that lead the elbow out of the arm's vertical plane are from zero at the start.
+        fallen: How far the elbow has turned out of the plane in the end.
+        half: When it has gone half of that.
+        error: Tip error of the pose task with manipulability sought.
+    """
+    gains = [
+        Measured(f"gain, {task}", None if share.value is None else 100.0 * (share.value - 1.0), "%")
+        for task, share in (("position", position_sought / position), ("pose", pose_sought / pose))
+    ]
+    return finding(
+        f"Seeking it lifts the least w by {gains[0]} (position) and {gains[1]} (pose)",
+        "For the position alone it changes little where home's posture is sought. For the pose the arm begins next to "
+        f"a vertical plane (the joints that lead the elbow aside are within {aside} of it), where by symmetry a "
+        "sideways motion of the elbow changes $w$ to second order only: a stationary point, and not the best. It takes "
+        f"more than a cycle, {half}, until the elbow has gone half its way out of the plane (q{_ELBOW + 1} goes by "
+        f"{fallen}); the tip stays on its line, within {error}.",
+        (position_sought / position).near(1.0, 0.03),
+        pose_sought > 1.05 * pose,
+        aside < 0.05,
+        fallen > 0.5,
+        half > CLIMB_CYCLE,
+        error < 1e-5,
     )
 
 

@@ -1,6 +1,6 @@
 """What a payload asks of the joints, where effort limits bite, and what then happens to the tip."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,14 +8,18 @@ from scipy.optimize import minimize
 
 from runner.reporting.document import Block, Curves, FloatArray, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.figures import joint_columns, model_of, origin
-from runner.reporting.quantities import number, quantity
-from runner.reporting.run_values import cell, failures, median, values
-from runner.reporting.xarm7.studies import first_saturation, lost_at, rate
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
+from runner.reporting.quantities import number
+from runner.reporting.run_values import cell, failures, measured, median, values
+from runner.reporting.xarm7.studies import SHOULDER, clipped_share, error_at_end, first_saturation, lost_at, rate
 from runner.reporting.xarm7.studies_plan import ASKED_PAYLOADS, PAYLOADS, XS
 from runner.robots import RobotModel
 from runner.store import Run
 
 _PLANE = [1, 3, 5]  # the joints that turn in the arm's vertical plane
+_KEPT = dict(zip(XS, PAYLOADS[1:], strict=False))  # kg, with which the tip stays on the line
+_LOST = dict(zip(XS, PAYLOADS[2:], strict=False))  # kg, the next that was tried
 _GRID = 12  # angles of each, where the search for the widest posture begins
 
 
@@ -119,7 +123,7 @@ def payload_section(runs: Mapping[str, Run]) -> Section:
             origin(runs[f"payload/{XS[0]}/{PAYLOADS[0]:g}"]),
         ),
         _curves(runs, model),
-        _finding(runs, carried, stretch, rated),
+        _concluded(runs, carried, stretch, rated),
         *_warnings(ours),
         *failures(ours),
     ]
@@ -183,27 +187,80 @@ def _curves(runs: Mapping[str, Run], model: RobotModel) -> Curves:
     )
 
 
-def _finding(runs: Mapping[str, Run], carried: Mapping[float, FloatArray], stretch: Stretch, rated: float) -> Notice:
-    meets = [
-        f"by q{int(np.argmin(masses)) + 1} with {quantity(float(masses.min()), 'kg')} at X = {x:g} m"
-        for x, masses in carried.items()
-    ]
-    first = int(np.argmin(stretch.payloads))
-    lasts = []
-    for x in XS:
-        kept = [mass for mass in PAYLOADS if lost_at(runs[f"payload/{x}/{mass:g}"]) is None]
-        lasts.append(f"{quantity(max(kept, default=None), 'kg')} at X = {x:g} m")
-    able = [f"X = {x:g} m" for x in XS if float(carried[x].min()) >= rated]
-    return Notice(
-        "finding",
-        f"The shoulder carries the rated {rated:g} kg along the line at {' and '.join(able) or 'neither X'}",
-        f"The first limit is met {', '.join(meets)}. Of the payloads tried the servos keep the tip within 1 mm up "
-        f"to {' and '.join(lasts)}; where the shoulder's torque is clipped for longer, the arm sinks and does not "
-        f"recover. Stretched out level, {quantity(float(stretch.payloads[first]), 'kg')} are held, by q{first + 1}. "
-        "These are numbers of the inertial set in use; heavier sets leave less.",
+def _concluded(runs: Mapping[str, Run], carried: Mapping[float, FloatArray], stretch: Stretch, rated: float) -> Finding:
+    def error(x: float, mass: float) -> Measured:
+        return measured(
+            runs[f"payload/{x}/{mass:g}"], "max_tracking_error", f"largest axis error, {x:g} m, {mass:g} kg"
+        )
+
+    lost = {x: runs[f"payload/{x}/{_LOST[x]:g}"] for x in XS}
+    return conclude(
+        rated,
+        float(lost[XS[0]].config["robot"]["settling_band"]),
+        [_limits(f"along the line at {x:g} m", carried[x]) for x in XS],
+        _limits("stretched out", stretch.payloads),
+        [error(x, _KEPT[x]) for x in XS],
+        [error(x, mass) for x in XS for mass in PAYLOADS if mass >= _LOST[x]],
+        [
+            clipped_share(run, SHOULDER, f"ticks with the shoulder at its limit, {x:g} m, {_LOST[x]:g} kg")
+            for x, run in lost.items()
+        ],
+        [Measured(f"error at the end, {x:g} m, {_LOST[x]:g} kg", error_at_end(run), "m") for x, run in lost.items()],
+    )
+
+
+def _limits(where: str, payloads: FloatArray) -> tuple[Measured, Measured]:
+    """Return with which payload the shoulder meets its limit, and with which the first of the other joints."""
+    others = float(np.delete(payloads, SHOULDER).min())
+    return (
+        Measured(f"payload of the shoulder {where}", float(payloads[SHOULDER]), "kg"),
+        Measured(f"least payload of the other joints {where}", others, "kg"),
+    )
+
+
+def conclude(
+    rated: float,
+    band: float,
+    line: Sequence[tuple[Measured, Measured]],
+    stretched_out: tuple[Measured, Measured],
+    kept: Sequence[Measured],
+    lost: Sequence[Measured],
+    clipped: Sequence[Measured],
+    left: Sequence[Measured],
+) -> Finding:
+    """Return what the arm carries along the line.
+
+    Args:
+        rated: The maker's rating, in kg.
+        band: The settling band, in m.
+        line: Payload with which the shoulder, and the first of the other joints, meets its limit, at each X.
+        stretched_out: The same at rest stretched out level.
+        kept: Largest axis error with servos at each X with the payload that is kept.
+        lost: The same with those above it.
+        clipped: Share of the ticks at which the shoulder is at its limit with the first of these, at each X.
+        left: Axis error at the end there.
+    """
+    return finding(
+        f"The shoulder carries the rated {rated:g} kg along the line at X = {XS[1]:g} m, and not at X = {XS[0]:g} m",
+        f"The first limit is met by the shoulder (q{SHOULDER + 1}), with {line[0][0]} at X = {XS[0]:g} m and with "
+        f"{line[1][0]} at X = {XS[1]:g} m. Of the payloads tried the servos keep the tip on the line up to "
+        f"{_KEPT[XS[0]]:g} kg and {_KEPT[XS[1]]:g} kg (errors of {kept[0]} and {kept[1]}). With the next, "
+        f"{_LOST[XS[0]]:g} kg and {_LOST[XS[1]]:g} kg, the shoulder's torque is clipped at {clipped[0]} and "
+        f"{clipped[1]} of the ticks; the arm gives way and does not recover: in the end the tip is off by {left[0]} "
+        f"and {left[1]}. Stretched out level, {stretched_out[0]} are held, by the shoulder. These are numbers of the "
+        "inertial set in use.",
+        line[0][0] < 0.95 * rated,
+        line[1][0] >= rated,
+        *(shoulder < 0.95 * others for shoulder, others in (*line, stretched_out)),
+        *(error < 0.5 * band for error in kept),
+        *(error > 20.0 * band for error in lost),
+        *(share > 50.0 for share in clipped),
+        *(error > 20.0 * band for error in left),
     )
 
 
 def _warnings(ours: Mapping[str, Run]) -> list[Block]:
-    warnings = sorted({str(warning) for run in ours.values() for warning in run.provenance["warnings"]})
-    return [Notice("warning", "Beyond the rating", " ".join(warnings))] if warnings else []
+    texts = sorted(
+        {str(caveat["text"]) for run in ours.values() for caveat in run.caveats if caveat["rule"] == "overload"}
+    )
+    return [Notice("warning", "Beyond the rating", f"In these runs {'; '.join(texts)}.")] if texts else []

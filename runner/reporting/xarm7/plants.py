@@ -1,14 +1,18 @@
 """Whether the simulation can be trusted: the two plants on the report's own case."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 
 from runner.reporting.document import Curves, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, origin
+from runner.reporting.findings import Finding, finding
 from runner.reporting.job import PRESETS
+from runner.reporting.measured import Measured
 from runner.reporting.plant_agreement import describe_agreement, disagreement
-from runner.reporting.quantities import number
+from runner.reporting.quantities import above_rounding, number
+from runner.reporting.run_values import measured
 from runner.reporting.xarm7.plan import STEPS
 from runner.store import Run
 
@@ -30,7 +34,46 @@ def plants_section(runs: Mapping[str, Run]) -> Section:
             Text(" ".join(sentences)),
             _plants(runs),
             _steps(runs),
+            _concluded(runs),
         ),
+    )
+
+
+def _concluded(runs: Mapping[str, Run]) -> Finding:
+    return conclude(
+        [
+            [
+                Measured(
+                    f"largest tip distance, {preset}, {1e3 * step:g} ms",
+                    disagreement(runs[f"servo/{preset}/{step}"], runs[f"servo/{preset}/rk4"]).tip,
+                    "m",
+                )
+                for step in STEPS
+            ]
+            for preset in PRESETS
+        ],
+        [
+            measured(runs[f"servo/{preset}/{STEPS[-1]}"], "max_tracking_error", f"tip error, {preset}")
+            for preset in PRESETS
+        ],
+    )
+
+
+def conclude(distances: Sequence[Sequence[Measured]], errors: Sequence[Measured]) -> Finding:
+    """Return how the plants come together.
+
+    Args:
+        distances: Largest distance of the tips by preset and PyBullet's step, from the largest step on.
+        errors: Tip error by preset with the smallest step.
+    """
+    finest = [each[-1] for each in distances]
+    return finding(
+        "The plants come together with PyBullet's step",
+        f"Halving PyBullet's step halves the largest distance of the tips, down to {finest[0]} (as_reported) and "
+        f"{finest[1]} (sound) at {1e3 * STEPS[-1]:g} ms: what is left is the error of its step, which is of first "
+        f"order. The tip errors themselves are larger by far, {errors[0]} and {errors[1]}.",
+        *((finer / coarser).near(0.5, 0.1) for each in distances for coarser, finer in pairwise(each)),
+        *(error > 50.0 * distance for error, distance in zip(errors, finest, strict=True)),
     )
 
 
@@ -57,7 +100,9 @@ def _steps(runs: Mapping[str, Run]) -> Table:
         for step in STEPS:
             run = runs[f"servo/{preset}/{step}"]
             apart = disagreement(run, runs[f"servo/{preset}/rk4"])
-            rows.append([preset, f"{step:g}", number(apart.tip), number(run.metrics["max_tracking_error"]["median"])])
+            rows.append(
+                [preset, f"{step:g}", above_rounding(apart.tip), number(run.metrics["max_tracking_error"]["median"])]
+            )
     return Table(
         f"PyBullet's step against Runge-Kutta at {runs['servo/sound/rk4'].provenance['plant_step']:g} s.",
         ["preset", "PyBullet's step (s)", "largest tip distance (m)", "tracking error (m)"],

@@ -1,14 +1,17 @@
 """Tracking error against the rate of the commands."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from runner.reporting.document import Block, Curves, Formula, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Block, Curves, Formula, Panel, Section, Series, Table, Text
 from runner.reporting.figures import origin
+from runner.reporting.findings import Finding, finding
 from runner.reporting.job import PRESETS
-from runner.reporting.quantities import number, quantity
-from runner.reporting.run_values import cell, failures, median, values
+from runner.reporting.measured import Measured
+from runner.reporting.quantities import number
+from runner.reporting.run_values import cell, failures, measured, values
+from runner.reporting.xarm7.studies import largest_error_at
 from runner.reporting.xarm7.studies_plan import PLANTS, RATES
 from runner.store import Run
 
@@ -78,7 +81,7 @@ def rates_section(runs: Mapping[str, Run]) -> Section:
             origin(first),
         ),
         _curves(runs),
-        _finding(runs),
+        _concluded(runs),
         *failures(ours),
     ]
     return Section("Tracking error against command rate", blocks)
@@ -119,20 +122,70 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
     )
 
 
-def _finding(runs: Mapping[str, Run]) -> Notice:
-    def error(plant: str, preset: str, rate: int) -> float | None:
-        return median(runs[f"rates/{plant}/{preset}/{rate}"], "max_tracking_error")
+def _concluded(runs: Mapping[str, Run]) -> Finding:
+    def error(plant: str, preset: str, rate: int) -> Measured:
+        run = runs[f"rates/{plant}/{preset}/{rate}"]
+        return measured(run, "max_tracking_error", f"largest axis error, {plant}, {preset}, {rate} Hz")
 
-    slow, fast = (error("kinematic", "sound", rate) for rate in (RATES[0], RATES[-1]))
-    order = number(float(np.log(slow / fast) / np.log(RATES[-1] / RATES[0])), 2) if slow and fast else "–"
-    at = [f"{quantity(error('kinematic', 'sound', rate), 'm')} at {rate} Hz" for rate in _MAKERS]
-    servo = [quantity(error("bullet", "sound", rate), "m") for rate in _MAKERS]
-    off = [quantity(median(runs[f"rates/kinematic/{p}/{_MAKERS[0]}"], "cross_track_error"), "m") for p in PRESETS]
-    return Notice(
-        "finding",
-        "Without feedforward the gain sets the error, with it the rate does, until the servo does",
-        f"With feedforward on the kinematic plant the error falls with the power {order} of the rate: {', '.join(at)}. "
-        f"Servos at joints with mass leave {' and '.join(servo)}: they are jerked at A, where the line's acceleration "
-        f"sets in at once, and more commands do not help. At {_MAKERS[0]} Hz the tip "
-        f"stays within {off[0]} of the line without feedforward, and {off[1]} with it: the lag is along the line.",
+    first = runs[f"rates/kinematic/as_reported/{RATES[0]}"]
+    servo = runs[f"rates/bullet/sound/{_MAKERS[-1]}"]
+    return conclude(
+        [
+            (error(plant, "as_reported", rate), Measured(f"closed form, {rate} Hz", lag(first, rate), "m"))
+            for plant in PLANTS
+            for rate in RATES
+        ],
+        [error("kinematic", "sound", rate) for rate in RATES],
+        [error("kinematic", "sound", rate) for rate in _MAKERS],
+        [error("bullet", "sound", rate) for rate in _MAKERS],
+        Measured("time of the servos' largest error", largest_error_at(servo), "s"),
+        [
+            measured(runs[f"rates/kinematic/{preset}/{_MAKERS[0]}"], "cross_track_error", f"off the line, {preset}")
+            for preset in PRESETS
+        ],
+        error("kinematic", "as_reported", _MAKERS[0]),
     )
+
+
+def conclude(
+    late: Sequence[tuple[Measured, Measured]],
+    ahead: Sequence[Measured],
+    makers: Sequence[Measured],
+    servo: Sequence[Measured],
+    jerked: Measured,
+    off: Sequence[Measured],
+    lagging: Measured,
+) -> Finding:
+    """Return what the rate of commands is good for.
+
+    Args:
+        late: Largest axis error without feedforward and its closed form, by plant and rate.
+        ahead: Largest axis error with feedforward on the kinematic plant, by rate.
+        makers: The same at the maker's two rates.
+        servo: The same at these with servos at joints with mass.
+        jerked: When the servos' error is largest, at the larger of the maker's rates.
+        off: Distance from the line without feedforward and with it, kinematic plant, at the lower of the maker's rates.
+        lagging: Largest axis error without feedforward there.
+    """
+    order = Measured("power of the rate", _power(ahead[0].value, ahead[-1].value), "1", (ahead[0], ahead[-1]))
+    return finding(
+        "Without feedforward the tip lags by the closed form; with it the rate sets the error, until the servo does",
+        "The lag is the closed form at every rate, on both plants. With feedforward on the kinematic plant the error "
+        f"falls with the power {order} of the rate: {makers[0]} at {_MAKERS[0]} Hz, {makers[1]} at {_MAKERS[1]} Hz. "
+        f"Servos at joints with mass leave {servo[0]} and {servo[1]}: they are jerked at A, where the line's "
+        f"acceleration sets in at once (the error is largest at {jerked}), and more commands do not help. At "
+        f"{_MAKERS[0]} Hz the tip stays within {off[0]} of the line without feedforward, and {off[1]} with it: the lag "
+        "is along the line.",
+        *(error.near(closed_form, 0.02) for error, closed_form in late),
+        order > 1.8,
+        order < 2.6,
+        *(larger > 10.0 * smaller for larger, smaller in zip(servo, makers, strict=True)),
+        servo[1].near(servo[0], 0.15),
+        jerked < 0.25,
+        *(each < 0.01 * lagging for each in off),
+    )
+
+
+def _power(slow: float | None, fast: float | None) -> float | None:
+    """Return by which power of the rate an error falls from the lowest to the largest."""
+    return float(np.log(slow / fast) / np.log(RATES[-1] / RATES[0])) if slow and fast else None

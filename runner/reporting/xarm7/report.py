@@ -31,10 +31,11 @@ def xarm7_document(runs: Mapping[str, Run]) -> Document:
         subtitle="The xArm7 report (National Technical University of Athens, 2024), reproduced and made to work",
         abstract=(
             "A UFACTORY xArm7 moves its flange between two points 40 cm apart. The report's first part, three "
-            "joints by inverse kinematics in closed form, is reproduced, with the misprints of its formulas in "
-            "numbers. Its second part, all seven joints by a pseudo-inverse, did not work: the printed inverse does "
-            "not exist and the printed Jacobian is wrong. Here it works, and the report goes on to what it could "
-            "not show."
+            "joints by inverse kinematics in closed form, is made again, and its printed formulas are held against "
+            "the arm's model. Of its second part, all seven joints by a pseudo-inverse, the report says that the "
+            "code is not functional: here its formulas are taken one by one, and another law is run in their place. "
+            "What the report could not show comes after: the joints to spare, the rate of commands, the servos' "
+            "stiffness, payloads, and joint torques."
         ),
         chapters=parts(
             runs,

@@ -1,14 +1,16 @@
 """Tracking error against the stiffness of the joints' servos."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from runner.reporting.document import Block, Curves, Formula, Notice, Panel, Section, Series, Table, Text
-from runner.reporting.figures import columns, joint_columns, model_of, origin
-from runner.reporting.quantities import number, quantity
-from runner.reporting.run_values import cell, failures, median, values
-from runner.reporting.xarm7.studies import rate
+from runner.reporting.document import Block, Curves, Formula, Panel, Section, Series, Table, Text
+from runner.reporting.figures import joint_columns, model_of, origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
+from runner.reporting.quantities import above_rounding, number
+from runner.reporting.run_values import cell, failures, measured, values
+from runner.reporting.xarm7.studies import error_at_end, largest_error_at, rate
 from runner.reporting.xarm7.studies_plan import FEEDBACKS, GRAVITY_COMPENSATION, STIFFNESSES
 from runner.store import Run
 
@@ -33,7 +35,7 @@ def servo_section(runs: Mapping[str, Run]) -> Section:
             _COMPENSATED[compensation],
             feedback,
             cell(run, "max_tracking_error"),
-            _at_end(run),
+            above_rounding(error_at_end(run)),
             number(sag(run)) if (compensation, feedback) == ("false", "commanded") else "–",
             cell(run, "peak_torque_q2"),
         ]
@@ -70,7 +72,7 @@ def servo_section(runs: Mapping[str, Run]) -> Section:
             origin(first),
         ),
         _curves(runs),
-        _finding(runs),
+        _concluded(runs),
         *failures(ours),
     ]
     return Section("Tracking error against servo stiffness", blocks)
@@ -78,10 +80,6 @@ def servo_section(runs: Mapping[str, Run]) -> Section:
 
 def _run(runs: Mapping[str, Run], stiffness: float, compensation: str, feedback: str) -> Run:
     return runs[f"stiffness/{stiffness:g}/{compensation}/{feedback}"]
-
-
-def _at_end(run: Run) -> str:
-    return number(float(np.abs(columns(run.trace, "error")[-1]).max()))
 
 
 def _curves(runs: Mapping[str, Run]) -> Curves:
@@ -118,21 +116,75 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
     )
 
 
-def _finding(runs: Mapping[str, Run]) -> Notice:
-    middle = STIFFNESSES[len(STIFFNESSES) // 2]
+def _concluded(runs: Mapping[str, Run]) -> Finding:
+    middle, stiff = STIFFNESSES[len(STIFFNESSES) // 2], STIFFNESSES[-1]
 
-    def error(compensation: str, feedback: str) -> str:
-        return quantity(median(_run(runs, middle, compensation, feedback), "max_tracking_error"), "m")
+    def error(stiffness: float, compensation: str, feedback: str) -> Measured:
+        name = f"largest axis error, {stiffness:g} N m/rad, {_COMPENSATED[compensation]}, {feedback}"
+        return measured(_run(runs, stiffness, compensation, feedback), "max_tracking_error", name)
 
-    open_loop = _run(runs, middle, "false", "commanded")
-    largest = median(open_loop, "max_tracking_error")
-    apart = f"{100.0 * (largest / sag(open_loop) - 1.0):+.0f} %" if largest is not None else "–"
-    return Notice(
-        "finding",
+    open_loop, fed_back = (_run(runs, middle, "false", feedback) for feedback in ("commanded", "measured"))
+    left = [
+        Measured(
+            f"error at B, {stiffness:g} N m/rad, open loop",
+            error_at_end(_run(runs, stiffness, "false", "commanded")),
+            "m",
+        )
+        for stiffness in STIFFNESSES
+    ]
+    return conclude(
+        middle,
+        error(middle, "false", "commanded"),
+        Measured("sag by the closed form", sag(open_loop), "m"),
+        error(middle, "true", "commanded"),
+        error(stiff, "false", "commanded"),
+        error(middle, "false", "measured"),
+        Measured("time of that error", largest_error_at(fed_back), "s"),
+        Measured("error at B, fed back", error_at_end(fed_back), "m"),
+        error(middle, "true", "measured"),
+        left,
+    )
+
+
+def conclude(
+    middle: float,
+    bare: Measured,
+    closed_form: Measured,
+    compensated: Measured,
+    stiffer: Measured,
+    fed_back: Measured,
+    dropped: Measured,
+    left: Measured,
+    both: Measured,
+    sags: Sequence[Measured],
+) -> Finding:
+    """Return what gravity term, stiffness and feedback are worth.
+
+    Args:
+        middle: The stiffness that is spoken of, in N m/rad.
+        bare: Largest axis error in open loop without gravity term.
+        closed_form: The sag at the same postures.
+        compensated: Largest axis error in open loop with gravity term.
+        stiffer: The same without it, with the largest stiffness tried.
+        fed_back: Largest axis error fed back, without gravity term.
+        dropped: When that is.
+        left: What is left of it at B.
+        both: Largest axis error fed back, with gravity term.
+        sags: Error at B in open loop without gravity term, by stiffness.
+    """
+    stiffest = STIFFNESSES[-1]
+    return finding(
         "The gravity term is worth more than stiffness, and feedback removes what is left at rest",
-        f"At {middle:g} N m/rad the open loop without gravity term is off by {error('false', 'commanded')} (closed "
-        f"form at the same postures: {apart}), with it by {error('true', 'commanded')}. Fed back at the measured "
-        f"joints it is {error('false', 'measured')} without, most of it as the arm drops at the start, with "
-        f"{_at_end(_run(runs, middle, 'false', 'measured'))} m left at B, and {error('true', 'measured')} with it. The "
-        "sag falls as 1 / k; feedback corrects it as integral action does, with the law's own K.",
+        f"At {middle:g} N m/rad the open loop without gravity term is off by {bare} (closed form at the same postures: "
+        f"{closed_form}), with it by {compensated}; {stiffest:g} N m/rad without it leave {stiffer}. Fed back at the "
+        f"measured joints it is {fed_back} without, as the arm drops at the start ({dropped} after it), with {left} "
+        f"left at B, and {both} with it. The sag falls as the inverse of $k$: {sags[0]}, {sags[1]} and {sags[2]}. "
+        "Feedback corrects it as integral action does, with the law's own $K$.",
+        bare.near(closed_form, 0.05),
+        compensated < 0.5 * stiffer,
+        stiffer < bare,
+        dropped < 0.25,
+        left < 0.01 * fed_back,
+        both < 0.1 * fed_back,
+        *((STIFFNESSES[index] / STIFFNESSES[0] * each).near(sags[0], 0.1) for index, each in enumerate(sags) if index),
     )

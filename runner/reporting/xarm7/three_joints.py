@@ -4,16 +4,19 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from runner.reporting.document import Block, Curves, Formula, Notice, Panel, Picture, Section, Series, Table, Text
+from runner.reporting.document import Block, Curves, Formula, Panel, Picture, Section, Series, Table, Text
 from runner.reporting.drawings import arm_motion
 from runner.reporting.figures import columns, joint_columns, model_of, origin, playback
+from runner.reporting.findings import Finding, finding
 from runner.reporting.job import PRESETS
-from runner.reporting.quantities import number, quantity
-from runner.reporting.xarm7.studies import smallest_margin
+from runner.reporting.measured import Measured
+from runner.reporting.quantities import above_rounding, number
+from runner.reporting.xarm7.studies import measured_margin, smallest_margin
 from runner.robots.three_joint import MOVING
 from runner.store import Run
 
 HEIGHT = 0.5  # m, of the axes of x, y and z alike, so that what does not move looks like it
+_HALF_A_DIGIT = 5e-5  # m, of the last digit that the report prints of Z
 _STILLS = (0.0, 0.25, 0.5)  # of the period: at A, half way, at B
 
 
@@ -110,7 +113,7 @@ def _error_curves(runs: Mapping[str, Run]) -> Curves:
         series = [Series(axis, trace["t"].to_numpy(), error[:, index]) for index, axis in enumerate("xyz")]
         panels.append(Panel(f"Preset {preset}", "time (s)", "tip error (m)", series))
     return Curves(
-        "What the graphs above do not show: desired less actual tip position.",
+        "Desired less actual tip position, over two periods.",
         panels,
         2,
         origin(runs["three_joints/as_reported"]),
@@ -120,7 +123,14 @@ def _error_curves(runs: Mapping[str, Run]) -> Curves:
 def _errors(runs: Mapping[str, Run]) -> Table:
     names = ("max_tracking_error", "cross_track_error", "peak_joint_speed", "peak_torque")
     rows = [
-        [name, *(quantity(m["median"], m["unit"]) for p in PRESETS for m in [runs[f"three_joints/{p}"].metrics[name]])]
+        [
+            name,
+            *(
+                above_rounding(m["median"], m["unit"])
+                for p in PRESETS
+                for m in [runs[f"three_joints/{p}"].metrics[name]]
+            ),
+        ]
         for name in names
     ]
     return Table(
@@ -139,14 +149,18 @@ def _two_values_of_x(runs: Mapping[str, Run]) -> Section:
     tip = model.tip_position(home)
     cells = [_posture_cells(run) for run in pair]
     xs = [float(run.config["trajectory"]["start"][0]) for run in pair]
-    margins = [smallest_margin(run) for run in pair]
+    margins = [measured_margin(run, f"smallest joint margin at X = {x:g} m") for run, x in zip(pair, xs, strict=True)]
+    reaches = [
+        Measured(f"largest distance from the shoulder at X = {x:g} m", _reach(run), "m")
+        for run, x in zip(pair, xs, strict=True)
+    ]
+    height = float(pair[0].config["trajectory"]["start"][2])
     rows = [[name, *values] for name, *values in zip(cells[0], *(c.values() for c in cells), strict=True)]
     blocks: list[Block] = [
         Text(
-            f"The report prints X = {xs[0]:g} m. The posture with round angles ({', '.join(f'{q:g}' for q in home)} "
-            f"rad), which has the report's own $q_6$, holds the tip at X = {tip[0]:.4f}, Z = {tip[2]:.4f} m: the "
-            f"printed Z to its last digit, and the printed X with a digit left out. So {xs[0]:g} is probably a "
-            f"misprint of {xs[1]:g}. We keep the printed value and run both."
+            f"The report prints X = {xs[0]:g} m. The posture with round angles "
+            f"({', '.join(f'{q:g}' for q in home)} rad), which has the report's own $q_6$, holds the tip elsewhere. "
+            "Here the printed value is kept, and both are run."
         ),
         Table(
             "Both values of X, preset sound, over two periods.",
@@ -155,25 +169,69 @@ def _two_values_of_x(runs: Mapping[str, Run]) -> Section:
             (1, 2),
             origin(pair[1]),
         ),
-        Notice(
-            "finding",
-            "Both can be reached, with room at every joint",
-            f"The smallest distance to a joint limit, in rad, is {margins[0]} at X = {xs[0]:g} m and {margins[1]} at "
-            f"X = {xs[1]:g} m. The larger X stretches the arm further. Reachability does not tell which of the two the "
-            "authors ran.",
+        conclude_misprint(
+            Measured("X of the round posture", float(tip[0]), "m"),
+            Measured("Z of the round posture", float(tip[2]), "m"),
+            Measured("printed X with another digit", xs[1], "m"),
+            Measured("printed Z", height, "m"),
+            xs[0],
         ),
+        conclude_reach(margins, reaches, xs),
     ]
     return Section("X = 0.643 or 0.6043?", blocks)
 
 
+def conclude_misprint(x: Measured, z: Measured, other: Measured, height: Measured, printed: float) -> Finding:
+    """Return why the printed X may be a misprint.
+
+    Args:
+        x: X of the tip in the posture with round angles.
+        z: Z of it.
+        other: The printed X with another digit in it.
+        height: Z as printed.
+        printed: X as printed, in m.
+    """
+    return finding(
+        f"X = {printed:g} m may be a misprint of {number(other.value, 4)} m",
+        f"The round posture holds the tip at X = {number(x.value, 4)} m, Z = {number(z.value, 4)} m: the printed Z to "
+        "its last digit, and the printed X with a digit left out.",
+        *(
+            condition
+            for apart in (z - height, x - other)
+            for condition in (apart < _HALF_A_DIGIT, apart > -_HALF_A_DIGIT)
+        ),
+    )
+
+
+def conclude_reach(margins: Sequence[Measured], reaches: Sequence[Measured], xs: Sequence[float]) -> Finding:
+    """Return whether the line can be run at both values of X.
+
+    Args:
+        margins: Smallest margin to a joint limit at each.
+        reaches: Largest distance of the tip from the shoulder at each.
+        xs: The printed X and the other, in m.
+    """
+    return finding(
+        "Both can be reached, with room at every joint",
+        f"The smallest distance to a joint limit is {margins[0]} at X = {xs[0]:g} m and {margins[1]} at "
+        f"X = {xs[1]:g} m. The larger X stretches the arm further, to {reaches[0]} from the shoulder in place of "
+        f"{reaches[1]}. Reachability does not tell which of the two the authors ran.",
+        *(margin > 0.5 for margin in margins),
+        reaches[0] > 1.02 * reaches[1],
+    )
+
+
+def _reach(run: Run) -> float:
+    """Return the largest distance of a run's tip from the shoulder, in m."""
+    return float(np.linalg.norm(columns(run.trace, "tip") - model_of(run).shoulder, axis=1).max())
+
+
 def _posture_cells(run: Run) -> dict[str, str]:
-    q, model = joint_columns(run.trace, "q"), model_of(run)
-    tip = columns(run.trace, "tip")
-    distance = float(np.linalg.norm(tip - model.shoulder, axis=1).max())
+    q = joint_columns(run.trace, "q")
     cells = {f"q{j + 1} (rad)": f"{q[:, j].min():.3f} to {q[:, j].max():.3f}" for j in MOVING}
     return cells | {
         "smallest margin to a joint limit (rad)": smallest_margin(run),
-        "largest distance from the shoulder (m)": number(distance),
+        "largest distance from the shoulder (m)": number(_reach(run)),
         "largest tracking error (m)": number(run.metrics["max_tracking_error"]["median"]),
         "largest torque of q2 (N m)": number(run.metrics["peak_torque_q2"]["median"]),
         "largest joint speed (rad/s)": number(run.metrics["peak_joint_speed"]["median"]),

@@ -1,18 +1,28 @@
 """The line by joint torques: the thesis' laws on the xArm7, and the payload up to which they hold it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Block, Curves, FloatArray, Panel, Section, Series, Table, Text
 from runner.reporting.figures import joint_columns, model_of, origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
 from runner.reporting.quantities import quantity
-from runner.reporting.run_values import cell, clock, failures, median, values
-from runner.reporting.xarm7.studies import error_norm, first_saturation, smallest_margin
+from runner.reporting.run_values import cell, clock, failures, measured, median, values
+from runner.reporting.xarm7.studies import (
+    SHOULDER,
+    clipped,
+    clipped_share,
+    error_norm,
+    first_saturation,
+    smallest_margin,
+)
 from runner.reporting.xarm7.studies_plan import LAWS, TORQUE_PAYLOADS
 from runner.store import Run
 
 BOUND = 1e-4  # m, of the largest axis error
+_LAST = 2  # the last of the payloads with which both laws hold the line
 
 
 def torque_level_section(runs: Mapping[str, Run]) -> Section:
@@ -51,16 +61,10 @@ def torque_level_section(runs: Mapping[str, Run]) -> Section:
             origin(first),
         ),
         _curves(runs),
-        _finding(runs),
+        _concluded(runs),
         *failures(ours),
     ]
     return Section("The line by joint torques", blocks)
-
-
-def holds(run: Run) -> bool:
-    """Tell whether the tip's largest axis error stays within the bound."""
-    error = median(run, "max_tracking_error")
-    return error is not None and error <= BOUND
 
 
 def _cells(run: Run) -> list[str]:
@@ -107,25 +111,78 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
     )
 
 
-def _finding(runs: Mapping[str, Run]) -> Notice:
-    parts, lasting = [], []
-    for law in LAWS:
-        kept = [mass for mass in TORQUE_PAYLOADS if holds(runs[f"torque/{law}/{mass:g}"])]
-        lost = [mass for mass in TORQUE_PAYLOADS if mass not in kept]
-        lasting.append(max(kept, default=None))
-        unloaded = runs[f"torque/{law}/0"]
-        parts.append(
-            f"{law}: {quantity(median(unloaded, 'max_tracking_error'), 'm')} without load, largest torque of q2 "
-            f"{quantity(median(unloaded, 'peak_torque_q2'), 'N m')}; within the bound up to "
-            f"{quantity(max(kept, default=None), 'kg')}, beyond it from {quantity(min(lost, default=None), 'kg')} on"
-        )
-    least = min((mass for mass in lasting if mass is not None), default=None)
-    return Notice(
-        "finding",
-        f"Both laws track within {quantity(BOUND, 'm')} up to {quantity(least, 'kg')}"
-        if None not in lasting
-        else f"Not both laws track within {quantity(BOUND, 'm')}",
-        f"{'. '.join(parts)}. Just above what the shoulder can hold its torque is clipped for a few ticks at the ends "
-        "of the line, where the flange is farthest out and brakes, and the tip hardly shows it; a little more and "
-        "the arm sinks faster than the clipped torque can stop it.",
+def _concluded(runs: Mapping[str, Run]) -> Finding:
+    def errors(masses: Sequence[float]) -> list[list[Measured]]:
+        return [
+            [
+                measured(
+                    runs[f"torque/{law}/{mass:g}"], "max_tracking_error", f"largest axis error, {law}, {mass:g} kg"
+                )
+                for mass in masses
+            ]
+            for law in LAWS
+        ]
+
+    last = [runs[f"torque/{law}/{TORQUE_PAYLOADS[_LAST]:g}"] for law in LAWS]
+    return conclude(
+        errors(TORQUE_PAYLOADS[: _LAST + 1]),
+        errors(TORQUE_PAYLOADS[_LAST + 1 :]),
+        [measured(runs[f"torque/{law}/0"], "peak_torque_q2", f"largest torque of the shoulder, {law}") for law in LAWS],
+        [
+            Measured(f"clipped ticks, {law}, {TORQUE_PAYLOADS[_LAST]:g} kg", float(clipped(run, SHOULDER).size))
+            for law, run in zip(LAWS, last, strict=True)
+        ],
+        [
+            Measured(f"last clipped tick, {law}, {TORQUE_PAYLOADS[_LAST]:g} kg", _last(clipped(run, SHOULDER)), "s")
+            for law, run in zip(LAWS, last, strict=True)
+        ],
+        [
+            clipped_share(
+                runs[f"torque/{law}/{TORQUE_PAYLOADS[_LAST + 1]:g}"],
+                SHOULDER,
+                f"ticks with the shoulder at its limit, {law}, {TORQUE_PAYLOADS[_LAST + 1]:g} kg",
+            )
+            for law in LAWS
+        ],
+    )
+
+
+def _last(times: FloatArray) -> float | None:
+    return float(times[-1]) if times.size else None
+
+
+def conclude(
+    held: Sequence[Sequence[Measured]],
+    lost: Sequence[Sequence[Measured]],
+    torques: Sequence[Measured],
+    ticks: Sequence[Measured],
+    until: Sequence[Measured],
+    shares: Sequence[Measured],
+) -> Finding:
+    """Return up to which payload the laws hold the line.
+
+    Args:
+        held: Largest axis error by law and payload, up to the last that is held.
+        lost: The same with the payloads beyond.
+        torques: Largest torque of the shoulder without load, by law.
+        ticks: Ticks at which a torque is clipped with the last payload that is held, by law.
+        until: The last of these.
+        shares: Share of the ticks at which the shoulder is at its limit with the first payload beyond, by law.
+    """
+    last, beyond = TORQUE_PAYLOADS[_LAST], TORQUE_PAYLOADS[_LAST + 1]
+    laws = "; ".join(
+        f"{law}: {errors[0]} without load, with up to {torque} at the shoulder"
+        for law, errors, torque in zip(LAWS, held, torques, strict=True)
+    )
+    return finding(
+        f"Both laws track within {quantity(BOUND, 'm')} up to {last:g} kg, and lose the line with {beyond:g} kg",
+        f"{laws}. With {last:g} kg the shoulder's torque is clipped as the motion sets in at A, in {ticks[0]} ticks "
+        f"by the one law and {ticks[1]} by the other, and the tip hardly shows it: {held[0][-1]} and {held[1][-1]}. "
+        f"With {beyond:g} kg it is clipped at {shares[0]} and {shares[1]} of the ticks, and the tip is off by "
+        f"{lost[0][0]} and {lost[1][0]}.",
+        *(error < 0.5 * BOUND for errors in held for error in errors),
+        *(error > 50.0 * BOUND for errors in lost for error in errors),
+        *(count < 10.0 for count in ticks),
+        *(time < 0.1 for time in until),
+        *(share > 5.0 for share in shares),
     )

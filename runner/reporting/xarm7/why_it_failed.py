@@ -1,13 +1,15 @@
 """Why the report's second part failed: the inverse that it takes does not exist."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from runner.reporting.document import Curves, FloatArray, Formula, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, FloatArray, Formula, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, joint_columns, model_of, origin
-from runner.reporting.quantities import number
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
+from runner.reporting.quantities import above_rounding, number
 from runner.reporting.xarm7.studies_plan import TASKS
 from runner.reporting.xarm7.why_it_failed_columns import columns_section, random_postures
 from runner.reporting.xarm7.why_it_failed_motion import motion_section
@@ -40,8 +42,8 @@ def why_it_failed_section(runs: Mapping[str, Run]) -> Section:
         (
             Text(
                 "The report's second part leads the flange by all seven joints and ends with the remark that its code "
-                "is not functional. Three things are wrong with what it prints: the pseudo-inverse, the order of the "
-                "Jacobian's columns, and the angles behind two of its lengths. Any one of the three spoils the motion."
+                "is not functional. What it prints is looked at in three parts: the pseudo-inverse, the order of the "
+                "Jacobian's columns, and the angles behind two of its lengths."
             ),
         ),
         (_pseudo_inverse(runs), columns_section(runs), motion_section(runs)),
@@ -74,12 +76,16 @@ def _pseudo_inverse(runs: Mapping[str, Run]) -> Section:
     model = model_of(runs["printed/position/working"])
     everywhere = np.array([model.tip_jacobian(q) for q in random_postures(model)])
     table_rows, refused, cases = [], 0, 0
+    surplus, offs, right = [], [], []
     for task in TASKS:
         m = ROWS[task]
         for where, jacobians in (("random", everywhere), ("line", _along(runs, task))):
             result = invert(jacobians[:, :m])
             refused += result.refused
             cases += len(jacobians)
+            surplus.append(float(result.ranks.max()) - m)
+            offs.append(result.offs)
+            right.append(float(result.right.max()))
             low, high = (f"{value:.0f}" for value in (result.ranks.min(), result.ranks.max()))
             found = result.offs.size
             table_rows.append(
@@ -91,9 +97,10 @@ def _pseudo_inverse(runs: Mapping[str, Run]) -> Section:
                     f"{number(float(np.median(result.offs)), 2)} (up to {number(float(result.offs.max()), 2)})"
                     if found
                     else "–",
-                    number(float(result.right.max()), 2),
+                    above_rounding(float(result.right.max()), digits=2),
                 ]
             )
+    answers = np.concatenate(offs)
     return Section(
         "The inverse does not exist",
         (
@@ -127,16 +134,47 @@ def _pseudo_inverse(runs: Mapping[str, Run]) -> Section:
                 origin(runs["printed/position/working"]),
             ),
             _singular_values(runs),
-            Notice(
-                "finding",
-                "The printed pseudo-inverse is division by rounding errors",
-                f"In {refused} of these {cases} cases NumPy says that the matrix is singular. In the others the zeros "
-                "among its singular values are rounding errors, different at each tick, and the answer is made of "
-                "their inverses. The tip's velocity then misses what was asked by the figure in the table, relative "
-                "to it: 1 is as wrong as no motion at all.",
+            conclude(
+                cases,
+                Measured("cases in which NumPy says singular", float(refused)),
+                Measured("rank of the matrix beyond the rows of the Jacobian", max(surplus)),
+                Measured("median |J X - 1| of the printed answers", _of(np.median, answers)),
+                Measured("smallest |J X - 1| of the printed answers", _of(np.min, answers)),
+                Measured("largest |J X - 1| of the right pseudo-inverse", max(right)),
             ),
         ),
     )
+
+
+def conclude(
+    cases: int, refused: Measured, surplus: Measured, median: Measured, best: Measured, right: Measured
+) -> Finding:
+    """Return what the printed pseudo-inverse is worth.
+
+    Args:
+        cases: How many Jacobians were tried.
+        refused: At how many of them NumPy refuses to invert the matrix.
+        surplus: By how much the matrix's rank is at most larger than the number of the Jacobian's rows.
+        median: Median of |J X - 1| of the other answers.
+        best: The smallest of it.
+        right: The largest of it with the right pseudo-inverse.
+    """
+    return finding(
+        "The printed pseudo-inverse is division by rounding errors",
+        f"The matrix has no more rank than the Jacobian has rows, so that it has no inverse. In {refused} of these "
+        f"{cases} cases NumPy says so. In the others the zeros among its singular values are rounding errors, and the "
+        f"answer is made of their inverses: the tip's velocity misses what was asked by {median} of it in the median, "
+        f"and by {best} at best, where no motion at all misses it by the whole. The right pseudo-inverse misses it by "
+        f"{right} at worst.",
+        surplus <= 0.0,
+        median > 0.5,
+        best > 1e-3,
+        right < 1e-6,
+    )
+
+
+def _of(what: Callable[[FloatArray], np.float64], values: FloatArray) -> float | None:
+    return float(what(values)) if values.size else None
 
 
 def _along(runs: Mapping[str, Run], task: str) -> FloatArray:
@@ -171,8 +209,8 @@ def _singular_values(runs: Mapping[str, Run]) -> Curves:
         title = f"{ROWS[task]} rows ({task})"
         panels.append(Panel(title, "y of the tip (m)", "singular value (m², or mixed)", series, y_log=True))
     return Curves(
-        "The seven singular values of $J^T J$ along the line, right Jacobian: four are zero with three rows, one with "
-        "six; what floating point leaves of them is dotted.",
+        "The seven singular values of $J^T J$ along the line, right Jacobian; those beyond the number of its rows are "
+        "dotted.",
         panels,
         2,
         origin(runs["printed/position/working"]),

@@ -5,9 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from runner.controllers.xarm7_as_printed import PrintedJacobian
-from runner.reporting.document import Curves, FloatArray, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.document import Curves, FloatArray, Panel, Section, Series, Table, Text
 from runner.reporting.figures import columns, joint_columns, model_of, origin
-from runner.reporting.quantities import number
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
+from runner.reporting.quantities import above_rounding, number
 from runner.robots import RobotModel
 from runner.store import Run
 
@@ -46,7 +48,7 @@ def columns_section(runs: Mapping[str, Run]) -> Section:
             ),
             _table(run, model, everywhere, line),
             _curves(run, model),
-            _finding(model, everywhere, line),
+            _concluded(model, everywhere, line),
         ),
     )
 
@@ -63,7 +65,7 @@ def _table(run: Run, model: RobotModel, everywhere: FloatArray, line: FloatArray
             [
                 str(k + 1),
                 f"true column {source + 1}",
-                number(float(np.abs(shifted[:, :, k] - true[:, :, source]).max()), 2),
+                above_rounding(float(np.abs(shifted[:, :, k] - true[:, :, source]).max()), digits=2),
                 _largest(unshifted[:, :3, k] - true[:, :3, k]),
                 number(float(np.median(linear))),
                 number(float(linear.max())),
@@ -92,8 +94,7 @@ def _table(run: Run, model: RobotModel, everywhere: FloatArray, line: FloatArray
 
 def _largest(difference: FloatArray) -> str:
     """Return the largest norm of some vectors, shape (N, 3)."""
-    value = float(np.linalg.norm(difference, axis=1).max())
-    return number(value) if value > 1e-12 else "0"
+    return above_rounding(float(np.linalg.norm(difference, axis=1).max()))
 
 
 def _curves(run: Run, model: RobotModel) -> Curves:
@@ -109,19 +110,64 @@ def _curves(run: Run, model: RobotModel) -> Curves:
     return Curves("Error of each column along the line, from A to B.", panels, 2, origin(run))
 
 
-def _finding(model: RobotModel, everywhere: FloatArray, line: FloatArray) -> Notice:
+def _concluded(model: RobotModel, everywhere: FloatArray, line: FloatArray) -> Finding:
     true, right = (np.array([model.tip_jacobian(q) for q in everywhere]), jacobians(model, everywhere, False, False))
+    shifted, both = (jacobians(model, everywhere, True, mistaken) for mistaken in (False, True))
     printed = jacobians(model, line, True, True)
     true_line = jacobians(model, line, False, False)
     off, size = (np.linalg.norm(J[:, :3], axis=(1, 2)) for J in (printed - true_line, true_line))
-    share = off / size
     smallest = [float(np.linalg.svd(J, compute_uv=False)[:, -1].min()) for J in (printed, true_line)]
-    return Notice(
-        "finding",
+    before = np.abs(shifted[:, :, 1:] - true[:, :, :-1]).max()
+    own = np.linalg.norm(both[:, :, 1:] - true[:, :, 1:], axis=1).max(axis=0).min()
+    first = np.median(np.linalg.norm(both[:, :, 0] - true[:, :, 0], axis=1))
+    last = np.linalg.norm(shifted - true[:, :, 6:], axis=1).min()
+    return conclude(
+        Measured("distance of the entries with both errors put right", float(np.abs(right - true).max())),
+        Measured("distance of columns two to seven from the true column before, angles put right", float(before)),
+        Measured("least of the largest distances of these from their own true columns", float(own)),
+        Measured("median distance of column one from the true one, angles as printed", float(first)),
+        Measured("least distance of any column from the last true one", float(last)),
+        Measured("least error of the linear part along the line over its norm", float((off / size).min())),
+        Measured("smallest singular value as printed", smallest[0]),
+        Measured("smallest singular value of the true Jacobian", smallest[1]),
+    )
+
+
+def conclude(
+    mended: Measured,
+    before: Measured,
+    own: Measured,
+    first: Measured,
+    last: Measured,
+    share: Measured,
+    smallest: Measured,
+    true_smallest: Measured,
+) -> Finding:
+    """Return what is wrong with the printed columns.
+
+    Args:
+        mended: Largest difference between the entries with both errors put right and the true ones.
+        before: The same between the columns but the first, angles put right, and the true columns before them.
+        own: Least over these columns of the largest distance from their own true columns.
+        first: Median distance of the first column as printed from the true one.
+        last: Least distance of any column from the last true one.
+        share: Least error of the linear part along the line, over its norm.
+        smallest: Smallest singular value of the six rows along the line, as printed.
+        true_smallest: The same of the true ones.
+    """
+    return finding(
         "Every column but the first is another joint's, and the first has the wrong angles",
-        "With both errors put right the printed entries are the true Jacobian to "
-        f"{number(float(np.abs(right - true).max()), 2)} at every random posture, so there is no third error. "
-        f"Along the line the linear part as printed is off by {100.0 * share.min():.0f} to {100.0 * share.max():.0f} % "
-        "of its own norm. It keeps its rank (smallest singular value of the six rows along the line "
-        f"{number(smallest[0])}, of the true ones {number(smallest[1])}): nothing in the numbers warns of it.",
+        "With both errors put right the printed entries are the true Jacobian at every random posture (largest "
+        f"difference {mended}), so there is no third error. With the angles put right every column but the first is "
+        "that of the joint before; the last joint's appears nowhere. Along the line the linear part as printed is off "
+        f"by more than its own norm: by {share} times that at least. It keeps its rank (smallest singular value of "
+        f"the six rows along the line {smallest}, of the true ones {true_smallest}): nothing in the numbers warns of "
+        "it.",
+        mended < 1e-9,
+        before < 1e-9,
+        own > 0.1,
+        first > 0.05,
+        last > 1e-3,
+        share > 1.1,
+        smallest > 0.5 * true_smallest,
     )

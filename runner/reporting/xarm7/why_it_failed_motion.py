@@ -3,10 +3,13 @@
 import math
 from collections.abc import Mapping
 
-from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table, Text
-from runner.reporting.figures import columns, origin
-from runner.reporting.quantities import number, quantity
-from runner.reporting.run_values import cell, clock, median
+import numpy as np
+
+from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
+from runner.reporting.figures import columns, joint_columns, origin
+from runner.reporting.findings import Finding, finding
+from runner.reporting.measured import Measured
+from runner.reporting.run_values import cell, clock, measured, median
 from runner.reporting.xarm7.studies import error_norm, smallest_margin
 from runner.reporting.xarm7.studies_plan import ERRORS, GAIN, TASKS
 from runner.store import Run
@@ -47,7 +50,7 @@ def motion_section(runs: Mapping[str, Run]) -> Section:
         ),
         _paths(runs),
         _errors(runs),
-        _finding(runs),
+        _concluded(runs),
     ]
     return Section("What each error does to the motion", blocks)
 
@@ -114,36 +117,93 @@ def _errors(runs: Mapping[str, Run]) -> Curves:
     )
 
 
-def _finding(runs: Mapping[str, Run]) -> Notice:
-    def error(name: str) -> float | None:
-        return median(runs[f"printed/{name}"], "max_tracking_error")
-
-    def text(name: str) -> str:
-        return quantity(error(name), "m")
-
-    def fed_back(name: str) -> str:
-        without, with_it = error(name), error(f"{name}/fed back")
-        helps = without is not None and with_it is not None and with_it < 0.5 * without
-        return f"{'brings it down to' if helps else 'does not mend it:'} {text(f'{name}/fed back')}"
+def _concluded(runs: Mapping[str, Run]) -> Finding:
+    def error(case: str) -> Measured:
+        return measured(runs[f"printed/position/{case}"], "max_tracking_error", f"largest axis error, {case}")
 
     inverses = [run for task in TASKS for run in _inverses(runs, task)]
-    ends = [run.failure["time"] for run in inverses if run.failure is not None]
     trajectory = inverses[0].config["trajectory"]
     length = math.dist(trajectory["start"], trajectory["goal"])
-    last = f", the last at {number(float(max(ends)), 2)} s" if ends else ""
-    return Notice(
-        "finding",
+    errors = [median(run, "max_tracking_error") for run in inverses]
+    following = sum(each is not None and each < 0.1 * length for each in errors)
+    alone = runs["printed/position/columns alone"]
+    speeds = joint_columns(alone.trace, "dq")
+    return conclude(
+        len(inverses),
+        Measured("runs with the printed inverse that follow the line", float(following)),
+        Measured("runs with it that end early", float(sum(run.failure is not None for run in inverses))),
+        Measured("length of the line", length, "m"),
+        error("columns alone"),
+        error("columns alone/fed back"),
+        measured(alone, "cross_track_error", "distance from the line, columns alone"),
+        Measured(
+            "difference of the first two joints' speeds", float(np.abs(speeds[:, 0] - speeds[:, 1]).max()), "rad/s"
+        ),
+        Measured("largest speed of the first joint", float(np.abs(speeds[:, 0]).max()), "rad/s"),
+        measured(runs["printed/position/columns alone/fed back"], "peak_joint_speed", "joint speed, fed back"),
+        error("angles alone"),
+        error("angles alone/fed back"),
+        error("none"),
+        error("none/fed back"),
+        error("working"),
+    )
+
+
+def conclude(
+    count: int,
+    following: Measured,
+    ended: Measured,
+    length: Measured,
+    columns_alone: Measured,
+    columns_fed: Measured,
+    off: Measured,
+    unequal: Measured,
+    first_speed: Measured,
+    speed: Measured,
+    angles_alone: Measured,
+    angles_fed: Measured,
+    drift: Measured,
+    drift_fed: Measured,
+    ours: Measured,
+) -> Finding:
+    """Return what each error costs, position task.
+
+    Args:
+        count: Runs with the printed inverse, of both tasks.
+        following: How many of them run the period with an error below a tenth of the line.
+        ended: How many end early.
+        length: Length of the line.
+        columns_alone: Largest axis error where the columns are as printed.
+        columns_fed: The same with the tip's error fed back.
+        off: Distance from the line where the columns are as printed.
+        unequal: Largest difference of the first two joints' speeds there.
+        first_speed: Largest speed of the first joint there.
+        speed: Largest joint speed there with the tip's error fed back.
+        angles_alone: Largest axis error where the angles are as printed.
+        angles_fed: The same with the tip's error fed back.
+        drift: Largest axis error with every error put right.
+        drift_fed: The same with the tip's error fed back.
+        ours: Largest axis error of the working law.
+    """
+    return finding(
         "Three errors, and the right pseudo-inverse cures one of them",
-        f"Of {len(inverses)} runs with the printed inverse {len(ends)} end before the period is over{last}. With the "
-        "right pseudo-inverse the arm moves, but not along the line: each joint does what the one before it should, "
-        "and joints 1 and 2 share what is joint 1's. The columns alone cost "
-        f"{text('position/columns alone')} of a line of {quantity(length, 'm')}; feeding the tip's error back "
-        f"{fed_back('position/columns alone')}, with joints at up to "
-        f"{quantity(median(runs['printed/position/columns alone/fed back'], 'peak_joint_speed'), 'rad/s')}. The "
-        f"angles alone cost {text('position/angles alone')}; feedback {fed_back('position/angles alone')}. With "
-        f"every error put right the drift of open-loop integration is left, {text('position/none')}; feedback "
-        f"{fed_back('position/none')}, and our law, which integrates by the midpoint rule, has "
-        f"{text('position/working')}.",
+        f"Of {count} runs with the printed inverse {following} follow the line; {ended} end early, as its matrix is "
+        "found to be singular. With the right pseudo-inverse the arm moves, but not along the line: each joint does "
+        "what the one before it should, and the first two share what is the first one's. The columns alone cost "
+        f"{columns_alone} of a line of {length}; feeding the tip's error back does not mend it: {columns_fed}, with "
+        f"joints at up to {speed}. The angles alone cost {angles_alone}; feedback brings that down to {angles_fed}. "
+        f"With every error put right the drift of open-loop integration is left, {drift}; feedback brings it down to "
+        f"{drift_fed}, and our law, which integrates by the midpoint rule, has {ours}.",
+        following <= 0.0,
+        columns_alone > 0.5 * length,
+        columns_fed > 0.5 * columns_alone,
+        off > 0.1 * length,
+        unequal < 1e-6 * first_speed,
+        angles_alone > 3.0 * drift,
+        angles_fed < 0.2 * angles_alone,
+        drift < 0.01 * length,
+        drift_fed < 0.2 * drift,
+        ours < 0.2 * drift_fed,
     )
 
 

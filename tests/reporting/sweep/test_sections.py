@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from sample_sweep import measurements, noisy, two_axes
@@ -5,6 +7,7 @@ from sample_sweep import measurements, noisy, two_axes
 from runner.reporting.document import Curves, Maps, Notice, Table, Text
 from runner.reporting.sweep import axes, distributions, effects, failures, maps
 from runner.reporting.sweep.subject import choose
+from runner.sweeps.differing import Difference
 
 
 def blocks(section, kind):
@@ -23,6 +26,28 @@ def test_axes_are_told_with_their_values_and_the_command():
     assert table.origin.command.startswith("runner -m")
     assert not blocks(made, Notice)
     assert "12 cells, every combination" in blocks(made, Text)[0].text
+
+
+def test_what_differs_beyond_the_axes_stands_beside_them():
+    plain = two_axes()
+    found = [
+        Difference("controller.period", ("noise.position",), [("0.0001, 0.001", "0.01"), ("0.01", "0.001")]),
+        Difference("robot.home", (), [("", "x" * 80)]),
+    ]
+    subject = choose(replace(plain.measurements, differences=found))
+    _, table = blocks(axes.section(subject, ""), Table)
+    assert table.caption.startswith("Also differs: config values that are not the same in all cells")
+    assert table.rows[0] == ["controller.period (s)", "noise.position", "0.0001, 0.001: 0.01; 0.01: 0.001"]
+    assert table.rows[1][1:] == ["none", "x" * 57 + "..."]
+    assert len(blocks(axes.section(plain, ""), Table)) == 1
+
+
+def test_an_axis_that_matters_names_what_goes_with_it():
+    keys = ["a", "b", "c", "d"]
+    found = [Difference(key, ("torque_limits.max",), [("20", "1"), ("40, 60, 80", "2")]) for key in keys]
+    subject = choose(replace(two_axes().measurements, differences=found))
+    assert "With it go a, b, c and 1 more, which may be the cause: see Also differs." in effects.summary(subject)
+    assert "go " not in effects.summary(two_axes())
 
 
 def test_failures_and_few_repetitions_are_said_at_once():
@@ -52,6 +77,35 @@ def test_the_share_by_hand():
 def test_chance_is_called_chance():
     subject = two_axes(rms=noisy(lambda noise, limit: 1.0, repetitions=6))
     assert "no more than chance may" in effects.summary(subject)
+
+
+def shared_seeds(repetitions=8):
+    """A metric of which what the seeds share is most; levels of the first axis differ by a little."""
+
+    def values(level, _):
+        shared = np.random.default_rng(1).normal(size=repetitions)
+        own = np.random.default_rng([2, int(level), int(_)]).normal(size=repetitions)
+        return 10.0 + 0.15 * level + shared + 0.05 * own
+
+    return values
+
+
+def test_what_seeds_share_is_no_scatter_between_cells():
+    subject = two_axes(rms=shared_seeds())
+    text = blocks(effects.section(subject), Text)[0].text
+    (first, *_) = subject.effects["rms"].effects
+    assert first.p_value == 0.001
+    assert "permutes within a repetition only" in text
+    own = replace(subject.measurements, seeds=range(12))
+    alone = choose(own)
+    assert alone.effects["rms"].effects[0].p_value > 0.05
+    assert "permutes within a repetition" not in blocks(effects.section(alone), Text)[0].text
+
+
+def test_the_sentence_on_chance_says_its_condition_and_how_many_tests_there_are():
+    text = blocks(effects.section(two_axes()), Text)[0].text
+    assert "no effect and the values scatter alike at all of its levels, p falls below 0.05 in one test in" in text
+    assert "4 tests stand here" in text  # three on the error; of peak torque, which has no scatter, one axis
 
 
 def test_main_effects_are_medians_over_the_other_axes():
@@ -99,15 +153,42 @@ def test_three_axes_make_small_multiples():
     assert np.sort(values) == pytest.approx(np.sort(three_axes().medians["rms"]))
 
 
-def test_more_axes_are_pooled_by_the_median():
-    grid = {"a": [1.0, 2.0], "b": [1.0, 2.0], "c": [1.0, 2.0], "d": [1.0, 2.0, 3.0]}
-    subject = choose(measurements(grid, {"rms": noisy(lambda a, b, c, d: 1 + 4 * a + 2 * b + c, scatter=0.001)}))
-    text, block = maps.section(subject).blocks
-    assert "over d the median is taken" in text.text
-    assert sorted(np.concatenate([panel.values.ravel() for panel in block.panels])) == pytest.approx(
-        np.arange(1.0, 9.0), rel=0.01
+def map_values(block):
+    return np.sort(np.concatenate([panel.values.ravel() for panel in block.panels]))
+
+
+def test_more_axes_are_maps_of_their_own_and_no_value_is_pooled():
+    grid = {"a": [1.0, 2.0], "b": [1.0, 2.0], "trajectory": ["quintic", "goal"], "robot": ["macro", "mini"]}
+    subject = choose(measurements(grid, {"rms": noisy(lambda a, b, c, d: 1 + 8 * a + 4 * b + 2 * c + d)}))
+    (block,) = maps.section(subject).blocks
+    assert [panel.title for panel in block.panels][:2] == [
+        "trajectory = quintic, robot = macro",
+        "trajectory = quintic, robot = mini",
+    ]
+    assert map_values(block).tolist() == sorted(subject.medians["rms"])
+    assert "a map for each value of trajectory and robot" in block.caption
+    assert all(panel.runs for panel in block.panels)
+
+
+def test_of_many_maps_some_are_shown_and_the_caption_says_so():
+    grid = {name: [1.0, 2.0, 3.0, 4.0] for name in "abcd"}
+    subject = choose(
+        measurements(grid, {"rms": noisy(lambda a, b, c, d: 1 + 9 * a + 7 * b + c / 10 + d / 20, repetitions=2)})
     )
-    assert not block.panels[0].runs
+    (block,) = maps.section(subject).blocks
+    assert len(block.panels) == 9
+    assert "(9 of 16, evenly chosen; All runs has the others)" in block.caption
+    assert set(map_values(block)) <= set(subject.medians["rms"])
+
+
+def test_over_seeds_a_map_shows_the_middle_cell_and_says_so():
+    grid = {"seed": [0.0, 1.0, 2.0, 3.0], "a": [1.0, 2.0], "b": [1.0, 2.0]}
+    subject = choose(measurements(grid, {"rms": lambda seed, a, b: [1.0 + seed + 10 * a + 100 * b]}))
+    (block,) = maps.section(subject).blocks
+    assert block.panels[0].values.tolist() == [[2.0, 12.0], [102.0, 112.0]]
+    assert block.caption.startswith(
+        "Of the medians of the cells of 4 seeds the middle one, of an even number the lower"
+    )
 
 
 def test_distributions_end_below_one_where_runs_failed():

@@ -46,8 +46,10 @@ def blocks_of(document, kind):
 def test_the_report_has_all_its_parts(document):
     assert document.title == "Sweep over controller.natural_frequency × controller.period"
     assert [section.title for section in document.sections] == [
+        "Caveats",
         "Axes",
         "Which axis matters",
+        "Compared in pairs",
         "Maps",
         "Trade-off",
         "Distributions",
@@ -76,7 +78,7 @@ def test_best_and_worst_move(document, sweep):
 
 
 def test_the_next_cells_are_compared_in_pairs(document):
-    table = next(block for block in blocks_of(document, Table) if "same seeds" in block.caption)
+    table = next(block for block in blocks_of(document, Table) if "against the best" in block.caption)
     assert table.header[-1] == "than the best"
     assert {row[-1] for row in table.rows} <= {"larger", "no difference shown"}
     assert "larger" in {row[-1] for row in table.rows}
@@ -123,7 +125,13 @@ def test_a_sweep_of_one_run_is_reported(tmp_path):
 def test_a_sweep_of_failed_runs_is_reported(tmp_path):
     cells = [("controller.period=0.04", f"controller.natural_frequency={rate}") for rate in (200, 300)]
     document = sweep_document(make_sweep(tmp_path, *cells))
-    assert [section.title for section in document.sections] == ["Axes", "Failed runs", "All runs", "Provenance"]
+    assert [section.title for section in document.sections] == [
+        "Caveats",
+        "Axes",
+        "Failed runs",
+        "All runs",
+        "Provenance",
+    ]
     assert write_report(document, tmp_path / "report")
 
 

@@ -1,0 +1,64 @@
+"""CPU time of the rules behind a run's caveats, against that of its metrics: at most a quarter.
+
+Both look at the same trace in turns, a block of calls each; the quickest block of each is judged, as work beside it
+only ever slows one.
+"""
+
+import time
+from collections.abc import Callable
+
+from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
+from runner.caveats import Watch, setting_of, signals_of
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.metrics import evaluate
+from runner.simulation import simulate
+
+_BLOCKS, _CALLS = 30, 20
+_TARGET = 0.25
+_CASES = (
+    ("robot=macro",),
+    ("robot=macro", "trajectory=quintic", "noise=thesis", "torque_limits=thesis"),
+    ("robot=xarm7",),
+    ("robot=xarm7", "controller=computed_torque", "trajectory=quintic", "torque_limits.max=5"),
+    ("robot=combined", "torque_limits=thesis"),
+    ("robot=meca500",),
+)
+
+
+def main() -> bool:
+    """Measure and print; return whether the target is met in every case."""
+    print("CPU time of metrics and of caveats, quickest block")
+    met = [_judge(*overrides) for overrides in _CASES]
+    return all(met)
+
+
+def _judge(*overrides: str) -> bool:
+    config = validate(compose(overrides).resolved)
+    loop, context = assemble(config), metric_context(config)
+    sensor = make_wrist_sensor(loop, config.wrist_sensor, 0, 0)
+    trace = simulate(loop, make_encoders(loop, config.noise, 0, 0), sensor)
+    loop.close()
+    measured = evaluate(trace, context)
+    watch = Watch(setting_of(config), config.caveats)
+    of_metrics, of_caveats = _quickest(
+        lambda: evaluate(trace, context), lambda: watch.look(signals_of(trace, measured))
+    )
+    share = of_caveats / of_metrics
+    print(
+        f"  {' '.join(overrides):90} {of_metrics * 1e6:6.0f} us, {of_caveats * 1e6:4.0f} us: {share:.2f}  target "
+        f"{_TARGET:g}: {'met' if share <= _TARGET else 'MISSED'}"
+    )
+    return share <= _TARGET
+
+
+def _quickest(*parts: Callable[[], object]) -> list[float]:
+    """Return the CPU time of a call of each part, in s."""
+    return [min(times) for times in zip(*([_block(part) for part in parts] for _ in range(_BLOCKS)), strict=True)]
+
+
+def _block(part: Callable[[], object]) -> float:
+    start = time.process_time()
+    for _ in range(_CALLS):
+        part()
+    return (time.process_time() - start) / _CALLS

@@ -1,0 +1,9 @@
+"""Caveats: rules that look at a finished run and say why its result may not be what it seems."""
+
+from runner.caveats.caveat import Caveat, Found
+from runner.caveats.setting import Setting, setting_of
+from runner.caveats.signals import Signals, signals_of
+from runner.caveats.today import changes_since
+from runner.caveats.watch import Watch
+
+__all__ = ["Caveat", "Found", "Setting", "Signals", "Watch", "changes_since", "setting_of", "signals_of"]

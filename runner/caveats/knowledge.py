@@ -1,0 +1,44 @@
+"""Rules on what controllers are told, and believe, of the arm."""
+
+from runner.caveats.rule import SettingRule
+from runner.caveats.setting import Setting
+
+_FACTORS = ("mass", "centre_of_mass", "length", "gravity")
+
+
+def _noise_beside_exact(setting: Setting) -> float | None:
+    """Return the largest noise or step of a joint's measured position, in rad, where velocities are exact."""
+    noise = setting.noise
+    if noise.velocity != "exact" or not setting.torques:  # laws that command positions take no velocities
+        return None
+    drawn = 0.0 if noise.distribution == "none" else float(noise.position.max())
+    return max(drawn, float(noise.resolution.max()))
+
+
+def _tell_noise(value: float, setting: Setting) -> str:
+    return (
+        f"controllers measure positions to {value:.3g} rad and velocities exactly (noise.velocity: exact), which no "
+        "encoder gives: torques and saturation may be larger"
+    )
+
+
+def _fixed_error(setting: Setting) -> float | None:
+    """Return the largest relative error of what is believed, where it is the same in several repetitions."""
+    if setting.mismatch.spread > 0.0 or setting.repetitions == 1:
+        return None
+    factors = [abs(float(getattr(setting.mismatch, name)) - 1.0) for name in _FACTORS]
+    return max(abs(setting.mismatch.payload) / setting.mass, *factors)
+
+
+def _tell_fixed(value: float, setting: Setting) -> str:
+    wrong = [name for name in _FACTORS if getattr(setting.mismatch, name) != 1.0]
+    wrong += ["payload"] if setting.mismatch.payload else []
+    return (
+        f"the {setting.repetitions} repetitions vary noise alone: mismatch.{', mismatch.'.join(wrong)} "
+        f"{'is' if len(wrong) == 1 else 'are'} the same in all (mismatch.spread: 0), so that their intervals say "
+        "nothing of other wrong models"
+    )
+
+
+EXACT_VELOCITY = SettingRule("exact_velocity", "noise", _noise_beside_exact, _tell_noise)
+FIXED_MISMATCH = SettingRule("fixed_mismatch", "error", _fixed_error, _tell_fixed)

@@ -1,0 +1,62 @@
+"""Rules on where the arm went."""
+
+import numpy as np
+
+from runner.caveats.rule import TraceRule, percent
+from runner.caveats.setting import Setting
+from runner.caveats.signals import Signals
+from runner.trace import FloatArray
+
+_ONES = np.ones(3)
+_SIZED = 60  # rows, the last one included, from which the size of a motion is told
+_END = 10  # of a motion to a goal the last tenth is looked at
+
+
+def _unfollowed(signals: Signals, setting: Setting) -> FloatArray:
+    """Return the tip's largest error in the size of its motion, shape (..., 1).
+
+    The size is the largest distance of the desired position from the tip's start. Of a motion to a goal, whose error
+    begins at that size, the last tenth counts. An arm that is to stay, or to give way, has nothing to follow.
+    """
+    if setting.yields:
+        return np.zeros(1)
+    desired, tip, start = signals.desired, signals.tip, signals.tip[..., :1, :]
+    if not setting.tracked:
+        last = tip.shape[-2] // _END + 1
+        desired, tip = desired[..., -last:, :], tip[..., -last:, :]
+    every = desired.shape[-2] // _SIZED + 1
+    size = _longest(desired[..., ::-every, :] - start)
+    band = setting.robot.settling_band
+    share: FloatArray = _longest(desired - tip) / np.maximum(size, band) * (size > band)
+    return share[..., None]
+
+
+def _longest(vectors: FloatArray) -> FloatArray:
+    """Return the largest norm among rows of vectors, shapes (..., T, 3) to (...)."""
+    longest: FloatArray = np.sqrt(((vectors * vectors) @ _ONES).max(axis=-1))
+    return longest
+
+
+def _tell_unfollowed(value: float, joint: int, setting: Setting) -> str:
+    if setting.tracked:
+        return f"the arm did not follow: the tip's error reaches {percent(value)} of the size of its motion"
+    return f"the arm did not follow: at the end the tip is still {percent(value)} of its way from the goal"
+
+
+def _beyond(signals: Signals, setting: Setting) -> FloatArray:
+    """Return how far each joint goes beyond a position limit, shape (..., nq), in rad; below 0 where it does not."""
+    lower, upper = setting.position_limits
+    q = np.ascontiguousarray(signals.q.swapaxes(-1, -2))  # (..., nq, T): quicker by rows
+    excess: FloatArray = np.maximum(lower - q.min(axis=-1), q.max(axis=-1) - upper)
+    return excess
+
+
+def _tell_beyond(value: float, joint: int, setting: Setting) -> str:
+    return (
+        f"joint {setting.joint_names[joint]} goes {value:.3g} {setting.joint_units[joint]} beyond its position limits, "
+        f"at which the plant {setting.plant} does not hold it"
+    )
+
+
+DID_NOT_FOLLOW = TraceRule("did_not_follow", "share", _unfollowed, _tell_unfollowed)
+JOINT_LIMITS = TraceRule("joint_limits", "excess", _beyond, _tell_beyond)

@@ -1,0 +1,25 @@
+"""All rules, in the order in which they are told, and a digest of them."""
+
+import hashlib
+from functools import cache
+from pathlib import Path
+
+from runner.caveats.burden import NO_EFFORT_LIMIT, OVERLOAD
+from runner.caveats.knowledge import EXACT_VELOCITY, FIXED_MISMATCH
+from runner.caveats.motion import DID_NOT_FOLLOW, JOINT_LIMITS
+from runner.caveats.rule import SettingRule, TraceRule
+from runner.caveats.torques import CHATTER, SATURATION
+
+TRACE_RULES: tuple[TraceRule, ...] = (DID_NOT_FOLLOW, SATURATION, CHATTER, JOINT_LIMITS)
+SETTING_RULES: tuple[SettingRule, ...] = (OVERLOAD, NO_EFFORT_LIMIT, EXACT_VELOCITY, FIXED_MISMATCH)
+
+_HEX = 24
+
+
+@cache
+def rules_digest() -> str:
+    """Return a digest of the rules' source."""
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()[:_HEX]

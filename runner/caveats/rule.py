@@ -1,0 +1,47 @@
+"""What a rule is: what it measures, and what it says."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from runner.caveats.setting import Setting
+from runner.caveats.signals import Signals
+from runner.trace import FloatArray
+
+
+@dataclass(frozen=True)
+class TraceRule:
+    """A rule on the signals of every repetition; what it measures springs it above its threshold.
+
+    Attributes:
+        name: Its name; its threshold stands at `caveats.NAME.KEY`.
+        key: Key of its threshold.
+        measure: Gives what it measures of runs, shape (..., n): a value for each joint, or one (n = 1).
+        tell: Says in words what a value means, of a joint by its index.
+    """
+
+    name: str
+    key: str
+    measure: Callable[[Signals, Setting], FloatArray]
+    tell: Callable[[float, int, Setting], str]
+
+
+@dataclass(frozen=True)
+class SettingRule:
+    """A rule on the config alone, which holds of all repetitions alike.
+
+    Attributes:
+        name: Its name, as of a TraceRule.
+        key: Key of its threshold.
+        measure: Gives what it measures; None where there is nothing to measure.
+        tell: Says in words what a value means.
+    """
+
+    name: str
+    key: str
+    measure: Callable[[Setting], float | None]
+    tell: Callable[[float, Setting], str]
+
+
+def percent(share: float) -> str:
+    """Return a share as a text, such as "12.5 %"."""
+    return f"{100.0 * share:.3g} %"

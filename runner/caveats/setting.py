@@ -1,0 +1,78 @@
+"""What rules need to know of a run beside its signals."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.trace import FloatArray
+
+if TYPE_CHECKING:  # the store knows caveats, and is to be imported without rigid-body models
+    from runner.config.robot import RobotConfig
+    from runner.config.run import RunConfig
+    from runner.robots.mismatch import MismatchConfig
+    from runner.sensing import EncoderNoise
+
+
+@dataclass(frozen=True)
+class Setting:
+    """The setting of a run.
+
+    Attributes:
+        repetitions: Number of repetitions.
+        robot: Config of the robot, for its payload and rating.
+        joint_names: Names of the joints.
+        joint_units: Unit of each joint's position, rad or m.
+        position_limits: Lower and upper position limits, shape (2, nq), in rad; infinite where there is none.
+        torque_limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
+        plant: Kind of the plant.
+        torques: Whether controllers command torques, not joint positions.
+        ticks_per_torque: Ticks for which a joint's torque is held, shape (nq,).
+        tracked: Whether the tip is to follow a path, not to go to a goal in its own way.
+        yields: Whether the arm is to give way to what its tip feels.
+        noise: Noise of the joint measurement.
+        mismatch: How what controllers believe of the robot differs from it.
+        mass: Mass of all moving links, in kg.
+    """
+
+    repetitions: int
+    robot: "RobotConfig"
+    joint_names: Sequence[str]
+    joint_units: Sequence[str]
+    position_limits: FloatArray
+    torque_limits: FloatArray
+    plant: str
+    torques: bool
+    ticks_per_torque: NDArray[np.intp]
+    tracked: bool
+    yields: bool
+    noise: "EncoderNoise"
+    mismatch: "MismatchConfig"
+    mass: float
+
+
+def setting_of(config: "RunConfig") -> Setting:
+    """Return the setting of a run."""
+    model = config.arm.model
+    ticks = np.ones(model.nq, dtype=np.intp)
+    if config.commands == "torque":
+        for loop in config.loops:
+            ticks[loop.joints] = round(loop.period / config.timing.tick)
+    return Setting(
+        repetitions=config.settings.repetitions,
+        robot=config.robot,
+        joint_names=model.joint_names,
+        joint_units=model.joint_units,
+        position_limits=model.position_limits,
+        torque_limits=config.torque_limits,
+        plant=config.plant.kind,
+        torques=config.commands == "torque",
+        ticks_per_torque=ticks,
+        tracked=config.path.tracked,
+        yields=config.environment.kind != "free" and any(loop.feels for loop in config.loops),
+        noise=config.noise,
+        mismatch=config.mismatch,
+        mass=model.mass,
+    )

@@ -1,0 +1,46 @@
+"""Whether stored caveats were found by other rules, or with other thresholds, than those of today."""
+
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+import yaml
+
+from runner.caveats.registry import rules_digest
+from runner.config.caveats import CaveatsConfig
+from runner.paths import conf_dir
+
+Thresholds = Mapping[str, Mapping[str, float]]
+
+
+def changes_since(rules: Mapping[str, Any] | None, today: Thresholds | None = None) -> list[str]:
+    """Return with what else than today a run's caveats were looked for, a text for each; none where nothing differs.
+
+    Args:
+        rules: Digest and thresholds as stored with the caveats; None of a run from before there were caveats.
+        today: The thresholds to compare with; None for those of `conf/`.
+    """
+    if rules is None:
+        return ["no rules, as the run is from before there were any"]
+    changes = [] if rules.get("digest") == rules_digest() else ["other rules"]
+    now, stored = _flat(our_thresholds() if today is None else today), _flat(rules.get("thresholds", {}))
+    for key in sorted(now.keys() | stored.keys()):
+        then, new = stored.get(key), now.get(key)
+        if then != new:
+            changes.append(f"{key} {_text(then)}, now {_text(new)}")
+    return changes
+
+
+@cache
+def our_thresholds() -> Thresholds:
+    """Return the thresholds that our config files give."""
+    values = yaml.safe_load((conf_dir() / "caveats.yaml").read_text(encoding="utf-8"))["caveats"]
+    return dict(CaveatsConfig.model_validate(values).model_dump())
+
+
+def _flat(thresholds: Thresholds) -> dict[str, float]:
+    return {f"caveats.{rule}.{key}": value for rule, keys in thresholds.items() for key, value in keys.items()}
+
+
+def _text(value: float | None) -> str:
+    return "none" if value is None else f"{value:g}"

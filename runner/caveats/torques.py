@@ -1,0 +1,49 @@
+"""Rules on torques at their limits."""
+
+import numpy as np
+
+from runner.caveats.rule import TraceRule, percent
+from runner.caveats.setting import Setting
+from runner.caveats.signals import Signals
+from runner.trace import FloatArray
+
+_AT_LIMIT = 1.0 - 1e-12  # as in the metric saturation_fraction
+
+
+def _saturated(signals: Signals, setting: Setting) -> FloatArray:
+    """Return the share of ticks that each joint is at its torque limit, shape (..., nq)."""
+    return signals.saturation
+
+
+def _tell_saturated(value: float, joint: int, setting: Setting) -> str:
+    limit = f"{setting.torque_limits[joint]:.4g} {_unit(joint, setting)}"
+    return f"joint {setting.joint_names[joint]} is at its torque limit, {limit}, in {percent(value)} of the ticks"
+
+
+def _chatter(signals: Signals, setting: Setting) -> FloatArray:
+    """Return the share of its loop's ticks at which each joint jumps from limit to opposite limit, shape (..., nq)."""
+    if not signals.saturation.any():
+        return signals.saturation
+    share: FloatArray = np.zeros_like(signals.saturation)
+    often = np.flatnonzero(signals.saturation.reshape(-1, share.shape[-1]).any(axis=0))
+    tau = np.ascontiguousarray(signals.tau.swapaxes(-1, -2)[..., often, :])  # a row for each joint: quicker
+    leap = 2.0 * _AT_LIMIT * setting.torque_limits[often][:, None]  # no torque can change by more
+    jumps = np.count_nonzero(np.abs(tau[..., 1:] - tau[..., :-1]) >= leap, axis=-1)
+    share[..., often] = jumps * setting.ticks_per_torque[often] / tau.shape[-1]
+    return np.minimum(share, 1.0)
+
+
+def _tell_chatter(value: float, joint: int, setting: Setting) -> str:
+    limit = f"{setting.torque_limits[joint]:.4g} {_unit(joint, setting)}"
+    return (
+        f"joint {setting.joint_names[joint]} chatters: its torque jumps from one limit, {limit}, to the opposite one "
+        f"at {percent(value)} of its ticks"
+    )
+
+
+def _unit(joint: int, setting: Setting) -> str:
+    return "N m" if setting.joint_units[joint] == "rad" else "N"
+
+
+SATURATION = TraceRule("saturation", "share", _saturated, _tell_saturated)
+CHATTER = TraceRule("chatter", "share", _chatter, _tell_chatter)

@@ -1,0 +1,128 @@
+"""Measured values that know what they are called, so that a comparison of them can say itself in words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from runner.reporting.quantities import above_rounding, number, quantity
+
+ROUNDING = 1e-9  # m, rad, N or a share: far below what any of our runs can tell, far above what arithmetic loses
+
+
+@dataclass(frozen=True)
+class Condition:
+    """Something that must be true of measured values for a sentence to stand.
+
+    Attributes:
+        text: The condition in words.
+        holds: Whether it is true; a value that is missing makes it false.
+        measured: The values that it is about, in words.
+    """
+
+    text: str
+    holds: bool
+    measured: str
+
+    def __bool__(self) -> bool:
+        """Refuse: a branch of prose that hangs on a condition says something that no condition guards."""
+        raise TypeError(f"'{self.text}' chooses no words; hand it to finding(), which says when it no longer holds")
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A number from stored runs.
+
+    Attributes:
+        name: What it is, in a few words, such as "tip error of the pair".
+        value: The number; None for a metric without a value.
+        unit: Its unit.
+        parts: The measured values that it was worked out from; itself where it was not.
+    """
+
+    name: str
+    value: float | None
+    unit: str = "1"
+    parts: tuple[Measured, ...] = ()
+
+    def __str__(self) -> str:
+        """Return it as it stands in a sentence, with its unit."""
+        return above_rounding(self.value, self.unit)
+
+    @property
+    def shown(self) -> str:
+        """It as it stands in a sentence on what must vanish: "0 (rounding)" where it does."""
+        return quantity(self.value, self.unit, rounding=ROUNDING)
+
+    def __mul__(self, factor: float) -> Measured:
+        """Return it so many times."""
+        return self._worked_out(f"{number(factor)} times {self.name}", lambda value: factor * value, self.unit)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Measured | float) -> Measured:
+        """Return a share of it, or its ratio to another value."""
+        if isinstance(other, Measured):
+            unit = "1" if other.unit == self.unit else f"{self.unit}/{other.unit}"
+            return self._with(other, f"{self.name} over {other.name}", lambda a, b: a / b if b else math.inf, unit)
+        return self._worked_out(f"{self.name} over {number(other)}", lambda value: value / other, self.unit)
+
+    def __sub__(self, other: Measured) -> Measured:
+        """Return the difference to another value."""
+        return self._with(other, f"{self.name} less {other.name}", lambda a, b: a - b, self.unit)
+
+    def __lt__(self, other: Measured | float) -> Condition:
+        """Return the condition that it is smaller."""
+        return self._compare(other, "<", lambda a, b: a < b)
+
+    def __le__(self, other: Measured | float) -> Condition:
+        """Return the condition that it is not larger."""
+        return self._compare(other, "≤", lambda a, b: a <= b)
+
+    def __gt__(self, other: Measured | float) -> Condition:
+        """Return the condition that it is larger."""
+        return self._compare(other, ">", lambda a, b: a > b)
+
+    def __ge__(self, other: Measured | float) -> Condition:
+        """Return the condition that it is not smaller."""
+        return self._compare(other, "≥", lambda a, b: a >= b)
+
+    def near(self, other: Measured | float, share: float) -> Condition:
+        """Return the condition that it equals another value up to a share of that."""
+        right = _as_measured(other, self.unit)
+        text = f"{self.name} within {number(100.0 * share)} % of {right.name}"
+        return _condition(text, self, right, lambda a, b: abs(a - b) <= share * abs(b))
+
+    def _compare(self, other: Measured | float, sign: str, holds: Callable[[float, float], bool]) -> Condition:
+        right = _as_measured(other, self.unit)
+        return _condition(f"{self.name} {sign} {right.name}", self, right, holds)
+
+    def _worked_out(self, name: str, work: Callable[[float], float], unit: str) -> Measured:
+        value = None if self.value is None else work(self.value)
+        return Measured(name, value, unit, self.parts or (self,))
+
+    def _with(self, other: Measured, name: str, work: Callable[[float, float], float], unit: str) -> Measured:
+        value = None if self.value is None or other.value is None else work(self.value, other.value)
+        return Measured(name, value, unit, (self.parts or (self,)) + (other.parts or (other,)))
+
+
+def _as_measured(value: Measured | float, unit: str) -> Measured:
+    return value if isinstance(value, Measured) else Measured(quantity(value, unit), value, unit)
+
+
+def _literal(part: Measured) -> str:
+    """Return the name of a number that stands in a condition itself."""
+    return quantity(part.value, part.unit)
+
+
+def _condition(text: str, left: Measured, right: Measured, holds: Callable[[float, float], bool]) -> Condition:
+    parts = dict.fromkeys(part for side in (left, right) for part in (side.parts or (side,)))
+    told = [f"{part.name}: {part if _has(part) else 'has no value'}" for part in parts if part.name != _literal(part)]
+    known = left.value is not None and right.value is not None and _has(left) and _has(right)
+    true = known and holds(float(left.value or 0.0), float(right.value or 0.0))
+    return Condition(text, bool(true), "; ".join(told))
+
+
+def _has(part: Measured) -> bool:
+    return part.value is not None and not math.isnan(part.value)

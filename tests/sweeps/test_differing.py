@@ -1,0 +1,91 @@
+import numpy as np
+import pytest
+
+from runner.sweeps.differing import Difference, Resolved, differing, in_words
+from runner.sweeps.measurements import Axis
+
+MACRO = {"name": "macro", "home": [0.0], "period": 0.01, "settling_band": 0.02}
+XARM7 = {"name": "xarm7", "home": [0.1], "period": 0.002, "settling_band": 0.001}
+LAW = {"kind": "computed_torque", "natural_frequency": 30.0, "period": 0.01}
+
+
+def config(robot=MACRO, law=LAW, **more):
+    return {"seed": 0, "outputs": "o", "robot": robot, "controller": law, "noise": {"position": 1e-3}, **more}
+
+
+def axis(name, values, *level):
+    return Axis(name, values, np.array(level))
+
+
+def test_what_goes_with_a_swept_robot_is_found_and_its_own_parts_are_not():
+    fast = {**LAW, "natural_frequency": 5.0, "period": 0.001}
+    found = differing([config(), config(XARM7, fast)], [axis("robot", ["macro", "xarm7"], 0, 1)])
+    assert found == [
+        Difference("robot.settling_band", ("robot",), [("macro", "0.02"), ("xarm7", "0.001")]),
+        Difference("controller.natural_frequency", ("robot",), [("macro", "30"), ("xarm7", "5")]),
+        Difference("controller.period", ("robot",), [("macro", "0.01"), ("xarm7", "0.001")]),
+    ]
+
+
+@pytest.mark.parametrize("key", ["noise.position", "noise"])
+def test_what_is_swept_does_not_differ_beyond_itself(key):
+    noises = [config(noise={"position": value}) for value in (1e-3, 1e-4)]
+    names = [1e-4, 1e-3] if key == "noise.position" else ["{position: 1e-3}", "{position: 1e-4}"]
+    found = differing(noises, [axis(key, names, 1, 0)])
+    # Of a swept group that both options have is told, as it may be what they are compared by.
+    assert [difference.key for difference in found] == ([] if key == "noise.position" else ["noise.position"])
+
+
+def test_what_only_one_law_has_is_what_it_is():
+    other = {"kind": "other", "natural_frequency": 30.0, "period": 0.01, "gain": 2.0}
+    laws = [axis("controller", ["computed_torque", "other"], 0, 1)]
+    assert differing([config(), config(law=other)], laws) == []
+    (found,) = differing([config(), config(law={**other, "period": 0.02})], laws)
+    assert found == Difference("controller.period", ("controller",), [("computed_torque", "0.01"), ("other", "0.02")])
+
+
+def test_where_a_run_is_kept_is_no_difference_and_equal_numbers_are_equal():
+    assert differing([config(duration=1), config(duration=1.0, outputs="p", sweep={"trace": "all"})], []) == []
+
+
+def test_a_value_follows_as_few_axes_as_it_can():
+    axes = [axis("robot", ["macro", "xarm7"], 0, 0, 1, 1), axis("seed", [0.0, 1.0], 0, 1, 0, 1)]
+    cells = [config(step=step, seed=seed, gain=gain) for step, seed, gain in
+             ((1, 0, "a"), (1, 1, "b"), (2, 0, "b"), (2, 1, "b"))]  # fmt: skip
+    by_both, by_robot = differing(cells, axes)
+    assert by_robot == Difference("step", ("robot",), [("macro", "1"), ("xarm7", "2")])
+    assert by_both.axes == ("robot", "seed")
+    assert by_both.values == [("macro and 0", "a"), ("macro and 1, xarm7 and 0, xarm7 and 1", "b")]
+
+
+def test_what_follows_no_axis_is_told_too():
+    (found,) = differing([config(duration=1), config(duration=2)], [axis("seed", [0.0], 0, 0)])
+    assert found == Difference("duration", (), [("", "1"), ("", "2")])
+
+
+def test_a_key_that_some_cells_lack_is_told():
+    (found,) = differing([config(), config(duration=2)], [axis("preset", ["a", "b"], 0, 1)])
+    assert found == Difference("duration", ("preset",), [("a", "–"), ("b", "2")])
+
+
+def test_what_overrides_give_takes_no_memory():
+    resolved = Resolved()
+    for seed in range(50):
+        resolved.add(config(seed=seed, duration=seed // 25), [f"seed={seed}", "robot=macro"])
+    assert "seed" not in resolved._texts
+    (found,) = resolved.differences([axis("seed", np.arange(50.0), *range(50))])
+    assert found.key == "duration"
+
+
+def test_an_override_that_takes_another_keys_value_may_differ():
+    resolved = Resolved()
+    for step in (1.0, 2.0):
+        resolved.add(config(step=step), ["step=${robot.period}"])
+    assert [difference.key for difference in resolved.differences([])] == ["step"]
+
+
+def test_in_a_line():
+    found = [Difference(key, ("robot",), []) for key in "abcdef"]
+    assert in_words(found) == "6 config values differ beyond the swept axes with robot: a, b, c, d and 2 more"
+    assert in_words([Difference("a", (), [])]) == "1 config value differs beyond the swept axes: a"
+    assert in_words([]) == ""
