@@ -8,6 +8,7 @@ from runner.caveats.signals import Signals
 from runner.trace import FloatArray
 
 _AT_LIMIT = 1.0 - 1e-12  # as in the metric saturation_fraction
+_IDEAL = "kinematic"  # the plant whose joints go where they are told; its torques are those that this would need
 
 
 def _saturated(signals: Signals, setting: Setting) -> FloatArray:
@@ -16,12 +17,19 @@ def _saturated(signals: Signals, setting: Setting) -> FloatArray:
 
 
 def _tell_saturated(value: float, joint: int, setting: Setting) -> str:
-    limit = f"{setting.torque_limits[joint]:.4g} {_unit(joint, setting)}"
-    return f"joint {setting.joint_names[joint]} is at its torque limit, {limit}, in {percent(value)} of the ticks"
+    name, limit = setting.joint_names[joint], f"{setting.torque_limits[joint]:.4g} {_unit(joint, setting)}"
+    if setting.plant == _IDEAL:
+        return (
+            f"joint {name} would need its torque limit, {limit}, or more in {percent(value)} of the ticks; the plant "
+            f"{setting.plant} moves it all the same"
+        )
+    return f"joint {name} is at its torque limit, {limit}, in {percent(value)} of the ticks"
 
 
 def _chatter(signals: Signals, setting: Setting) -> FloatArray:
     """Return the share of its loop's ticks at which each joint jumps from limit to opposite limit, shape (..., nq)."""
+    if setting.plant == _IDEAL:
+        return np.zeros_like(signals.saturation)
     if not signals.saturation.any():
         return signals.saturation
     share: FloatArray = np.zeros_like(signals.saturation)

@@ -19,6 +19,7 @@ from runner.errors import RunnerError, nearest
 
 if TYPE_CHECKING:
     from runner.reporting.document import Document
+    from runner.reporting.expected_caveats import ExpectedCaveat
     from runner.reporting.job import Job, Made
     from runner.store import Calibration, Run
 
@@ -36,11 +37,12 @@ class _Way:
 
 @dataclass(frozen=True)
 class _Reproduced:
-    """What came of a work: its report, the runs behind it by name, and why others are missing."""
+    """What came of a work: its report, the runs behind it by name, why others are missing, and caveats it expects."""
 
     document: "Document"
     runs: "Mapping[str, Run]"
     missing: Mapping[str, str]
+    expected: "Sequence[ExpectedCaveat]" = ()
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -49,8 +51,8 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("work", nargs="?", default="all", metavar="NAME", help=f"{', '.join(WORKS)} or all")
     parser.add_argument("overrides", nargs="*", metavar="OVERRIDE", help="such as hydra.sweeper.workers=1")
     parser.add_argument("--outputs", type=Path, default=Path("outputs"), help="folder of runs and reports")
-    parser.add_argument("--check", action="store_true", help="exit 1 where a finding of the report no longer holds")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write verdicts, findings and numbers to a file")
+    parser.add_argument("--check", action="store_true", help="exit 1 where a finding fell or a caveat is unexpected")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write verdicts, findings, caveats, numbers")
     options = parser.parse_intermixed_args(arguments)
     if options.work not in (*WORKS, "all"):
         raise RunnerError(
@@ -86,10 +88,15 @@ def _reproduce(work: str, way: _Way) -> _Reproduced:
 
 
 def _tell_fallen(made: Mapping[str, _Reproduced]) -> bool:
-    """Print the findings that no longer hold; return whether there are any."""
+    """Print the findings that no longer hold and the caveats that are not expected; return whether there are any."""
     from runner.reporting.conclusions import fallen
+    from runner.reporting.expected_caveats import unexpected_caveats
 
-    lines = [f"{work}: {line}" for work, each in made.items() for line in fallen(each.document)]
+    lines = [
+        f"{work}: {line}"
+        for work, each in made.items()
+        for line in (*fallen(each.document), *unexpected_caveats(each.runs, each.expected))
+    ]
     for line in lines:
         print(f"runner: {line}", file=sys.stderr)
     return bool(lines)
@@ -99,7 +106,7 @@ def _write_conclusions(made: Mapping[str, _Reproduced], path: Path) -> None:
     from runner.reporting.conclusions import conclusions
     from runner.store.atomic import write_atomically
 
-    content = {work: conclusions(each.document, each.runs) for work, each in made.items()}
+    content = {work: conclusions(each.document, each.runs, each.expected) for work, each in made.items()}
     write_atomically(path, (json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())
 
 
@@ -108,7 +115,8 @@ def _reproduce_runs(work: str, way: _Way, folder: Path) -> _Reproduced:
     plan = import_module(f"runner.reporting.{work}.plan").plan
     document = getattr(import_module(f"runner.reporting.{work}.report"), f"{work}_document")
     runs, _ = make_all(plan(), {}, way.outputs, way.overrides, way.command)
-    return _Reproduced(document(runs), runs, runs.missing)
+    expected = import_module(f"runner.reporting.{work}.caveats").EXPECTED
+    return _Reproduced(document(runs), runs, runs.missing, expected)
 
 
 def _reproduce_thesis(work: str, way: _Way, folder: Path) -> _Reproduced:
@@ -120,11 +128,13 @@ def _reproduce_thesis(work: str, way: _Way, folder: Path) -> _Reproduced:
 
 def _reproduce_meca500(work: str, way: _Way, folder: Path) -> _Reproduced:
     from runner.reporting.meca500.calibration_plan import calibration_jobs
+    from runner.reporting.meca500.caveats import EXPECTED
     from runner.reporting.meca500.plan import plan
     from runner.reporting.meca500.report import meca500_document
 
     runs, calibrations = make_all(plan(), calibration_jobs(), way.outputs, way.overrides, way.command)
-    return _Reproduced(meca500_document(runs, calibrations), runs, runs.missing | calibrations.missing)
+    missing = runs.missing | calibrations.missing
+    return _Reproduced(meca500_document(runs, calibrations), runs, missing, EXPECTED)
 
 
 def _audit(work: str, way: _Way, folder: Path) -> _Reproduced:

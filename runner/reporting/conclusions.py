@@ -1,8 +1,9 @@
-"""What a report concludes, for programs: verdicts, findings with their conditions, and the numbers behind them."""
+"""What a report concludes, for programs: verdicts, findings with their conditions, caveats, numbers."""
 
 from collections.abc import Mapping, Sequence
 
 from runner.reporting.document import Claim, Document
+from runner.reporting.expected_caveats import ExpectedCaveat, caveats_as_data
 from runner.reporting.findings import findings
 from runner.reporting.outline import blocks
 from runner.store import Run
@@ -18,12 +19,13 @@ def fallen(document: Document) -> list[str]:
     ]
 
 
-def conclusions(document: Document, runs: Mapping[str, Run]) -> dict[str, object]:
+def conclusions(document: Document, runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> dict[str, object]:
     """Return all that a report concludes, as plain data.
 
     Args:
         document: The report.
         runs: The stored runs behind it, by name.
+        expected: The caveats that it expects of them.
     """
     return {
         "title": document.title,
@@ -38,6 +40,7 @@ def conclusions(document: Document, runs: Mapping[str, Run]) -> dict[str, object
             }
             for number, found in findings(document)
         ],
+        "caveats": caveats_as_data(runs, expected),
         "numbers": {name: _numbers(run) for name, run in runs.items()},
     }
 

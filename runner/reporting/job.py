@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
-from runner.errors import RunnerError
+from runner.errors import RunnerError, nearest
 
 PRESETS = ("as_reported", "sound")
 Thing = TypeVar("Thing")
@@ -31,6 +31,8 @@ class MissingError(RunnerError):
 class Made(dict[str, Thing]):
     """The runs or calibrations of a work by name; asking for one that was not made raises MissingError.
 
+    One that is not of the work is refused with the nearest name, so that no condition is left without its runs.
+
     Args:
         found: Those that were made.
         missing: Why the others were not, by name.
@@ -43,4 +45,4 @@ class Made(dict[str, Thing]):
     def __missing__(self, name: str) -> Thing:
         if name in self.missing:
             raise MissingError(f"{name}: {self.missing[name]}")
-        raise KeyError(name)
+        raise RunnerError(f"the work has no run or calibration '{name}'{nearest(name, [*self, *self.missing])}")

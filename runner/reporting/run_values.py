@@ -1,9 +1,11 @@
 """What the sections of all works read from stored runs, of which some may have failed."""
 
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
 
+from runner.errors import RunnerError, nearest
 from runner.reporting.document import Block, FloatArray, Notice
 from runner.reporting.figures import columns
 from runner.reporting.measured import Measured
@@ -12,8 +14,12 @@ from runner.store import Run
 
 
 def median(run: Run, metric: str) -> float | None:
-    """Return the median of a metric; None where the run failed or the metric has no value."""
-    stored = run.metrics.get(metric)
+    """Return the median of a metric; None where the run failed or the metric has no value.
+
+    Raises:
+        RunnerError: if the run has metrics, and none of that name.
+    """
+    stored = _stored(run, metric)
     return None if stored is None or stored["median"] is None else float(stored["median"])
 
 
@@ -24,9 +30,19 @@ def measured(run: Run, metric: str, name: str) -> Measured:
         run: The run.
         metric: Name of the metric.
         name: What the value is called in conditions.
+
+    Raises:
+        RunnerError: if the run has metrics, and none of that name.
     """
-    stored = run.metrics.get(metric)
+    stored = _stored(run, metric)
     return Measured(name, median(run, metric), "1" if stored is None else str(stored["unit"]))
+
+
+def _stored(run: Run, metric: str) -> Mapping[str, Any] | None:
+    """Return a metric as stored; None where the run failed."""
+    if run.metrics and metric not in run.metrics:
+        raise RunnerError(f"run {run.hash} has no metric '{metric}'{nearest(metric, run.metrics)}")
+    return run.metrics.get(metric)
 
 
 def cell(run: Run, metric: str, digits: int = 3) -> str:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 
 from runner.reporting.document import Document, Notice, Section, Table, Text
+from runner.reporting.expected_caveats import ExpectedCaveat, caveats_section
 from runner.reporting.job import Made, MissingError, Thing
 from runner.reporting.run_report import literal, provenance
 from runner.store import Run
@@ -15,6 +16,7 @@ def work_document(
     chapters: Sequence[Section],
     behind: str,
     runs: Mapping[str, Run],
+    expected: Sequence[ExpectedCaveat],
     checklist: Callable[[Sequence[Section]], Section],
 ) -> Document:
     """Return the report on a published work.
@@ -26,10 +28,12 @@ def work_document(
         chapters: The report's own chapters.
         behind: What lies behind it, for the chapter on provenance.
         runs: The stored runs of the work's plan, by name.
+        expected: The caveats that the work expects of them.
         checklist: Makes the last chapter from those before it.
     """
     missing = [_missing(runs.missing)] if isinstance(runs, Made) and runs.missing else []
-    sections = (*missing, *chapters, Section("Provenance", (Text(behind), provenance(list(runs.values())))))
+    where_from = Section("Provenance", (Text(behind), provenance(list(runs.values()))))
+    sections = (*missing, *chapters, caveats_section(runs, expected), where_from)
     date = max(str(run.provenance["date"]) for run in runs.values())
     return Document(title, subtitle, abstract, (*sections, checklist(sections)), date)
 

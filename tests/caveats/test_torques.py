@@ -54,3 +54,10 @@ def test_the_worst_joint_of_the_worst_repetition_is_told(limited):
     assert (caveat.value, caveat.repetitions) == (0.6, 3)
     assert caveat.text.startswith("joint q3 ")
     assert caveat.text.endswith(", in 3 of 4 repetitions")
+
+
+def test_joints_that_go_where_they_are_told_would_need_their_torques(limited):
+    caveat = found(limited, signals(tau=torques(25)), plant="kinematic")["saturation"]
+    assert caveat.text.startswith("joint q2 would need its torque limit, 10 N m, or more in 25 % of the ticks;")
+    jumping = np.resize([10.0, -10.0], 100)[:, None] * [1.0, 0.0, 0.0]
+    assert set(found(limited, signals(tau=jumping), plant="kinematic")) == {"saturation"}

@@ -1,6 +1,7 @@
 import csv
 import json
 from functools import partial
+from types import SimpleNamespace
 
 import pytest
 
@@ -10,6 +11,7 @@ from runner.audit.verdict import VERDICTS
 from runner.commands import reproduce
 from runner.commands.reproduce import WORKS, make_all
 from runner.reporting.document import Document, Section, Text
+from runner.reporting.expected_caveats import ExpectedCaveat
 from runner.reporting.findings import finding
 from runner.reporting.job import Job
 from runner.reporting.measured import Measured
@@ -92,7 +94,7 @@ def _document(runs):
     assert runs["singular"].status == "failed"
     makers = [partial(_part, name=name) for name in ("goal", "quintic")]
     checklist = lambda sections: Section("Checklist", ())  # noqa: E731
-    return work_document("Title", "", "Abstract", parts(runs, *makers), "", runs, checklist)
+    return work_document("Title", "", "Abstract", parts(runs, *makers), "", runs, (), checklist)
 
 
 def _part(runs, name):
@@ -180,3 +182,17 @@ def test_conclusions_are_written_for_programs(cli, one_finding, tmp_path):
     assert (small["section"], small["title"], small["text"]) == ("1", "Small", "It is 2·10⁻³ m.")
     assert (small["holds"], other["holds"]) == (False, True)
     assert small["conditions"][0]["text"] == "tip error < 1·10⁻³ m"
+
+
+def test_check_lists_the_caveats_that_a_work_does_not_expect(cli, monkeypatch):
+    caveats = [{"rule": rule, "text": f"what {rule} found", "value": 1.0} for rule in ("saturation", "overload")]
+    runs = {"heavy": SimpleNamespace(caveats=caveats)}
+    expected = [ExpectedCaveat("overload", "heavy", "It is to be heavy.")]
+    made = reproduce._Reproduced(Document("The thesis", "", "", (), "2026-01-01"), runs, {}, expected)
+    monkeypatch.setitem(reproduce._WORKS, "thesis", lambda *_: made)
+    assert cli("reproduce", "thesis").code == 0
+    ending = cli("reproduce", "thesis", "--check")
+    assert ending.code == 1
+    told = [line for line in ending.err.splitlines() if "caveat" in line]
+    line = "runner: thesis: heavy: caveat saturation, which the work does not expect: what saturation found"
+    assert told == [line]

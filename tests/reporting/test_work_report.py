@@ -2,6 +2,7 @@
 
 import pytest
 
+from runner.errors import RunnerError
 from runner.reporting.document import Section, Text
 from runner.reporting.job import Made, MissingError
 from runner.reporting.work_report import parts
@@ -20,7 +21,7 @@ def wrist_section(made):
 def test_what_was_not_made_is_said_where_it_is_asked_for():
     with pytest.raises(MissingError, match="c: cut short: killed"):
         RUNS["c"]
-    with pytest.raises(KeyError):
+    with pytest.raises(RunnerError, match="no run or calibration 'd'"):
         RUNS["d"]
     assert list(RUNS.values()) == [1, 2]
 

@@ -5,6 +5,7 @@ from functools import partial
 
 from runner.reporting.document import Document, Section
 from runner.reporting.meca500.at_the_tip import at_the_tip_section
+from runner.reporting.meca500.caveats import EXPECTED
 from runner.reporting.meca500.checklist import CHECKLIST
 from runner.reporting.meca500.contact import contact_section
 from runner.reporting.meca500.frequency_response import frequency_response_section
@@ -58,6 +59,7 @@ def meca500_document(runs: Mapping[str, Run], calibrations: Mapping[str, Calibra
             "report, stored under outputs/runs and outputs/calibrations."
         ),
         runs=runs,
+        expected=EXPECTED,
         checklist=CHECKLIST.section,
     )
 

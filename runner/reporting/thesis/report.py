@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from runner.reporting.document import Document, Section
 from runner.reporting.thesis.base_axis import base_axis_section, duration_section
+from runner.reporting.thesis.caveats import EXPECTED
 from runner.reporting.thesis.chapter2 import chapter2
 from runner.reporting.thesis.chapter3 import chapter3
 from runner.reporting.thesis.chapter4 import chapter4
@@ -58,6 +59,7 @@ def thesis_document(runs: Mapping[str, Run]) -> Document:
             "trace and metrics under outputs/runs. Figures show repetition 0; numbers are medians over the repetitions."
         ),
         runs=runs,
+        expected=EXPECTED,
         checklist=checklist_section,
     )
 

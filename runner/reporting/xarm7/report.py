@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from runner.reporting.document import Document, Section
 from runner.reporting.work_report import parts, work_document
+from runner.reporting.xarm7.caveats import EXPECTED
 from runner.reporting.xarm7.checklist import CHECKLIST
 from runner.reporting.xarm7.claims import claims_section
 from runner.reporting.xarm7.kinematics import kinematics_section
@@ -53,6 +54,7 @@ def xarm7_document(runs: Mapping[str, Run]) -> Document:
             "config, trace and metrics under outputs/runs."
         ),
         runs=runs,
+        expected=EXPECTED,
         checklist=CHECKLIST.section,
     )
 

@@ -1,0 +1,90 @@
+"""Which caveats of its runs a work expects, and why; any other is a finding that nobody has looked at."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from typing import Any
+
+from runner.reporting.document import Block, Notice, Section, Table, Text
+from runner.reporting.run_report import literal
+from runner.store import Run
+
+_TOLD = 20  # unexpected caveats that the report names one by one
+
+
+@dataclass(frozen=True)
+class ExpectedCaveat:
+    """A caveat that some runs of a work are to have.
+
+    Attributes:
+        rule: Name of the rule that finds it.
+        runs: Pattern of the names of the runs, such as "figure_5_*/as_reported".
+        why: Why it is there, and why the work's conclusions stand; a sentence.
+    """
+
+    rule: str
+    runs: str
+    why: str
+
+    def covers(self, name: str, caveat: Mapping[str, Any]) -> bool:
+        """Tell whether it speaks of a caveat of the run of that name."""
+        return str(caveat["rule"]) == self.rule and fnmatchcase(name, self.runs)
+
+
+def unexpected_caveats(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> list[str]:
+    """Return the caveats that a work does not expect, a line for each."""
+    return [
+        f"{name}: caveat {caveat['rule']}, which the work does not expect: {caveat['text']}"
+        for name, run in runs.items()
+        for caveat in run.caveats
+        if not any(each.covers(name, caveat) for each in expected)
+    ]
+
+
+def caveats_as_data(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> list[dict[str, object]]:
+    """Return every caveat of a work's runs, with why it is expected, or None, as plain data."""
+    return [
+        {
+            "run": name,
+            **{key: caveat[key] for key in ("rule", "text", "value")},
+            "expected": next((each.why for each in expected if each.covers(name, caveat)), None),
+        }
+        for name, run in runs.items()
+        for caveat in run.caveats
+    ]
+
+
+def caveats_section(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> Section:
+    """Return which caveats a work's runs have, and why; a warning on top where one is not expected."""
+    lines = unexpected_caveats(runs, expected)
+    blocks: list[Block] = []
+    if lines:
+        more = f"; and {len(lines) - _TOLD} more" if len(lines) > _TOLD else ""
+        text = literal(f"{'; '.join(lines[:_TOLD])}{more}.")
+        blocks.append(Notice("warning", f"{len(lines)} caveats that this work does not expect", text))
+    rows = [row for each in expected if (row := _row(each, runs)) is not None]
+    blocks.append(
+        Table(
+            "What rules found at the end of the runs: how many runs have the caveat, the worst of them, and why it is "
+            "expected.",
+            ["caveat", "runs", "worst", "what was found there", "why it is expected"],
+            rows,
+            (1,),
+        )
+        if rows
+        else Text("No rule found anything at the end of the runs.")
+    )
+    return Section("Caveats of the runs", tuple(blocks))
+
+
+def _row(expected: ExpectedCaveat, runs: Mapping[str, Run]) -> list[str] | None:
+    found = [
+        (float(caveat["value"]), name, str(caveat["text"]))
+        for name, run in runs.items()
+        for caveat in run.caveats
+        if expected.covers(name, caveat)
+    ]
+    if not found:
+        return None
+    _, worst, text = max(found)
+    return [expected.rule, str(len(found)), literal(worst), literal(text), expected.why]

@@ -1,0 +1,91 @@
+from importlib import import_module
+from types import SimpleNamespace
+
+import pytest
+
+from runner.caveats.registry import SETTING_RULES, TRACE_RULES
+from runner.errors import RunnerError
+from runner.reporting.document import Notice, Table
+from runner.reporting.expected_caveats import (
+    ExpectedCaveat,
+    caveats_as_data,
+    caveats_section,
+    unexpected_caveats,
+)
+from runner.reporting.job import Made
+from runner.reporting.run_values import cell, measured
+
+
+def run(*rules):
+    caveats = [{"rule": rule, "text": f"{rule} of {value:g} $", "value": value} for rule, value in rules]
+    return SimpleNamespace(caveats=caveats)
+
+
+RUNS = {
+    "fast/sound": run(("saturation", 0.4)),
+    "fast/as_reported": run(("saturation", 0.6), ("chatter", 0.2)),
+    "slow/sound": run(),
+}
+SATURATED = ExpectedCaveat("saturation", "fast/*", "The limit is what the section is about.")
+
+
+def test_a_caveat_is_expected_of_the_runs_that_a_pattern_names():
+    assert unexpected_caveats(RUNS, [SATURATED, ExpectedCaveat("chatter", "*/as_reported", "Noise.")]) == []
+    lines = unexpected_caveats(RUNS, [SATURATED])
+    assert lines == ["fast/as_reported: caveat chatter, which the work does not expect: chatter of 0.2 $"]
+    assert len(unexpected_caveats(RUNS, [ExpectedCaveat("saturation", "fast/sound", "Why.")])) == 2
+
+
+def test_the_section_tells_how_many_and_the_worst_and_warns_of_others():
+    warning, table = caveats_section(RUNS, [SATURATED, ExpectedCaveat("overload", "*", "Nothing has it.")]).blocks
+    assert isinstance(warning, Notice)
+    assert warning.title == "1 caveats that this work does not expect"
+    assert isinstance(table, Table)
+    assert table.rows == [["saturation", "2", "fast/as_reported", "saturation of 0.6 $$", SATURATED.why]]
+
+
+def test_a_work_without_caveats_says_so():
+    (text,) = caveats_section({"slow/sound": run()}, []).blocks
+    assert text.text == "No rule found anything at the end of the runs."
+
+
+def test_programs_get_every_caveat_with_why_it_is_expected():
+    told = caveats_as_data(RUNS, [SATURATED])
+    assert [(each["run"], each["rule"], each["expected"]) for each in told] == [
+        ("fast/sound", "saturation", SATURATED.why),
+        ("fast/as_reported", "saturation", SATURATED.why),
+        ("fast/as_reported", "chatter", None),
+    ]
+
+
+@pytest.mark.parametrize("work", ["thesis", "xarm7", "meca500"])
+def test_what_a_work_expects_is_of_known_rules_and_of_runs_that_it_has(work):
+    names = import_module(f"runner.reporting.{work}.plan").plan()
+    rules = {rule.name for rule in (*TRACE_RULES, *SETTING_RULES)}
+    for expected in import_module(f"runner.reporting.{work}.caveats").EXPECTED:
+        assert expected.rule in rules
+        assert any(expected.covers(name, {"rule": expected.rule}) for name in names), expected
+        assert expected.why.endswith(".")
+
+
+def test_a_run_that_a_work_does_not_have_is_refused_with_the_nearest_name():
+    made = Made({"figure_3_5/sound": run()}, {"figure_3_6/sound": "not begun"})
+    with pytest.raises(
+        RunnerError, match=r"no run or calibration 'figure_3_5/soud' \(did you mean figure_3_5/sound\?\)"
+    ):
+        made["figure_3_5/soud"]
+
+
+def test_a_metric_that_a_run_does_not_have_is_refused_with_the_nearest_name():
+    metrics = {"settling_time": {"median": 1.0, "unit": "s"}}
+    ran = SimpleNamespace(metrics=metrics, hash="0a1b", status="ok")
+    with pytest.raises(RunnerError, match=r"run 0a1b has no metric 'setling_time' \(did you mean settling_time\?\)"):
+        measured(ran, "setling_time", "time")
+    with pytest.raises(RunnerError, match="no metric 'reach'"):
+        cell(ran, "reach")
+
+
+def test_a_failed_run_has_no_values():
+    failed = SimpleNamespace(metrics={}, hash="0a1b", status="failed")
+    assert measured(failed, "settling_time", "time").value is None
+    assert cell(failed, "settling_time") == "failed"
