@@ -1,4 +1,4 @@
-"""`runner diff A B`: two stored runs side by side, config, provenance and metrics."""
+"""`runner diff A B`: two stored runs side by side, config, provenance, caveats and metrics."""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -30,7 +30,8 @@ def main(arguments: Sequence[str]) -> int:
     print(_compare("config", store.simulated_part(a.config), store.simulated_part(b.config)))
     if a.urdf != b.urdf:
         print("  the text of robot.urdf differs")
-    print(_compare("provenance", _provenance(a), _provenance(b)), end="\n\n")
+    print(_compare("provenance", _provenance(a), _provenance(b)))
+    print(_caveats(a, b), end="\n\n")
     print(aligned([["metric", "unit", "A", "B", "B - A", "B / A"], *_metric_rows(a, b)], indent=""))
     print(f"\n{_paired(a, b)}")
     return 0
@@ -61,6 +62,13 @@ def _flatten(value: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, 
 
 def _provenance(run: "Run") -> dict[str, Any]:
     return {key: run.provenance[key] for key in _PROVENANCE if key in run.provenance}
+
+
+def _caveats(a: "Run", b: "Run") -> str:
+    """Return why either result may not be what it seems, or that no rule found anything."""
+    found = {"A": a.caveats, "B": b.caveats}
+    rows = [[name, str(caveat["rule"]), str(caveat["text"])] for name, caveats in found.items() for caveat in caveats]
+    return f"caveats:\n{aligned(rows)}" if rows else "no caveats"
 
 
 def _metric_rows(a: "Run", b: "Run") -> Iterator[list[str]]:

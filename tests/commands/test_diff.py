@@ -47,6 +47,15 @@ def test_config_keys_and_metrics_that_differ(cli):
     assert float(ratio) == pytest.approx(float(found_b) / float(found_a), rel=1e-3)
 
 
+def test_caveats_of_either(cli):
+    a, b = cli(*SHORT).folder, cli(*SHORT, "seed=1").folder
+    change(a, lambda record: record.update(caveats=[]))
+    caveat = {"rule": "saturation", "text": "joint q1 is at its torque limit", "value": 0.5, "repetitions": 1}
+    assert "\nno caveats\n" in cli("diff", a, a).out
+    change(b, lambda record: record.update(caveats=[caveat]))
+    assert "\ncaveats:\n  B  saturation  joint q1 is at its torque limit\n" in cli("diff", a, b).out
+
+
 def test_keys_and_metrics_of_one_run_only(cli):
     a = cli(*SHORT).folder
     b = cli(*SHORT, "trajectory=quintic").folder
