@@ -173,7 +173,11 @@ def _passes(run: Run, signal: str) -> float:
 
 def duration_section(runs: Mapping[str, Run]) -> Section:
     """Return the largest tracking error against the duration of the motion, beside the printed values."""
-    printed = {claim.experiment.rpartition("/")[2]: claim.printed for claim in load_claims("thesis")}
+    printed = {
+        claim.experiment.rpartition("/")[2]: claim.printed
+        for claim in load_claims("thesis")
+        if claim.metric == "max_tracking_error"
+    }
     t = np.array(DURATIONS)
     panels = []
     for figure, title in zip(TRACKED, ("Limit of 50 N m (claim 3)", "No torque limit (claim 4)"), strict=True):
