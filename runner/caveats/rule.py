@@ -45,3 +45,8 @@ class SettingRule:
 def percent(share: float) -> str:
     """Return a share as a text, such as "12.5 %"."""
     return f"{100.0 * share:.3g} %"
+
+
+def joint_called(name: str) -> str:
+    """Return how a joint is spoken of, such as "joint q1"; a name that says so itself is enough, such as "joint2"."""
+    return name if name.startswith("joint") else f"joint {name}"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.caveats.rule import TraceRule, percent
+from runner.caveats.rule import TraceRule, joint_called, percent
 from runner.caveats.setting import Setting
 from runner.caveats.signals import Signals
 from runner.trace import FloatArray
@@ -17,13 +17,16 @@ def _saturated(signals: Signals, setting: Setting) -> FloatArray:
 
 
 def _tell_saturated(value: float, joint: int, setting: Setting) -> str:
-    name, limit = setting.joint_names[joint], f"{setting.torque_limits[joint]:.4g} {_unit(joint, setting)}"
+    name, limit = (
+        joint_called(setting.joint_names[joint]),
+        f"{setting.torque_limits[joint]:.4g} {_unit(joint, setting)}",
+    )
     if setting.plant == _IDEAL:
         return (
-            f"joint {name} would need its torque limit, {limit}, or more in {percent(value)} of the ticks; the plant "
+            f"{name} would need its torque limit, {limit}, or more in {percent(value)} of the ticks; the plant "
             f"{setting.plant} moves it all the same"
         )
-    return f"joint {name} is at its torque limit, {limit}, in {percent(value)} of the ticks"
+    return f"{name} is at its torque limit, {limit}, in {percent(value)} of the ticks"
 
 
 def _chatter(signals: Signals, setting: Setting) -> FloatArray:
@@ -44,7 +47,7 @@ def _chatter(signals: Signals, setting: Setting) -> FloatArray:
 def _tell_chatter(value: float, joint: int, setting: Setting) -> str:
     limit = f"{setting.torque_limits[joint]:.4g} {_unit(joint, setting)}"
     return (
-        f"joint {setting.joint_names[joint]} chatters: its torque jumps from one limit, {limit}, to the opposite one "
+        f"{joint_called(setting.joint_names[joint])} chatters: its torque jumps from one limit, {limit}, to the opposite one "
         f"at {percent(value)} of its ticks"
     )
 
