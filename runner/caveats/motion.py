@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.caveats.rule import TraceRule, joint_called, percent
+from runner.caveats.rule import TraceRule, called, percent
 from runner.caveats.setting import Setting
 from runner.caveats.signals import Signals
 from runner.trace import FloatArray
@@ -53,7 +53,7 @@ def _beyond(signals: Signals, setting: Setting) -> FloatArray:
 
 def _tell_beyond(value: float, joint: int, setting: Setting) -> str:
     return (
-        f"{joint_called(setting.joint_names[joint])} goes {value:.3g} {setting.joint_units[joint]} beyond its position limits, "
+        f"{called(joint, setting)} goes {value:.3g} {setting.joint_units[joint]} beyond its position limits, "
         f"at which the plant {setting.plant} does not hold it"
     )
 

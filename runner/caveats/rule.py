@@ -47,6 +47,7 @@ def percent(share: float) -> str:
     return f"{100.0 * share:.3g} %"
 
 
-def joint_called(name: str) -> str:
+def called(joint: int, setting: Setting) -> str:
     """Return how a joint is spoken of, such as "joint q1"; a name that says so itself is enough, such as "joint2"."""
+    name = setting.joint_names[joint]
     return name if name.startswith("joint") else f"joint {name}"

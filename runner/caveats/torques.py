@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.caveats.rule import TraceRule, joint_called, percent
+from runner.caveats.rule import TraceRule, called, percent
 from runner.caveats.setting import Setting
 from runner.caveats.signals import Signals
 from runner.trace import FloatArray
@@ -18,7 +18,7 @@ def _saturated(signals: Signals, setting: Setting) -> FloatArray:
 
 def _tell_saturated(value: float, joint: int, setting: Setting) -> str:
     name, limit = (
-        joint_called(setting.joint_names[joint]),
+        called(joint, setting),
         f"{setting.torque_limits[joint]:.4g} {_unit(joint, setting)}",
     )
     if setting.plant == _IDEAL:
@@ -47,7 +47,7 @@ def _chatter(signals: Signals, setting: Setting) -> FloatArray:
 def _tell_chatter(value: float, joint: int, setting: Setting) -> str:
     limit = f"{setting.torque_limits[joint]:.4g} {_unit(joint, setting)}"
     return (
-        f"{joint_called(setting.joint_names[joint])} chatters: its torque jumps from one limit, {limit}, to the opposite one "
+        f"{called(joint, setting)} chatters: its torque jumps from one limit, {limit}, to the opposite one "
         f"at {percent(value)} of its ticks"
     )
 
