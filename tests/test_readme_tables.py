@@ -1,0 +1,70 @@
+"""The README's tables of results are those of the works' reports."""
+
+import json
+import re
+
+import pytest
+
+from bench import make_readme_tables
+from bench.make_readme_tables import PAGE, made_from
+
+
+def verdict(number, printed="9 mm", **ours):
+    found = [{"preset": preset, "measured": measured, "verdict": "holds"} for preset, measured in ours.items()]
+    return {"claim": number, "statement": f"Statement {number}", "printed": printed, "ours": found}
+
+
+WORKS = {
+    "thesis": {"verdicts": [verdict("1", sound="8 mm"), verdict("2", sound="7 | mm"), verdict("3", sound="6 mm")]},
+    "meca500": {"verdicts": [verdict("1", "", found="within 1 %")]},
+}
+STALE = """Before.
+
+<!-- claims of thesis: 3, 2 -->
+| stale |
+|---|
+| 0.1 |
+
+Between.
+
+<!-- claims of meca500: 1 -->
+| stale |
+
+After.
+"""
+
+
+def test_rows_are_made_in_the_order_that_the_page_names():
+    assert made_from(STALE, WORKS).splitlines()[2:12] == [
+        "<!-- claims of thesis: 3, 2 -->",
+        "| claim | printed | sound |",
+        "|---|---|---|",
+        "| Statement 3 | 9 mm | holds: 6 mm |",
+        r"| Statement 2 | 9 mm | holds: 7 \| mm |",
+        "",
+        "Between.",
+        "",
+        "<!-- claims of meca500: 1 -->",
+        "| claim | found |",
+    ]
+
+
+def test_a_claim_that_no_report_has_is_an_error():
+    with pytest.raises(KeyError):
+        made_from(STALE.replace("3, 2", "4"), WORKS)
+
+
+def test_check_tells_a_stale_page(monkeypatch, tmp_path, capsys):
+    page, file = tmp_path / "README.md", tmp_path / "works.json"
+    page.write_text(STALE)
+    file.write_text(json.dumps(WORKS))
+    monkeypatch.setattr(make_readme_tables, "PAGE", page)
+    assert make_readme_tables.main([str(file), "--check"]) == 1
+    assert page.read_text() == STALE
+    assert make_readme_tables.main([str(file)]) == 0
+    assert make_readme_tables.main([str(file), "--check"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == "README: as reproduced"
+
+
+def test_every_work_has_a_table():
+    assert re.findall(r"<!-- claims of (\w+): ", PAGE.read_text(encoding="utf-8")) == ["thesis", "xarm7", "meca500"]
