@@ -29,6 +29,7 @@ OPTIONS = {
     "plant.dynamics": ("coupled", "decoupled"),
     "noise": ("none", "thesis"),
     "noise.velocity": ("exact", "finite_difference"),
+    "noise.bias.macro": ("-1e-3", "1e-3"),
     "noise.distribution": ("uniform", "gaussian", "none"),
     "torque_limits": ("none", "thesis"),
     "trajectory": ("goal", "quintic"),
