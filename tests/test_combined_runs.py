@@ -14,7 +14,7 @@ from runner.simulation import simulate
 
 TRACKING = ("robot=combined", "preset=sound", "trajectory=quintic", "trajectory.duration=3", "duration=3")
 OPTIONS = {
-    "controller.coupling": ("one_way", "two_way", "independent", "mini_held"),
+    "controller.coupling": ("one_way", "two_way", "independent", "independent_base", "mini_held"),
     "controller.macro_target": ("minus_home", "tip_goal"),
     "controller.mini_reference_velocity": ("zero", "full"),
     "controller.wrist_rotation": ("real", "parallel"),
