@@ -3,7 +3,6 @@
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from runner.config.per_stage import FinitePerStage, NonNegativePerStage, by_stage
 from runner.config.problems import Problems
@@ -11,8 +10,6 @@ from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
-
-FloatArray = NDArray[np.float64]
 
 
 class NoiseConfig(StrictModel):
@@ -40,17 +37,21 @@ class NoiseConfig(StrictModel):
         Raises:
             ConfigError: for values that do not fit the robot's stages.
         """
+        names, joints = arm.stage_names, [stage.model.nq for stage in arm.stages]
+        # What was left out is zero for a robot of several stages, too.
+        zero: float | dict[str, float] = dict.fromkeys(names, 0.0) if len(names) > 1 else 0.0
+        biases = self.bias if "bias" in self.model_fields_set else zero
+        steps = self.resolution if "resolution" in self.model_fields_set else zero
         problems = Problems()
-        position = problems.attempt(self._expand, "position", arm)
-        bias = problems.attempt(self._expand, "bias", arm)
-        resolution = problems.attempt(self._expand, "resolution", arm)
+        position = problems.attempt(lambda: by_stage("noise.position", self.position, names))
+        bias = problems.attempt(lambda: by_stage("noise.bias", biases, names))
+        resolution = problems.attempt(lambda: by_stage("noise.resolution", steps, names))
         if position is None or bias is None or resolution is None:
             raise ConfigError(problems.found)
-        return EncoderNoise(position, bias, resolution, self.distribution, self.velocity)
-
-    def _expand(self, key: str, arm: Robot) -> FloatArray:
-        """Return a value for each joint; one that was left out is zero for a robot of several stages, too."""
-        joints = [stage.model.nq for stage in arm.stages]
-        if key not in self.model_fields_set:
-            return np.zeros(sum(joints))
-        return np.repeat(by_stage(f"noise.{key}", getattr(self, key), arm.stage_names), joints)
+        return EncoderNoise(
+            np.repeat(position, joints),
+            np.repeat(bias, joints),
+            np.repeat(resolution, joints),
+            self.distribution,
+            self.velocity,
+        )
