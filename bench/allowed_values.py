@@ -3,10 +3,11 @@
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
-from runner.config.per_stage import NonNegativePerStage, PositivePerStage, TorquePerStage
+from runner.config.per_stage import FinitePerStage, NonNegativePerStage, PositivePerStage, TorquePerStage
 from runner.registry import StrictModel
 
 _BY_STAGE = {
+    FinitePerStage: "number, by stage",
     PositivePerStage: "number above 0, by stage",
     NonNegativePerStage: "number of 0 or more, by stage",
     TorquePerStage: "number above 0, or a list with one for each joint, by stage",

@@ -14,7 +14,7 @@ from runner.simulation import simulate
 
 TRACKING = ("robot=combined", "preset=sound", "trajectory=quintic", "trajectory.duration=3", "duration=3")
 OPTIONS = {
-    "controller.coupling": ("one_way", "two_way", "independent", "mini_held"),
+    "controller.coupling": ("one_way", "two_way", "independent", "independent_base", "mini_held"),
     "controller.macro_target": ("minus_home", "tip_goal"),
     "controller.mini_reference_velocity": ("zero", "full"),
     "controller.wrist_rotation": ("real", "parallel"),
@@ -29,6 +29,7 @@ OPTIONS = {
     "plant.dynamics": ("coupled", "decoupled"),
     "noise": ("none", "thesis"),
     "noise.velocity": ("exact", "finite_difference"),
+    "noise.bias.macro": ("-1e-3", "1e-3"),
     "noise.distribution": ("uniform", "gaussian", "none"),
     "torque_limits": ("none", "thesis"),
     "trajectory": ("goal", "quintic"),

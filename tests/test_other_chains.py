@@ -164,7 +164,7 @@ def test_each_carrier_has_its_metrics(moved, checked_config):
         assert name in units()
 
 
-@pytest.mark.parametrize("coupling", ["two_way", "independent", "mini_held"])
+@pytest.mark.parametrize("coupling", ["two_way", "independent", "independent_base", "mini_held"])
 @pytest.mark.parametrize("chain", CHAINS)
 def test_every_coupling_runs(simulated, chain, coupling):
     overrides = (f"experiment=staged/{chain}", "plant=rk4", f"controller.coupling={coupling}", "duration=0.3")

@@ -70,7 +70,7 @@ def loop_of(closed_loop):
 
 
 def exact(loop):
-    noise = EncoderNoise(np.zeros(3), np.zeros(3), "none", "exact")
+    noise = EncoderNoise(np.zeros(3), np.zeros(3), np.zeros(3), "none", "exact")
     return [JointEncoders(loop.ticks + 1, loop.tick, noise, np.random.default_rng(0))]
 
 

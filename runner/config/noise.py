@@ -4,7 +4,7 @@ from typing import Literal
 
 import numpy as np
 
-from runner.config.per_stage import NonNegativePerStage, by_stage
+from runner.config.per_stage import FinitePerStage, NonNegativePerStage, by_stage
 from runner.config.problems import Problems
 from runner.errors import ConfigError
 from runner.registry import StrictModel
@@ -13,33 +13,45 @@ from runner.sensing import EncoderNoise
 
 
 class NoiseConfig(StrictModel):
-    """Noise and steps of the joint encoders.
+    """Noise, bias and steps of the joint encoders.
 
     Attributes:
         position: Half-width (uniform) or standard deviation (gaussian) of the joint-position noise, in rad, by
             stage where the robot has several.
         distribution: Its shape; with none, `position` has no effect.
-        resolution: Step to which the noisy joint positions are rounded, in rad, likewise; 0 for none.
+        bias: Constant error of the measured joint positions, in rad, by stage where the robot has several: the same at
+            every tick and in every repetition, as of a zero that is set wrong; of either sign.
+        resolution: Step to which the biased, noisy joint positions are rounded, in rad, likewise; 0 for none.
         velocity: Whether joint velocities are exact or differences of the measured positions.
     """
 
     position: NonNegativePerStage
     distribution: Literal["uniform", "gaussian", "none"]
+    bias: FinitePerStage = 0.0
     resolution: NonNegativePerStage = 0.0
     velocity: Literal["exact", "finite_difference"]
 
     def by_joint(self, arm: Robot) -> EncoderNoise:
-        """Return the noise of each joint of a robot.
+        """Return the noise, bias and step of each joint of a robot.
 
         Raises:
             ConfigError: for values that do not fit the robot's stages.
         """
-        joints = [stage.model.nq for stage in arm.stages]
+        names, joints = arm.stage_names, [stage.model.nq for stage in arm.stages]
+        # What was left out is zero for a robot of several stages, too.
+        zero: float | dict[str, float] = dict.fromkeys(names, 0.0) if len(names) > 1 else 0.0
+        biases = self.bias if "bias" in self.model_fields_set else zero
+        steps = self.resolution if "resolution" in self.model_fields_set else zero
         problems = Problems()
-        position = problems.attempt(lambda: by_stage("noise.position", self.position, arm.stage_names))
-        resolution = problems.attempt(lambda: by_stage("noise.resolution", self.resolution, arm.stage_names))
-        if position is None or resolution is None:
+        position = problems.attempt(lambda: by_stage("noise.position", self.position, names))
+        bias = problems.attempt(lambda: by_stage("noise.bias", biases, names))
+        resolution = problems.attempt(lambda: by_stage("noise.resolution", steps, names))
+        if position is None or bias is None or resolution is None:
             raise ConfigError(problems.found)
         return EncoderNoise(
-            np.repeat(position, joints), np.repeat(resolution, joints), self.distribution, self.velocity
+            np.repeat(position, joints),
+            np.repeat(bias, joints),
+            np.repeat(resolution, joints),
+            self.distribution,
+            self.velocity,
         )

@@ -12,14 +12,19 @@ from runner.texts import quoted
 T = TypeVar("T")
 
 
-def _number(value: Any, zero_allowed: bool) -> float:
+def _finite(value: Any) -> float:
     if not isinstance(value, int | float) or isinstance(value, bool):
         raise ValueError("must be a number")
     if not math.isfinite(value):
         raise ValueError("must be a finite number")
-    if value < 0.0 or (value == 0.0 and not zero_allowed):
-        raise ValueError("must be 0 or more" if zero_allowed else "must be above 0")
     return float(value)
+
+
+def _number(value: Any, zero_allowed: bool) -> float:
+    number = _finite(value)
+    if number < 0.0 or (number == 0.0 and not zero_allowed):
+        raise ValueError("must be 0 or more" if zero_allowed else "must be above 0")
+    return number
 
 
 def _per_stage(check: Any) -> BeforeValidator:
@@ -47,6 +52,7 @@ def _torque(value: Any) -> float | list[float]:
         raise ValueError("must be a number above 0, or a list of such numbers with one for each joint") from None
 
 
+FinitePerStage = Annotated[float | dict[str, float], _per_stage(_finite)]
 PositivePerStage = Annotated[float | dict[str, float], _per_stage(lambda value: _number(value, zero_allowed=False))]
 NonNegativePerStage = Annotated[float | dict[str, float], _per_stage(lambda value: _number(value, zero_allowed=True))]
 TorquePerStage = Annotated[float | list[float] | dict[str, float | list[float]], _per_stage(_torque)]

@@ -1,5 +1,6 @@
 """Control of riding arms from each arm's own dynamics (thesis methods 2 and 3): one loop for each stage."""
 
+from collections.abc import Mapping
 from typing import Literal
 
 import numpy as np
@@ -8,7 +9,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 from runner.config.per_stage import PositivePerStage, by_stage
 from runner.controllers.controller import Controller, FloatArray, Loop
 from runner.controllers.stage_law import StageLaw
-from runner.controllers.stage_loops import CarrierController, HeldController, RiderController, Turns
+from runner.controllers.stage_loops import Aim, CarrierController, HeldController, RiderController, Turns
 from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.robot import Robot, end_points
@@ -23,7 +24,8 @@ class MacroMiniConfig(StrictModel):
         damping_ratio: xi of each.
         period: Time between two ticks of each, in s; every other one a multiple of the shortest.
         coupling: one_way, the riding arm makes up for what its carrier misses; two_way, the carrier in turn makes up
-            for where the rider stands; independent, the rider keeps its home offset; mini_held, its joints are held.
+            for where the rider stands; independent, the rider keeps its home offset in its own frame, which turns with
+            the carrier; independent_base, it keeps it in the robot's base frame; mini_held, its joints are held.
         macro_target: minus_home, the carrier goes to x_d - r_0; tip_goal, to x_d itself, so that the rider folds.
         mini_reference_velocity: Whether the rider follows its target's velocity (full) or a series of goals (zero).
         wrist_rotation: Whether controllers know how the carrier turns the rider's base (real) or take it parallel.
@@ -41,7 +43,7 @@ class MacroMiniConfig(StrictModel):
     natural_frequency: PositivePerStage
     damping_ratio: PositivePerStage
     period: PositivePerStage
-    coupling: Literal["one_way", "two_way", "independent", "mini_held"]
+    coupling: Literal["one_way", "two_way", "independent", "independent_base", "mini_held"]
     macro_target: Literal["minus_home", "tip_goal"]
     mini_reference_velocity: Literal["zero", "full"]
     wrist_rotation: Literal["real", "parallel"]
@@ -55,6 +57,12 @@ class MacroMiniConfig(StrictModel):
 
 
 CONFIG = MacroMiniConfig
+_AIMS: Mapping[str, Aim] = {
+    "one_way": "rest",
+    "two_way": "rest",
+    "independent": "own_offset",
+    "independent_base": "base_offset",
+}
 
 
 def build(config: MacroMiniConfig, robot: Robot) -> tuple[Loop, ...]:
@@ -88,7 +96,7 @@ def _controller(config: MacroMiniConfig, robot: Robot, index: int, carrier_perio
         robot,
         index,
         law,
-        follow=config.coupling != "independent",
+        aim=_AIMS[config.coupling],
         later_offset=later_home_offset(robot, index),
         parallel=parallel,
         moving_target=config.mini_reference_velocity == "full",
@@ -117,7 +125,7 @@ def _law(config: MacroMiniConfig, robot: Robot, index: int) -> StageLaw:
 def _carrier_offset(config: MacroMiniConfig, robot: Robot) -> FloatArray | None:
     if config.coupling == "two_way":
         return None
-    follows_home = config.macro_target == "minus_home" or config.coupling in ("independent", "mini_held")
+    follows_home = config.macro_target == "minus_home" or config.coupling not in ("one_way", "two_way")
     return later_home_offset(robot, 0) if follows_home else np.zeros(3)
 
 

@@ -29,8 +29,18 @@ class _Flags:
         return self.coupling in ("one_way", "two_way")
 
     @property
+    def keeps_base_offset(self) -> bool:
+        """Whether the Mini keeps its home offset in the base frame, which its own frame turns against."""
+        return self.coupling == "independent_base" and self.real
+
+    @property
     def rotation(self) -> str:
         return "R" if self.real else "R_0"
+
+    @property
+    def spins(self) -> bool:
+        """Whether the Mini's target has a velocity that hangs on the Macro's."""
+        return self.moving and (self.follows or self.keeps_base_offset)
 
     @property
     def rest(self) -> bool:
@@ -40,7 +50,7 @@ class _Flags:
     @property
     def kinematics(self) -> bool:
         """Whether anything takes the Macro's end point or its rotation from the Macro's measured joints."""
-        return self.rest or (self.gravity and self.real)
+        return self.rest or self.keeps_base_offset or (self.gravity and self.real)
 
 
 @dataclass
@@ -72,7 +82,8 @@ def macro_mini_graph(
     signal; it is written into the Mini's block.
 
     Args:
-        coupling: one_way, two_way, independent or mini_held; this and the next ones as in MacroMiniConfig.
+        coupling: one_way, two_way, independent, independent_base or mini_held; this and the next ones as in
+            MacroMiniConfig.
         macro_target: minus_home or tip_goal; it counts for one_way alone.
         mini_reference_velocity: full or zero.
         wrist_rotation: real or parallel.
@@ -181,7 +192,7 @@ def _add_kinematics(parts: _Parts, flags: _Flags) -> None:
     """Add the Macro's end point as measured, and the rest of the way from there, r = x_d - x_E."""
     moving = flags.follows and flags.moving
     parts.nodes.append(Node("kinematics", "block", "Macro\nkinematics", 4.5, _BETWEEN))
-    symbol = r"$q_M,\dot{q}_M$" if moving else "$q_M$"
+    symbol = r"$q_M,\dot{q}_M$" if flags.spins else "$q_M$"
     parts.edges.append(Edge("macro_encoders", "kinematics", symbol, leave="bottom", enter="right"))
     if not flags.rest:
         return
@@ -195,6 +206,9 @@ def _add_kinematics(parts: _Parts, flags: _Flags) -> None:
 
 def _add_mini_target(parts: _Parts, flags: _Flags) -> None:
     """Add the Mini's target: the rest of the way where it is within reach, its home offset, or its posture."""
+    if flags.keeps_base_offset:
+        _add_base_offset(parts, flags)
+        return
     if not flags.follows:
         label = "Home posture $q_0$" if flags.coupling == "mini_held" else "Home offset $r_0$"
         parts.nodes.append(Node("mini_target", "source", label, 3.3, _MINI))
@@ -220,6 +234,21 @@ def _add_mini_target(parts: _Parts, flags: _Flags) -> None:
     if flags.real:
         symbol = r"$R,\omega$" if flags.moving else "$R$"
         parts.edges.append(Edge("kinematics", "mini_target", symbol, leave="bottom", enter="top", lane=_LANE))
+
+
+def _add_base_offset(parts: _Parts, flags: _Flags) -> None:
+    """Add the Mini's target where it keeps its home offset in the base frame: R^T r_0, from its turning base."""
+    label = "$R^T r_0$" + ("\n" + r"$-R^T (\omega \times r_0)$" if flags.moving else "")
+    parts.nodes += [
+        Node("mini_offset_source", "source", "Home offset $r_0$", 0.9, _MINI),
+        Node("mini_target", "block", label, 3.0, _MINI),
+    ]
+    symbol = r"$R,\omega$" if flags.moving else "$R$"
+    parts.edges += [
+        Edge("mini_offset_source", "mini_target"),
+        Edge("mini_target", "mini_controller"),
+        Edge("kinematics", "mini_target", symbol, leave="bottom", enter="top", lane=_LANE),
+    ]
 
 
 def _add_gravity(parts: _Parts, flags: _Flags) -> None:

@@ -1,10 +1,14 @@
 """Control loops of riding arms: each stage's own law, and the target that the coupling gives it."""
 
+from typing import Literal
+
 import numpy as np
 
 from runner.controllers.controller import FloatArray
 from runner.controllers.stage_law import StageLaw
 from runner.robots.robot import Robot, StageBase, end_points
+
+Aim = Literal["rest", "own_offset", "base_offset"]
 
 
 class Turns:
@@ -96,11 +100,14 @@ class RiderController:
     offset of the stages that ride on it, whatever way they have turned; each of them makes up for what is left. Reach
     counts from its base to this target, so that it is that of the stage's own arm. Gravity seen from its base is R^T g.
 
+    Or it follows nothing and keeps its own home offset: r_0 in its own frame, which turns with the carrier, or R^T r_0
+    with r_0 in the robot's base frame.
+
     Args:
         robot: The robot.
         stage: Index of the stage, 1 or more.
         law: The stage's law.
-        follow: Whether it follows the rest of the way; else it keeps its tip at its home offset.
+        aim: What its target is: the rest of the way, or its home offset in its own frame or in the robot's base frame.
         later_offset: Home offset o of the stages that ride on this one, in the robot's base frame, shape (3,), in m.
         parallel: Whether its base is taken parallel to the ground's.
         moving_target: Whether the target's velocity is part of the reference.
@@ -114,7 +121,7 @@ class RiderController:
         robot: Robot,
         stage: int,
         law: StageLaw,
-        follow: bool,
+        aim: Aim,
         later_offset: FloatArray,
         parallel: bool,
         moving_target: bool,
@@ -122,11 +129,13 @@ class RiderController:
         stretch: bool,
         turns: Turns | None,
     ) -> None:
-        self._law, self._follow, self._later, self._moving = law, follow, later_offset, moving_target
+        self._law, self._aim, self._later, self._moving = law, aim, later_offset, moving_target
         self._reach, self._stretch, self._turns = reach, stretch, turns
         self._joints = robot.stages[stage].joints
         self._home_offset = robot.stages[stage].home_offset
         self._base = StageBase(robot, stage, parallel)
+        self._base.update(robot.home, np.zeros_like(robot.home))
+        self._base_offset = self._base.rotation.dot(self._home_offset)
         self._gravity = robot.model.gravity
         self._posture = _Posture()
 
@@ -145,17 +154,21 @@ class RiderController:
         distance_squared = rest.dot(rest)
         waits = self._turns is not None and not self._turns.rider_moves(time)
         beyond = distance_squared > self._reach**2 and not self._stretch
-        if self._follow and (waits or beyond):
+        if self._aim == "rest" and (waits or beyond):
             return self._law.hold(own_q, own_dq, self._posture.keep(own_q))
         self._posture.release()
         target = np.zeros((3, 3))
-        if self._follow:
+        if self._aim == "rest":
             target[0] = R.T.dot(rest)
             if distance_squared > self._reach**2:
                 target[0] *= self._reach / np.sqrt(distance_squared)
             elif self._moving:
                 velocity, spin = base.velocity()
                 target[1] = R.T.dot(reference[1] - velocity - _cross(spin, rest))
+        elif self._aim == "base_offset":
+            target[0] = R.T.dot(self._base_offset)
+            if self._moving:
+                target[1] = R.T.dot(-_cross(base.velocity()[1], self._base_offset))
         else:
             target[0] = self._home_offset
         return self._law.move(time, own_q, own_dq, target)

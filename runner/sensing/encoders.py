@@ -1,4 +1,4 @@
-"""Joint encoders: joint positions noisy and in steps, and velocities exact or differenced."""
+"""Joint encoders: joint positions noisy, biased and in steps, and velocities exact or differenced."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -11,17 +11,19 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class EncoderNoise:
-    """Noise and steps of the encoders of a robot's joints.
+    """Noise, bias and steps of the encoders of a robot's joints.
 
     Attributes:
         position: Half-width (uniform) or standard deviation (gaussian) of each joint's position noise, shape (nq,),
             in rad.
-        resolution: Step to which each joint's noisy position is rounded, shape (nq,), in rad; 0 for none.
+        bias: Constant error of each joint's measured position, shape (nq,), in rad: a zero that is set wrong.
+        resolution: Step to which each joint's biased, noisy position is rounded, shape (nq,), in rad; 0 for none.
         distribution: Shape of the position noise.
         velocity: Whether velocities are exact, or differences of the measured positions over the loop's period.
     """
 
     position: FloatArray
+    bias: FloatArray
     resolution: FloatArray
     distribution: Literal["uniform", "gaussian", "none"]
     velocity: Literal["exact", "finite_difference"]
@@ -35,18 +37,20 @@ class JointEncoders:
     Args:
         ticks: Number of measurements to come.
         period: Time between two measurements, in s.
-        noise: Noise and steps of the joints.
+        noise: Noise, bias and steps of the joints.
         generator: Source of the draws.
     """
 
     def __init__(self, ticks: int, period: float, noise: EncoderNoise, generator: np.random.Generator) -> None:
         shape = (ticks, len(noise.position))
         if noise.distribution == "none":
-            self._noise = np.zeros(shape)
+            self._error = np.zeros(shape)
         elif noise.distribution == "uniform":
-            self._noise = noise.position * generator.uniform(-1.0, 1.0, shape)
+            self._error = noise.position * generator.uniform(-1.0, 1.0, shape)
         else:
-            self._noise = noise.position * generator.standard_normal(shape)
+            self._error = noise.position * generator.standard_normal(shape)
+        if noise.bias.any():
+            self._error += noise.bias
         self._rounded = noise.resolution > 0.0
         self._resolution = noise.resolution[self._rounded]
         self._period = period
@@ -56,9 +60,10 @@ class JointEncoders:
     def measure(self, tick: int, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return measured joint positions and velocities, shapes (nq,), from the true ones at a tick.
 
-        A differenced velocity starts from the first measurement: it is zero there, as the arm starts at rest.
+        A differenced velocity starts from the first measurement: it is zero there, as the arm starts at rest. So
+        a bias is not in it.
         """
-        measured = q + self._noise[tick]
+        measured = q + self._error[tick]
         if len(self._resolution):
             measured[self._rounded] = np.round(measured[self._rounded] / self._resolution) * self._resolution
         if not self._differenced:

@@ -13,6 +13,7 @@ NOISY = ("robot=macro", "noise.position=1e-3")
         (("robot=macro", "noise.resolution=1e-4"), 1e-4),
         ((*NOISY, "noise.velocity=finite_difference"), None),
         (("robot=macro",), None),
+        (("robot=macro", "noise.bias=1e-3"), None),  # a velocity does not see a zero that is set wrong
         ((*NOISY, "noise.distribution=none"), None),
         ((*NOISY, "caveats.exact_velocity.noise=1e-3"), None),
         (("robot=xarm7", "noise.position=1e-3"), None),  # it commands positions, and takes no velocities

@@ -9,7 +9,7 @@ from runner.robots.robot import end_points
 
 P = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # from the Mini's base into the Macro's tip frame
 R_0 = np.array([0.0, 0.1, 0.1])
-COUPLINGS = ("one_way", "two_way", "independent", "mini_held")
+COUPLINGS = ("one_way", "two_way", "independent", "independent_base", "mini_held")
 
 
 class Spy:
@@ -86,6 +86,7 @@ def test_the_macro_s_target(spied, coupling, macro_target, wrist_rotation):
             "one_way": R_0 if macro_target == "minus_home" else np.zeros(3),
             "two_way": R @ arm.stages[1].model.tip_position(q[3:]),
             "independent": R_0,
+            "independent_base": R_0,
             "mini_held": R_0,
         }[coupling]
         assert kind == "move"
@@ -114,6 +115,41 @@ def test_the_independent_mini_keeps_its_home_offset(spied):
         assert kind == "move"
         np.testing.assert_allclose(target[0], R_0, atol=1e-15)
         np.testing.assert_array_equal(target[1:], 0.0)
+
+
+@pytest.mark.parametrize("wrist_rotation", ["real", "parallel"])
+@pytest.mark.parametrize("velocity", ["full", "zero"])
+def test_the_mini_may_keep_its_home_offset_in_the_base_frame(spied, wrist_rotation, velocity):
+    loops, laws, arm = spied(
+        "controller.coupling=independent_base",
+        f"controller.wrist_rotation={wrist_rotation}",
+        f"controller.mini_reference_velocity={velocity}",
+    )
+    h = 1e-5
+    for q, dq, way, derivatives in random_states(reach=0.5):  # whatever its reach
+        reference = np.vstack([place(arm, q)[0] + way, derivatives])
+        before, (kind, _, target), after = (ask(loops[1], laws[1], q + t * dq, dq, reference) for t in (-h, 0.0, h))
+        assert kind == "move"
+        np.testing.assert_allclose(target[0], place(arm, q, wrist_rotation == "parallel")[1].T @ R_0, atol=1e-12)
+        moved = (after[2][0] - before[2][0]) / (2.0 * h)
+        np.testing.assert_allclose(target[1], moved if velocity == "full" else 0.0, atol=1e-7)
+        np.testing.assert_array_equal(target[2], 0.0)
+
+
+def test_where_the_wrist_is_taken_parallel_both_frames_of_the_offset_are_one(simulated):
+    common = (*TRACKED, "preset=as_reported", "duration=0.5")
+    own, base = (simulated(*common, f"controller.coupling={c}") for c in ("independent", "independent_base"))
+    np.testing.assert_allclose(own.q, base.q, atol=1e-9)
+
+
+def test_with_the_offset_kept_in_the_base_frame_the_tip_misses_by_what_the_macro_misses(simulated, combined):
+    own, base = (simulated(*TRACKED, f"controller.coupling={c}") for c in ("independent", "independent_base"))
+    missed = base.at_stage(0).error
+    np.testing.assert_allclose(base.error[-1], missed[-1], atol=1e-6)
+    assert np.abs(base.error - missed).max() < 0.02 * np.abs(missed).max()
+    turn = R_0 - place(combined, own.q[-1])[1] @ R_0  # in its own frame the offset turns with the wrist
+    np.testing.assert_allclose(own.error[-1] - own.at_stage(0).error[-1], turn, atol=1e-5)
+    assert np.abs(turn).max() > 50.0 * np.abs(base.error[-1]).max()
 
 
 def test_the_held_mini_holds_its_joints_at_home(spied):

@@ -11,7 +11,7 @@ from runner.controllers.macro_mini_graph import macro_mini_graph
 from runner.robots.robot import StageBase
 
 CHOICES = {
-    "coupling": ("independent", "one_way", "two_way", "mini_held"),
+    "coupling": ("independent", "one_way", "two_way", "mini_held", "independent_base"),
     "macro_target": ("minus_home", "tip_goal"),
     "mini_reference_velocity": ("full", "zero"),
     "wrist_rotation": ("real", "parallel"),
@@ -62,7 +62,8 @@ def test_signals_between_the_arms_follow_the_coupling(coupling):
             coupling != "two_way" and not (coupling == "one_way" and flags["macro_target"] == "tip_goal")
         )
         follows = coupling in ("one_way", "two_way")
-        assert ("macro_encoders" in mini_target(graph)) == follows
+        turned = coupling == "independent_base" and flags["wrist_rotation"] == "real"
+        assert ("macro_encoders" in mini_target(graph)) == (follows or turned)
         assert ("reference" in mini_target(graph)) == follows
         assert "reference" in macro_side(graph)
 
@@ -136,6 +137,10 @@ def told_by_graph(graph, config, time, q, dq, reference):
     aim = np.zeros((3, 3))
     if "reach" not in names:
         aim[0] = [0.0, 0.1, 0.1]
+        if "R^T r_0" in names["mini_target"]:
+            if r"\omega" in names["mini_target"]:
+                aim[1] = -R.T @ np.cross(spin, aim[0])
+            aim[0] = R.T @ aim[0]
         mini = ("hold", np.zeros(3)) if "posture" in names["mini_target"] else ("move", aim)
     elif ("Own turn" in names["reach"] and not mini_turn) or (not within and "else stretch" not in names["reach"]):
         mini = ("hold", q[3:])

@@ -15,11 +15,13 @@ from runner.reporting.findings import Finding, findings
 from runner.reporting.formulas import faulty
 from runner.reporting.measured import Measured
 from runner.reporting.thesis import (
+    bandwidth,
     base_axis,
     coupling,
     dynamics_cost,
     folding,
     gravity_and_lag,
+    lag_by_axis,
     mass_ratio,
     physics,
     reference_velocity,
@@ -29,6 +31,7 @@ from runner.reporting.thesis import (
     vanishing_mass,
     whole_body,
 )
+from runner.reporting.thesis.plan import TRACKED
 from runner.reporting.thesis.studies import mini_dexterity
 from runner.store import Run
 
@@ -65,6 +68,8 @@ BUILD: dict[str, Build] = {
     "folding": folded,
     "stretch": partial(stretch._finding, reach=0.2),
     "reference velocity": reference_velocity._finding,
+    "lag by axis": lag_by_axis.lag_by_axis,
+    "bandwidth": bandwidth._finding,
     "nearer": base_axis._nearer,
     "unlimited": base_axis._unlimited,
     "limited": partial(base_axis._limited, limit=Measured("limit", 50.0, "N m")),
@@ -72,6 +77,7 @@ BUILD: dict[str, Build] = {
     "gravity": of_section(gravity_and_lag.gravity_section, 0),
     "feedforward": of_section(gravity_and_lag.lag_section, 0),
     "first order": of_section(physics.plants_section, 0),
+    "integrator": physics._integrator,
     "stable": physics._stable,
     "similar": of_section(physics.similarity_section, 0),
 }
@@ -86,6 +92,11 @@ def runs(shared_store: Path, thin: bool) -> dict[str, Run]:
 @pytest.mark.parametrize("name", BUILD)
 def test_every_condition_fails_for_some_value(runs: dict[str, Run], name: str) -> None:
     assert never_failing(list(mutants(BUILD[name], runs))) == []
+
+
+def test_the_printed_tracking_errors_are_not_those_at_rest() -> None:
+    printed = base_axis.printed_tracking_errors()
+    assert [printed[figure] for figure in TRACKED] == [(0.1, 0.15), (0.007, 0.044)]
 
 
 @pytest.mark.parametrize(("last", "first"), [(3.4e-3, 3.2e-3), (None, None)])

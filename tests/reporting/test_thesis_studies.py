@@ -14,6 +14,7 @@ from runner.reporting import formulas
 from runner.reporting.document import Document, Section, Table
 from runner.reporting.figures import torque_and_error
 from runner.reporting.thesis import dynamics_benchmark
+from runner.reporting.thesis.bandwidth import bandwidth_section
 from runner.reporting.thesis.checklist import checklist_section
 from runner.reporting.thesis.coupling import coupling_section
 from runner.reporting.thesis.dynamics_cost import dynamics_cost_section
@@ -35,6 +36,7 @@ SECTIONS = (
     folding_section,
     stretch_section,
     reference_velocity_section,
+    bandwidth_section,
     turns_section,
     whole_body_section,
     dynamics_cost_section,

@@ -7,9 +7,12 @@ from runner.sensing import EncoderNoise, JointEncoders
 PERIOD = 0.01
 
 
-def encoders(ticks=20_000, joints=3, amplitude=1e-3, distribution="uniform", velocity="exact", resolution=0.0, seed=0):
+def encoders(
+    ticks=20_000, joints=3, amplitude=1e-3, distribution="uniform", velocity="exact", resolution=0.0, bias=0.0, seed=0
+):
     generator = np.random.default_rng(seed)
-    noise = EncoderNoise(np.full(joints, amplitude), np.full(joints, resolution), distribution, velocity)
+    every = [np.full(joints, value) for value in (amplitude, bias, resolution)]
+    noise = EncoderNoise(*every, distribution, velocity)
     return JointEncoders(ticks, PERIOD, noise, generator)
 
 
@@ -117,6 +120,50 @@ def test_differenced_velocities_come_in_steps_over_the_period():
     np.testing.assert_allclose(np.unique(np.round(velocity, 9)), [0.0, 1e-3 / PERIOD])
 
 
+def test_a_bias_is_added_to_every_reading_beside_its_noise():
+    q = np.random.default_rng(3).uniform(-2.0, 2.0, (10, 3))
+    np.testing.assert_array_equal(read(encoders(distribution="none", bias=-0.25), q)[0], q - 0.25)
+    np.testing.assert_allclose(read(encoders(bias=-0.25), q)[0], read(encoders(), q)[0] - 0.25, atol=1e-15)
+
+
+def test_a_biased_reading_is_rounded():
+    measured, _ = read(encoders(distribution="none", resolution=1e-3, bias=0.4e-3), np.full((1, 3), 2.2e-3))
+    np.testing.assert_allclose(measured, 3e-3, atol=1e-15)
+
+
+def test_differenced_velocities_do_not_see_a_bias():
+    q = np.random.default_rng(3).uniform(-2.0, 2.0, (10, 3))
+    biased, plain = (read(encoders(velocity="finite_difference", bias=bias), q)[1] for bias in (0.25, 0.0))
+    np.testing.assert_allclose(biased, plain, atol=1e-12)
+
+
+def test_each_stage_has_its_own_bias(closed_loop, checked_config):
+    overrides = ("robot=combined", "noise.bias.macro=-1e-3", "noise.bias.mini=2e-3")
+    for repetition in range(2):
+        for sensor in make_encoders(closed_loop(*overrides), checked_config(*overrides).noise, 0, repetition):
+            np.testing.assert_allclose(sensor.measure(0, np.zeros(6), np.zeros(6))[0], [-1e-3] * 3 + [2e-3] * 3)
+
+
+def test_a_noise_without_bias_and_steps_does_for_an_arm_of_several_stages(checked_config):
+    noise = checked_config("robot=combined", "~noise.bias", "~noise.resolution").noise
+    np.testing.assert_array_equal([noise.bias, noise.resolution], np.zeros((2, 6)))
+
+
+@pytest.mark.parametrize(("robot", "scale"), [("macro", 1.0), ("mini", 0.1)])
+@pytest.mark.parametrize("plant", ["bullet", "rk4"])
+def test_at_rest_the_tip_errs_by_what_the_bias_puts_it_elsewhere(simulated, request, robot, scale, plant):
+    bias, model = 1e-4, request.getfixturevalue(robot)
+    trace = simulated(f"robot={robot}", f"plant={plant}", f"duration={3.0 * scale}", f"noise.bias={bias}")
+    assert np.abs(trace.dq[-1]).max() < 1e-6
+    q, b = trace.q[-1], np.full(3, bias)
+    J = model.tip_jacobian(q)[:3]
+    np.testing.assert_allclose(trace.error[-1], J @ b, atol=0.03 * np.linalg.norm(J @ b))
+    # The law's gravity is that of the biased posture, which its spring omega_n^2 carries: a hundredth of the error.
+    wrong = np.linalg.solve(model.mass_matrix(q), model.gravity_torque(q + b) - model.gravity_torque(q))
+    expected = J @ b - J @ wrong / (30.0 / scale) ** 2
+    np.testing.assert_allclose(trace.error[-1], expected, atol=1e-3 * np.linalg.norm(expected))
+
+
 def test_each_stage_reads_in_its_own_steps(closed_loop, checked_config):
     overrides = ("robot=combined", "noise.resolution.mini=1e-2")
     (macro, mini) = make_encoders(closed_loop(*overrides), checked_config(*overrides).noise, 0, 0)
@@ -144,9 +191,14 @@ def test_an_arm_at_rest_is_held_within_a_step_of_its_encoders(simulated):
             "noise.resolution: needs a value for each stage (macro, mini)",
         ),
         ("combined", "noise.resolution.mimi=1", "noise.resolution.mimi: no such stage (did you mean mini?)"),
+        ("macro", "noise.bias=inf", "noise.bias: must be a finite number; found inf"),
+        ("macro", "noise.bias=wrong", "noise.bias: must be a number; found 'wrong'"),
+        ("combined", "noise.bias.mini=nan", "noise.bias: mini must be a finite number; found"),
+        ("combined", "noise.bias=-1e-3", "noise.bias: needs a value for each stage (macro, mini)"),
+        ("combined", "noise.bias.mimi=1", "noise.bias.mimi: no such stage (did you mean mini?)"),
     ],
 )
-def test_steps_that_cannot_be(cli, robot, override, message):
+def test_steps_and_biases_that_cannot_be(cli, robot, override, message):
     ending = cli(f"robot={robot}", override)
     assert ending.code == 2
     assert message in ending.err

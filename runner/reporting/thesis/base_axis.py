@@ -173,11 +173,7 @@ def _passes(run: Run, signal: str) -> float:
 
 def duration_section(runs: Mapping[str, Run]) -> Section:
     """Return the largest tracking error against the duration of the motion, beside the printed values."""
-    printed = {
-        claim.experiment.rpartition("/")[2]: claim.printed
-        for claim in load_claims("thesis")
-        if claim.metric == "max_tracking_error"
-    }
+    printed = printed_tracking_errors()
     t = np.array(DURATIONS)
     panels = []
     for figure, title in zip(TRACKED, ("Limit of 50 N m (claim 3)", "No torque limit (claim 4)"), strict=True):
@@ -208,6 +204,15 @@ def duration_section(runs: Mapping[str, Run]) -> Section:
             Text("We take 3 s throughout."),
         ),
     )
+
+
+def printed_tracking_errors() -> dict[str, tuple[float, ...]]:
+    """Return what the thesis prints of the largest tracking error, by figure, in m; figures have other claims, too."""
+    return {
+        claim.experiment.rpartition("/")[2]: tuple(claim.printed)
+        for claim in load_claims("thesis")
+        if claim.metric == "max_tracking_error"
+    }
 
 
 def _no_duration(runs: Mapping[str, Run], printed: Mapping[str, float]) -> Finding:

@@ -2,7 +2,11 @@
 
 from runner.reporting.job import PRESETS, Job, Jobs
 
-METHODS = ("one_way", "two_way", "independent", "mini_held", "whole_body")
+METHODS = ("one_way", "two_way", "independent", "independent_base", "mini_held", "whole_body")
+METHOD_NAMES = {
+    "independent": "independent, offset turning with the wrist",
+    "independent_base": "independent, offset fixed in the base frame",
+}
 MOTIONS = ("goal", "quintic")
 DYNAMICS = ("coupled", "decoupled")
 VANISHING = (0.1, 0.01, 0.001)  # kg, each of the Mini's two point masses
@@ -33,6 +37,9 @@ VELOCITIES = ("zero", "full")
 SCHEDULES = ("both", "turns")
 TURN_DURATIONS = (3.0, 6.0, 12.0)  # s, t_f
 SLOW_DURATION = 6.0  # s, t_f, of whole-body control at 10 ms
+BANDWIDTHS = (300.0, 100.0, 60.0, 30.0)  # rad/s, of the Mini; the first is that of the thesis
+BIASED = (300.0, 30.0)  # rad/s, of the Mini under a bias of the Macro's encoders
+MACRO_BIAS = 1e-3  # rad, as large as the half-width of the thesis' encoder noise
 TIP_SPEEDS = (1.0, 1.5, 2.0, 3.0, 4.0)  # m/s, of whole-body control
 # Natural frequencies keep omega_n h at 0.3 or below, as the thesis does.
 COMPARED_RATES = {
@@ -64,6 +71,8 @@ def combined_jobs() -> Jobs:
         **_references(),
         **_turns(),
         **_whole_body(),
+        **_bandwidths(),
+        **_independent(),
     }
 
 
@@ -190,7 +199,20 @@ def _whole_body() -> Jobs:
         jobs[f"whole_body/speed/{speed}"] = Job((*overrides, _SEVEN))
     slow = ("experiment=thesis/whole_body", "controller.period=0.01", f"trajectory.duration={SLOW_DURATION:g}")
     jobs["whole_body/slow"] = Job((*slow, "repetitions=1", _BULLET_STEP))
-    for coupling in ("one_way", "mini_held"):
-        overrides = (_STAGED["quintic"], f"controller.coupling={coupling}", "controller.payload=known")
-        jobs[f"rest/{coupling}"] = Job((*overrides, "repetitions=3"))
     return jobs
+
+
+def _bandwidths() -> Jobs:
+    base = (_STAGED["quintic"], "controller.payload=known", _SEVEN)
+    rates = {rate: f"controller.natural_frequency.mini={rate:g}" for rate in BANDWIDTHS}
+    jobs = {f"bandwidth/{rate}": Job((*base, own)) for rate, own in rates.items()}
+    for rate in BIASED:
+        jobs[f"bandwidth/bias/{rate}"] = Job((*base, rates[rate], f"noise.bias.macro={MACRO_BIAS:g}"))
+    jobs["bandwidth/held"] = Job((*base, "controller.coupling=mini_held"))
+    return jobs
+
+
+def _independent() -> Jobs:
+    """Return figure 5.3 with the Mini's offset kept in the base frame."""
+    base = ("experiment=thesis/figure_5_3", "controller.coupling=independent_base")
+    return {f"independent_base/{preset}": Job((*base, f"preset={preset}")) for preset in PRESETS}

@@ -10,7 +10,7 @@ from runner.reporting.findings import Finding, finding
 from runner.reporting.measured import Measured
 from runner.reporting.quantities import above_rounding
 from runner.reporting.run_values import apart, cell, clock, failures, measured
-from runner.reporting.thesis.combined_plan import METHODS, MOTIONS
+from runner.reporting.thesis.combined_plan import METHOD_NAMES, METHODS, MOTIONS
 from runner.reporting.thesis.studies import largest, settled
 from runner.reporting.thesis.vanishing_mass import vanishing_section
 from runner.store import Run
@@ -51,7 +51,7 @@ def _table(runs: Mapping[str, Run], motion: str) -> Table:
             for metric in _METRICS[motion]
             for run in pair
         ]
-        rows.append([method, *distances, *measured])
+        rows.append([METHOD_NAMES.get(method, method), *distances, *measured])
     first, unit = ("settling time", "s") if motion == "goal" else ("largest error", "m")
     header = [
         "controller",
@@ -131,7 +131,7 @@ def _ends(runs: Mapping[str, Run], motion: str) -> dict[str, Measured]:
 
 
 def _listed(lengths: Mapping[str, Measured]) -> str:
-    return ", ".join(f"{length} ({method})" for method, length in lengths.items())
+    return ", ".join(f"{length} ({METHOD_NAMES.get(method, method)})" for method, length in lengths.items())
 
 
 def _curves(runs: Mapping[str, Run]) -> Curves:

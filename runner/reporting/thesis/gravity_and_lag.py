@@ -11,6 +11,7 @@ from runner.reporting.findings import Finding, finding
 from runner.reporting.job import PRESETS
 from runner.reporting.measured import Condition, Measured
 from runner.reporting.run_values import measured
+from runner.reporting.thesis.lag_by_axis import lag_by_axis
 from runner.reporting.thesis.plan import ARMS, LAG_DURATIONS
 from runner.store import Run
 
@@ -144,6 +145,7 @@ def lag_section(runs: Mapping[str, Run]) -> Section:
             origin(run),
         ),
         _no_feedforward(runs, lags),
+        lag_by_axis(runs),
     ]
     return Section("The lag", blocks)
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from runner.reporting.document import Document, Section
+from runner.reporting.thesis.bandwidth import bandwidth_section
 from runner.reporting.thesis.base_axis import base_axis_section, duration_section
 from runner.reporting.thesis.caveats import EXPECTED
 from runner.reporting.thesis.chapter2 import chapter2
@@ -80,6 +81,7 @@ def _beyond(runs: Mapping[str, Run]) -> Section:
             folding_section,
             stretch_section,
             reference_velocity_section,
+            bandwidth_section,
             turns_section,
             whole_body_section,
             dynamics_cost_section,
