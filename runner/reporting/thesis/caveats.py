@@ -42,7 +42,8 @@ EXPECTED = (
             "folding/*/minus_home/quintic",
             "turns/*/both",
             "vanishing/*",
-            "rest/*",
+            "bandwidth/*",
+            "independent_base/*",
             "mass/*",
         )
     ),
