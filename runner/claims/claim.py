@@ -12,17 +12,15 @@ from runner.registry import StrictModel
 
 
 class Bound(StrictModel):
-    """Why a printed number cannot be reached: the model's own upper bound for it, taken from another run.
+    """What another number of the same source leads one to expect at most.
 
     Attributes:
-        experiment: The experiment that bounds it.
-        metric: The metric there.
-        scale: What it is multiplied with.
-        reason: Why that bounds the number; inline mathematics between dollar signs.
+        claim: Number of the claim that has the other number.
+        scale: What that is multiplied by.
+        reason: Why the one follows from the other, and how strictly; inline mathematics between dollar signs.
     """
 
-    experiment: str
-    metric: str
+    claim: int
     scale: PositiveFloat
     reason: str
 
@@ -78,7 +76,7 @@ class PublishedClaim(StrictModel):
         fails: Whether it says that this motion is not met.
         reason: What the comparison shows; inline mathematics between dollar signs.
         like: Set where the source compares in words: the run of ours that it is said to be like.
-        bound: Set where the number is beyond what the model can give.
+        bound: Set where another number of the source speaks against this one.
     """
 
     number: int

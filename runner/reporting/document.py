@@ -12,10 +12,11 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from runner import claims
 from runner.audit.expressions import Node
 
 FloatArray = NDArray[np.float64]
-Verdict = Literal["holds", "better", "worse", "cannot", "not run"]
+Verdict = claims.Verdict | Literal["not run"]
 EquationVerdict = Literal["correct", "correct after repair", "wrong as printed", "unreadable", "definition"]
 
 

@@ -4,7 +4,7 @@ import pytest
 from runner import run
 from runner.reporting.figures import columns
 from runner.reporting.plant_agreement import describe_agreement, disagreement, find_twin
-from runner.reporting.quantities import number
+from runner.reporting.quantities import quantity
 
 CASE = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "duration=0.5", "noise=thesis")
 
@@ -47,7 +47,7 @@ def test_the_twin_is_found_by_its_content_with_one_repetition(pair):
 def test_the_agreement_is_told_with_plant_and_step(pair):
     text = describe_agreement(pair[0])
     assert text.startswith("Plant bullet, step 0.001 s. On this case, with the same noise")
-    assert f"at most {number(disagreement(*pair).tip, 2)} m apart" in text
+    assert f"at most {quantity(disagreement(*pair).tip, 'm', 2)} apart" in text
 
 
 def test_the_same_noise_is_spoken_of_where_there_is_some(outputs):
