@@ -1,4 +1,4 @@
-"""From a printed value and ours to a verdict."""
+"""From a printed and a simulated value to a verdict."""
 
 from collections.abc import Sequence
 from typing import Literal
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from runner.claims.claim import Extent
 
 FACTOR = 1.5
-"""How far ours may be from a printed value that still holds: the sources read theirs off plots, to one digit."""
+"""By which factor the simulated value may differ from a printed one that holds: the sources read theirs off plots."""
 
 Verdict = Literal["holds", "better", "worse", "contradicts itself"]
 CONTRADICTION: Verdict = "contradicts itself"
@@ -20,7 +20,7 @@ def judge(printed: float, measured: float | None, bound: float | None = None) ->
 
     Args:
         printed: The printed value.
-        measured: Our median; None where most runs have no value, such as a tip that never settles.
+        measured: The simulated median; None where most runs have no value, such as a tip that never settles.
         bound: What other numbers of the same source lead one to expect at most, where there is such a bound.
 
     Returns:

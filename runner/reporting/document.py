@@ -238,6 +238,7 @@ class Table:
         rows: Cells, one sequence per row, each as long as the header.
         numeric: Indices of the columns that hold numbers, set flush right.
         origin: Its number in the source, command and commit.
+        code: Indices of the columns that hold what is typed on the command line, set in monospace.
     """
 
     block: ClassVar[str] = "table"
@@ -246,6 +247,7 @@ class Table:
     rows: Sequence[Sequence[str]]
     numeric: Sequence[int] = ()
     origin: Origin = field(default_factory=Origin)
+    code: Sequence[int] = ()
 
 
 @dataclass(frozen=True)

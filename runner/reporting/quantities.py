@@ -38,7 +38,9 @@ class Shown(str):
         return shown
 
 
-def number(value: float | None, digits: int = 3, rounding: float = 0.0, zeros: bool = False) -> str:
+def number(
+    value: float | None, digits: int = 3, rounding: float = 0.0, zeros: bool = False, plain: float = 1e-2
+) -> str:
     """Return a number with so many significant digits, such as 0.0735 or 8.73·10⁻³; a dash for a missing one.
 
     Args:
@@ -46,6 +48,7 @@ def number(value: float | None, digits: int = 3, rounding: float = 0.0, zeros: b
         digits: How many digits.
         rounding: What is smaller is rounding of the arithmetic, and said to be that.
         zeros: Whether zeros at the end stay, as in 0.110, which a range needs: 0.101 to 0.110.
+        plain: What is smaller has a power of ten; 1e-4 or more.
     """
     if value is None or math.isnan(value):
         return "–"
@@ -55,11 +58,11 @@ def number(value: float | None, digits: int = 3, rounding: float = 0.0, zeros: b
         return Shown("0", 0.0, digits)
     if 0.0 < abs(value) < rounding:
         return ROUNDED
-    return Shown(_text(value, digits, zeros), value, digits)
+    return Shown(_text(value, digits, zeros, plain), value, digits)
 
 
-def _text(value: float, digits: int, zeros: bool) -> str:
-    if 1e-2 <= abs(value) < 1e4:
+def _text(value: float, digits: int, zeros: bool, plain: float) -> str:
+    if plain <= abs(value) < 1e4:
         text = f"{value:#.{digits}g}".removesuffix(".") if zeros else f"{value:.{digits}g}"
         return f"{value:.0f}" if "e" in text else text
     mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
@@ -73,9 +76,9 @@ def unit_text(unit: str) -> str:
     return _UNITS.get(unit, unit)
 
 
-def smaller_units(unit: str) -> list[tuple[float, str]]:
-    """Return the units that may stand for one, itself first, each with its factor."""
-    return [(factor, name) for _, factor, name in _SMALLER.get(unit, ((0.0, 1.0, unit),))]
+def next_unit(unit: str) -> list[tuple[float, str]]:
+    """Return the next smaller unit with its factor, mm for m; none where there is none."""
+    return [(factor, name) for _, factor, name in _SMALLER.get(unit, ())][1:2]
 
 
 def fitting(value: float | None, unit: str) -> tuple[float, str]:
@@ -123,6 +126,12 @@ def ranged(low: float | None, high: float | None, unit: str, beside: float | Non
     return f"{_scaled(low, factor)} to {_scaled(high, factor)} {name}".strip()
 
 
+def with_interval(value: float, half: float) -> tuple[str, str]:
+    """Return an estimate and the half width of its interval, both to the second digit of that: 300.0 and ± 1.1."""
+    decimals = max(0, 1 - math.floor(math.log10(half))) if half > 0.0 else 3
+    return f"{value:.{decimals}f}", f"± {half:.{decimals}f}"
+
+
 def spread(metric: Mapping[str, Any], beside: float | None = None) -> str:
     """Return the median of a stored metric with the range over its repetitions, such as "1.56 s (1.53 to 2.80)".
 
@@ -140,10 +149,23 @@ def spread(metric: Mapping[str, Any], beside: float | None = None) -> str:
     return f"{middle} ({_scaled(low, factor, True)} to {'never' if high is None else _scaled(high, factor, True)})"
 
 
-def fewest_powers(values: Iterable[float], units: Sequence[tuple[float, str]]) -> tuple[float, str]:
-    """Return the unit, of some with their factors, in which the fewest values need a power of ten; the first such."""
+def fewest_powers(
+    values: Iterable[float], units: Sequence[tuple[float, str]], plain: float = 1e-2
+) -> tuple[float, str]:
+    """Return the unit, of some with their factors, in which the fewest values need a power of ten; the first such.
+
+    Args:
+        values: The values, in the unit whose factor is 1.
+        units: The units.
+        plain: From where on values in one of the other units need none.
+    """
     numbers = [value for value in values if abs(value) >= ROUNDING]
-    return min(units, key=lambda unit: sum("·" in number(unit[0] * value) for value in numbers))
+
+    def powers(unit: tuple[float, str]) -> int:
+        factor, _ = unit
+        return sum("·" in number(factor * value, plain=1e-2 if factor == 1.0 else plain) for value in numbers)
+
+    return min(units, key=powers)
 
 
 def _shared(values: Sequence[float | None], unit: str, beside: float | None) -> tuple[float, str]:
@@ -151,8 +173,7 @@ def _shared(values: Sequence[float | None], unit: str, beside: float | None) -> 
     known = [value for value in values if value is not None]
     largest = fitting(max(map(abs, known), default=None), unit)
     wanted = [fitting(beside, unit)] if beside else []
-    others = smaller_units(unit) if unit in _SMALLER else []
-    return fewest_powers(known, [*wanted, largest, *others])
+    return fewest_powers(known, [*wanted, largest, *next_unit(unit)])
 
 
 def _scaled(value: float | None, factor: float, zeros: bool = False) -> str:

@@ -121,7 +121,7 @@ def _equip(environment: jinja2.Environment) -> jinja2.Environment:
         "spans": spans,
         "origin_label": origin_label,
         "short_commit": short_commit,
-        "preset": words.preset,
+        "in_words": words.in_words,
         "kind": lambda node: type(node).__name__,
         "symbol": symbol,
         "typeset": typeset,

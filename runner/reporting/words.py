@@ -5,21 +5,21 @@ import re
 PRESET = {"as_reported": "as reported", "sound": "full equations"}
 """The presets of the works, in the order of their columns."""
 
-COUPLING = {
+PLANT = {"bullet": "PyBullet", "rk4": "Runge-Kutta"}
+
+_WORDS = {
+    **PRESET,
     "one_way": "one-way",
     "two_way": "two-way",
     "mini_held": "Mini held",
-    "independent": "independent",
     "whole_body": "whole body",
+    "tip_goal": "the goal itself",
+    "minus_home": "the goal less the offset at home",
+    "joint_limits": "joint limits",
 }
-"""How the controllers of the combined arm hang together."""
-
-FOLDING = {"tip_goal": "the tip's own goal", "minus_home": "the goal less the Mini's home"}
-"""Where the Macro of the combined arm is sent."""
-
-_PRESET_NAME = re.compile(r"\b(as_reported|sound)\b")
+_CODE_NAME = re.compile(rf"\b({'|'.join(_WORDS)})\b")
 
 
-def preset(name: str) -> str:
-    """Return a preset, or a variant of one such as "sound, decoupled", in words."""
-    return _PRESET_NAME.sub(lambda found: PRESET[found[0]], name)
+def in_words(name: str) -> str:
+    """Return the name of a preset, coupling or variant, such as "sound, decoupled", in words; others as they are."""
+    return _CODE_NAME.sub(lambda found: _WORDS[found[0]], name)

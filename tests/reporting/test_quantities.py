@@ -10,6 +10,7 @@ from runner.reporting.quantities import (
     quantity,
     ranged,
     spread,
+    with_interval,
 )
 
 
@@ -125,6 +126,20 @@ def test_small_lengths_and_times_have_smaller_units(value, unit, text):
 )
 def test_both_ends_of_a_range_have_one_unit(low, high, text):
     assert ranged(low, high, "m") == text
+
+
+@pytest.mark.parametrize(
+    ("value", "half", "texts"),
+    [
+        (299.973, 1.13, ("300.0", "± 1.1")),
+        (250.68, 0.795, ("250.68", "± 0.80")),
+        (9.5708, 0.048, ("9.571", "± 0.048")),
+        (1234.5, 56.0, ("1234", "± 56")),
+        (0.5, 0.0, ("0.500", "± 0.000")),
+    ],
+)
+def test_an_estimate_has_as_many_decimals_as_its_interval(value, half, texts):
+    assert with_interval(value, half) == texts
 
 
 @pytest.mark.parametrize(("unit", "text"), [("1", "x"), ("m", "x (m)"), ("N^2 m^2 s", "x (N² m² s)")])

@@ -127,8 +127,8 @@ def test_a_motion_is_shown_from_a_to_b_as_its_caption_says(document):
 
 
 def test_the_plants_disagreement_is_measured_and_shrinks_with_the_step(document):
-    (text,) = [block.text for block in blocks_of(document, Text) if "Plant bullet, step" in block.text]
-    assert text.count("the tips of bullet and rk4 are at most") == len(PRESETS)
+    (text,) = [block.text for block in blocks_of(document, Text) if "PyBullet is the plant, in steps of" in block.text]
+    assert text.count("the tip is at most") == len(PRESETS)
     distances = [float(re.sub("·10⁻⁶$", "e-6", row[2]).replace("·10⁻⁷", "e-7")) for row in
                  table(document, "PyBullet's step against Runge-Kutta").rows]  # fmt: skip
     for first in range(0, len(distances), len(STEPS)):

@@ -25,9 +25,9 @@ def contact_section(runs: Mapping[str, Run]) -> Section:
             plant,
             number(stiffness),
             number(felt_force(run), 5),
-            number(100.0 * reading_error(run), rounding=ROUNDING),
+            number(100.0 * reading_error(run), rounding=100.0 * ROUNDING),
             number(_in_series(run), 5),
-            number(100.0 * (felt_force(run) / _in_series(run) - 1.0), 2, rounding=ROUNDING),
+            number(100.0 * (felt_force(run) / _in_series(run) - 1.0), 2, rounding=100.0 * ROUNDING),
             number(peak_force(run)),
         ]
         for (plant, stiffness), run in walls.items()

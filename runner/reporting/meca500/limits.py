@@ -39,10 +39,10 @@ def limits_section(runs: Mapping[str, Run]) -> Section:
         "At the limits",
         (
             Text(
-                "Without springs, an arm goes where it is pushed until it cannot. Each joint's speed is bounded by its "
-                "limit and by a share of what is left to its position limit, so that it nears that exponentially; "
-                "near singular postures the inverse is damped. Where the joints cannot follow, the law is put where "
-                "the arm is, and the run says what has held it back."
+                "Without springs an arm gives way to a push up to the limits of its joints. Each joint's speed is "
+                "bounded by its limit and by a share of what is left to its position limit, so that it nears that "
+                "exponentially; near singular postures the inverse is damped. Where the joints cannot follow, the "
+                "law is put where the arm is, and the run says what has held it back."
             ),
             Table(
                 "Runs into limits: smallest margin to a position limit, largest speed and largest change of speed from "

@@ -7,6 +7,7 @@ import numpy as np
 from runner.errors import StoreError
 from runner.reporting.document import Block, Notice, Section, Table, Text
 from runner.reporting.figures import playback, torque_and_error
+from runner.reporting.metric_titles import title
 from runner.reporting.quantities import number, quantity
 from runner.reporting.sweep.pairs import HEADER, columns, compare
 from runner.reporting.sweep.subject import Subject
@@ -72,8 +73,8 @@ def _behind(subject: Subject, ranked: Sequence[int]) -> list[Block]:
             rows.append([name, *columns(comparison, unit), comparison.verdict])
     return [
         Table(
-            f"The next cells against the best, by {metric} on the same seeds: median of the differences, its 95 % "
-            "interval from n pairs, effect size (rank-biserial correlation, 1 where the best is better in every "
+            f"The next cells against the best, by {title(metric)} on the same seeds: median of the differences, its "
+            "95 % interval from n pairs, effect size (rank-biserial correlation, 1 where the best is better in every "
             "repetition), and p of the signed-rank test. The best was chosen by the same values, which makes it look "
             "better than it is.",
             ["cell", *HEADER, "than the best"],

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from runner.reporting.document import Block, Section, Table, Text
+from runner.reporting.metric_titles import title
 from runner.reporting.quantities import number, quantity
 from runner.reporting.sweep.subject import Subject, value_name
 from runner.statistics import Comparison, compare_paired
@@ -82,7 +83,7 @@ def _table(subject: Subject, axis: Axis) -> Table | None:
     )
     within = "within each level of the other axes" if len(subject.axes) > 1 else "as the only axis"
     return Table(
-        f"{metric} by {axis.name}, {within}{f' ({which})' if which else ''}.".replace("$", "$$"),
+        f"{title(metric)} by {axis.name}, {within}{f' ({which})' if which else ''}.".replace("$", "$$"),
         ["at", axis.name.replace("$", "$$"), *HEADER, "the second is"],
         rows,
         tuple(range(2, 2 + len(HEADER))),

@@ -111,7 +111,7 @@ def _findings(claim: PublishedClaim, runs: Mapping[str, Run]) -> list[Verdict]:
 
 
 def _value(claim: PublishedClaim, preset: str, runs: Mapping[str, Run]) -> float:
-    """Return what ours is compared with: the printed value, or ours of the run that it is said to be like."""
+    """Return what the simulation is compared with: the printed value, or the run that it is said to be like."""
     if claim.value is not None or claim.like is None:
         return float(claim.value or 0.0)
     return float(runs[f"{_figure(claim.like.experiment)}/{preset}"].metrics[claim.like.metric]["median"])

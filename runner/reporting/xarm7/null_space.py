@@ -170,11 +170,12 @@ def conclude(
     return finding(
         f"At {SPEEDS[-1]:g} rad/s the tip stays within {quantity(BOUND, 'm')} by {RULES[-1]} alone",
         f"At the commands the tip moves by {euler} by the rule euler, {midpoint} by midpoint, and {rk4} by "
-        f"{RULES[-1]}. Our law's own rule is midpoint, which is enough at {SPEEDS[-2]:g} rad/s ({slower}); faster "
-        f"null-space motion asks for controller.integration={RULES[-1]}. Between two commands the joints move evenly, "
-        f"along a chord of that curved surface, and the tip leaves its place by {between[-1]} or more, whatever the "
-        f"rule: it falls with the square of the rate, to {often} at {FASTEST_RATE} Hz. With servos on an arm with "
-        f"mass it is the servos that move the tip, by {servo} as the motion sets in, {farthest} after the start.",
+        f"{RULES[-1]}. The rule that the seven joints run by in this report is midpoint, which is enough at "
+        f"{SPEEDS[-2]:g} rad/s ({slower}); faster null-space motion asks for controller.integration={RULES[-1]}. "
+        "Between two commands the joints move evenly, along a chord of that curved surface, and the tip leaves its "
+        f"place by {between[-1]} or more, whatever the rule: it falls with the square of the rate, to {often} at "
+        f"{FASTEST_RATE} Hz. With servos on an arm with mass it is the servos that move the tip, by {servo} as the "
+        f"motion sets in, {farthest} after the start.",
         rk4 < 0.1 * BOUND,
         midpoint > 2.0 * BOUND,
         euler > 2.0 * BOUND,
