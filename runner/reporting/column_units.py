@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from runner.reporting.document import Block, Document, Section, Table
-from runner.reporting.quantities import Shown, fewest_powers, fitting, next_unit, number
+from runner.reporting.quantities import Shown, fewest_powers, fitting, number, smaller_units
 
 _UNITS = ("m", "s")
 _PLAIN = 1e-4  # in a smaller unit a column shows plain decimals down to this: 10.5, 0.0262, 0.0011
@@ -36,7 +36,7 @@ def _column(head: str, cells: Sequence[str]) -> tuple[str, Sequence[str]]:
     numbers = [cell.value for cell in cells if isinstance(cell, Shown)]
     if unit is None or not any(numbers) or any(_holds_number(cell) for cell in cells):
         return head, cells
-    factor, name = fewest_powers(numbers, [fitting(max(map(abs, numbers)), unit), *next_unit(unit)], _PLAIN)
+    factor, name = fewest_powers(numbers, [fitting(max(map(abs, numbers)), unit), *smaller_units(unit)], _PLAIN)
     if name == unit:
         return head, cells
     return f"{head.removesuffix(f'({unit})')}({name})", [_scaled(cell, factor) for cell in cells]

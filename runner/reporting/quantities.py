@@ -76,9 +76,9 @@ def unit_text(unit: str) -> str:
     return _UNITS.get(unit, unit)
 
 
-def next_unit(unit: str) -> list[tuple[float, str]]:
-    """Return the next smaller unit with its factor, mm for m; none where there is none."""
-    return [(factor, name) for _, factor, name in _SMALLER.get(unit, ())][1:2]
+def smaller_units(unit: str) -> list[tuple[float, str]]:
+    """Return the smaller units of a unit with their factors, mm and µm for m; none where there are none."""
+    return [(factor, name) for _, factor, name in _SMALLER.get(unit, ())][1:]
 
 
 def fitting(value: float | None, unit: str) -> tuple[float, str]:
@@ -173,7 +173,7 @@ def _shared(values: Sequence[float | None], unit: str, beside: float | None) -> 
     known = [value for value in values if value is not None]
     largest = fitting(max(map(abs, known), default=None), unit)
     wanted = [fitting(beside, unit)] if beside else []
-    return fewest_powers(known, [*wanted, largest, *next_unit(unit)])
+    return fewest_powers(known, [*wanted, largest, *smaller_units(unit)])
 
 
 def _scaled(value: float | None, factor: float, zeros: bool = False) -> str:

@@ -174,7 +174,7 @@ def set_names(axis: Axis, names: Sequence[str], room: int) -> None:
 
 def _label(value: float, position: int | None) -> str:
     """Return the label of a mark as the text writes numbers: 0.05 and 100, but 5·10⁻⁴, and 10⁻³ for a power alone."""
-    return number(value).removeprefix("1·")
+    return number(float(f"{value:.3g}")).removeprefix("1·")  # a locator's 10⁻⁵ is off by rounding
 
 
 def _minor_label(value: float, position: int | None) -> str:

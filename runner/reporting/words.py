@@ -9,6 +9,7 @@ PLANT = {"bullet": "PyBullet", "rk4": "Runge-Kutta"}
 
 _WORDS = {
     **PRESET,
+    **PLANT,
     "one_way": "one-way",
     "two_way": "two-way",
     "mini_held": "Mini held",
@@ -16,10 +17,13 @@ _WORDS = {
     "tip_goal": "the goal itself",
     "minus_home": "the goal less the offset at home",
     "joint_limits": "joint limits",
+    "operational_space": "operational space",
+    "computed_torque": "computed torque",
+    "euler": "Euler",
 }
 _CODE_NAME = re.compile(rf"\b({'|'.join(_WORDS)})\b")
 
 
 def in_words(name: str) -> str:
-    """Return the name of a preset, coupling or variant, such as "sound, decoupled", in words; others as they are."""
+    """Return a preset, plant, coupling, law or variant such as "sound, decoupled" in words; other names stay."""
     return _CODE_NAME.sub(lambda found: _WORDS[found[0]], name)

@@ -23,7 +23,8 @@ def column(head, *cells):
         ((0.947, 3.9e-4), "mm", ["947", "0.39"]),
         ((0.5, None), "m", ["0.5", "–"]),
         ((8e-3, None), "mm", ["8", "–"]),
-        ((2e-9, 3e-9), "m", ["2·10⁻⁹", "3·10⁻⁹"]),
+        ((2e-9, 3e-9), "µm", ["0.002", "0.003"]),
+        ((2e-12, 3e-12), "m", ["2·10⁻¹²", "3·10⁻¹²"]),
     ],
 )
 def test_a_column_of_lengths_has_one_unit_that_spares_powers_of_ten(values, unit, cells):

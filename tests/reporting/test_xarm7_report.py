@@ -112,7 +112,7 @@ def test_the_findings_that_need_no_study_hold(document):
 
 def test_what_is_rounding_is_told_as_rounding(document):
     rows = {row[0]: row[1:] for row in table(document, "Errors and efforts").rows}
-    assert rows["cross_track_error"][0] == "0 (rounding)"
+    assert rows["largest distance from the path"][0] == "0 (rounding)"
     cells = [cell for each in blocks_of(document, Table) for row in each.rows for cell in row]
     assert not [cell for cell in cells if re.search("10⁻¹[2-9]", cell)]
 

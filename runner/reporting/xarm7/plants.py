@@ -13,7 +13,7 @@ from runner.reporting.measured import Measured
 from runner.reporting.plant_agreement import describe_agreement, disagreement
 from runner.reporting.quantities import above_rounding, number
 from runner.reporting.run_values import measured
-from runner.reporting.words import PRESET
+from runner.reporting.words import PLANT, PRESET
 from runner.reporting.xarm7.plan import STEPS
 from runner.store import Run
 
@@ -88,7 +88,7 @@ def _plants(runs: Mapping[str, Run]) -> Curves:
         for name, run in (("bullet", STEPS[-1]), ("rk4", "rk4")):
             trace = runs[f"servo/{preset}/{run}"].trace
             error = np.linalg.norm(columns(trace, "error"), axis=1)
-            series.append(Series(name, trace["t"].to_numpy(), error, "line" if name == "bullet" else "dashed"))
+            series.append(Series(PLANT[name], trace["t"].to_numpy(), error, "line" if name == "bullet" else "dashed"))
         panels.append(Panel(PRESET[preset].capitalize(), "time (s)", "error norm (m)", series))
     return Curves(
         "Tip error from A to B by three joints with servos, on both plants.",
