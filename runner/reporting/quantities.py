@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -11,6 +12,7 @@ ROUNDING = 1e-12
 
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 ROUNDED = "0 (rounding)"
+_EXPONENT = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e[+-]?\d+(?!\w)")
 _UNITS = {"1": "", "N^2 m^2 s": "N² m² s", "N^2 s": "N² s", "m/s^2": "m/s²"}
 # From which size on a unit is taken, with its factor; below the last one the unit itself, with a power of ten.
 _SMALLER = {
@@ -69,6 +71,11 @@ def _text(value: float, digits: int, zeros: bool, plain: float) -> str:
     if value == float(f"{value:.0e}") and not zeros:
         mantissa = mantissa.partition(".")[0]  # a printed 6·10⁻⁵ claims no more digits than it has
     return f"{mantissa}·10{str(int(exponent)).translate(SUPERSCRIPT)}"
+
+
+def with_powers(text: str) -> str:
+    """Return a text, such as an error message, with its numbers as a report writes them: 3.04·10⁻⁴ for 3.04e-04."""
+    return _EXPONENT.sub(lambda found: number(float(found[0]), len(found[1].replace(".", "")), ROUNDING), text)
 
 
 def unit_text(unit: str) -> str:
@@ -141,12 +148,31 @@ def spread(metric: Mapping[str, Any], beside: float | None = None) -> str:
     """
     median, low, high = metric["median"], metric["min"], metric["max"]
     varies = len(metric["values"]) >= 2 and not low == high is not None
-    shown = (median, low, high) if varies else (median,)
-    factor, name = _shared(shown, str(metric["unit"]), median if beside is None else beside)
-    middle = _with_unit(_scaled(median, factor, varies), name)
     if not varies:
-        return middle
-    return f"{middle} ({_scaled(low, factor, True)} to {'never' if high is None else _scaled(high, factor, True)})"
+        factor, name = _shared((median,), str(metric["unit"]), median if beside is None else beside)
+        return _with_unit(_scaled(median, factor), name)
+    middle, ends, _ = with_ends(median, low, math.inf if high is None else high, str(metric["unit"]), beside)
+    return f"{middle} ({ends})"
+
+
+def with_ends(
+    middle: float | None, low: float | None, high: float | None, unit: str, beside: float | None = None
+) -> tuple[str, str, str]:
+    """Return a value with its unit, a range around it in the same unit, and that unit: "1.56 s", "1.53 to 2.80", "s".
+
+    Args:
+        middle: The value; an infinite one is "never".
+        low: The lower end of the range, likewise.
+        high: The upper end, likewise.
+        unit: The SI unit.
+        beside: A value that they are compared with, of which they take the unit; see `ranged`.
+    """
+    known = [value for value in (middle, low, high) if value is not None and math.isfinite(value)]
+    chosen = beside if beside is not None else middle if middle is not None and math.isfinite(middle) else None
+    factor, name = _shared(known, unit, chosen)
+    texts = ["never" if value is not None and math.isinf(value) else _scaled(value, factor, True)
+             for value in (middle, low, high)]  # fmt: skip
+    return texts[0] if texts[0] == "never" else _with_unit(texts[0], name), f"{texts[1]} to {texts[2]}", name
 
 
 def fewest_powers(

@@ -9,7 +9,7 @@ from runner.reporting.document import Block, Document, Notice, Provenance, Secti
 from runner.reporting.figures import desired_motion, playback, torque_and_error
 from runner.reporting.metric_titles import title
 from runner.reporting.plant_agreement import describe_agreement
-from runner.reporting.quantities import above_rounding, number
+from runner.reporting.quantities import above_rounding, number, with_powers
 from runner.store import Run
 
 _HEADLINE = ("settling_time", "steady_state_error", "max_tracking_error", "peak_torque", "saturation_fraction")
@@ -58,7 +58,7 @@ def _section(run: Run, index: int) -> Section:
                 "failure",
                 "This run failed",
                 f"In repetition {run.failure['repetition']} at t = {number(run.failure['time'])} s{joint}: "
-                f"{run.failure['reason']}. The curves end there.",
+                f"{with_powers(str(run.failure['reason']))}. The curves end there.",
             )
         )
     blocks += caveat_notices(run)

@@ -11,6 +11,7 @@ from runner.reporting.quantities import (
     ranged,
     spread,
     with_interval,
+    with_powers,
 )
 
 
@@ -126,6 +127,19 @@ def test_small_lengths_and_times_have_smaller_units(value, unit, text):
 )
 def test_both_ends_of_a_range_have_one_unit(low, high, text):
     assert ranged(low, high, "m") == text
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("above 1e+06 rad/s", "above 1·10⁶ rad/s"),
+        ("value 0.00307, number 2.39e+16; 3.04e-17", "value 0.00307, number 2.39·10¹⁶; 0 (rounding)"),
+        ("2.0e-3 m", "2·10⁻³ m"),
+        ("run 58e16a47, mode1e3", "run 58e16a47, mode1e3"),
+    ],
+)
+def test_numbers_in_messages_are_written_as_in_a_report(text, shown):
+    assert with_powers(text) == shown
 
 
 @pytest.mark.parametrize(
