@@ -88,9 +88,10 @@ def _table(subject: Subject, axis: Axis) -> Table | None:
     which = (
         f"{len(rows)} of {len(everything)} pairs, spread evenly over the sweep" if len(everything) > len(rows) else ""
     )
+    name = title(metric)
     within = "within each level of the other axes" if len(subject.axes) > 1 else "as the only axis"
     return Table(
-        f"{title(metric)} by {axis.name}, {within}{f' ({which})' if which else ''}.".replace("$", "$$"),
+        f"{name[:1].upper()}{name[1:]} by {axis.name}, {within}{f' ({which})' if which else ''}.".replace("$", "$$"),
         ["at", axis.name.replace("$", "$$"), *HEADER, "the second is"],
         rows,
         tuple(range(2, 2 + len(HEADER))),
