@@ -32,7 +32,7 @@ def limits_section(runs: Mapping[str, Run]) -> Section:
                 f"{number(100.0 * fastest(run), 4)} %",
                 f"{number(100.0 * hardest_change(run))} %",
                 f"{number(100.0 * nearest_singular(run))} %",
-                "; ".join(str(text) for text in run.provenance["warnings"]),
+                "; ".join(map(_spoken, run.provenance["warnings"])),
             ]
         )
     return Section(
@@ -57,6 +57,11 @@ def limits_section(runs: Mapping[str, Run]) -> Section:
             limits_finding(**limits_values(runs)),
         ),
     )
+
+
+def _spoken(warning: object) -> str:
+    """Return a stored warning as a sentence of the report."""
+    return str(warning).replace("the posture, singular or nearly so", "a posture at or near a singularity")
 
 
 def limits_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
