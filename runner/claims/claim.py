@@ -12,23 +12,21 @@ from runner.registry import StrictModel
 
 
 class Bound(StrictModel):
-    """Why a printed number cannot be reached: the model's own upper bound for it, taken from another run.
+    """What another number of the same source leads one to expect at most.
 
     Attributes:
-        experiment: The experiment that bounds it.
-        metric: The metric there.
-        scale: What it is multiplied with.
-        reason: Why that bounds the number; inline mathematics between dollar signs.
+        claim: Number of the claim that has the other number.
+        scale: What that is multiplied by.
+        reason: Why the one follows from the other, and how strictly; inline mathematics between dollar signs.
     """
 
-    experiment: str
-    metric: str
+    claim: int
     scale: PositiveFloat
     reason: str
 
 
 class Likeness(StrictModel):
-    """What a claim without a number is compared with: ours of another run.
+    """What a claim without a number is compared with: another run.
 
     Attributes:
         experiment: The other experiment.
@@ -46,7 +44,7 @@ class Extent(StrictModel):
         axis: The axis.
         span: Distance between its least and its largest coordinate, in m.
         middle: What lies half way between them, in m; None where nothing is said of it.
-        tolerance: How far ours may be from these, in m: half a unit of the last printed digit.
+        tolerance: How far the simulated ones may be from these, in m: half a unit of the last printed digit.
     """
 
     axis: Literal["x", "y", "z"]
@@ -77,8 +75,8 @@ class PublishedClaim(StrictModel):
         extents: Where it says how the tip moves, in place of a metric.
         fails: Whether it says that this motion is not met.
         reason: What the comparison shows; inline mathematics between dollar signs.
-        like: Set where the source compares in words: the run of ours that it is said to be like.
-        bound: Set where the number is beyond what the model can give.
+        like: Set where the source compares in words: the run that it is said to be like.
+        bound: Set where another number of the source speaks against this one.
     """
 
     number: int
@@ -102,7 +100,7 @@ class PublishedClaim(StrictModel):
 
     @property
     def value(self) -> float | None:
-        """The printed value that ours is compared with: the upper end of a range; None where there is no number."""
+        """The printed value that is compared with: the upper end of a range; None where there is no number."""
         return self.printed[-1] if self.printed else None
 
 

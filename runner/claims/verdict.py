@@ -1,4 +1,4 @@
-"""From a printed value and ours to a verdict."""
+"""From a printed and a simulated value to a verdict."""
 
 from collections.abc import Sequence
 from typing import Literal
@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from runner.claims.claim import Extent
 
 FACTOR = 1.5
-"""How far ours may be from a printed value that still holds: the sources read theirs off plots, to one digit."""
+"""By which factor the simulated value may differ from a printed one that holds: the sources read theirs off plots."""
 
-Verdict = Literal["holds", "better", "worse", "cannot"]
+Verdict = Literal["holds", "better", "worse", "contradicts itself"]
+CONTRADICTION: Verdict = "contradicts itself"
 
 
 def judge(printed: float, measured: float | None, bound: float | None = None) -> Verdict:
@@ -19,15 +20,15 @@ def judge(printed: float, measured: float | None, bound: float | None = None) ->
 
     Args:
         printed: The printed value.
-        measured: Our median; None where most runs have no value, such as a tip that never settles.
-        bound: The largest value that the model can give, where there is such a bound.
+        measured: The simulated median; None where most runs have no value, such as a tip that never settles.
+        bound: What other numbers of the same source lead one to expect at most, where there is such a bound.
 
     Returns:
-        "cannot" when even the bound, widened by FACTOR, stays below the printed value; else "holds" within FACTOR,
-        "better" below and "worse" above it.
+        "contradicts itself" when even the bound, widened by FACTOR, stays below the printed value; else "holds" within
+        FACTOR, "better" below and "worse" above it.
     """
     if bound is not None and bound * FACTOR < printed:
-        return "cannot"
+        return CONTRADICTION
     if measured is None or measured > printed * FACTOR:
         return "worse"
     return "better" if measured < printed / FACTOR else "holds"
@@ -45,12 +46,13 @@ def judge_motion(
         desired: Desired path at the same times, shape (T, 3), in m.
 
     Returns:
-        "cannot" when the source's own desired path is another motion; else "holds" where the tip moves as told, and
-        "worse" where it does not. Where the source says that it fails, "holds" when it does and "better" when not.
+        "contradicts itself" when the source's own desired path is another motion; else "holds" where the tip
+        moves as told, and "worse" where it does not. Where the source says that it fails, "holds" when it does and
+        "better" when not.
     """
     met = all(extent.met(tip) for extent in extents)
     if fails:
         return "better" if met else "holds"
     if not all(extent.met(desired) for extent in extents):
-        return "cannot"
+        return CONTRADICTION
     return "holds" if met else "worse"

@@ -12,10 +12,11 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from runner import claims
 from runner.audit.expressions import Node
 
 FloatArray = NDArray[np.float64]
-Verdict = Literal["holds", "better", "worse", "cannot", "not run"]
+Verdict = claims.Verdict | Literal["not run"]
 EquationVerdict = Literal["correct", "correct after repair", "wrong as printed", "unreadable", "definition"]
 
 
@@ -237,6 +238,7 @@ class Table:
         rows: Cells, one sequence per row, each as long as the header.
         numeric: Indices of the columns that hold numbers, set flush right.
         origin: Its number in the source, command and commit.
+        code: Indices of the columns that hold what is typed on the command line, set in monospace.
     """
 
     block: ClassVar[str] = "table"
@@ -245,6 +247,7 @@ class Table:
     rows: Sequence[Sequence[str]]
     numeric: Sequence[int] = ()
     origin: Origin = field(default_factory=Origin)
+    code: Sequence[int] = ()
 
 
 @dataclass(frozen=True)

@@ -53,7 +53,7 @@ class Measured:
     @property
     def shown(self) -> str:
         """It as it stands in a sentence on what must vanish: "0 (rounding)" where it does."""
-        return quantity(self.value, self.unit, rounding=ROUNDING)
+        return quantity(self.value, self.unit, rounding=100.0 * ROUNDING if self.unit == "%" else ROUNDING)
 
     def __mul__(self, factor: float) -> Measured:
         """Return it so many times."""

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.reporting.figures import columns
-from runner.reporting.quantities import above_rounding
+from runner.reporting.quantities import above_rounding, quantity
+from runner.reporting.words import PLANT
 from runner.store import Run, find_run, run_hash
 
 _TWINS = {"bullet": "rk4", "rk4": "bullet"}
@@ -53,19 +54,20 @@ def find_twin(run: Run) -> Run | None:
 def describe_agreement(run: Run) -> str:
     """Return a sentence on plant, step and the measured disagreement, for a report on that run."""
     plant, step = run.config["plant"]["kind"], run.provenance["plant_step"]
-    head = f"Plant {plant}, step {step:g} s."
+    head = f"{PLANT.get(plant, plant)} is the plant, in steps of {quantity(step, 's')}."
     twin = find_twin(run)
     if twin is None:
         other = _TWINS.get(plant, "rk4")
         return (
-            f"{head} The disagreement between the plants has not been measured on this case: "
+            f"{head} How far the other plant is from it has not been measured on this case: "
             f"run it with plant={other} and repetitions=1, and make this report again."
         )
     apart = disagreement(run, twin)
-    case = "On this case, with the same noise," if _noisy(run) else "On this case"
+    noise = " and the same noise" if _noisy(run) else ""
     return (
-        f"{head} {case} the tips of bullet and rk4 are at most {above_rounding(apart.tip, 'm', 2)} apart, and "
-        f"{above_rounding(apart.final, 'm', 2)} at the end."
+        f"{head} With {PLANT[_TWINS[plant]]} in its place{noise} the tip is at most "
+        f"{above_rounding(apart.tip, 'm', 2)} away at equal times, and {above_rounding(apart.final, 'm', 2)} at the "
+        "end."
     )
 
 

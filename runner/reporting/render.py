@@ -7,6 +7,7 @@ from pathlib import Path
 
 from runner.errors import RunnerError
 from runner.reporting import html, pdf
+from runner.reporting.column_units import in_readable_units
 from runner.reporting.document import Document
 
 _RENDERERS: dict[str, Callable[[Document], bytes]] = {
@@ -33,7 +34,8 @@ def write_report(document: Document, folder: Path, formats: Collection[str] = ("
     if unknown:
         raise RunnerError(f"unknown report format {', '.join(unknown)}; allowed: {', '.join(_RENDERERS)}")
     folder.mkdir(parents=True, exist_ok=True)
-    return [_write(folder / f"report.{name}", _RENDERERS[name](document)) for name in formats]
+    shown = in_readable_units(document)
+    return [_write(folder / f"report.{name}", _RENDERERS[name](shown)) for name in formats]
 
 
 def _write(path: Path, content: bytes) -> Path:

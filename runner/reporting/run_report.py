@@ -7,8 +7,9 @@ from typing import Any
 from runner.caveats import changes_since
 from runner.reporting.document import Block, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import desired_motion, playback, torque_and_error
+from runner.reporting.metric_titles import title
 from runner.reporting.plant_agreement import describe_agreement
-from runner.reporting.quantities import number, quantity
+from runner.reporting.quantities import above_rounding, number, with_powers
 from runner.store import Run
 
 _HEADLINE = ("settling_time", "steady_state_error", "max_tracking_error", "peak_torque", "saturation_fraction")
@@ -36,12 +37,12 @@ def _overview(runs: Sequence[Run]) -> Table:
     for index, run in enumerate(runs, start=1):
         config = _flatten(run.config)
         values = [
-            quantity(run.metrics[name]["median"], run.metrics[name]["unit"]) if name in run.metrics else "–"
+            above_rounding(run.metrics[name]["median"], run.metrics[name]["unit"]) if name in run.metrics else "–"
             for name in names
         ]
         keys = (literal(str(config.get(key, "–"))) for key in varying)
         rows.append([str(index), *keys, run.status, str(len(run.caveats)), *values])
-    header = ["run", *varying, "status", "caveats", *names]
+    header = ["run", *varying, "status", "caveats", *(literal(title(name)) for name in names)]
     first = len(varying) + 2
     return Table("Runs, with what distinguishes them; medians.", header, rows, tuple(range(first, len(header))))
 
@@ -57,7 +58,7 @@ def _section(run: Run, index: int) -> Section:
                 "failure",
                 "This run failed",
                 f"In repetition {run.failure['repetition']} at t = {number(run.failure['time'])} s{joint}: "
-                f"{run.failure['reason']}. The curves end there.",
+                f"{with_powers(str(run.failure['reason']))}. The curves end there.",
             )
         )
     blocks += caveat_notices(run)
@@ -90,21 +91,22 @@ def _sentence(text: str) -> str:
 
 def _metrics(run: Run) -> Table:
     rows = [
-        [name, quantity(m["median"], m["unit"]), quantity(m["min"], m["unit"]), quantity(m["max"], m["unit"])]
+        [title(name), name, *(above_rounding(m[which], m["unit"]) for which in ("median", "min", "max"))]
         for name, m in run.metrics.items()
     ]
     count = run.record["repetitions"]
     return Table(
         "Metrics of one repetition." if count == 1 else f"Metrics over {count} repetitions.",
-        ["metric", "median", "smallest", "largest"],
+        ["metric", "name on the command line", "median", "smallest", "largest"],
         [[literal(cell) for cell in row] for row in rows],
-        (1, 2, 3),
+        (2, 3, 4),
+        code=(1,),
     )
 
 
 def _config(run: Run) -> Table:
     rows = [[literal(key), literal(_yaml(value))] for key, value in _flatten(run.config).items() if key != "outputs"]
-    return Table("Config, all values.", ["key", "value"], rows)
+    return Table("Config, all values.", ["key", "value"], rows, code=(0, 1))
 
 
 def provenance(runs: Sequence[Run]) -> Provenance:

@@ -9,7 +9,8 @@ from runner.errors import RunnerError, nearest
 from runner.reporting.document import Block, FloatArray, Notice
 from runner.reporting.figures import columns
 from runner.reporting.measured import Measured
-from runner.reporting.quantities import above_rounding
+from runner.reporting.quantities import above_rounding, with_powers
+from runner.reporting.words import in_words
 from runner.store import Run
 
 
@@ -75,8 +76,8 @@ def failures(runs: Mapping[str, Run]) -> list[Block]:
     for name, run in runs.items():
         if run.failure is not None:
             joint = f", {run.failure['joint']}" if run.failure["joint"] else ""
-            where = f"{name.partition('/')[2]} (at {run.failure['time']:.4g} s{joint})"
-            reasons.setdefault(str(run.failure["reason"]), []).append(where)
+            where = f"{in_words(name.partition('/')[2])} (at {run.failure['time']:.4g} s{joint})"
+            reasons.setdefault(with_powers(str(run.failure["reason"])), []).append(where)
     if not reasons:
         return []
     count = sum(map(len, reasons.values()))

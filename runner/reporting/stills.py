@@ -19,6 +19,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 from runner.reporting import palette
 from runner.reporting.document import Curves, Panel, Series
 from runner.reporting.markup import plain
+from runner.reporting.quantities import number
 from runner.reporting.thinning import thin, usable
 
 WIDTH = 6.5
@@ -41,6 +42,7 @@ STYLE: Any = {
     "axes.spines.right": False,
     "axes.grid": True,
     "axes.formatter.limits": (-3, 4),
+    "axes.formatter.use_mathtext": True,
     "grid.color": "#e3e6ea",
     "grid.linewidth": 0.5,
     "xtick.major.width": 0.5,
@@ -101,8 +103,8 @@ def _figure(curves: Curves) -> Figure:
     heights = [_row_height(row) for row in rows]
     total = sum(heights) or _BOTTOM
     figure = Figure(figsize=(WIDTH, total))
-    for number, row in enumerate(rows):
-        head = sum(heights[:number]) + max(frame.top for frame in row)
+    for index, row in enumerate(rows):
+        head = sum(heights[:index]) + max(frame.top for frame in row)
         for column, frame in enumerate(row):
             bottom = total - head - frame.height
             place = (column * width + _LEFT, bottom, frame.width, frame.height)
@@ -150,7 +152,8 @@ def _draw_panel(axes: Axes, frame: _Frame) -> None:
         axes.set_xlim(-0.5, len(panel.x_names) - 0.5)
     for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
         if axis.get_scale() == "log":
-            # Short labels between the powers of ten, and only where these alone would leave the axis bare.
+            # Labels between the powers of ten, and only where these alone would leave the axis bare.
+            axis.set_major_formatter(FuncFormatter(_label))
             axis.set_minor_formatter(FuncFormatter(_minor_label) if high < 30.0 * low else NullFormatter())
     _draw_legend(axes, frame, handles)
 
@@ -169,9 +172,13 @@ def set_names(axis: Axis, names: Sequence[str], room: int) -> None:
     axis.set_ticks(range(0, len(names), step), labels)
 
 
+def _label(value: float, position: int | None) -> str:
+    """Return the label of a mark as the text writes numbers: 0.05 and 100, but 5·10⁻⁴, and 10⁻³ for a power alone."""
+    return number(float(f"{value:.3g}")).removeprefix("1·")  # a locator's 10⁻⁵ is off by rounding
+
+
 def _minor_label(value: float, position: int | None) -> str:
-    mantissa, _, exponent = f"{value:.0e}".partition("e")
-    return f"{mantissa}e{int(exponent)}" if mantissa in "25" else ""
+    return _label(value, position) if f"{value:.0e}"[0] in "25" else ""
 
 
 def _draw_series(axes: Axes, series: Series, color: str) -> Line2D:

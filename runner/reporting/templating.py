@@ -6,7 +6,9 @@ from functools import cache
 import jinja2
 
 from runner.audit.typesetting import symbol, typeset
+from runner.claims import CONTRADICTION
 from runner.paths import templates_dir
+from runner.reporting import words
 from runner.reporting.document import Origin
 from runner.reporting.markup import plain, spans
 
@@ -14,7 +16,7 @@ VERDICT_SIGNS = {
     "holds": "✓",
     "better": "▲",
     "worse": "▼",
-    "cannot": "✕",
+    CONTRADICTION: "≠",
     "not run": "–",
     "correct": "✓",
     "correct after repair": "✓",
@@ -119,6 +121,7 @@ def _equip(environment: jinja2.Environment) -> jinja2.Environment:
         "spans": spans,
         "origin_label": origin_label,
         "short_commit": short_commit,
+        "in_words": words.in_words,
         "kind": lambda node: type(node).__name__,
         "symbol": symbol,
         "typeset": typeset,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from runner.claims import Extent, PublishedClaim, judge_motion, load_claims
+from runner.claims import CONTRADICTION, Extent, PublishedClaim, judge_motion, load_claims
 from runner.config.options import group_options
 from runner.references import shipped_references
 
@@ -60,8 +60,8 @@ def test_an_extent_is_met_within_its_tolerance(extent, path, met):
 
 def test_what_contradicts_the_desired_path_cannot_hold():
     along_x = [Extent(axis="y", span=0.0, tolerance=5e-3)]
-    assert judge_motion(along_x, False, LINE, LINE) == "cannot"
-    assert judge_motion(along_x, False, moved(y=0.0), LINE) == "cannot"
+    assert judge_motion(along_x, False, LINE, LINE) == CONTRADICTION
+    assert judge_motion(along_x, False, moved(y=0.0), LINE) == CONTRADICTION
 
 
 def test_a_tip_that_leaves_the_line_is_worse():

@@ -172,16 +172,16 @@ def test_check_lists_the_findings_that_no_longer_hold(cli, one_finding):
     assert cli("reproduce", "thesis").code == 0
     ending = cli("reproduce", "thesis", "--check")
     assert ending.code == 1
-    assert "thesis: section 1: Small: not so: tip error < 1·10⁻³ m (tip error: 2·10⁻³ m)" in ending.err
+    assert "thesis: section 1: Small: not so: tip error < 1 mm (tip error: 2 mm)" in ending.err
     assert "Not zero" not in ending.err
 
 
 def test_conclusions_are_written_for_programs(cli, one_finding, tmp_path):
     assert cli("reproduce", "thesis", "--json", tmp_path / "thesis.json").code == 0
     small, other = json.loads((tmp_path / "thesis.json").read_text())["thesis"]["findings"]
-    assert (small["section"], small["title"], small["text"]) == ("1", "Small", "It is 2·10⁻³ m.")
+    assert (small["section"], small["title"], small["text"]) == ("1", "Small", "It is 2 mm.")
     assert (small["holds"], other["holds"]) == (False, True)
-    assert small["conditions"][0]["text"] == "tip error < 1·10⁻³ m"
+    assert small["conditions"][0]["text"] == "tip error < 1 mm"
 
 
 def test_check_lists_the_caveats_that_a_work_does_not_expect(cli, monkeypatch):

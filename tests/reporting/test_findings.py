@@ -12,7 +12,7 @@ def test_a_comparison_says_itself_in_words_with_its_values():
     condition = SLOW > 3.0 * FAST
     assert condition.holds
     assert condition.text == "error of the slow one > 3 times error of the fast one"
-    assert condition.measured == "error of the slow one: 4·10⁻³ m; error of the fast one: 1·10⁻³ m"
+    assert condition.measured == "error of the slow one: 4 mm; error of the fast one: 1 mm"
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_a_condition_chooses_no_words():
 
 def test_a_finding_stands_with_its_conditions():
     stands = finding("The slow one errs more", f"It errs by {SLOW}.", SLOW > FAST)
-    assert (stands.kind, stands.title, stands.text) == ("finding", "The slow one errs more", "It errs by 4·10⁻³ m.")
+    assert (stands.kind, stands.title, stands.text) == ("finding", "The slow one errs more", "It errs by 4 mm.")
     assert stands.holds
 
 
@@ -66,8 +66,8 @@ def test_where_one_fails_it_says_which_and_what_had_been_written():
     assert fallen.kind == "warning"
     assert fallen.title == "No longer holds: The slow one errs less"
     assert fallen.text == (
-        "Not so: error of the slow one < error of the fast one (error of the slow one: 4·10⁻³ m; error of the fast "
-        "one: 1·10⁻³ m). It was written: It errs by 4·10⁻³ m."
+        "Not so: error of the slow one < error of the fast one (error of the slow one: 4 mm; error of the fast "
+        "one: 1 mm). It was written: It errs by 4 mm."
     )
 
 

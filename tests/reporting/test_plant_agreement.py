@@ -4,7 +4,7 @@ import pytest
 from runner import run
 from runner.reporting.figures import columns
 from runner.reporting.plant_agreement import describe_agreement, disagreement, find_twin
-from runner.reporting.quantities import number
+from runner.reporting.quantities import quantity
 
 CASE = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "duration=0.5", "noise=thesis")
 
@@ -46,8 +46,10 @@ def test_the_twin_is_found_by_its_content_with_one_repetition(pair):
 
 def test_the_agreement_is_told_with_plant_and_step(pair):
     text = describe_agreement(pair[0])
-    assert text.startswith("Plant bullet, step 0.001 s. On this case, with the same noise")
-    assert f"at most {number(disagreement(*pair).tip, 2)} m apart" in text
+    assert text.startswith(
+        "PyBullet is the plant, in steps of 1 ms. With Runge-Kutta in its place and the same noise the tip"
+    )
+    assert f"at most {quantity(disagreement(*pair).tip, 'm', 2)} away at equal times" in text
 
 
 def test_the_same_noise_is_spoken_of_where_there_is_some(outputs):
@@ -55,12 +57,14 @@ def test_the_same_noise_is_spoken_of_where_there_is_some(outputs):
     quiet = run(*case, outputs)
     run(*case, "plant=rk4", outputs)
     text = describe_agreement(quiet)
-    assert "On this case the tips of bullet and rk4 are at most" in text
+    assert "With Runge-Kutta in its place the tip is at most" in text
     assert "noise" not in text
 
 
 def test_a_missing_twin_is_told_with_the_way_to_it(outputs):
     alone = run("robot=mini", "duration=0.01", "plant=rk4", outputs)
     text = describe_agreement(alone)
-    assert text.startswith("Plant rk4, step 0.001 s. The disagreement between the plants has not been measured")
+    assert text.startswith(
+        "Runge-Kutta is the plant, in steps of 1 ms. How far the other plant is from it has not been measured"
+    )
     assert "plant=bullet and repetitions=1" in text

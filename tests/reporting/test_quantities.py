@@ -1,6 +1,18 @@
+import math
+
 import pytest
 
-from runner.reporting.quantities import above_rounding, digits_between, labelled, number, quantity, spread
+from runner.reporting.quantities import (
+    above_rounding,
+    digits_between,
+    labelled,
+    number,
+    quantity,
+    ranged,
+    spread,
+    with_interval,
+    with_powers,
+)
 
 
 @pytest.mark.parametrize(
@@ -58,13 +70,90 @@ def test_what_is_of_the_size_of_rounding_errors_is_told_as_such(value, text):
     [
         ([1.5], 1.5, 1.5, 1.5, "1.5 s"),
         ([1.5, 1.5], 1.5, 1.5, 1.5, "1.5 s"),
-        ([1.5, 1.6, 2.8], 1.6, 1.5, 2.8, "1.6 s (1.5 to 2.8)"),
-        ([1.5, 1.6, None], 1.6, 1.5, None, "1.6 s (1.5 to never)"),
-        ([1.5, None, None], None, 1.5, None, "– s (1.5 to never)"),
+        ([1.5, 1.6, 2.8], 1.6, 1.5, 2.8, "1.60 s (1.50 to 2.80)"),
+        ([1.5, 1.6, None], 1.6, 1.5, None, "1.60 s (1.50 to never)"),
+        ([1.5, None, None], None, 1.5, None, "– s (1.50 to never)"),
+        ([0.101, 0.102, 0.11], 0.102, 0.101, 0.11, "0.102 s (0.101 to 0.110)"),
+        ([0.09, 0.091, 0.12], 0.091, 0.09, 0.12, "91.0 ms (90.0 to 120)"),
+        ([0.0, 0.0, 0.12], 0.0, 0.0, 0.12, "0 s (0 to 0.120)"),
+        ([0.0, 1e-17, 2e-9], 1e-17, 0.0, 2e-9, "0 (rounding) (0 to 2.00·10⁻⁹)"),
     ],
 )
 def test_spread_tells_the_range_over_the_repetitions(values, median, low, high, text):
     assert spread({"unit": "s", "values": values, "median": median, "min": low, "max": high}) == text
+
+
+@pytest.mark.parametrize(
+    ("metric", "printed", "text"),
+    [
+        ((3.89e-4, 2.52e-4, 0.947), 9e-3, "0.389 mm (0.252 to 947)"),
+        ((0.101, 0.0963, 0.107), 0.15, "0.101 m (0.0963 to 0.107)"),
+        ((0.0735, 0.0734, 0.0738), 0.044, "73.5 mm (73.4 to 73.8)"),
+        ((7.2e-7, 7.1e-7, 7.3e-7), 8e-4, "0.720 µm (0.710 to 0.730)"),
+        ((7.2e-7, 7.1e-7, 7.3e-7), None, "0.720 µm (0.710 to 0.730)"),
+    ],
+)
+def test_a_value_has_the_unit_of_the_printed_one_where_that_needs_no_power_of_ten(metric, printed, text):
+    median, low, high = metric
+    stored = {"unit": "m", "values": [low, median, high], "median": median, "min": low, "max": high}
+    assert spread(stored, printed) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.1, "m", "0.1 m"),
+        (0.0999, "m", "99.9 mm"),
+        (8.734e-3, "m", "8.73 mm"),
+        (-3.9e-4, "m", "-0.39 mm"),
+        (1e-5, "m", "0.01 mm"),
+        (7.31e-6, "m", "7.31 µm"),
+        (2.5e-7, "m", "0.25 µm"),
+        (2e-9, "m", "2·10⁻⁹ m"),
+        (0.091, "s", "91 ms"),
+        (1.4, "s", "1.4 s"),
+        (4e-6, "s", "4 µs"),
+        (4.3e-6, "rad", "4.30·10⁻⁶ rad"),
+        (math.nan, "m", "– m"),
+    ],
+)
+def test_small_lengths_and_times_have_smaller_units(value, unit, text):
+    assert quantity(value, unit) == text
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "text"),
+    [(0.0, 9e-3, "0 to 9 mm"), (0.007, 0.044, "7 to 44 mm"), (0.1, 0.15, "0.1 to 0.15 m"), (5e-3, 0.2, "5 to 200 mm")],
+)
+def test_both_ends_of_a_range_have_one_unit(low, high, text):
+    assert ranged(low, high, "m") == text
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("above 1e+06 rad/s", "above 1·10⁶ rad/s"),
+        ("value 0.00307, number 2.39e+16; 3.04e-17", "value 0.00307, number 2.39·10¹⁶; 0 (rounding)"),
+        ("2.0e-3 m", "2·10⁻³ m"),
+        ("run 58e16a47, mode1e3", "run 58e16a47, mode1e3"),
+    ],
+)
+def test_numbers_in_messages_are_written_as_in_a_report(text, shown):
+    assert with_powers(text) == shown
+
+
+@pytest.mark.parametrize(
+    ("value", "half", "texts"),
+    [
+        (299.973, 1.13, ("300.0", "± 1.1")),
+        (250.68, 0.795, ("250.68", "± 0.80")),
+        (9.5708, 0.048, ("9.571", "± 0.048")),
+        (1234.5, 56.0, ("1234", "± 56")),
+        (0.5, 0.0, ("0.500", "± 0.000")),
+    ],
+)
+def test_an_estimate_has_as_many_decimals_as_its_interval(value, half, texts):
+    assert with_interval(value, half) == texts
 
 
 @pytest.mark.parametrize(("unit", "text"), [("1", "x"), ("m", "x (m)"), ("N^2 m^2 s", "x (N² m² s)")])
@@ -83,6 +172,7 @@ def test_what_is_below_rounding_is_said_to_be_that():
     assert number(3.2e-18, rounding=1e-9) == "0 (rounding)"
     assert quantity(-4.4e-12, "%", rounding=1e-9) == "0 (rounding)"
     assert quantity(2e-9, "m", rounding=1e-9) == "2·10⁻⁹ m"
+    assert quantity(5e-7, "m", rounding=1e-6) == "0 (rounding)"
     assert number(0.0, rounding=1e-9) == "0"
     assert number(3.2e-18) == "3.20·10⁻¹⁸"
 

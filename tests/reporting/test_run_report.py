@@ -4,6 +4,7 @@ from runner import run
 from runner.reporting import outline
 from runner.reporting.document import Curves, Notice, Playback, Provenance, Table, Text
 from runner.reporting.formulas import faulty
+from runner.reporting.metric_titles import title
 from runner.reporting.render import write_report
 from runner.reporting.run_report import run_document
 
@@ -41,7 +42,8 @@ def test_a_finished_run_is_told_whole(finished):
         Provenance,
     ]
     metrics, config = blocks_of(document, Table)
-    assert [row[0] for row in metrics.rows] == list(finished.metrics)
+    assert [row[1] for row in metrics.rows] == list(finished.metrics)
+    assert metrics.rows[0][0] == title(metrics.rows[0][1])
     assert metrics.caption == "Metrics over 2 repetitions."
     assert ["controller.natural_frequency", "30.0"] in [list(row) for row in config.rows]
     assert "outputs" not in [row[0] for row in config.rows]
@@ -72,7 +74,7 @@ def test_a_sweep_is_led_by_what_distinguishes_its_runs(finished, diverged, outpu
     column = {name: index for index, name in enumerate(overview.header)}
     assert [row[column["seed"]] for row in overview.rows] == ["0", "1", "0"]
     assert [row[column["status"]] for row in overview.rows] == ["ok", "ok", "failed"]
-    assert overview.rows[2][column["peak_torque"]] == "–"
+    assert overview.rows[2][column["largest torque"]] == "–"
     assert "gravity" not in column  # the same in all of them
     assert all(len(row) == len(overview.header) for row in overview.rows)
 

@@ -98,7 +98,7 @@ def test_the_checklist_finds_its_places_and_names_what_is_missing(runs: dict[str
     assert len(rows) == 38
     assert rows["Figure 5.8"][2:] == ["reproduced", "§2.1"]
     assert rows["Figure 5.9"][2] == "missing"
-    assert rows["Figure 1.1"][2].startswith("not ours")
+    assert rows["Figure 1.1"][2].startswith("of others")
 
 
 def test_stored_runs_are_enough(runs: dict[str, Run]) -> None:

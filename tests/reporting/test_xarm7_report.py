@@ -63,7 +63,7 @@ def test_the_checklist_finds_a_place_for_everything(document):
 def test_the_verdicts(document):
     verdicts = {claim.number: [f.verdict for f in claim.findings] for claim in blocks_of(document, Claim)}
     same = {number: ["holds", "holds"] for number in "123467"}
-    assert verdicts == {**same, "5": ["cannot", "cannot"]}
+    assert verdicts == {**same, "5": ["contradicts itself", "contradicts itself"]}
     for claim in blocks_of(document, Claim):
         assert tuple(finding.preset for finding in claim.findings) == PRESETS
 
@@ -112,7 +112,7 @@ def test_the_findings_that_need_no_study_hold(document):
 
 def test_what_is_rounding_is_told_as_rounding(document):
     rows = {row[0]: row[1:] for row in table(document, "Errors and efforts").rows}
-    assert rows["cross_track_error"][0] == "0 (rounding)"
+    assert rows["largest distance from the path"][0] == "0 (rounding)"
     cells = [cell for each in blocks_of(document, Table) for row in each.rows for cell in row]
     assert not [cell for cell in cells if re.search("10⁻¹[2-9]", cell)]
 
@@ -127,8 +127,8 @@ def test_a_motion_is_shown_from_a_to_b_as_its_caption_says(document):
 
 
 def test_the_plants_disagreement_is_measured_and_shrinks_with_the_step(document):
-    (text,) = [block.text for block in blocks_of(document, Text) if "Plant bullet, step" in block.text]
-    assert text.count("the tips of bullet and rk4 are at most") == len(PRESETS)
+    (text,) = [block.text for block in blocks_of(document, Text) if "PyBullet is the plant, in steps of" in block.text]
+    assert text.count("the tip is at most") == len(PRESETS)
     distances = [float(re.sub("·10⁻⁶$", "e-6", row[2]).replace("·10⁻⁷", "e-7")) for row in
                  table(document, "PyBullet's step against Runge-Kutta").rows]  # fmt: skip
     for first in range(0, len(distances), len(STEPS)):

@@ -69,8 +69,8 @@ def line_by_inverse() -> Rollout:
         "The line by the printed inverse kinematics",
         f"The tip misses the line by {curves['q2 as printed'].max():.1f} cm at worst with q2 as printed, by "
         f"{curves['q4 as printed'].max():.1f} cm with q4 as printed, by {curves['both as printed'].max():.1f} cm with "
-        f"both, and by {curves['corrected'].max():.0e} cm corrected. The report's figures show the line followed: its "
-        "program did not contain these two equations as they stand.",
+        f"both, and by {_centimetres(curves['corrected'].max())} corrected. The report's figures show the line "
+        "followed: its program did not contain these two equations as they stand.",
         "y of the target (cm)",
         "tip to target (cm)",
         y,
@@ -139,3 +139,8 @@ def _follow(inverse: Inverse) -> tuple[FloatArray, FloatArray]:
             break
         q = q + _STEP * rates
     return distance, fastest
+
+
+def _centimetres(distance: float) -> str:
+    """Return a distance in cm, or that it is what rounding leaves."""
+    return f"{distance:.1f} cm" if distance > 1e-9 else "0 (rounding)"

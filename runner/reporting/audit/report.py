@@ -139,7 +139,9 @@ def _source(source: str, judged: Sequence[Judged]) -> Section:
         Table("Ways to what the equations claim to equal.", ["one way", "another"], ways),
     ]
     runs = tuple(_run(run_rollout(name)) for name in rolled_out(list(judged)))
-    return Section(_TITLES[source], blocks, runs and (Section("What a robot does that believes them", (), runs),))
+    return Section(
+        _TITLES[source], blocks, runs and (Section("What a robot does when it uses the wrong formulas", (), runs),)
+    )
 
 
 def _run(rollout: Rollout) -> Section:

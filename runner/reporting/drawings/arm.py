@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from runner.reporting import palette
 from runner.reporting.drawings.canvas import GREY, INK, PALE, Camera, drawing, pair, scene, triad
+from runner.reporting.quantities import quantity
 from runner.robots.model import FloatArray, RobotModel
 
 _LONG = 5.2  # long side of the view from above, in inches
@@ -117,7 +118,7 @@ def top_view(model: RobotModel, path: FloatArray, desired: FloatArray | None = N
     axes.plot(centre[1], centre[0], "o", ms=2, color=INK, zorder=5, label="base axis")
     nearest, distance = _nearest(flat, centre)
     axes.plot([centre[1], nearest[1]], [centre[0], nearest[0]], color=INK, lw=0.9, zorder=4)
-    axes.annotate(f"{distance:.3g} m", (nearest[1], nearest[0]), (-12, -14), textcoords="offset points", ha="right",
+    axes.annotate(quantity(distance, "m"), (nearest[1], nearest[0]), (-12, -14), textcoords="offset points", ha="right",
                   va="top", arrowprops={"arrowstyle": "-", "color": GREY, "lw": 0.6})  # fmt: skip
     axes.grid(color="#e3e6ea", lw=0.5)
     axes.set_xlabel("$y$ (m)")

@@ -9,7 +9,7 @@ from runner.reporting.document import FloatArray, Panel, Series
 from runner.reporting.findings import Finding, finding
 from runner.reporting.measured import Measured
 from runner.reporting.meca500.calibration_plan import name_of
-from runner.reporting.quantities import number, quantity
+from runner.reporting.quantities import number, quantity, with_powers
 from runner.robots import RobotModel
 from runner.store import Calibration
 
@@ -123,7 +123,7 @@ def refusal(attempt: Callable[[], object]) -> str:
     try:
         attempt()
     except ConfigError as error:
-        return error.problems[0].partition(": ")[2]
+        return with_powers(error.problems[0].partition(": ")[2])
     return "not refused"
 
 

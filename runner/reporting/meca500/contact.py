@@ -14,6 +14,7 @@ from runner.reporting.meca500.signals import wrenches
 from runner.reporting.meca500.step_response import law_of
 from runner.reporting.quantities import number
 from runner.reporting.run_values import clock
+from runner.reporting.words import in_words
 from runner.store import Run
 
 
@@ -22,12 +23,12 @@ def contact_section(runs: Mapping[str, Run]) -> Section:
     walls = {(plant, k): runs[f"wall/{plant}/{k:g}"] for plant in PLANTS for k in WALLS}
     rows = [
         [
-            plant,
+            in_words(plant),
             number(stiffness),
             number(felt_force(run), 5),
-            number(100.0 * reading_error(run), rounding=ROUNDING),
+            number(100.0 * reading_error(run), rounding=100.0 * ROUNDING),
             number(_in_series(run), 5),
-            number(100.0 * (felt_force(run) / _in_series(run) - 1.0), 2, rounding=ROUNDING),
+            number(100.0 * (felt_force(run) / _in_series(run) - 1.0), 2, rounding=100.0 * ROUNDING),
             number(peak_force(run)),
         ]
         for (plant, stiffness), run in walls.items()
@@ -146,5 +147,13 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
             true = -wrenches(run, "external")[:, 0]
             series.append(Series(f"{number(stiffness)} N/m, true", clock(run), true, "line", color=color))
             series.append(Series("felt", clock(run), felt, "dotted", color=color))
-        panels.append(Panel(plant, "time (s)", "force (N)", series, x_range=(0.0, 0.6)))
+        panels.append(
+            Panel(
+                in_words(plant).capitalize() if plant == "kinematic" else in_words(plant),
+                "time (s)",
+                "force (N)",
+                series,
+                x_range=(0.0, 0.6),
+            )
+        )
     return Curves("Force of the wall, true and felt.", panels, 2, origin(runs["wall/kinematic/1000"]))

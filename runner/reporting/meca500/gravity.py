@@ -22,7 +22,7 @@ from runner.reporting.meca500.calibration_studies import (
 from runner.reporting.meca500.gravity_misprints import misprints_section
 from runner.reporting.meca500.gravity_orientations import orientations_section
 from runner.reporting.meca500.gravity_residual import residual_section
-from runner.reporting.quantities import number
+from runner.reporting.quantities import number, with_interval
 from runner.store import Calibration, Run
 
 _INTERVAL = 0.95
@@ -140,8 +140,7 @@ def _parameters(base: Calibration, exact: Calibration) -> Table:
                 name.replace("_", " "),
                 unit,
                 number(factor * base.truth[name], 4),
-                number(factor * base.values("estimates", name)[0, 0], 5),
-                f"± {number(_HALF * factor * deviation)}",
+                *with_interval(factor * base.values("estimates", name)[0, 0], _HALF * factor * deviation),
                 number(factor * found_error(base, name)),
                 number(factor * predicted_error(base, name)),
                 f"{100 * float(np.mean(_held(base)[:, column])):.0f} %",

@@ -44,13 +44,13 @@ def guiding_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
     travel = float(np.linalg.norm(environment["travel"]))
     damped = _PEAK_OVER_MEAN * travel / float(environment["duration"]) * damping
     return {
-        "travel": Measured("way of the hand", 1e3 * travel, "mm"),
+        "travel": Measured("way of the hand", travel, "m"),
         "damped": Measured("force of the damping at the hand's peak speed", damped, "N"),
         "pull": Measured("largest pull of the hand", _peak(ideal), "N"),
-        "left": Measured("distance at the end from where the hand wants it", 1e3 * left_at_end(ideal), "mm"),
+        "left": Measured("distance at the end from where the hand wants it", left_at_end(ideal), "m"),
         "turned": Measured("largest turn of the tool", _turned(ideal), "rad"),
         "lab_pull": Measured("largest pull with a Mini40 and joint servos", _peak(lab), "N"),
-        "lab_left": Measured("distance at the end with a Mini40 and joint servos", 1e3 * left_at_end(lab), "mm"),
+        "lab_left": Measured("distance at the end with a Mini40 and joint servos", left_at_end(lab), "m"),
         "lab_turned": Measured("largest turn with a Mini40 and joint servos", 1e3 * _turned(lab), "mrad"),
     }
 
@@ -67,7 +67,7 @@ def guiding_finding(
 ) -> Finding:
     """Return how the tool follows a hand."""
     return finding(
-        "The tool comes along, takes little more force than its damping, and stays",
+        "The tool follows the hand with little more force than its damping needs, and stays where it is left",
         f"The hand pulls with at most {pull}; damping at the hand's peak speed alone is {damped}. After a way of "
         f"{travel} the tip is {left} from where the hand wants it, and has turned by {turned.shown} at most. With the "
         f"noise of a Mini40 and joint servos it is {lab_pull}, {lab_left} and {lab_turned}.",

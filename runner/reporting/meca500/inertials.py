@@ -25,7 +25,10 @@ def inertials_section(runs: Mapping[str, Run]) -> Section:
     worst = _most_different(runs)
     gravity = [_gravity(run) for run in (first, second)]
     pairs["all that move"] = (sum(pair[0] for pair in pairs.values()), sum(pair[1] for pair in pairs.values()))
-    rows = [[link, number(a), number(b), f"{100.0 * _larger((a, b)):.0f} %"] for link, (a, b) in pairs.items()]
+    rows = [
+        [link, number(a), number(b), number(max(a, b) / min(a, b)), INERTIALS[int(b > a)]]
+        for link, (a, b) in pairs.items()
+    ]
     torque_rows = [
         [
             f"joint {joint + 1}",
@@ -41,14 +44,14 @@ def inertials_section(runs: Mapping[str, Run]) -> Section:
         "How well the arm is known",
         (
             Text(
-                "The maker publishes no masses. Two sets are held, each named by robot.inertials and open to a sweep: "
+                "The maker publishes no masses. There are two sets, chosen by robot.inertials: "
                 "cad_closed, CAD values of an unofficial description closed to the arm's weight, and uniform_density, "
                 "the volumes of the maker's meshes times one density. The controller's own rigid-body model is that "
                 "of the arm simulated, so that here only what the arm needs changes."
             ),
             Table(
-                "Masses of the moving links, in kg, and by how much the larger exceeds the smaller.",
-                ["link", *INERTIALS, "larger over smaller, less one"],
+                "Masses of the moving links, in kg, the ratio of the larger to the smaller, and which one is larger.",
+                ["link", *INERTIALS, "ratio", "larger in"],
                 rows,
                 (1, 2, 3),
                 origin(first),
@@ -86,7 +89,7 @@ def inertials_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
         "gravity": Measured(
             "largest difference of gravity torques over the joint's largest", 100.0 * float(share.max()), "%"
         ),
-        "tip": Measured("largest distance of the tips", 1e3 * float(apart(first, second, "tip").max()), "mm"),
+        "tip": Measured("largest distance of the tips", float(apart(first, second, "tip").max()), "m"),
     }
 
 
@@ -101,14 +104,14 @@ def inertials_finding(link: str, light: Measured, mass: Measured, gravity: Measu
         tip: How far the tips are apart under admittance control.
     """
     return finding(
-        "Torques of this arm are known as well as its masses, its admittance hardly depends on them",
+        "The torques of this arm are known no better than its masses; its admittance hardly depends on them",
         f"Of the links above {light} the sets differ most in {link}, where the larger mass exceeds the smaller by "
         f"{mass}; gravity torques differ by up to {gravity} of a joint's largest. The tip's motion under admittance "
-        f"control differs by {tip} at most. What is said of torques in this report holds to that uncertainty.",
+        f"control differs by {tip} at most. All torques in this report have that uncertainty.",
         mass > 20.0,
         mass < 50.0,
         gravity < 30.0,
-        tip < 0.1,
+        tip < 1e-4,
     )
 
 

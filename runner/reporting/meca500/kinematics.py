@@ -40,8 +40,8 @@ def kinematics_section(runs: Mapping[str, Run]) -> Section:
         "Kinematics, element by element",
         (
             Text(
-                "Our modified D-H table is the report's Table 1 with two turns put back; the arm's URDF was built "
-                f"independently. At {_COUNT} random postures within the joint limits:"
+                "The modified D-H table used here is the report's Table 1 with two turns put back; the arm's URDF "
+                f"was built independently. At {_COUNT} random postures within the joint limits:"
             ),
             _table_one(run),
             Text(

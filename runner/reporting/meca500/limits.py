@@ -32,17 +32,17 @@ def limits_section(runs: Mapping[str, Run]) -> Section:
                 f"{number(100.0 * fastest(run), 4)} %",
                 f"{number(100.0 * hardest_change(run))} %",
                 f"{number(100.0 * nearest_singular(run))} %",
-                "; ".join(str(text) for text in run.provenance["warnings"]),
+                "; ".join(map(_spoken, run.provenance["warnings"])),
             ]
         )
     return Section(
         "At the limits",
         (
             Text(
-                "Without springs, an arm goes where it is pushed until it cannot. Each joint's speed is bounded by its "
-                "limit and by a share of what is left to its position limit, so that it nears that exponentially; "
-                "near singular postures the inverse is damped. Where the joints cannot follow, the law is put where "
-                "the arm is, and the run says what has held it back."
+                "Without springs an arm gives way to a push up to the limits of its joints. Each joint's speed is "
+                "bounded by its limit and by a share of what is left to its position limit, so that it nears that "
+                "exponentially; near singular postures the inverse is damped. Where the joints cannot follow, the "
+                "law is put where the arm is, and the run says what has held it back."
             ),
             Table(
                 "Runs into limits: smallest margin to a position limit, largest speed and largest change of speed from "
@@ -57,6 +57,11 @@ def limits_section(runs: Mapping[str, Run]) -> Section:
             limits_finding(**limits_values(runs)),
         ),
     )
+
+
+def _spoken(warning: object) -> str:
+    """Return a stored warning as a sentence of the report."""
+    return str(warning).replace("the posture, singular or nearly so", "a posture at or near a singularity")
 
 
 def limits_values(runs: Mapping[str, Run]) -> dict[str, Measured]:

@@ -27,8 +27,8 @@ def source_section(runs: Mapping[str, Run]) -> Section:
                 "figures are lost in the text that has come down to us."
             ),
             Table(
-                "Where it is silent, and what we take.",
-                ["quantity", "report", "ours"],
+                "Where it is silent, and what is simulated.",
+                ["quantity", "report", "simulated"],
                 [
                     [
                         "M, B and K",
@@ -78,7 +78,8 @@ def source_section(runs: Mapping[str, Run]) -> Section:
                 origin=origin(run),
             ),
             Table(
-                "Where it is wrong, or its text is damaged; each is put right in ours and shown in numbers below.",
+                "Where it is wrong, or its text is damaged; each is corrected here, and its effect is shown in "
+                "numbers below.",
                 ["place", "printed", "right", "what follows"],
                 [
                     [

@@ -96,7 +96,7 @@ def _rows(calibrations: Calibrations) -> list[list[str]]:
                 [
                     title,
                     number(float(factor * value)),
-                    number(1e6 * found_error(done), rounding=ROUNDING),
+                    number(1e6 * found_error(done), rounding=1e6 * ROUNDING),
                     number(1e6 * predicted_error(done)),
                     number(done.summary("measures", "condition_number")["median"]),
                     number(done.summary("measures", "smallest_singular_value")["median"]),

@@ -97,7 +97,7 @@ def _rows(calibrations: Calibrations) -> list[list[str]]:
     for key, title, values, factor in variations:
         for value in values:
             done = calibrations[name_of(f"{_KIND}/{key}", value)]
-            errors = (number(1e3 * error(done), rounding=ROUNDING) for error in (found_error, predicted_error))
+            errors = (number(1e3 * error(done), rounding=1e3 * ROUNDING) for error in (found_error, predicted_error))
             rows.append([title, number(factor * value), *errors, *consistency_cells(done)])
     return rows
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from runner.reporting.document import Block, Curves, Panel, Section, Series
+from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import QUANTILE_RULE, Subject, spans_decades, value_name
 from runner.sweeps.measurements import Axis, FloatArray
 
@@ -16,8 +17,8 @@ def section(subject: Subject) -> Section:
     blocks: list[Block] = []
     if panels:
         caption = (
-            f"Share of all repetitions in which {metric} is at most the value below, by axis; a curve that ends below "
-            "1 leaves repetitions that failed or never settled."
+            f"Share of all repetitions in which the {title(metric)} is at most the value below, by axis; a curve that "
+            "ends below 1 leaves repetitions that failed or never settled."
         )
         blocks.append(Curves(caption, panels, columns=min(2, len(panels))))
     blocks.append(_in_order(subject, metric))

@@ -3,6 +3,7 @@
 import numpy as np
 
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
+from runner.reporting.metric_titles import title
 from runner.reporting.quantities import number
 from runner.reporting.sweep.intervals import axis_panel, cells_with_intervals, places
 from runner.reporting.sweep.subject import QUANTILE_RULE, Subject
@@ -25,8 +26,10 @@ def summary(subject: Subject) -> str:
     main = [effect for effect in subject.effects[subject.metrics[0]].effects if len(effect.axes) == 1]
     strongest = max(main, key=lambda effect: effect.share)
     if strongest.p_value is None:
-        return f"No axis can be said to matter for {subject.metrics[0]}: {strongest.remark}."
-    said = f"{strongest.axes[0]} explains {_percent(strongest.share)} of the variation of {subject.metrics[0]}"
+        return f"No axis can be said to matter for the {title(subject.metrics[0])}: {strongest.remark}."
+    said = (
+        f"{strongest.axes[0]} explains {_percent(strongest.share)} of the variation of the {title(subject.metrics[0])}"
+    )
     if strongest.p_value > 0.05:
         return f"{said}, the most of all axes, but no more than chance may (p = {strongest.p_value:.2g})."
     along = [found.key for found in subject.measurements.differences if strongest.axes[0] in found.axes]
@@ -43,7 +46,7 @@ def _table(analyses: dict[str, EffectAnalysis]) -> Table:
             tested = effect.remark if effect.p_value is None else f"p = {effect.p_value:.2g}"
             cells.append(f"{_percent(effect.share)} ({tested})")
         rows.append([" × ".join(effects[0].axes), *cells])
-    header = ["effect", *analyses]
+    header = ["effect", *map(title, analyses)]
     return Table(
         "Share of the variation that each axis explains, and what two axes do together beyond what each does by "
         "itself.",
@@ -53,11 +56,11 @@ def _table(analyses: dict[str, EffectAnalysis]) -> Table:
 
 
 def _explained(analyses: dict[str, EffectAnalysis]) -> str:
-    logs = [name for name, analysis in analyses.items() if analysis.logarithmic]
-    lost = [f"{analysis.left_out} of {name}" for name, analysis in analyses.items() if analysis.left_out]
+    logs = [title(name) for name, analysis in analyses.items() if analysis.logarithmic]
+    lost = [f"{analysis.left_out} of {title(name)}" for name, analysis in analyses.items() if analysis.left_out]
     used = ", ".join(dict.fromkeys(str(analysis.n) for analysis in analyses.values()))
     shared = [
-        f"{_percent(analysis.shared)} of the variation of {name}"
+        f"{_percent(analysis.shared)} of the variation of {title(name)}"
         for name, analysis in analyses.items()
         if analysis.shared is not None
     ]

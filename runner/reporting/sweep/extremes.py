@@ -7,7 +7,8 @@ import numpy as np
 from runner.errors import StoreError
 from runner.reporting.document import Block, Notice, Section, Table, Text
 from runner.reporting.figures import playback, torque_and_error
-from runner.reporting.quantities import number, quantity
+from runner.reporting.metric_titles import title
+from runner.reporting.quantities import with_ends
 from runner.reporting.sweep.pairs import HEADER, columns, compare
 from runner.reporting.sweep.subject import Subject
 from runner.statistics import median_interval
@@ -39,7 +40,12 @@ def _medians(subject: Subject, cells: Sequence[int]) -> Table:
     rows = []
     for name in subject.metrics:
         unit = subject.measurements.units[name]
-        rows.append([name, *(_with_interval(subject.measurements.of_cell(name, cell), unit) for cell in cells)])
+        rows.append(
+            [
+                title(name).replace("$", "$$"),
+                *(_with_interval(subject.measurements.of_cell(name, cell), unit) for cell in cells),
+            ]
+        )
     header = ["metric", *(subject.cell_name(cell).replace("$", "$$") for cell in cells)]
     return Table(
         "Best and worst cell: medians, in brackets their 95 % intervals by the bootstrap over n repetitions.",
@@ -53,9 +59,8 @@ def _with_interval(values: np.ndarray, unit: str) -> str:
     if not values.size:
         return "–"
     interval = median_interval(values)
-    text = quantity(interval.median, unit) if np.isfinite(interval.median) else "never"
-    ends = "" if interval.low is None else f"{_end(interval.low)} to {_end(interval.high)}, "
-    return f"{text} ({ends}n = {interval.n})"
+    text, ends, _ = with_ends(interval.median, interval.low, interval.high, unit)
+    return f"{text} (n = {interval.n})" if interval.low is None else f"{text} ({ends}, n = {interval.n})"
 
 
 def _behind(subject: Subject, ranked: Sequence[int]) -> list[Block]:
@@ -72,8 +77,8 @@ def _behind(subject: Subject, ranked: Sequence[int]) -> list[Block]:
             rows.append([name, *columns(comparison, unit), comparison.verdict])
     return [
         Table(
-            f"The next cells against the best, by {metric} on the same seeds: median of the differences, its 95 % "
-            "interval from n pairs, effect size (rank-biserial correlation, 1 where the best is better in every "
+            f"The next cells against the best, by {title(metric)} on the same seeds: median of the differences, its "
+            "95 % interval from n pairs, effect size (rank-biserial correlation, 1 where the best is better in every "
             "repetition), and p of the signed-rank test. The best was chosen by the same values, which makes it look "
             "better than it is.",
             ["cell", *HEADER, "than the best"],
@@ -92,7 +97,3 @@ def _motion(title: str, run: Run) -> Section:
     except StoreError as error:
         blocks = [Notice("warning", "No motion to show", str(error).replace("$", "$$"))]
     return Section(title, blocks)
-
-
-def _end(value: float | None) -> str:
-    return number(value) if value is None or np.isfinite(value) else "never"

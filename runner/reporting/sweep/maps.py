@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from runner.reporting import metric_titles
 from runner.reporting.document import Block, Map, Maps, Section
 from runner.reporting.sweep import theory
 from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_name, value_names
@@ -74,7 +75,7 @@ def _maps(subject: Subject, metric: str, x: Axis, y: Axis, others: Sequence[Axis
         if len(shown) < len(combinations):
             what += f" ({len(shown)} of {len(combinations)}, evenly chosen; All runs has the others)"
     crosses = " A cross marks failed runs." if any(panel.failed.any() for panel in panels) else ""
-    caption = f"{what}: {metric}.{crosses}".replace("$", "$$")
+    caption = f"{what}: {metric_titles.title(metric)}.{crosses}".replace("$", "$$")
     return Maps(caption, subject.label(metric), panels, spans_decades(medians), columns)
 
 

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from runner.reporting.document import Block, Section, Table, Text
-from runner.reporting.quantities import number, quantity
+from runner.reporting.metric_titles import title
+from runner.reporting.quantities import with_ends
 from runner.reporting.sweep.subject import Subject, value_name
 from runner.statistics import Comparison, compare_paired
 from runner.sweeps.measurements import Axis
@@ -57,15 +58,22 @@ def compare(subject: Subject, metric: str, a: int, b: int) -> Comparison | None:
 def columns(comparison: Comparison, unit: str) -> list[str]:
     """Return the cells of a table that tell a comparison; their titles are HEADER."""
     difference = comparison.difference
-    low, high = (number(end) if end is None or math.isfinite(end) else "never" for end in
-                 (difference.low, difference.high))  # fmt: skip
+    text, ends, shown = with_ends(difference.median, difference.low, difference.high, unit)
     return [
-        quantity(difference.median, unit) if math.isfinite(difference.median) else "beyond every number",
-        "–" if difference.low is None else f"{low} to {high}",
+        text if math.isfinite(difference.median) else "beyond every number",
+        "–" if difference.low is None else _with_unit(ends, shown),
         str(difference.n),
         f"{comparison.effect:.2f}",
         "–" if comparison.p_value is None else f"{comparison.p_value:.2g}",
     ]
+
+
+def _with_unit(ends: str, unit: str) -> str:
+    """Return a range with its unit behind the last number."""
+    low, high = ends.split(" to ")
+    if high != "never":
+        return f"{ends} {unit}".strip()
+    return ends if low == "never" else f"{low} {unit}".strip() + " to never"
 
 
 def _table(subject: Subject, axis: Axis) -> Table | None:
@@ -80,9 +88,10 @@ def _table(subject: Subject, axis: Axis) -> Table | None:
     which = (
         f"{len(rows)} of {len(everything)} pairs, spread evenly over the sweep" if len(everything) > len(rows) else ""
     )
+    name = title(metric)
     within = "within each level of the other axes" if len(subject.axes) > 1 else "as the only axis"
     return Table(
-        f"{metric} by {axis.name}, {within}{f' ({which})' if which else ''}.".replace("$", "$$"),
+        f"{name[:1].upper()}{name[1:]} by {axis.name}, {within}{f' ({which})' if which else ''}.".replace("$", "$$"),
         ["at", axis.name.replace("$", "$$"), *HEADER, "the second is"],
         rows,
         tuple(range(2, 2 + len(HEADER))),

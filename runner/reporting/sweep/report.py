@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from runner.reporting.document import Document, Provenance, RunList, Section, Text
+from runner.reporting.metric_titles import title
 from runner.reporting.sweep import axes, caveats, distributions, effects, extremes, failures, maps, pairs, tradeoff
 from runner.reporting.sweep.subject import Subject, choose, value_names
 from runner.store import Sweep
@@ -72,7 +73,7 @@ def _abstract(subject: Subject) -> str:
     ranked = subject.ranked
     if ranked and subject.axes:
         metric = subject.metrics[0]
-        texts.append(f"Least {metric}: {subject.cell_name(ranked[0])}; most: {subject.cell_name(ranked[-1])}.")
+        texts.append(f"Least {title(metric)}: {subject.cell_name(ranked[0])}; most: {subject.cell_name(ranked[-1])}.")
         texts.append(effects.summary(subject))
     return " ".join(texts)
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from runner.config.meanings import key_unit
 from runner.errors import RunnerError, nearest
+from runner.reporting.metric_titles import metric_label, title
 from runner.reporting.quantities import labelled, quantity
 from runner.statistics import EffectAnalysis, axis_effects
 from runner.sweeps.measurements import Axis, FloatArray, Measurements
@@ -93,8 +94,8 @@ class Subject:
         return not len(seeds) or seeds[a] == seeds[b]
 
     def label(self, metric: str) -> str:
-        """Return the name of a metric with its unit, as on the axis of a figure."""
-        return labelled(metric, self.measurements.units[metric])
+        """Return the title of a metric with its unit, as on the axis of a figure."""
+        return metric_label(metric, self.measurements.units[metric])
 
     def cell_name(self, cell: int, separator: str = ", ") -> str:
         """Return the values of a cell on all axes, such as "noise.position=0.001, torque_limits.max=20"."""
@@ -103,7 +104,7 @@ class Subject:
     def hint(self, cell: int) -> str:
         """Return what a reader is told of a cell when pointing at it."""
         units = self.measurements.units
-        found = [f"{name} {_text(self.medians[name][cell], units[name])}" for name in self.metrics]
+        found = [f"{title(name)} {_text(self.medians[name][cell], units[name])}" for name in self.metrics]
         failure = [self.measurements.failures[cell]] if self.measurements.failures[cell] else []
         return "; ".join([self.cell_name(cell), *found, *failure])
 

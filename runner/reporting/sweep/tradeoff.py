@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
+from runner.reporting.metric_titles import title
 from runner.reporting.quantities import quantity
 from runner.reporting.sweep.subject import COSTS, Subject, spans_decades
 from runner.sweeps.measurements import FloatArray
@@ -60,7 +61,9 @@ def section(subject: Subject, metrics: tuple[str, str]) -> Section:
         text = "One cell is best in both."
     blocks: list[Block] = [
         Text(text),
-        Curves(f"Pareto front of {metrics[0]} and {metrics[1]}, medians of each cell.", [panel], columns=1),
+        Curves(
+            f"Pareto front of {title(metrics[0])} and {title(metrics[1])}, medians of each cell.", [panel], columns=1
+        ),
         _table(subject, metrics, best),
     ]
     return Section("Trade-off", blocks)
@@ -77,7 +80,7 @@ def _table(subject: Subject, metrics: tuple[str, str], best: Sequence[int]) -> T
         ]
         for cell in chosen
     ]
-    return Table("Cells on the front.", ["cell", *metrics], rows, (1, 2))
+    return Table("Cells on the front.", ["cell", *map(title, metrics)], rows, (1, 2))
 
 
 def _finite(values: FloatArray) -> FloatArray:

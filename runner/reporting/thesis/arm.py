@@ -10,8 +10,10 @@ from runner.reporting.document import Block, Curves, Formula, Picture, Section, 
 from runner.reporting.drawings import block_diagram, frame_assignment
 from runner.reporting.figures import model_of, origin, torque_and_error
 from runner.reporting.job import PRESETS
+from runner.reporting.metric_titles import title
 from runner.reporting.plant_agreement import describe_agreement
-from runner.reporting.quantities import spread
+from runner.reporting.quantities import above_rounding, spread
+from runner.reporting.words import PRESET
 from runner.robots.closed_form import compare
 from runner.robots.denavit_hartenberg import DenavitHartenbergRow, denavit_hartenberg
 from runner.store import Run
@@ -82,11 +84,11 @@ def _angle(value: float) -> str:
 def dynamics(run: Run, length: float, mass: float) -> Section:
     """Return how far the thesis' printed matrices and the model agree."""
     differences = compare(model_of(run), length, mass, _SAMPLES, np.random.default_rng(0))
-    rows = [[f"${s}$", _MEANINGS[s], f"{value:.1e} {_UNITS[s]}"] for s, value in differences.items()]
+    rows = [[f"${s}$", _MEANINGS[s], above_rounding(value, _UNITS[s])] for s, value in differences.items()]
     return Section(
         "Dynamic model",
         (
-            Text("The equations of motion, and what stands in them:"),
+            Text("The equations of motion and the gravity vector in them are"),
             Formula(
                 "M(q) dot.double(q) + V(q, dot(q)) + G(q) = tau",
                 "M of q times q double-dot plus V plus G equals tau",
@@ -94,8 +96,8 @@ def dynamics(run: Run, length: float, mass: float) -> Section:
             ),
             Formula("G(q) = vec(0, m g L (2 c_2 - s_23), - m g L s_23)", "gravity vector of the arm", "3.24"),
             Text(
-                "The gravity vector is printed with $s_2$ and $s_2 s_3$ where $s_23 = sin(q_2 + q_3)$ is meant. "
-                "With this repair all printed matrices equal the model (Pinocchio, built from our URDF) at "
+                "The gravity vector is printed with $s_2$ and $s_2 s_3$ where $s_23 = sin(q_2 + q_3)$ is meant. With "
+                "this repair all printed matrices equal the model (Pinocchio, built from the runner's own URDF) at "
                 f"{_SAMPLES} random states to rounding:"
             ),
             Table(
@@ -133,8 +135,8 @@ def control_law(run: Run, goal: bool, figure: str) -> list[Block]:
         ),
         law,
         Picture(
-            "Control structure, drawn from the graph of the controller that ran (preset sound). With preset "
-            "as_reported the term $hat(p)(x)$ is "
+            "Control structure, drawn from the graph of the controller that ran (full equations). As reported "
+            "the term $hat(p)(x)$ is "
             f"absent{'' if goal else ' and so are the desired velocity and acceleration'}.",
             block_diagram(graph),
             "Block diagram of the controller, the arm and its encoders",
@@ -164,19 +166,21 @@ def reproduced(
     """
     figure = f"figure_{number.replace('.', '_')}"
     blocks: list[Block] = [
-        draw(runs[f"{figure}/{preset}"], f"{what}, preset {preset}, repetition 0 of 40.", f"figure {number}", until)
+        draw(runs[f"{figure}/{preset}"], f"{what}, {PRESET[preset]}, repetition 0 of 40.", f"figure {number}", until)
         for preset in PRESETS
     ]
-    rows = [[m, *(spread(runs[f"{figure}/{preset}"].metrics[m]) for preset in PRESETS)] for m in metrics]
+    rows = [[title(m), *(spread(runs[f"{figure}/{preset}"].metrics[m]) for preset in PRESETS)] for m in metrics]
     blocks.append(
         Table(
             f"Numbers of figure {number}: median (smallest to largest) of 40 repetitions.",
-            ["metric", *PRESETS],
+            ["metric", *PRESET.values()],
             rows,
             (1, 2),
             origin(runs[f"{figure}/{PRESETS[0]}"]),
         )
     )
-    sentences = [f"Preset {preset}: {describe_agreement(runs[f'{figure}/{preset}'])}" for preset in PRESETS]
+    sentences = [
+        f"{PRESET[preset].capitalize()}: {describe_agreement(runs[f'{figure}/{preset}'])}" for preset in PRESETS
+    ]
     blocks.append(Text(" ".join(sentences)))
     return blocks

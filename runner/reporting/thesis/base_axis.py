@@ -14,6 +14,7 @@ from runner.reporting.measured import Measured
 from runner.reporting.quantities import number, quantity
 from runner.reporting.run_values import measured, values
 from runner.reporting.thesis.plan import DURATIONS, TORQUE_DURATIONS, TRACKED
+from runner.reporting.words import PRESET
 from runner.store import Run
 
 
@@ -101,9 +102,9 @@ def _nearer(runs: Mapping[str, Run]) -> Finding:
     unlimited = Measured("the tip passes at, without torque limit", _passes(free, "tip"), "m")
     return finding(
         "At its torque limit the arm leaves the path",
-        f"The path passes the base axis at {number(path.value, 4)} m. With the torque limit the tip passes at "
-        f"{number(limited.value, 4)} m, which is the distance drawn above, without it at {number(unlimited.value, 4)} "
-        "m.",
+        f"The path passes the base axis at {quantity(path.value, 'm', 4)}. With the torque limit the tip passes at "
+        f"{quantity(limited.value, 'm', 4)}, the distance that is drawn above, and without it at "
+        f"{quantity(unlimited.value, 'm', 4)}.",
         limited < 0.98 * path,
         unlimited.near(path, 0.01),
     )
@@ -121,17 +122,16 @@ def _limited(runs: Mapping[str, Run], limit: Measured) -> Finding:
     }
     same, short, long = DURATIONS[3], DURATIONS[4], DURATIONS[5]
     (reported, sound), (free_reported, free_sound) = (
-        [measured(runs[f"{figure}/{p}"], "max_tracking_error", f"largest error, {name} ({p})") for p in PRESETS]
+        [measured(runs[f"{figure}/{p}"], "max_tracking_error", f"largest error, {name} ({PRESET[p]})") for p in PRESETS]
         for figure, name in zip(TRACKED, ("torque limit", "no limit"), strict=True)
     )
     return finding(
-        "Why claim 3 holds with either preset: the torque limit sets the error",
+        "Why claim 3 holds under both presets: the torque limit sets the error",
         f"Without noise joint 1 stands at its limit from {span[0]} to {span[1]} ({ticks} ticks); without limit it "
-        f"would take {peaks[same]}. It keeps within {limit} where "
-        f"the motion may take {long:g} s ({peaks[long]}), not where "
-        f"it takes {short:g} s ({peaks[short]}). With limit the presets err by {reported} (as_reported) and {sound} "
-        f"(sound), without by {free_reported} and {free_sound}: near the axis it is the torque limit that sets the "
-        "error, not the law.",
+        f"would take {peaks[same]}. It keeps within {limit} where the motion may take {long:g} s ({peaks[long]}), not "
+        f"where it takes {short:g} s ({peaks[short]}). With limit the error is {reported} (as reported) and {sound} "
+        f"(full equations), without limit {free_reported} and {free_sound}: near the axis it is the torque limit that "
+        "sets the error, not the law.",
         ticks > 10.0,
         peaks[same] > 1.2 * limit,
         peaks[short] > 1.1 * limit,
@@ -177,7 +177,7 @@ def duration_section(runs: Mapping[str, Run]) -> Section:
     t = np.array(DURATIONS)
     panels = []
     for figure, title in zip(TRACKED, ("Limit of 50 N m (claim 3)", "No torque limit (claim 4)"), strict=True):
-        series = [Series(preset, t, _errors(runs, figure, preset), "points_line") for preset in PRESETS]
+        series = [Series(PRESET[preset], t, _errors(runs, figure, preset), "points_line") for preset in PRESETS]
         low, high = printed[figure]
         series.append(
             Series(
@@ -201,7 +201,7 @@ def duration_section(runs: Mapping[str, Run]) -> Section:
                 origin(runs[f"figure_3_9/as_reported/{DURATIONS[0]}"]),
             ),
             _no_duration(runs, {figure: printed[figure][-1] for figure in TRACKED}),
-            Text("We take 3 s throughout."),
+            Text("All runs of this report take 3 s."),
         ),
     )
 
@@ -226,7 +226,7 @@ def _no_duration(runs: Mapping[str, Run], printed: Mapping[str, float]) -> Findi
         for figure, name in zip(TRACKED, ("torque limit", "no limit"), strict=True)
     )
     return finding(
-        "No single duration meets both printed errors with preset as_reported",
+        "No single duration meets both printed errors as reported",
         f"The largest printed error without limit, {quantity(printed['figure_3_10'], 'm')}, asks for $t_f$ = {free}, "
         f"the largest with limit, {quantity(printed['figure_3_9'], 'm')}, for $t_f$ = {limited}.",
         free > 1.3 * limited,

@@ -7,7 +7,7 @@ import numpy as np
 from runner.reporting.document import Block, Picture, Section, Table, Text
 from runner.reporting.drawings import workspace_sphere
 from runner.reporting.figures import model_of, origin
-from runner.reporting.quantities import number
+from runner.reporting.quantities import above_rounding, number
 from runner.robots import RobotModel
 from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.robots.workspace import analyse
@@ -90,7 +90,7 @@ def _workspace(name: str, figure: str, run: Run) -> list[Block]:
         Picture(
             f"Workspace of the {name}: {_SAMPLES} sampled tip positions in the sphere of reach, and a meridian "
             f"cross-section coloured by manipulability. Largest distance from the shoulder {number(found.outer, 4)} "
-            f"m (sum of the link lengths {number(found.reach, 4)} m), smallest {found.inner:.1e} m.",
+            f"m (sum of the link lengths {number(found.reach, 4)} m), smallest {above_rounding(found.inner, 'm')}.",
             workspace_sphere(found),
             f"A sphere of radius {found.outer:.3g} m filled with points, and its cross-section",
             1.0,

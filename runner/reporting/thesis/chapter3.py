@@ -33,9 +33,7 @@ def chapter3(runs: Mapping[str, Run]) -> Section:
                 (
                     *control_law(goal, True, "figure 3.4"),
                     *reproduced(runs, "3.5", "Macro, goal position, 50 N m", GOAL_METRICS),
-                    playback(
-                        runs["figure_3_5/as_reported"], "Macro, goal position, preset as_reported: the first 2 s.", 2.0
-                    ),
+                    playback(runs["figure_3_5/as_reported"], "Macro, goal position, as reported: the first 2 s.", 2.0),
                 ),
             ),
             Section(
@@ -48,7 +46,7 @@ def chapter3(runs: Mapping[str, Run]) -> Section:
                     ),
                     *reproduced(runs, "3.9", "Macro, tracking, limit of 50 N m", TRACKING_METRICS),
                     *reproduced(runs, "3.10", "Macro, tracking, no torque limit", TRACKING_METRICS),
-                    playback(limited, "Macro, tracking with the limit of 50 N m, preset sound.", 3.0),
+                    playback(limited, "Macro, tracking with the limit of 50 N m, full equations.", 3.0),
                     Text(
                         "The thesis does not print $t_f$; its plots' time axes are lost with the images. All runs "
                         "take 3 s."

@@ -31,7 +31,7 @@ def chapter4(runs: Mapping[str, Run]) -> Section:
                         runs["figure_4_3/sound"], "Desired trajectory of the Mini, $t_f = 3$ s.", "figure 4.3"
                     ),
                     *reproduced(runs, "4.4", "Mini, tracking, 5 N m", TRACKING_METRICS),
-                    playback(runs["figure_4_4/sound"], "Mini, tracking, preset sound.", 3.0),
+                    playback(runs["figure_4_4/sound"], "Mini, tracking, full equations.", 3.0),
                 ),
             ),
         ),

@@ -12,6 +12,7 @@ from runner.reporting.job import PRESETS
 from runner.reporting.quantities import spread
 from runner.reporting.run_values import cell
 from runner.reporting.thesis.arm import dh_cells, reproduced
+from runner.reporting.words import PRESET
 from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.store import Run
 
@@ -41,7 +42,7 @@ def chapter5(runs: Mapping[str, Run]) -> Section:
                         runs["figure_5_8/sound"], "5.7", "One-way coupling: the Mini follows what the Macro misses."
                     ),
                     *_reproduced(runs, "5.8", "Macro-Mini, goal position, one-way coupling", _GOAL_METRICS),
-                    playback(runs["figure_5_8/sound"], "Macro-Mini, goal position, one-way, preset sound.", 2.0),
+                    playback(runs["figure_5_8/sound"], "Macro-Mini, goal position, one-way, full equations.", 2.0),
                 ),
             ),
             Section(
@@ -58,7 +59,7 @@ def chapter5(runs: Mapping[str, Run]) -> Section:
                 (
                     desired_motion(runs["figure_5_11/sound"], "Desired trajectory of the tip.", "figure 5.11"),
                     *_reproduced(runs, "5.12", "Macro-Mini, tracking, one-way coupling", _TRACKING_METRICS),
-                    playback(runs["figure_5_12/sound"], "Macro-Mini, tracking, one-way, preset sound.", 3.0),
+                    playback(runs["figure_5_12/sound"], "Macro-Mini, tracking, one-way, full equations.", 3.0),
                 ),
             ),
             Section(
@@ -177,7 +178,7 @@ def _graph(run: Run, number: str, caption: str) -> Picture:
         controller["schedule"],
         controller["beyond_reach"],
     )
-    text = f"{caption} Drawn from the graph of the controller that ran (preset sound)."
+    text = f"{caption} Drawn from the graph of the controller that ran (full equations)."
     return Picture(
         text,
         block_diagram(graph),
@@ -212,7 +213,7 @@ def _summary(runs: Mapping[str, Run]) -> Table:
     ]
     header = [
         "arm and task",
-        *(f"{what}, {preset}" for preset in PRESETS for what in ("settling or largest error", "at rest")),
+        *(f"{what}, {name}" for name in PRESET.values() for what in ("settling or largest error", "at rest")),
     ]
     return Table(
         "Settling time (goal) or largest tracking error, and steady-state error, of every arm.",

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from runner.reporting import outline
 from runner.reporting.document import Claim, Formula, Notice, Provenance, Section, Table, Text
 
-_SIMULATED, _DRAWN, _FOREIGN, _LOST = "reproduced", "drawn anew", "not ours", "lost"
+_SIMULATED, _DRAWN, _FOREIGN, _LOST = "reproduced", "drawn anew", "of others", "lost"
 _PHOTOGRAPH = "a photograph from the literature"
 # Number, title, state, and the reason where it is not to be expected in the report.
 _LIST: tuple[tuple[str, str, str, str], ...] = (

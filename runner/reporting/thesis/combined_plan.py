@@ -3,10 +3,6 @@
 from runner.reporting.job import PRESETS, Job, Jobs
 
 METHODS = ("one_way", "two_way", "independent", "independent_base", "mini_held", "whole_body")
-METHOD_NAMES = {
-    "independent": "independent, offset turning with the wrist",
-    "independent_base": "independent, offset fixed in the base frame",
-}
 MOTIONS = ("goal", "quintic")
 DYNAMICS = ("coupled", "decoupled")
 VANISHING = (0.1, 0.01, 0.001)  # kg, each of the Mini's two point masses

@@ -10,9 +10,10 @@ from runner.reporting.findings import Finding, finding
 from runner.reporting.measured import Measured
 from runner.reporting.quantities import above_rounding
 from runner.reporting.run_values import apart, cell, clock, failures, measured
-from runner.reporting.thesis.combined_plan import METHOD_NAMES, METHODS, MOTIONS
+from runner.reporting.thesis.combined_plan import METHODS, MOTIONS
 from runner.reporting.thesis.studies import largest, settled
 from runner.reporting.thesis.vanishing_mass import vanishing_section
+from runner.reporting.words import in_words
 from runner.store import Run
 
 _SHOWN = ("one_way", "two_way", "mini_held", "whole_body")
@@ -26,7 +27,7 @@ def coupling_section(runs: Mapping[str, Run]) -> Section:
     blocks: list[Block] = [
         Text(
             "The thesis simulates each arm with its own dynamics: the Macro feels no Mini, and the Mini's base is "
-            "carried without inertial forces. Here the same controllers (preset sound, thesis torque limits, no "
+            "carried without inertial forces. Here the same controllers (full equations, thesis torque limits, no "
             "noise) run on that decoupled plant and on the whole arm."
         )
     ]
@@ -47,11 +48,11 @@ def _table(runs: Mapping[str, Run], motion: str) -> Table:
         pair = _pair(runs, motion, method)
         distances = [above_rounding(largest(apart(*pair, signal))) for signal in ("tip", "macro_tip")]
         measured = [
-            f"{settled(run) if metric == 'settling_time' else cell(run, metric)}"
+            settled(run) if metric == "settling_time" else cell(run, metric)
             for metric in _METRICS[motion]
             for run in pair
         ]
-        rows.append([METHOD_NAMES.get(method, method), *distances, *measured])
+        rows.append([in_words(method), *distances, *measured])
     first, unit = ("settling time", "s") if motion == "goal" else ("largest error", "m")
     header = [
         "controller",
@@ -75,8 +76,8 @@ def _table(runs: Mapping[str, Run], motion: str) -> Table:
 def _goal(runs: Mapping[str, Run]) -> Finding:
     yardstick, changes = _changes(runs, "goal")
     return finding(
-        "On the goal move the coupling is negligible for no controller",
-        f"{_YARDSTICK}, {yardstick} at most. The coupling moves it by {_listed(changes)}. At the end of the run the "
+        "On the goal move no controller may neglect the coupling",
+        f"{_YARDSTICK} {yardstick} at most. The coupling moves it by {_listed(changes)}. At the end of the run the "
         f"tips are {_listed(_ends(runs, 'goal'))} apart.",
         *(change > 2.0 * yardstick for change in changes.values()),
     )
@@ -89,8 +90,8 @@ def _quintic(runs: Mapping[str, Run]) -> Finding:
     sag = measured(coupled, "macro_steady_state_error", "the Macro at rest, coupled")
     tip = measured(coupled, "steady_state_error", "the tip at rest, coupled")
     return finding(
-        "On the trajectory the coupling is negligible for one-way control alone",
-        f"{_YARDSTICK}, {yardstick} at most. The coupling moves it by {_listed(changes)}. At the end of the run the "
+        "On the trajectory only one-way control may neglect the coupling",
+        f"{_YARDSTICK} {yardstick} at most. The coupling moves it by {_listed(changes)}. At the end of the run the "
         f"tips are {_listed(ends)} apart: at rest the Mini's weight, unknown to the Macro, displaces its end point by "
         f"{sag}, which the Mini makes up for ({tip}) and a Mini held still does not.",
         changes["one_way"] < 0.5 * yardstick,
@@ -103,8 +104,8 @@ def _quintic(runs: Mapping[str, Run]) -> Finding:
 
 _FINDINGS = {"goal": _goal, "quintic": _quintic}
 _YARDSTICK = (
-    "Taken as negligible: the coupling moves the tip by less than the thesis' encoder noise does with one-way control "
-    "on the same motion"
+    "A controller may neglect the coupling where this moves the tip by less than the thesis' encoder noise does with "
+    "one-way control on the same motion, which is"
 )
 
 
@@ -113,7 +114,9 @@ def _changes(runs: Mapping[str, Run], motion: str) -> tuple[Measured, dict[str, 
     noise = largest(apart(runs[f"coupling/{motion}/noise"], _pair(runs, motion, "one_way")[0], "tip"))
     changes = {
         method: Measured(
-            f"the coupling moves the tip ({method}, {motion})", largest(apart(*_pair(runs, motion, method), "tip")), "m"
+            f"the coupling moves the tip ({in_words(method)}, {motion})",
+            largest(apart(*_pair(runs, motion, method), "tip")),
+            "m",
         )
         for method in METHODS
     }
@@ -124,14 +127,16 @@ def _ends(runs: Mapping[str, Run], motion: str) -> dict[str, Measured]:
     """Return how far apart the tips are at the end of the run."""
     return {
         method: Measured(
-            f"tips apart at the end ({method}, {motion})", float(apart(*_pair(runs, motion, method), "tip")[-1]), "m"
+            f"tips apart at the end ({in_words(method)}, {motion})",
+            float(apart(*_pair(runs, motion, method), "tip")[-1]),
+            "m",
         )
         for method in METHODS
     }
 
 
 def _listed(lengths: Mapping[str, Measured]) -> str:
-    return ", ".join(f"{length} ({METHOD_NAMES.get(method, method)})" for method, length in lengths.items())
+    return ", ".join(f"{length} ({in_words(method)})" for method, length in lengths.items())
 
 
 def _curves(runs: Mapping[str, Run]) -> Curves:
@@ -142,7 +147,7 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
             pair = _pair(runs, motion, method)
             distance = apart(*pair, "tip")
             t = clock(pair[0])[: len(distance)]
-            series.append(Series(method, t, np.where(distance > 0.0, distance, np.nan)))
+            series.append(Series(in_words(method), t, np.where(distance > 0.0, distance, np.nan)))
         title = "Goal position" if motion == "goal" else "Tracking"
         panels.append(Panel(title, "time (s)", "tips apart (m)", series, y_log=True, y_range=(1e-8, 10.0)))
     return Curves(

@@ -13,6 +13,7 @@ from runner.reporting.run_values import cell, clock, failures, measured
 from runner.reporting.thesis.combined_plan import FOLDING, MOTIONS, TARGETS
 from runner.reporting.thesis.left_out_gravity import missing_acceleration
 from runner.reporting.thesis.studies import extension, mini_dexterity
+from runner.reporting.words import in_words
 from runner.store import Run
 
 _CASES = ("sound", "as_reported")
@@ -32,9 +33,9 @@ def folding_section(runs: Mapping[str, Run]) -> Section:
                 row = _closest(measures[:, 0])
                 rows.append(
                     [
-                        case,
+                        in_words(case),
                         _MOTION[motion],
-                        target,
+                        in_words(target),
                         number(float(measures[row, 0])) if np.isfinite(measures[row, 0]) else "–",
                         number(float(measures[row, 1])) if np.isfinite(measures[row, 1]) else "–",
                         f"{clock(run)[row]:.2f}",
@@ -45,10 +46,11 @@ def folding_section(runs: Mapping[str, Run]) -> Section:
     home = float(dexterity["folding/sound/minus_home/quintic"][0, 0])
     blocks: list[Block] = [
         Text(
-            "The thesis lets the Macro's end point go to the goal position itself. Taken at its word, macro_target "
-            "= tip_goal, the Mini has nothing left to reach for and folds onto its base. Its remark that the Macro "
-            "with a Mini held still moves as it does alone asks for $x_d - r_0$, macro_target = minus_home. Folded, "
-            f"the Mini's Jacobian is singular; at home its smallest singular value is {quantity(home, 'm')}:"
+            "The thesis lets the Macro's end point go to the goal position itself. Taken at its word "
+            "(macro_target=tip_goal), the Mini has nothing left to reach for and folds onto its base. Its remark "
+            "that the Macro with a Mini held still moves as it does alone asks for $x_d - r_0$ "
+            "(macro_target=minus_home). Folded, the Mini's Jacobian is singular; at home its smallest singular value "
+            f"is {quantity(home, 'm')}:"
         ),
         Formula("|det J| = L^3 |c_3 (c_2 - s_23)|, quad |p| = 2 L |cos((pi / 2 + q_3) / 2)|", "folded, p is zero"),
         Table(
@@ -85,7 +87,7 @@ def _curves(runs: Mapping[str, Run], dexterity: Mapping[str, np.ndarray]) -> Cur
         for target in TARGETS:
             name = f"folding/{case}/{target}/quintic"
             t = clock(runs[name])
-            style, label = "line" if target == "tip_goal" else "dashed", f"{case}, {target}"
+            style, label = "line" if target == "tip_goal" else "dashed", f"{in_words(case)}, {in_words(target)}"
             singular.append(_series(label, t, dexterity[name][:, 0], style, index))
             volume.append(_series(label, t, dexterity[name][:, 1], style, index))
             folded.append(_series(label, t, extension(runs[name]), style, index))
@@ -112,31 +114,32 @@ def _finding(runs: Mapping[str, Run], dexterity: Mapping[str, np.ndarray]) -> Fi
         (case, target, motion): measured(
             runs[f"folding/{case}/{target}/{motion}"],
             "steady_state_error",
-            f"tip at rest ({case}, {target}, {_MOTION[motion]})",
+            f"tip at rest ({in_words(case)}, {in_words(target)}, {_MOTION[motion]})",
         )
         for case in _CASES
         for target in TARGETS
         for motion in MOTIONS
     }
     sound, reported = (runs[f"folding/{case}/tip_goal/quintic"] for case in _CASES)
-    folded, kept = (Measured(f"|p| at the end ({case})", float(extension(run)[-1]), "m")
+    folded, kept = (Measured(f"|p| at the end ({in_words(case)})", float(extension(run)[-1]), "m")
                     for case, run in zip(_CASES, (sound, reported), strict=True))  # fmt: skip
     singular = {
         case: Measured(
-            f"singular value at the end ({case})", float(dexterity[f"folding/{case}/tip_goal/quintic"][-1, 0]), "m"
+            f"singular value at the end ({in_words(case)})",
+            float(dexterity[f"folding/{case}/tip_goal/quintic"][-1, 0]),
+            "m",
         )
         for case in _CASES
     }
-    sag = Measured("sag of the Macro (as_reported), closed form", _sag(reported), "m")
+    sag = Measured("sag of the Macro (as reported), closed form", _sag(reported), "m")
     lost, spared = (tips[case, "tip_goal", "quintic"] for case in _CASES)
     return finding(
-        "Folding costs the control with preset sound, not with as_reported",
-        f"On the trajectory with preset sound the Mini ends {folded} from its base, with a smallest singular value of "
-        f"{singular['sound']} and a tip error of {lost}; on the goal move the error is "
-        f"{tips['sound', 'tip_goal', 'goal']}. With preset as_reported the Mini ends {kept} from its base, with a "
-        f"smallest singular value of {singular['as_reported']} and a tip error of {spared}. What spares as_reported is "
-        f"its error: without gravity term the Macro sags, by {sag} in closed form, and that sag keeps the Mini "
-        "unfolded.",
+        "Folding costs the control with the full equations, not as reported",
+        f"On the trajectory with the full equations the Mini ends {folded} from its base, with a smallest singular "
+        f"value of {singular['sound']} and a tip error of {lost}; on the goal move the error is "
+        f"{tips['sound', 'tip_goal', 'goal']}. As reported the Mini ends {kept} from its base, with a smallest "
+        f"singular value of {singular['as_reported']} and a tip error of {spared}. What spares it then is an error: "
+        f"without gravity term the Macro sags, by {sag} in closed form, and that sag keeps the Mini unfolded.",
         *(tips["sound", "tip_goal", motion] > 10.0 * tips["sound", "minus_home", motion] for motion in MOTIONS),
         *(tips["sound", "tip_goal", motion] > 2e-3 for motion in MOTIONS),
         *(tips["as_reported", "tip_goal", m].near(tips["as_reported", "minus_home", m], 0.2) for m in MOTIONS),

@@ -13,6 +13,7 @@ from runner.reporting.measured import Condition, Measured
 from runner.reporting.run_values import measured
 from runner.reporting.thesis.lag_by_axis import lag_by_axis
 from runner.reporting.thesis.plan import ARMS, LAG_DURATIONS
+from runner.reporting.words import PRESET
 from runner.store import Run
 
 
@@ -56,7 +57,9 @@ def _gravity(runs: Mapping[str, Run], sags: Mapping[str, tuple[Measured, Measure
     }
     left_out, kept = (
         {
-            arm: measured(runs[f"{figure}/{preset}"], "steady_state_error", f"steady error of the {arm} ({preset})")
+            arm: measured(
+                runs[f"{figure}/{preset}"], "steady_state_error", f"steady error of the {arm} ({PRESET[preset]})"
+            )
             for arm, figure in zip(ARMS, ("figure_3_5", "figure_4_2"), strict=True)
         }
         for preset in PRESETS

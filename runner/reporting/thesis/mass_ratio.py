@@ -60,7 +60,7 @@ def mass_ratio_section(runs: Mapping[str, Run]) -> Section:
     ]
     blocks: list[Block] = [
         Text(
-            "One-way tracking (preset sound, coupled, $t_f = 3$ s, thesis torque limits, no noise) with ever "
+            "One-way tracking (full equations, coupled, $t_f = 3$ s, thesis torque limits, no noise) with ever "
             "heavier Minis, which the Macro's model either does not know or knows as a point mass at its end: one run "
             "of each. We "
             f"call one-way control broken from that mass on whose largest tip error exceeds {_FACTOR:g} times that "

@@ -23,8 +23,8 @@ def mini_accuracy(runs: Mapping[str, Run]) -> Finding:
     held = _at_rest(runs, "bandwidth/held", "the Macro alone, the Mini's weight known", "macro_")
     tip = _at_rest(runs, "figure_5_12/sound", "the pair")
     macro = _at_rest(runs, "macro_alone/sound", "the Macro alone", "macro_")
-    fitted = _at_rest(runs, "figure_5_12/as_reported", "the pair (as_reported)")
-    fitted_macro = _at_rest(runs, "macro_alone/as_reported", "the Macro alone (as_reported)", "macro_")
+    fitted = _at_rest(runs, "figure_5_12/as_reported", "the pair (as reported)")
+    fitted_macro = _at_rest(runs, "macro_alone/as_reported", "the Macro alone (as reported)", "macro_")
     ground = _at_rest(runs, "figure_4_4/sound", "a Mini on firm ground")
     bound = Measured("what the encoders place it within", _encoder_bound(runs["bandwidth/held"]), "m")
     tracked = measured(runs["figure_5_12/sound"], "max_tracking_error", "the pair, moving")
@@ -44,8 +44,8 @@ def mini_accuracy(runs: Mapping[str, Run]) -> Finding:
         f"rests {biased_fast} off at {BIASED[0]:g} rad/s and {biased_slow} at {BIASED[-1]:g} rad/s; the bias "
         f"alone puts it {moved} elsewhere. Where the Macro does not know the Mini's weight there is a gain at "
         f"{BANDWIDTHS[0]:g} rad/s, too, {macro} to {tip}: the Mini takes back the sag that it has caused. The thesis' "
-        f"gain, {_printed(15)} to {_printed(14)}, is that of as_reported, {fitted_macro} to {fitted}: gravity that the "
-        "Macro's law is taken to leave out. A term in that law does the same without a Mini. While it moves the tip "
+        f"gain, {_printed(15)} to {_printed(14)}, is that of the runs as reported, {fitted_macro} to {fitted}: gravity "
+        "that the Macro's law is taken to leave out. A term in it does the same without a Mini. While it moves the tip "
         f"errs {alone / tracked} times less than the Macro.",
         fast > 0.9 * held,
         fast < bound,

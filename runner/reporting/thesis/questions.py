@@ -7,11 +7,12 @@ from runner.reporting.figures import origin
 from runner.reporting.findings import Finding, finding
 from runner.reporting.job import PRESETS
 from runner.reporting.measured import Measured
-from runner.reporting.run_values import cell, measured
-from runner.reporting.thesis.combined_plan import METHOD_NAMES, NOMINAL_MASS
+from runner.reporting.run_values import cell, measured, median
+from runner.reporting.thesis.combined_plan import NOMINAL_MASS
 from runner.reporting.thesis.mass_ratio import breaking_masses
 from runner.reporting.thesis.mini_accuracy import mini_accuracy
 from runner.reporting.thesis.whole_body import fastest_method_3, fastest_speed
+from runner.reporting.words import PRESET, in_words
 from runner.store import Run
 
 
@@ -22,8 +23,8 @@ def questions_section(runs: Mapping[str, Run]) -> Section:
         (
             Text(
                 "Section 1.3 of the thesis sets itself six tasks. The first two are those of chapters 3 and 4; here "
-                "are answers to the others. Medians over the repetitions, thesis noise and limits, preset sound "
-                "unless said."
+                "are answers to the others. Medians over the repetitions, thesis noise and limits, the full "
+                "equations unless said."
             ),
             _strategy(runs),
             _independent(runs),
@@ -58,14 +59,14 @@ def _strategy(runs: Mapping[str, Run]) -> Finding:
 
 
 def _tracking(runs: Mapping[str, Run], coupling: str, preset: str = "sound") -> Measured:
-    return measured(runs[f"{_TRACKING[coupling]}/{preset}"], "max_tracking_error", f"{coupling} ({preset})")
+    return measured(runs[f"{_TRACKING[coupling]}/{preset}"], "max_tracking_error", f"{coupling} ({PRESET[preset]})")
 
 
 def _alone(runs: Mapping[str, Run], preset: str = "sound") -> Measured:
-    return measured(runs[f"macro_alone/{preset}"], "macro_max_tracking_error", f"the Macro alone ({preset})")
+    return measured(runs[f"macro_alone/{preset}"], "macro_max_tracking_error", f"the Macro alone ({PRESET[preset]})")
 
 
-_TURNING, _FIXED = METHOD_NAMES["independent"], METHOD_NAMES["independent_base"]
+_TURNING, _FIXED = in_words("independent"), in_words("independent_base")
 _TRACKING = {
     "one-way": "figure_5_12",
     "two-way": "figure_5_13",
@@ -89,8 +90,8 @@ def _independent(runs: Mapping[str, Run]) -> Finding:
         f"frames for it. Fixed in the base frame, the tip misses by {fixed} at most and by {kept} at rest, where the "
         f"Macro's end point misses by {macro} and {macro_rests}: the Macro alone. Turning with the wrist, in the "
         f"Mini's own frame, it misses by {turning} and at rest by {turned}, as $r_0$ turns away from where it is to "
-        f"point. One-way coupling misses by {coupled}, {fixed / coupled} and {turning / coupled} times less. With "
-        f"as_reported, whose wrist does not turn, both are one: {fitted_turning}, {fitted_turning / fitted} times "
+        f"point. One-way coupling misses by {coupled}, {fixed / coupled} and {turning / coupled} times less. As "
+        f"reported, where the wrist does not turn, both are one: {fitted_turning}, {fitted_turning / fitted} times "
         "that of one-way coupling.",
         fixed > 10.0 * coupled,
         turning > 10.0 * coupled,
@@ -118,7 +119,7 @@ def _effectiveness(runs: Mapping[str, Run]) -> list[Block]:
             prefix = "macro_" if goal == "macro_alone_goal" else ""
             rows.append(
                 [
-                    preset,
+                    PRESET[preset],
                     name,
                     cell(runs[f"{goal}/{preset}"], f"{prefix}settling_time"),
                     cell(runs[f"{goal}/{preset}"], f"{prefix}steady_state_error"),
@@ -155,8 +156,9 @@ def _effect(runs: Mapping[str, Run]) -> Finding:
     return finding(
         "5. How effective is the overall controller in simulation?",
         "Measured against the Macro's end point with the Mini held still, tracking is "
-        f"{sound[0]} times better with one-way and {sound[1]} times with two-way coupling (preset sound), and "
-        f"{fitted[0]} times with one-way coupling where preset as_reported is taken, with two-way {fitted[1]} times.",
+        f"{sound[0]} times better with one-way and {sound[1]} times with two-way coupling with the "
+        f"full equations. As reported it is {fitted[0]} times better with one-way coupling and {fitted[1]} times with "
+        "two-way.",
         sound[0] > 10.0,
         sound[1] > 2.0,
         fitted[0] > 2.0,
@@ -166,27 +168,28 @@ def _effect(runs: Mapping[str, Run]) -> Finding:
 
 def _together(runs: Mapping[str, Run]) -> Finding:
     tip, alone = _tracking(runs, "one-way"), _alone(runs)
-    limited = measured(runs["macro_alone/sound"], "saturation_fraction_q1", "share of ticks with joint 1 at its limit")
+    share = median(runs["macro_alone/sound"], "saturation_fraction_q1")
+    limited = Measured("share of ticks with joint 1 at its limit", None if share is None else 100.0 * share, "%")
     best, other = fastest_speed(runs), fastest_method_3(runs)
     whole = Measured("whole body with a limited tip speed", None if best is None else best[1], "s")
     tried = Measured("fastest of the variants of method 3 that were tried", None if other is None else other[1], "s")
     pairs = [
         (
-            measured(runs[f"figure_5_8/{preset}"], "settling_time", f"one-way ({preset})"),
-            measured(runs[f"macro_alone_goal/{preset}"], "macro_settling_time", f"the Macro alone ({preset})"),
+            measured(runs[f"figure_5_8/{preset}"], "settling_time", f"one-way ({PRESET[preset]})"),
+            measured(runs[f"macro_alone_goal/{preset}"], "macro_settling_time", f"the Macro alone ({PRESET[preset]})"),
         )
         for preset in PRESETS
     ]
     settling = "; ".join(
-        f"{one} against {macro} ({preset})" for preset, (one, macro) in zip(PRESETS, pairs, strict=True)
+        f"{one} against {macro} ({PRESET[preset]})" for preset, (one, macro) in zip(PRESETS, pairs, strict=True)
     )
     return finding(
         "6a. How good is the pair, compared with a Macro whose Mini holds still? Far better on a trajectory",
-        f"The tip errs by {tip} where the Macro alone errs by {alone}, joint 1 being at its torque limit for a share "
-        f"of {limited} of the run. To a goal, one-way against Macro alone: {settling}. One law for the whole arm with "
+        f"The tip errs by {tip} where the Macro alone errs by {alone}, joint 1 being at its torque limit for "
+        f"{limited} of the run. To a goal, one-way against Macro alone: {settling}. One law for the whole arm with "
         f"a limited tip speed takes {whole}, the fastest of the variants of method 3 that were tried {tried}.",
         tip < 0.1 * alone,
-        limited > 0.01,
+        limited > 1.0,
         whole < 0.9 * tried,
         *(one / macro > 0.0 for one, macro in pairs),
     )

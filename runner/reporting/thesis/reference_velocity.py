@@ -52,16 +52,16 @@ def reference_velocity_section(runs: Mapping[str, Run]) -> Section:
             "speed",
         ),
         Table(
-            "Largest axis error of the tip over 0 to $t_f$ in m, one-way, preset sound, no torque limit; the closed "
+            "Largest axis error of the tip over 0 to $t_f$, one-way, full equations, no torque limit; the closed "
             "form is a norm, from the motion of the run without noise.",
             [
                 "$t_f$ (s)",
-                "closed form, zero",
-                "zero",
-                "full",
+                "closed form, zero (m)",
+                "zero (m)",
+                "full (m)",
                 "ratio",
-                "zero, thesis noise",
-                "full, thesis noise",
+                "zero, thesis noise (m)",
+                "full, thesis noise (m)",
                 "ratio",
             ],
             rows,

@@ -39,9 +39,9 @@ def thesis_document(runs: Mapping[str, Run]) -> Document:
         subtitle="The thesis (National University of Singapore, 2008), reproduced",
         abstract=(
             "Every figure, table and number of chapters 2 to 5 made again from simulation, with a verdict on each "
-            "number, and answers to the questions that the thesis asks. Two presets: as_reported is fitted to the "
-            "printed numbers, sound has the thesis' full equations. What each conclusion needs to be true is checked "
-            "when the report is made."
+            "number, and answers to the questions that the thesis asks. Each is simulated twice: as reported, by a "
+            "preset fitted to the printed numbers, and with the full equations of the thesis. What each conclusion "
+            "needs to be true is checked when the report is made."
         ),
         chapters=parts(
             runs,

@@ -14,6 +14,7 @@ from runner.reporting.run_values import cell, clock, failures
 from runner.reporting.thesis.combined_plan import STRETCHING
 from runner.reporting.thesis.left_out_gravity import missing_acceleration
 from runner.reporting.thesis.studies import extension, rest_of_way
+from runner.reporting.words import in_words
 from runner.store import Run
 
 _SETTLED = 1e-3  # m, of the tip error, from where on the drift is measured
@@ -32,7 +33,7 @@ def stretch_section(runs: Mapping[str, Run]) -> Section:
         predicted = None if missing is None else missing / _damping(run)
         rows.append(
             [
-                case,
+                in_words(case),
                 above_rounding(missing),
                 above_rounding(predicted),
                 above_rounding(None if window is None else _drift(run, window)),
@@ -111,7 +112,10 @@ def _drift(run: Run, window: tuple[int, int]) -> float:
 
 
 def _goal_curves(runs: Mapping[str, Run], reach: float) -> Curves:
-    series = [Series(case, clock(runs[f"stretch/{case}"]), rest_of_way(runs[f"stretch/{case}"])) for case in STRETCHING]
+    series = [
+        Series(in_words(case), clock(runs[f"stretch/{case}"]), rest_of_way(runs[f"stretch/{case}"]))
+        for case in STRETCHING
+    ]
     t = clock(runs["stretch/sound"])
     series.append(Series("reach", t, np.full(len(t), reach), "dotted"))
     panel = Panel(
@@ -129,7 +133,9 @@ def _quintic_curves(runs: Mapping[str, Run], reach: float) -> Curves:
     panels = []
     for title, measure in (("Distance to the target |x_d − x_E|", rest_of_way), ("Stretch of the Mini |p|", extension)):
         series = [
-            Series(preset, clock(runs[f"stretch/quintic/{preset}"]), measure(runs[f"stretch/quintic/{preset}"]))
+            Series(
+                in_words(preset), clock(runs[f"stretch/quintic/{preset}"]), measure(runs[f"stretch/quintic/{preset}"])
+            )
             for preset in PRESETS
         ]
         t = clock(runs["stretch/quintic/sound"])
@@ -145,14 +151,14 @@ def _quintic_curves(runs: Mapping[str, Run], reach: float) -> Curves:
 
 def _finding(runs: Mapping[str, Run], reach: float) -> Finding:
     lost = {
-        case: Measured(f"out of reach for good from ({case})", _lost(runs[f"stretch/{case}"], reach), "s")
+        case: Measured(f"out of reach for good from ({in_words(case)})", _lost(runs[f"stretch/{case}"], reach), "s")
         for case in _SINKING
     }
     end = float(clock(runs["stretch/sound"])[-1])
     left = {case: _way_left(runs[f"stretch/{case}"], case) for case in STRETCHING if case not in _SINKING}
     shares = {
         preset: Measured(
-            f"share of the trajectory out of reach ({preset})",
+            f"share of the trajectory out of reach ({in_words(preset)})",
             100.0 * float(np.mean(rest_of_way(runs[f"stretch/quintic/{preset}"]) > reach)),
             "%",
         )
@@ -161,12 +167,12 @@ def _finding(runs: Mapping[str, Run], reach: float) -> Finding:
     bound = Measured("reach", reach, "m")
     return finding(
         "A weight that the Macro's law leaves out stretches the Mini",
-        f"The goal is lost for good with sound after {lost['sound']} and with as_reported after "
-        f"{lost['as_reported']}; until then the Macro sinks at the predicted speed. With as_reported the gravity term "
-        "alone makes the difference. With sound it is the Mini's own weight, which the Macro's model does not know: "
+        f"The goal is lost for good after {lost['sound']} with the full equations and after {lost['as_reported']} as "
+        "reported; until then the Macro sinks at the predicted speed. As reported the gravity term alone makes the "
+        "difference. With the full equations it is the Mini's own weight, which the Macro's model does not know: "
         f"told of it, or on the decoupled plant, the Mini keeps within reach over the {number(end)} s. On the quintic "
-        f"trajectory the target is out of reach for {shares['sound']} (sound) and {shares['as_reported']} "
-        f"(as_reported) of the run; the reach is {bound}.",
+        f"trajectory the target is out of reach for {shares['sound']} (full equations) and {shares['as_reported']} (as "
+        f"reported) of the run; the reach is {bound}.",
         *(time < 0.9 * end for time in lost.values()),
         *(way < 0.95 * bound for way in left.values()),
         *_as_predicted(runs, reach),
@@ -180,7 +186,7 @@ _SINKING = ("sound", "as_reported")
 def _way_left(run: Run, case: str) -> Measured:
     """Return the distance from the Macro's end point to the goal at the end of a run."""
     whole = run.status != "failed"
-    return Measured(f"way left at the end ({case})", float(rest_of_way(run)[-1]) if whole else None, "m")
+    return Measured(f"way left at the end ({in_words(case)})", float(rest_of_way(run)[-1]) if whole else None, "m")
 
 
 def _as_predicted(runs: Mapping[str, Run], reach: float) -> list[Condition]:
@@ -191,6 +197,9 @@ def _as_predicted(runs: Mapping[str, Run], reach: float) -> list[Condition]:
         window = _window(run, reach)
         drift = None if window is None else _drift(run, window)
         speed = None if window is None else missing_acceleration(run, sum(window) // 2) / _damping(run)
-        measured, predicted = Measured(f"drift ({case})", drift, "m/s"), Measured(f"predicted ({case})", speed, "m/s")
+        measured, predicted = (
+            Measured(f"drift ({in_words(case)})", drift, "m/s"),
+            Measured(f"predicted ({in_words(case)})", speed, "m/s"),
+        )
         conditions.append(measured.near(predicted, 0.2))
     return conditions

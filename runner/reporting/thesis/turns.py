@@ -13,14 +13,23 @@ from runner.reporting.quantities import number, quantity
 from runner.reporting.run_values import cell, clock, failures, measured
 from runner.reporting.thesis.combined_plan import SCHEDULES, TURN_DURATIONS
 from runner.reporting.thesis.studies import settled
+from runner.reporting.words import in_words
 from runner.store import Run
+
+_SCHEDULE = {"both": "both at any time", "turns": "in turns"}
 
 
 def turns_section(runs: Mapping[str, Run]) -> Section:
     """Return goal and tracking with both arms moving at any time, and with one arm moving at a time."""
     ours = {name: run for name, run in runs.items() if name.startswith("turns/")}
     rows = [
-        [preset, schedule, settled(goal), cell(goal, "steady_state_error"), *_tracking_cells(track)]
+        [
+            in_words(preset),
+            _SCHEDULE[schedule],
+            settled(goal),
+            cell(goal, "steady_state_error"),
+            *_tracking_cells(track),
+        ]
         for preset in PRESETS
         for schedule in SCHEDULES
         for goal, track in [[runs[f"turns/{preset}/{motion}/{schedule}"] for motion in ("goal", "quintic")]]
@@ -55,8 +64,8 @@ def turns_section(runs: Mapping[str, Run]) -> Section:
         ),
         _curves(runs),
         Table(
-            "Preset sound: largest tracking error (m) when more time is given.",
-            ["$t_f$ (s)", *SCHEDULES],
+            "Largest tracking error with the full equations when more time is given.",
+            ["$t_f$ (s)", *(f"{_SCHEDULE[schedule]} (m)" for schedule in SCHEDULES)],
             slower,
             (0, 1, 2),
             origin(runs[f"turns/{TURN_DURATIONS[0]}/turns"]),
@@ -78,32 +87,36 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
         for schedule in SCHEDULES:
             run = runs[f"turns/sound/quintic/{schedule}"]
             error = np.linalg.norm(columns(run.trace, signal), axis=1)
-            series.append(Series(schedule, clock(run), np.where(error > 0.0, error, np.nan)))
+            series.append(Series(_SCHEDULE[schedule], clock(run), np.where(error > 0.0, error, np.nan)))
         panels.append(Panel(title, "time (s)", "error norm (m)", series, y_log=True, y_range=(1e-8, 1.0)))
-    return Curves("Tracking with preset sound.", panels, 2, origin(runs["turns/sound/quintic/turns"]))
+    return Curves("Tracking with the full equations.", panels, 2, origin(runs["turns/sound/quintic/turns"]))
 
 
 def _finding(runs: Mapping[str, Run]) -> Finding:
-    both, turns = (_error(runs, f"turns/sound/quintic/{schedule}", f"{schedule} (sound)") for schedule in SCHEDULES)
+    both, turns = (
+        _error(runs, f"turns/sound/quintic/{schedule}", f"{_SCHEDULE[schedule]} (full equations)")
+        for schedule in SCHEDULES
+    )
     reported = [
-        _error(runs, f"turns/as_reported/quintic/{schedule}", f"{schedule} (as_reported)") for schedule in SCHEDULES
+        _error(runs, f"turns/as_reported/quintic/{schedule}", f"{_SCHEDULE[schedule]} (as reported)")
+        for schedule in SCHEDULES
     ]
     longest = TURN_DURATIONS[-1]
     slow_both, slow_turns = (
-        _error(runs, f"turns/{longest}/{schedule}", f"{schedule}, {longest:g} s") for schedule in SCHEDULES
+        _error(runs, f"turns/{longest}/{schedule}", f"{_SCHEDULE[schedule]}, {longest:g} s") for schedule in SCHEDULES
     )
     goal_both, goal_turns = (
-        measured(runs[f"turns/sound/goal/{schedule}"], "settling_time", f"settling time, {schedule}")
+        measured(runs[f"turns/sound/goal/{schedule}"], "settling_time", f"settling time, {_SCHEDULE[schedule]}")
         for schedule in SCHEDULES
     )
     duration = quantity(float(runs["turns/sound/quintic/turns"].config["trajectory"]["duration"]), "s")
     return finding(
         f"Taking turns destroys tracking on a {duration} trajectory",
-        f"With turns the tip errs by {turns}, {turns / both} times as much as when both arms move at any time (sound), "
-        f"and {reported[1] / reported[0]} times as much with as_reported. The Macro moves half of the time and starts "
-        f"each turn from rest. Given {longest:g} s tracking does not recover: {slow_turns} against {slow_both}. The "
-        f"goal move takes hardly longer, {goal_turns} against {goal_both}: the Mini's turns begin only once the goal "
-        "is within its reach.",
+        f"With turns the tip errs by {turns}, {turns / both} times as much as when both arms move at any time (full "
+        f"equations), and under the preset as reported {reported[1] / reported[0]} times as much. The Macro moves "
+        f"half of the time and starts each turn from rest. Given {longest:g} s tracking does not recover: "
+        f"{slow_turns} against {slow_both}. The goal move takes hardly longer, {goal_turns} against {goal_both}: the "
+        "Mini's turns begin only once the goal is within its reach.",
         turns > 100.0 * both,
         turns > 0.02,
         reported[1] > 2.0 * reported[0],

@@ -12,6 +12,7 @@ from runner.reporting.quantities import number, quantity
 from runner.reporting.run_values import cell, clock, failures, measured, median
 from runner.reporting.thesis.combined_plan import COMPARED_RATES, SLOW_DURATION, TIP_SPEEDS
 from runner.reporting.thesis.studies import settled
+from runner.reporting.words import in_words
 from runner.store import Run
 
 _METHOD_3 = tuple(rate for rate in COMPARED_RATES if not rate.startswith("whole body"))
@@ -28,7 +29,7 @@ def whole_body_section(runs: Mapping[str, Run]) -> Section:
         goal, track = (runs[f"whole_body/{motion}/{rate}"] for motion in ("goal", "quintic"))
         rows.append(
             [
-                rate,
+                in_words(rate),
                 settled(goal),
                 cell(goal, "steady_state_error"),
                 cell(goal, "saturation_fraction"),
@@ -48,7 +49,7 @@ def whole_body_section(runs: Mapping[str, Run]) -> Section:
             "The thesis holds method 1 to be unrealizable: its dynamics take too long, and the arm is redundant. "
             "What the dynamics cost is measured below; the redundancy is what a dynamically "
             "consistent null space is for: the Mini's joints stay near home as far as the task lets them. Both "
-            "methods here with thesis noise and limits, preset sound, the coupled arm, medians of "
+            "methods here with thesis noise and limits, the full equations, the coupled arm, medians of "
             f"{slow.record['repetitions']} repetitions. At 10 ms the Mini's loop keeps its $omega_n h$, "
             f"{number(rate_mini * period_mini)}, so that its $omega_n$ falls to {number(rate_mini)} rad/s."
         ),
@@ -105,12 +106,13 @@ def _rates(runs: Mapping[str, Run]) -> Finding:
         runs["whole_body/slow"], "max_tracking_error", f"tip error, whole body, 10 ms, {SLOW_DURATION:g} s"
     )
     failed = runs["whole_body/goal/whole body, 10 ms"].status == "failed"
-    listed = ", ".join(f"{error} ({rate})" for error, rate in zip(fast_3, _FAST_3, strict=True))
+    listed = "; ".join(f"{error} ({in_words(rate)})" for error, rate in zip(fast_3, _FAST_3, strict=True))
     return finding(
         "On the trajectory method 1 tracks better than method 3 at both rates; at the slow one its goal move diverges",
-        f"At 1 ms method 1 errs by {fast}, the variants of method 3 that were tried with a Mini at 1 ms by {listed}; "
-        f"with all at 10 ms it is {slow} against {slow_3}. Given {SLOW_DURATION:g} s for the same path (a single run) "
-        f"method 1 at 10 ms does not gain: {longer}. On the goal move at 10 ms it diverges.",
+        f"At 1 ms the tip error of method 1 is {fast}. The variants of method 3 that were tried with a Mini at 1 ms "
+        f"have: {listed}. With all loops at 10 ms it is {slow} (method 1) against {slow_3} (method 3). Given "
+        f"{SLOW_DURATION:g} s for the same path (a single run) method 1 at 10 ms does not gain: {longer}. On the goal "
+        "move at 10 ms it diverges.",
         *(fast < 0.7 * error for error in fast_3),
         slow < 0.7 * slow_3,
         longer > 0.7 * slow,
@@ -119,11 +121,11 @@ def _rates(runs: Mapping[str, Run]) -> Finding:
 
 
 def _tracking(runs: Mapping[str, Run], rate: str) -> Measured:
-    return measured(runs[f"whole_body/quintic/{rate}"], "max_tracking_error", f"tip error, {rate}")
+    return measured(runs[f"whole_body/quintic/{rate}"], "max_tracking_error", f"tip error, {in_words(rate)}")
 
 
 def _curves(runs: Mapping[str, Run]) -> Curves:
-    shown = [(rate, runs[f"whole_body/goal/{rate}"]) for rate in _SHOWN]
+    shown = [(in_words(rate), runs[f"whole_body/goal/{rate}"]) for rate in _SHOWN]
     best = fastest_speed(runs)
     if best is not None:
         shown.append((f"whole body, {best[0]:g} m/s", runs[f"whole_body/speed/{best[0]}"]))
@@ -155,9 +157,9 @@ def _speeds(runs: Mapping[str, Run]) -> Finding:
         f"With a largest tip speed method 1 is faster than the {len(_METHOD_3)} variants of method 3 that were tried",
         f"With {quantity(None if best is None else best[0], 'm/s')} the goal move settles after {ours} (at most "
         f"{latest} in {free.record['repetitions']} repetitions), without limit after {unlimited}; the fastest variant "
-        f"of method 3 that was tried ({'–' if other is None else other[0]}) takes {theirs} (at least {earliest}). "
-        f"Without the limit some joint is at its torque limit for {at_limit} of the ticks, with it for {spared}: a "
-        "goal two metres away asks for more than the joints have, and the saturated law asks for less.",
+        f"of method 3 that was tried ({'–' if other is None else in_words(other[0])}) takes {theirs} (at least "
+        f"{earliest}). Without the limit some joint is at its torque limit for {at_limit} of the ticks, with it for "
+        f"{spared}: a goal two metres away asks for more than the joints have, and the saturated law asks for less.",
         ours < 0.8 * theirs,
         latest < 0.9 * earliest,
         ours < 0.95 * unlimited,

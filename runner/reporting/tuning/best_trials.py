@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from runner.metrics.summary import units
 from runner.reporting.document import Block, Origin, Section, Table
 from runner.reporting.figures import playback, torque_and_error
+from runner.reporting.metric_titles import title
 from runner.reporting.quantities import spread
 from runner.reporting.tuning.subject import Subject, key_label, key_value, literal
 from runner.store import Run
@@ -35,7 +36,7 @@ def _trial(subject: Subject, trial: int, objectives: Sequence[Objective], run: R
     ]
     goals = [objective.metric for objective in subject.objectives]
     names = dict.fromkeys([*goals, *(name for name in run.metrics if name in units())])
-    metrics = [[name, spread(run.metrics[name])] for name in names]
+    metrics = [[*literal([title(name)]), spread(run.metrics[name])] for name in names]
     blocks: list[Block] = [
         Table("Tuned keys.", ["key", "value", "range"], rows, (1, 2), Origin(command=command)),
         torque_and_error(run, "Torque of each joint and tip position error, repetition 0."),
@@ -47,5 +48,5 @@ def _trial(subject: Subject, trial: int, objectives: Sequence[Objective], run: R
             (1,),
         ),
     ]
-    best_in = ", ".join(f"{objective.direction} {objective.metric}" for objective in objectives)
+    best_in = ", ".join(f"{objective.direction} the {title(objective.metric)}" for objective in objectives)
     return Section(f"Trial {trial}" + (f": {best_in}" if best_in else ""), blocks)

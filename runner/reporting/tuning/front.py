@@ -5,6 +5,7 @@ from itertools import combinations
 import numpy as np
 
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
+from runner.reporting.metric_titles import title
 from runner.reporting.quantities import quantity
 from runner.reporting.sweep.subject import spans_decades
 from runner.reporting.tuning.subject import Subject, key_value, label, literal
@@ -43,5 +44,9 @@ def _table(subject: Subject) -> Table:
         values = zip(subject.objectives, found.values, strict=True)
         settings = [key_value(found.params[key.name]) for key in subject.keys]
         rows.append([str(trial), *(quantity(value, objective.unit) for objective, value in values), *settings])
-    header = ["trial", *(objective.metric for objective in subject.objectives), *(key.name for key in subject.keys)]
+    header = [
+        "trial",
+        *(title(objective.metric) for objective in subject.objectives),
+        *(key.name for key in subject.keys),
+    ]
     return Table("Trials on the front.", literal(header), rows, tuple(range(len(header))))

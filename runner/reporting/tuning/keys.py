@@ -3,6 +3,7 @@
 import numpy as np
 
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
+from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import spans_decades
 from runner.reporting.tuning.subject import Subject, key_label, label, literal
 from runner.tuning.sampler import importances
@@ -40,5 +41,5 @@ def _importance(subject: Subject) -> Block:
         "Importance of the keys: how far the values of each among the best tenth of the good trials differ from those "
         "among all of them, in shares (PED-ANOVA). Where trials crowd, it says what still decides there."
     )
-    header = ["key", *(objective.metric for objective in subject.objectives)]
+    header = ["key", *(title(objective.metric) for objective in subject.objectives)]
     return Table(caption, literal(header), [literal(row) for row in rows], tuple(range(1, len(header))))

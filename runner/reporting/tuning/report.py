@@ -9,6 +9,7 @@ import numpy as np
 
 from runner.config.meanings import key_unit
 from runner.reporting.document import Document, FloatArray, Notice, Origin, Provenance, RunList, Section, Table, Text
+from runner.reporting.metric_titles import title
 from runner.reporting.tuning import best_trials, front, history, keys
 from runner.reporting.tuning.subject import Subject, key_label, key_value, literal
 from runner.store import Sweep, open_run
@@ -66,7 +67,7 @@ def _abstract(subject: Subject) -> str:
 
 
 def _goals(subject: Subject) -> str:
-    return " and ".join(f"{objective.direction} {objective.metric}" for objective in subject.objectives)
+    return " and ".join(f"{objective.direction} the {title(objective.metric)}" for objective in subject.objectives)
 
 
 def _what(subject: Subject) -> Section:

@@ -8,6 +8,7 @@ import numpy as np
 
 from runner.config.meanings import key_unit
 from runner.reporting.document import FloatArray
+from runner.reporting.metric_titles import metric_label, title
 from runner.reporting.quantities import labelled, number, quantity
 from runner.tuning.key import Key
 from runner.tuning.objective import Objective
@@ -71,7 +72,7 @@ class Subject:
     def outcome(self, place: int) -> str:
         """Return the values of the objectives in a good trial."""
         values = zip(self.objectives, self.trials[place].values, strict=True)
-        return ", ".join(f"{objective.metric} {quantity(value, objective.unit)}" for objective, value in values)
+        return ", ".join(f"{title(objective.metric)} {quantity(value, objective.unit)}" for objective, value in values)
 
     def best_by_objective(self) -> dict[int, list[Objective]]:
         """Return the trials on the front that are best in an objective, with the objectives that each is best in."""
@@ -83,8 +84,8 @@ class Subject:
 
 
 def label(objective: Objective) -> str:
-    """Return the name of an objective's metric with its unit, as on the axis of a figure."""
-    return labelled(objective.metric, objective.unit)
+    """Return the title of an objective's metric with its unit, as on the axis of a figure."""
+    return metric_label(objective.metric, objective.unit)
 
 
 def key_label(key: Key) -> str:

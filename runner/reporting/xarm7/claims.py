@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from runner.claims import PublishedClaim, judge_motion, load_claims
+from runner.claims import CONTRADICTION, PublishedClaim, judge_motion, load_claims
 from runner.reporting.document import Claim, Finding, Section, Table, Text
 from runner.reporting.figures import columns
 from runner.reporting.findings import Finding as Conclusion
@@ -13,6 +13,7 @@ from runner.reporting.job import PRESETS
 from runner.reporting.measured import Measured
 from runner.reporting.quantities import quantity
 from runner.reporting.run_values import measured
+from runner.reporting.words import PRESET
 from runner.store import Run
 
 
@@ -25,16 +26,20 @@ def claims_section(runs: Mapping[str, Run]) -> Section:
         (
             Text(
                 "The report prints no errors, only where the tip stays and how far it moves. A statement holds when "
-                "the least and the largest coordinate of our tip, over two periods, agree with it to half a unit of "
-                "the last digit that it prints, and is worse when they do not. Of a failure that the report tells of, "
-                "holds means that it is met here, too, and better that it is not. The verdict cannot marks a statement "
-                "that contradicts the report's own path, whatever the arm does. "
-                "Preset as_reported is a controller that knows the desired position alone and so is late; preset "
-                "sound also takes desired velocity and acceleration."
+                "the least and the largest coordinate of the simulated tip, over two periods, agree with it to half a "
+                "unit of the last digit that it prints; the simulation is worse when they do not. Where the report "
+                "tells of a failure, the statement holds when the simulation fails too, and the simulation is better "
+                f"when it does not. The report {CONTRADICTION} where a statement does not fit the path that it "
+                "prescribes itself, whatever the arm does."
+            ),
+            Text(
+                f"Each statement is simulated under two presets. The first, {PRESET['as_reported']} (as_reported on "
+                "the command line), is a controller that knows the desired position alone and so is late; the second, "
+                f"{PRESET['sound']} (sound on the command line), also takes desired velocity and acceleration."
             ),
             Table(
                 "Verdicts, with the least and the largest coordinate of the tip.",
-                ["claim", "statement", "printed", *PRESETS],
+                ["claim", "statement", "printed", *PRESET.values()],
                 rows,
             ),
             _concluded(claims, runs),
@@ -57,7 +62,7 @@ def _concluded(claims: Sequence[Claim], runs: Mapping[str, Run]) -> Conclusion:
     return conclude(
         len(claims),
         Measured("statements that hold under both presets", float(given.count({"holds"}))),
-        Measured("statements that contradict the report's own path", float(given.count({"cannot"}))),
+        Measured("statements that contradict the report's own path", float(given.count({CONTRADICTION}))),
         off,
         measured(late, "max_tracking_error", "tip error of three joints without feedforward"),
         Measured("way within one period of the controller", speed * period, "m"),

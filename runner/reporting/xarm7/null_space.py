@@ -11,6 +11,7 @@ from runner.reporting.findings import Finding, finding
 from runner.reporting.measured import Measured
 from runner.reporting.quantities import above_rounding, number, quantity
 from runner.reporting.run_values import clock, failures, median
+from runner.reporting.words import in_words
 from runner.reporting.xarm7.null_space_cycles import cycles_section
 from runner.reporting.xarm7.null_space_manipulability import manipulability_section
 from runner.reporting.xarm7.studies_plan import FASTEST_RATE, RULES, SPEEDS
@@ -98,9 +99,9 @@ def _fixed_tip(runs: Mapping[str, Run]) -> Section:
 def _row(run: Run) -> list[str]:
     controller, plant, tip = run.config["controller"], run.config["plant"]["kind"], standing(run)
     return [
-        controller["integration"],
+        in_words(controller["integration"]),
         f"{1.0 / controller['period']:g}",
-        "kinematic" if plant == "kinematic" else f"{plant}, servo",
+        "kinematic" if plant == "kinematic" else f"{in_words(plant)}, servo",
         number(median(run, "peak_joint_speed")),
         number(tip.travel),
         above_rounding(tip.at_ticks),
@@ -117,12 +118,12 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
         run = runs[f"null_space/{rule}/{SPEEDS[-1]}"]
         tip = columns(run.trace, "tip")
         distance = np.linalg.norm(tip - tip[0], axis=1)
-        tips.append(Series(rule, clock(run), np.where(distance > 0.0, distance, np.nan)))
+        tips.append(Series(in_words(rule), clock(run), np.where(distance > 0.0, distance, np.nan)))
     tips.append(Series("bound", clock(fastest), np.full(len(q), BOUND), "dashed"))
     return Curves(
         f"Joints and tip at up to {SPEEDS[-1]:g} rad/s.",
         (
-            Panel("Joints (rk4)", "time (s)", "joint position (rad)", joints),
+            Panel("Joints (Runge-Kutta)", "time (s)", "joint position (rad)", joints),
             Panel("Tip, by rule", "time (s)", "distance from the start (m)", tips, y_log=True, y_range=(1e-12, 1e-3)),
         ),
         2,
@@ -168,13 +169,14 @@ def conclude(
     """
     euler, midpoint, rk4 = at_ticks
     return finding(
-        f"At {SPEEDS[-1]:g} rad/s the tip stays within {quantity(BOUND, 'm')} by {RULES[-1]} alone",
-        f"At the commands the tip moves by {euler} by the rule euler, {midpoint} by midpoint, and {rk4} by "
-        f"{RULES[-1]}. Our law's own rule is midpoint, which is enough at {SPEEDS[-2]:g} rad/s ({slower}); faster "
-        f"null-space motion asks for controller.integration={RULES[-1]}. Between two commands the joints move evenly, "
-        f"along a chord of that curved surface, and the tip leaves its place by {between[-1]} or more, whatever the "
-        f"rule: it falls with the square of the rate, to {often} at {FASTEST_RATE} Hz. With servos on an arm with "
-        f"mass it is the servos that move the tip, by {servo} as the motion sets in, {farthest} after the start.",
+        f"At {SPEEDS[-1]:g} rad/s the tip stays within {quantity(BOUND, 'm')} by Runge-Kutta alone",
+        f"At the commands the tip moves by {euler} by Euler's rule, {midpoint} by the midpoint rule, and {rk4} by "
+        f"Runge-Kutta. The rule that the seven joints run by in this report is midpoint, which is enough at "
+        f"{SPEEDS[-2]:g} rad/s ({slower}); faster null-space motion asks for controller.integration={RULES[-1]}. "
+        "Between two commands the joints move evenly, along a chord of that curved surface, and the tip leaves its "
+        f"place by {between[-1]} or more, whatever the rule: it falls with the square of the rate, to {often} at "
+        f"{FASTEST_RATE} Hz. With servos on an arm with mass it is the servos that move the tip, by {servo} as the "
+        f"motion sets in, {farthest} after the start.",
         rk4 < 0.1 * BOUND,
         midpoint > 2.0 * BOUND,
         euler > 2.0 * BOUND,

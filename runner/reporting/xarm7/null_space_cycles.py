@@ -10,6 +10,7 @@ from runner.reporting.findings import Finding, finding
 from runner.reporting.measured import Measured
 from runner.reporting.quantities import above_rounding
 from runner.reporting.run_values import cell, failures, measured
+from runner.reporting.words import in_words
 from runner.reporting.xarm7.studies import rate, smallest_margin
 from runner.reporting.xarm7.studies_plan import CYCLE, CYCLES, NULL_SPACE_TASKS, PATHS
 from runner.store import Run
@@ -33,7 +34,9 @@ def cycles_section(runs: Mapping[str, Run]) -> Section:
             drift = drifts(run)
             first, last = (above_rounding(float(drift[k])) if drift.size else "–" for k in (0, -1))
             error = cell(run, "max_tracking_error")
-            rows.append([path, task, first, last, above_rounding(float(drift.sum())), error, smallest_margin(run)])
+            rows.append(
+                [path, in_words(task), first, last, above_rounding(float(drift.sum())), error, smallest_margin(run)]
+            )
     circle = runs["cycles/circle/none"]
     radius = float(circle.config["trajectory"]["radius"])
     gain = float(circle.config["controller"]["null_space"]["gain"])
@@ -75,7 +78,7 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
         for task in NULL_SPACE_TASKS:
             drift = drifts(runs[f"cycles/{path}/{task}"])
             shown = np.where(drift > 0.0, drift, np.nan)
-            series.append(Series(task, np.arange(1.0, drift.size + 1.0), shown, "points_line"))
+            series.append(Series(in_words(task), np.arange(1.0, drift.size + 1.0), shown, "points_line"))
         panels.append(Panel(path.capitalize(), "cycle", "drift of the joints (rad)", series, y_log=True))
     return Curves(
         "Drift of the joints from cycle to cycle.",
@@ -95,7 +98,10 @@ def _concluded(runs: Mapping[str, Run]) -> Finding:
         Measured("distance of the joints from where they began, no task", float(np.linalg.norm(q[-1] - q[0])), "rad"),
         Measured("drift in the last cycle of the line, no task", _nth(runs["cycles/line/none"], -1), "rad"),
         [
-            (task, Measured(f"drift in the last cycle, {task}", _nth(runs[f"cycles/circle/{task}"], -1), "rad"))
+            (
+                in_words(task),
+                Measured(f"drift in the last cycle, {task}", _nth(runs[f"cycles/circle/{task}"], -1), "rad"),
+            )
             for task in held
         ],
         measured(free, "max_tracking_error", "tip error, no task"),
@@ -123,7 +129,7 @@ def conclude(
         free_error: Tip error of the plain pseudo-inverse around the circle.
         errors: The same with each null-space task.
     """
-    settled = ", ".join(f"{task} {drift}" for task, drift in held)
+    settled = ", ".join(f"{drift} ({task})" for task, drift in held)
     return finding(
         "Plain pseudo-inverse motion is not cyclic; each null-space task tried leads to a closed way",
         f"Around the circle the joints of the plain pseudo-inverse are {first} further after the first cycle, {free} "

@@ -150,7 +150,7 @@ def conclude(
         for task, share in (("position", position_sought / position), ("pose", pose_sought / pose))
     ]
     return finding(
-        f"Seeking it lifts the least w by {gains[0]} (position) and {gains[1]} (pose)",
+        f"Climbing the gradient raises the smallest w by {gains[0]} (position) and {gains[1]} (pose)",
         "For the position alone it changes little where home's posture is sought. For the pose the arm begins next to "
         f"a vertical plane (the joints that lead the elbow aside are within {aside} of it), where by symmetry a "
         "sideways motion of the elbow changes $w$ to second order only: a stationary point, and not the best. It takes "

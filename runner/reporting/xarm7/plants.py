@@ -13,6 +13,7 @@ from runner.reporting.measured import Measured
 from runner.reporting.plant_agreement import describe_agreement, disagreement
 from runner.reporting.quantities import above_rounding, number
 from runner.reporting.run_values import measured
+from runner.reporting.words import PLANT, PRESET
 from runner.reporting.xarm7.plan import STEPS
 from runner.store import Run
 
@@ -21,7 +22,10 @@ def plants_section(runs: Mapping[str, Run]) -> Section:
     """Return the line by three joints with servos, on PyBullet and on Runge-Kutta, and how far they are apart."""
     servo = runs[f"servo/sound/{STEPS[-1]}"]
     settings = servo.config["plant"]["servo"]
-    sentences = [f"Preset {preset}: {describe_agreement(runs[f'servo/{preset}/{STEPS[-1]}'])}" for preset in PRESETS]
+    sentences = [
+        f"{PRESET[preset].capitalize()}: {describe_agreement(runs[f'servo/{preset}/{STEPS[-1]}'])}"
+        for preset in PRESETS
+    ]
     return Section(
         "Whether the simulation can be trusted",
         (
@@ -44,7 +48,7 @@ def _concluded(runs: Mapping[str, Run]) -> Finding:
         [
             [
                 Measured(
-                    f"largest tip distance, {preset}, {1e3 * step:g} ms",
+                    f"largest tip distance, {PRESET[preset]}, {1e3 * step:g} ms",
                     disagreement(runs[f"servo/{preset}/{step}"], runs[f"servo/{preset}/rk4"]).tip,
                     "m",
                 )
@@ -53,7 +57,7 @@ def _concluded(runs: Mapping[str, Run]) -> Finding:
             for preset in PRESETS
         ],
         [
-            measured(runs[f"servo/{preset}/{STEPS[-1]}"], "max_tracking_error", f"tip error, {preset}")
+            measured(runs[f"servo/{preset}/{STEPS[-1]}"], "max_tracking_error", f"tip error, {PRESET[preset]}")
             for preset in PRESETS
         ],
     )
@@ -69,9 +73,9 @@ def conclude(distances: Sequence[Sequence[Measured]], errors: Sequence[Measured]
     finest = [each[-1] for each in distances]
     return finding(
         "The plants come together with PyBullet's step",
-        f"Halving PyBullet's step halves the largest distance of the tips, down to {finest[0]} (as_reported) and "
-        f"{finest[1]} (sound) at {1e3 * STEPS[-1]:g} ms: what is left is the error of its step, which is of first "
-        f"order. The tip errors themselves are larger by far, {errors[0]} and {errors[1]}.",
+        f"Halving PyBullet's step halves the largest distance of the tips, down to {finest[0]} (as reported) and "
+        f"{finest[1]} (full equations) at {1e3 * STEPS[-1]:g} ms: what is left is the error of its step, which is of "
+        f"first order. The tip errors themselves are larger by far, {errors[0]} and {errors[1]}.",
         *((finer / coarser).near(0.5, 0.1) for each in distances for coarser, finer in pairwise(each)),
         *(error > 50.0 * distance for error, distance in zip(errors, finest, strict=True)),
     )
@@ -84,8 +88,8 @@ def _plants(runs: Mapping[str, Run]) -> Curves:
         for name, run in (("bullet", STEPS[-1]), ("rk4", "rk4")):
             trace = runs[f"servo/{preset}/{run}"].trace
             error = np.linalg.norm(columns(trace, "error"), axis=1)
-            series.append(Series(name, trace["t"].to_numpy(), error, "line" if name == "bullet" else "dashed"))
-        panels.append(Panel(f"Preset {preset}", "time (s)", "error norm (m)", series))
+            series.append(Series(PLANT[name], trace["t"].to_numpy(), error, "line" if name == "bullet" else "dashed"))
+        panels.append(Panel(PRESET[preset].capitalize(), "time (s)", "error norm (m)", series))
     return Curves(
         "Tip error from A to B by three joints with servos, on both plants.",
         panels,
@@ -101,7 +105,12 @@ def _steps(runs: Mapping[str, Run]) -> Table:
             run = runs[f"servo/{preset}/{step}"]
             apart = disagreement(run, runs[f"servo/{preset}/rk4"])
             rows.append(
-                [preset, f"{step:g}", above_rounding(apart.tip), number(run.metrics["max_tracking_error"]["median"])]
+                [
+                    PRESET[preset],
+                    number(step),
+                    above_rounding(apart.tip),
+                    number(run.metrics["max_tracking_error"]["median"]),
+                ]
             )
     return Table(
         f"PyBullet's step against Runge-Kutta at {runs['servo/sound/rk4'].provenance['plant_step']:g} s.",

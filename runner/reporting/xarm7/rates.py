@@ -11,6 +11,7 @@ from runner.reporting.job import PRESETS
 from runner.reporting.measured import Measured
 from runner.reporting.quantities import number
 from runner.reporting.run_values import cell, failures, measured, values
+from runner.reporting.words import PRESET, in_words
 from runner.reporting.xarm7.studies import largest_error_at
 from runner.reporting.xarm7.studies_plan import PLANTS, RATES
 from runner.store import Run
@@ -39,7 +40,7 @@ def rates_section(runs: Mapping[str, Run]) -> Section:
     rows = [
         [
             "yes" if preset == "sound" else "no",
-            plant,
+            in_words(plant),
             f"{rate}",
             cell(run, "max_tracking_error"),
             number(lag(run, rate)) if preset == "as_reported" else "–",
@@ -56,10 +57,10 @@ def rates_section(runs: Mapping[str, Run]) -> Section:
         Text(
             f"The maker recommends {_MAKERS[0]} commands a second and allows {_MAKERS[1]}. The line from A to B with "
             f"$K = {first.config['controller']['gain']:g}$ 1/s, on joints that go where they are told (kinematic) and "
-            f"with servos of {servo.config['plant']['servo']['stiffness']:g} N m/rad on an arm with mass (bullet, step "
-            f"{1e3 * servo.provenance['plant_step']:g} ms), whose set-points move evenly between commands. Without "
-            "feedforward the tip lags by the speed $v$ over $K$; integrated by the midpoint rule over $h$, the time "
-            "between commands, the largest lag on a line of length $D$ with period $T$ is"
+            f"with servos of {servo.config['plant']['servo']['stiffness']:g} N m/rad on an arm with mass (PyBullet, "
+            f"step {1e3 * servo.provenance['plant_step']:g} ms), whose set-points move evenly between commands. "
+            "Without feedforward the tip lags by the speed $v$ over $K$; integrated by the midpoint rule over $h$, "
+            "the time between commands, the largest lag on a line of length $D$ with period $T$ is"
         ),
         Formula(
             "max |x_d - x| = v / (K (1 - h K slash 2)), quad v = pi D slash T",
@@ -93,7 +94,7 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
     for preset in PRESETS:
         series = [
             Series(
-                plant,
+                in_words(plant),
                 rates,
                 values((runs[f"rates/{plant}/{preset}/{rate}"] for rate in RATES), "max_tracking_error"),
                 "points_line" if plant == "bullet" or preset == "sound" else "points",
@@ -125,7 +126,7 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
 def _concluded(runs: Mapping[str, Run]) -> Finding:
     def error(plant: str, preset: str, rate: int) -> Measured:
         run = runs[f"rates/{plant}/{preset}/{rate}"]
-        return measured(run, "max_tracking_error", f"largest axis error, {plant}, {preset}, {rate} Hz")
+        return measured(run, "max_tracking_error", f"largest axis error, {plant}, {PRESET[preset]}, {rate} Hz")
 
     first = runs[f"rates/kinematic/as_reported/{RATES[0]}"]
     servo = runs[f"rates/bullet/sound/{_MAKERS[-1]}"]

@@ -51,7 +51,7 @@ def servo_section(runs: Mapping[str, Run]) -> Section:
             f"No stiffness of the arm's servos is published. The line from A to B in {half:g} s, commanded at "
             f"{rate(first)}, with servos of one stiffness $k$ at all joints, damping ratio "
             f"{servo['damping_ratio']:g}, a torque every {1e3 * servo['period']:g} ms, on PyBullet. The servos add the "
-            "torques of gravity or do not; our law takes the tip's error where the joints are measured, or where they "
+            "torques of gravity or do not; the law takes the tip's error where the joints are measured, or where they "
             "were commanded, which is open loop. A servo that has to hold the weight by its spring alone lets the tip "
             "sag by"
         ),

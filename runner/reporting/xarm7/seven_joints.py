@@ -12,6 +12,7 @@ from runner.reporting.job import PRESETS
 from runner.reporting.measured import Measured
 from runner.reporting.quantities import above_rounding, number
 from runner.reporting.run_values import measured
+from runner.reporting.words import PRESET
 from runner.reporting.xarm7.rates import lag
 from runner.reporting.xarm7.studies import smallest_margin
 from runner.reporting.xarm7.three_joints import tip_curves
@@ -46,7 +47,7 @@ def seven_joints_section(runs: Mapping[str, Run]) -> Section:
             _joints(runs),
             playback(
                 runs["seven_joints_pose/sound"],
-                "The line by seven joints, orientation held, preset sound: from A to B.",
+                "The line by seven joints, orientation held, full equations: from A to B.",
                 0.5 * float(run.config["trajectory"]["duration"]),
             ),
             _comparison(runs),
@@ -62,7 +63,7 @@ def _joints(runs: Mapping[str, Run]) -> Curves:
         t, q = run.trace["t"].to_numpy(), joint_columns(run.trace, "q")
         series = [Series(f"q{joint + 1}", t, q[:, joint]) for joint in range(q.shape[1])]
         panels.append(Panel(title.capitalize(), "time (s)", "joint position (rad)", series))
-    return Curves("All joints over two periods, preset sound.", panels, 3, origin(runs["seven_joints/sound"]))
+    return Curves("All joints over two periods, full equations.", panels, 3, origin(runs["seven_joints/sound"]))
 
 
 def _comparison(runs: Mapping[str, Run]) -> Table:
@@ -74,7 +75,7 @@ def _comparison(runs: Mapping[str, Run]) -> Table:
             after = int(np.searchsorted(run.trace["t"].to_numpy(), float(run.config["trajectory"]["duration"]) - 1e-9))
             rows.append(
                 [
-                    preset,
+                    PRESET[preset],
                     title,
                     *(above_rounding(run.metrics[m]["median"]) for m in ("max_tracking_error", "cross_track_error")),
                     smallest_margin(run),
@@ -150,10 +151,11 @@ def conclude(
     """
     return finding(
         "Seven joints give the results that the report expected",
-        f"The two parts' tips are at most {apart} apart (sound). Without feedforward the tip lags by {late}, the speed "
-        f"over $K$, and stays within {off} of the line; with it the error is {ahead}. Seven joints can also hold the "
-        f"flange's orientation, which turns by {held} then; where three move it turns by {turned}. The fastest joint "
-        f"turns at {speeds[0]} for the position, {speeds[1]} for the pose, and {speeds[2]} where only three move.",
+        f"The two parts' tips are at most {apart} apart (full equations). Without feedforward the tip lags by {late}, "
+        f"the speed over $K$, and stays within {off} of the line; with it the error is {ahead}. Seven joints can also "
+        f"hold the flange's orientation, which turns by {held} then; where three move it turns by {turned}. The "
+        f"fastest joint turns at {speeds[0]} for the position, {speeds[1]} for the pose, and {speeds[2]} where only "
+        "three move.",
         apart < 1e-5,
         late.near(closed_form, 0.02),
         off < 0.01 * late,

@@ -54,6 +54,6 @@ def source_section(runs: Mapping[str, Run]) -> Section:
                 'pseudo-inverse of the Jacobian. The first part works; of the second it says "the code is not '
                 "functional\". Its graphs are lost in the text that has come down to us, with the axes' ranges."
             ),
-            Table("What is printed, and what we take.", ["quantity", "report", "ours"], rows),
+            Table("What is printed, and what is simulated.", ["quantity", "report", "simulated"], rows),
         ),
     )

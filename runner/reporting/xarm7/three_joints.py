@@ -10,7 +10,9 @@ from runner.reporting.figures import columns, joint_columns, model_of, origin, p
 from runner.reporting.findings import Finding, finding
 from runner.reporting.job import PRESETS
 from runner.reporting.measured import Measured
+from runner.reporting.metric_titles import title
 from runner.reporting.quantities import above_rounding, number
+from runner.reporting.words import PRESET
 from runner.reporting.xarm7.studies import measured_margin, smallest_margin
 from runner.robots.three_joint import MOVING
 from runner.store import Run
@@ -37,11 +39,13 @@ def three_joints_section(runs: Mapping[str, Run]) -> Section:
                 "x of t equals A plus half of B minus A times one minus cosine of two pi t over T",
             ),
             sketch(run),
-            tip_curves([(preset, runs[f"three_joints/{preset}"]) for preset in PRESETS], "Graphs of x, y and z"),
+            tip_curves(
+                [(PRESET[preset], runs[f"three_joints/{preset}"]) for preset in PRESETS], "Graphs of x, y and z"
+            ),
             joint_curves(runs),
             _error_curves(runs),
             _errors(runs),
-            playback(run, "The line by three joints, preset sound: from A to B.", 0.5 * period),
+            playback(run, "The line by three joints, full equations: from A to B.", 0.5 * period),
         ),
         (_two_values_of_x(runs),),
     )
@@ -92,7 +96,7 @@ def joint_curves(runs: Mapping[str, Run]) -> Curves:
             f"q{joint + 1} (rad)",
             [
                 Series(
-                    preset,
+                    PRESET[preset],
                     run.trace["t"].to_numpy(),
                     run.trace[f"q{joint + 1}"].to_numpy(),
                     "line" if preset == PRESETS[0] else "dashed",
@@ -111,7 +115,7 @@ def _error_curves(runs: Mapping[str, Run]) -> Curves:
         trace = runs[f"three_joints/{preset}"].trace
         error = columns(trace, "error")
         series = [Series(axis, trace["t"].to_numpy(), error[:, index]) for index, axis in enumerate("xyz")]
-        panels.append(Panel(f"Preset {preset}", "time (s)", "tip error (m)", series))
+        panels.append(Panel(PRESET[preset].capitalize(), "time (s)", "tip error (m)", series))
     return Curves(
         "Desired less actual tip position, over two periods.",
         panels,
@@ -124,7 +128,7 @@ def _errors(runs: Mapping[str, Run]) -> Table:
     names = ("max_tracking_error", "cross_track_error", "peak_joint_speed", "peak_torque")
     rows = [
         [
-            name,
+            title(name),
             *(
                 above_rounding(m["median"], m["unit"])
                 for p in PRESETS
@@ -135,7 +139,7 @@ def _errors(runs: Mapping[str, Run]) -> Table:
     ]
     return Table(
         "Errors and efforts; the torque is what the motion asks for, by inverse dynamics.",
-        ["metric", *PRESETS],
+        ["metric", *PRESET.values()],
         rows,
         (1, 2),
         origin(runs["three_joints/as_reported"]),
@@ -163,7 +167,7 @@ def _two_values_of_x(runs: Mapping[str, Run]) -> Section:
             "Here the printed value is kept, and both are run."
         ),
         Table(
-            "Both values of X, preset sound, over two periods.",
+            "Both values of X, full equations, over two periods.",
             ["quantity", *(f"X = {x:g} m" for x in xs)],
             rows,
             (1, 2),

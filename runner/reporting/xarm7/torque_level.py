@@ -10,6 +10,7 @@ from runner.reporting.findings import Finding, finding
 from runner.reporting.measured import Measured
 from runner.reporting.quantities import quantity
 from runner.reporting.run_values import cell, clock, failures, measured, median, values
+from runner.reporting.words import in_words
 from runner.reporting.xarm7.studies import (
     SHOULDER,
     clipped,
@@ -31,7 +32,7 @@ def torque_level_section(runs: Mapping[str, Run]) -> Section:
     first = runs[f"torque/{LAWS[0]}/0"]
     controller = first.config["controller"]
     rows = [
-        [law, case if case == "pose" else f"{float(case):g}", *_cells(runs[f"torque/{law}/{case}"])]
+        [in_words(law), case if case == "pose" else f"{float(case):g}", *_cells(runs[f"torque/{law}/{case}"])]
         for law in LAWS
         for case in (*(f"{mass:g}" for mass in TORQUE_PAYLOADS), "pose")
     ]
@@ -86,7 +87,7 @@ def _cells(run: Run) -> list[str]:
 def _curves(runs: Mapping[str, Run]) -> Curves:
     over_payload = [
         Series(
-            law,
+            in_words(law),
             np.array(TORQUE_PAYLOADS),
             values((runs[f"torque/{law}/{mass:g}"] for mass in TORQUE_PAYLOADS), "max_tracking_error"),
             "points_line",
@@ -102,7 +103,9 @@ def _curves(runs: Mapping[str, Run]) -> Curves:
         for mass in TORQUE_PAYLOADS[:4]:
             run = runs[f"torque/{law}/{mass:g}"]
             series.append(Series(f"{mass:g} kg", clock(run), error_norm(run)))
-        panels.append(Panel(law, "time (s)", "error norm (m)", series, y_log=True, y_range=(1e-8, 3.0)))
+        panels.append(
+            Panel(in_words(law).capitalize(), "time (s)", "error norm (m)", series, y_log=True, y_range=(1e-8, 3.0))
+        )
     return Curves(
         "Tip error of both laws by payload, and over time near the limit.",
         panels,
@@ -116,7 +119,9 @@ def _concluded(runs: Mapping[str, Run]) -> Finding:
         return [
             [
                 measured(
-                    runs[f"torque/{law}/{mass:g}"], "max_tracking_error", f"largest axis error, {law}, {mass:g} kg"
+                    runs[f"torque/{law}/{mass:g}"],
+                    "max_tracking_error",
+                    f"largest axis error, {law}, {mass:g} kg",
                 )
                 for mass in masses
             ]
@@ -140,7 +145,7 @@ def _concluded(runs: Mapping[str, Run]) -> Finding:
             clipped_share(
                 runs[f"torque/{law}/{TORQUE_PAYLOADS[_LAST + 1]:g}"],
                 SHOULDER,
-                f"ticks with the shoulder at its limit, {law}, {TORQUE_PAYLOADS[_LAST + 1]:g} kg",
+                f"ticks with the shoulder at its limit, {in_words(law)}, {TORQUE_PAYLOADS[_LAST + 1]:g} kg",
             )
             for law in LAWS
         ],
@@ -171,15 +176,15 @@ def conclude(
     """
     last, beyond = TORQUE_PAYLOADS[_LAST], TORQUE_PAYLOADS[_LAST + 1]
     laws = "; ".join(
-        f"{law}: {errors[0]} without load, with up to {torque} at the shoulder"
+        f"{in_words(law)}: {errors[0]} without load, with up to {torque} at the shoulder"
         for law, errors, torque in zip(LAWS, held, torques, strict=True)
     )
     return finding(
         f"Both laws track within {quantity(BOUND, 'm')} up to {last:g} kg, and lose the line with {beyond:g} kg",
-        f"{laws}. With {last:g} kg the shoulder's torque is clipped as the motion sets in at A, in {ticks[0]} ticks "
-        f"by the one law and {ticks[1]} by the other, and the tip hardly shows it: {held[0][-1]} and {held[1][-1]}. "
-        f"With {beyond:g} kg it is clipped at {shares[0]} and {shares[1]} of the ticks, and the tip is off by "
-        f"{lost[0][0]} and {lost[1][0]}.",
+        f"{laws[0].upper()}{laws[1:]}. With {last:g} kg the shoulder's torque is clipped as the motion sets in at A, "
+        f"in {ticks[0]} ticks by the one law and {ticks[1]} by the other, and the tip hardly shows it: {held[0][-1]} "
+        f"and {held[1][-1]}. With {beyond:g} kg it is clipped at {shares[0]} and {shares[1]} of the ticks, and the "
+        f"tip is off by {lost[0][0]} and {lost[1][0]}.",
         *(error < 0.5 * BOUND for errors in held for error in errors),
         *(error > 50.0 * BOUND for errors in lost for error in errors),
         *(count < 10.0 for count in ticks),

@@ -28,9 +28,9 @@ def motion_section(runs: Mapping[str, Run]) -> Section:
     blocks: list[Block] = [
         Text(
             f"The line with the report's law run as printed, at {1.0 / period:g} Hz on joints that go where they are "
-            "told, and with each error alone, the others put right. The report feeds no error of the tip back; "
-            f"where it says so, we feed it back with {GAIN:g} 1/s. The last row of each task is our law. A margin "
-            "below zero is a joint beyond its limit, which the printed law does not look at."
+            "told, and with each error alone, the others put right. The report feeds no error of the tip back; where "
+            f"the table says so, it is fed back with {GAIN:g} 1/s. The last row of each task is the corrected law. A "
+            "margin below zero is a joint beyond its limit, which the printed law does not look at."
         ),
         Table(
             "What each error does to the line, position task (3 rows) and pose task (6 rows).",
@@ -63,7 +63,7 @@ def _cases(runs: Mapping[str, Run], task: str) -> list[tuple[str, str, str]]:
         cases.append((case, "no", name))
         if f"{name}/fed back" in runs:
             cases.append((case, "yes", f"{name}/fed back"))
-    return [*cases, ("our law", "yes", f"printed/{task}/working")]
+    return [*cases, ("corrected law", "yes", f"printed/{task}/working")]
 
 
 def _outcome(run: Run) -> list[str]:
@@ -84,7 +84,7 @@ def _paths(runs: Mapping[str, Run]) -> Curves:
                 series.append(Series(label, tip[:, 1], tip[:, index], color=number_))
             panels.append(Panel(title, "y (m)", f"{axis} (m)", series))
     return Curves(
-        "Path of the tip over one period, nothing fed back, right pseudo-inverse; our law beside.",
+        "Path of the tip over one period, nothing fed back, right pseudo-inverse; the corrected law beside it.",
         panels,
         2,
         origin(runs["printed/position/columns and angles"]),
@@ -92,7 +92,7 @@ def _paths(runs: Mapping[str, Run]) -> Curves:
 
 
 def _shown(task: str) -> list[tuple[str, str]]:
-    return [*((case, f"printed/{task}/{case}") for case in _SHOWN), ("our law", f"printed/{task}/working")]
+    return [*((case, f"printed/{task}/{case}") for case in _SHOWN), ("corrected law", f"printed/{task}/working")]
 
 
 def _errors(runs: Mapping[str, Run]) -> Curves:
@@ -193,7 +193,7 @@ def conclude(
         f"{columns_alone} of a line of {length}; feeding the tip's error back does not mend it: {columns_fed}, with "
         f"joints at up to {speed}. The angles alone cost {angles_alone}; feedback brings that down to {angles_fed}. "
         f"With every error put right the drift of open-loop integration is left, {drift}; feedback brings it down to "
-        f"{drift_fed}, and our law, which integrates by the midpoint rule, has {ours}.",
+        f"{drift_fed}, and the corrected law, which integrates by the midpoint rule, has {ours}.",
         following <= 0.0,
         columns_alone > 0.5 * length,
         columns_fed > 0.5 * columns_alone,

@@ -46,8 +46,8 @@ def test_cells_are_ranked_and_failed_ones_come_last():
 def test_a_cell_is_told_in_full():
     subject = two_axes(failed=[3])
     assert subject.cell_name(1) == "noise.position=0.0001, torque_limits.max=40"
-    assert subject.hint(1).startswith("noise.position=0.0001, torque_limits.max=40; max_tracking_error 0.33")
-    assert subject.hint(3).endswith("max_tracking_error never; peak_torque never; diverged, at once")
+    assert subject.hint(1).startswith("noise.position=0.0001, torque_limits.max=40; largest tracking error 0.33")
+    assert subject.hint(3).endswith("largest tracking error never; largest torque never; diverged, at once")
 
 
 @pytest.mark.parametrize(

@@ -68,7 +68,7 @@ def test_the_report_has_its_parts(tuning):
         "All runs",
         "Provenance",
     ]
-    assert made.title == "Tuning to minimize peak_torque and maximize rms_torque"
+    assert made.title == "Tuning to minimize the largest torque and maximize the rms torque"
     (table,) = blocks(section(made, "What was tuned"), Table)
     assert table.origin.command == "runner tune ..."
     assert table.rows[0] == ["controller.natural_frequency (rad/s)", "5", "80", "logarithmic", "any"]

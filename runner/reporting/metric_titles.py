@@ -1,0 +1,63 @@
+"""Names of metrics as an engineer says them: "largest tracking error, x" for max_tracking_error_x."""
+
+import re
+from collections.abc import Mapping
+
+from runner.metrics.summary import families, units
+from runner.reporting.quantities import labelled
+
+TITLES = {
+    "settling_time": "settling time",
+    "steady_state_error": "steady-state error",
+    "overshoot": "overshoot",
+    "max_tracking_error": "largest tracking error",
+    "rms_tracking_error": "rms tracking error",
+    "cross_track_error": "largest distance from the path",
+    "peak_torque": "largest torque",
+    "rms_torque": "rms torque",
+    "peak_joint_speed": "largest joint speed",
+    "peak_joint_force": "largest joint force",
+    "rms_joint_force": "rms joint force",
+    "peak_sliding_speed": "largest sliding speed",
+    "saturation_fraction": "share of ticks at a torque limit",
+    "energy": "energy",
+    "control_effort": "control effort",
+    "force_effort": "force effort",
+    "reach_loss_fraction": "share of ticks out of reach",
+    "peak_force": "largest contact force",
+    "steady_force": "contact force at rest",
+    "force_error": "error of the felt contact force",
+}
+"""Titles of the runner's metrics. A family of metrics from outside may have TITLES of its own."""
+
+_JOINT = re.compile(r"q(\d+)")
+
+
+def title(name: str) -> str:
+    """Return the title of a metric: its stage, what it is, its axis or joint; underscores become spaces without one."""
+    base = max((base for base in units() if f"_{base}_" in f"_{name}_"), key=len, default=name)
+    titles = {**_added_titles(), **TITLES}
+    stage, _, part = f"_{name}_".partition(f"_{base}_")
+    texts = [titles.get(base, _spaced(base)), _part(part.strip("_"))]
+    told = ", ".join(text for text in texts if text)
+    return f"{_spaced(stage).capitalize()}: {told}" if stage else told
+
+
+def metric_label(name: str, unit: str) -> str:
+    """Return the title of a metric with its unit, as on the axis of a figure."""
+    return labelled(title(name), unit)
+
+
+def _added_titles() -> dict[str, str]:
+    """Return the titles that families from outside give; what is no mapping is none."""
+    given = [getattr(family, "TITLES", None) for family in families()]
+    return {str(name): str(text) for titles in given if isinstance(titles, Mapping) for name, text in titles.items()}
+
+
+def _part(part: str) -> str:
+    joint = _JOINT.fullmatch(part)
+    return f"joint {joint[1]}" if joint else _spaced(part)
+
+
+def _spaced(name: str) -> str:
+    return name.strip("_").replace("_", " ")

@@ -1,0 +1,31 @@
+"""The reports' words for names of the code: a reader should not have to know these."""
+
+import re
+
+PRESET = {"as_reported": "as reported", "sound": "full equations"}
+"""The presets of the works, in the order of their columns."""
+
+PLANT = {"bullet": "PyBullet", "rk4": "Runge-Kutta"}
+
+_WORDS = {
+    **PRESET,
+    **PLANT,
+    "one_way": "one-way",
+    "two_way": "two-way",
+    "independent": "independent, offset turning with the wrist",
+    "independent_base": "independent, offset fixed in the base frame",
+    "mini_held": "Mini held",
+    "whole_body": "whole body",
+    "tip_goal": "the goal itself",
+    "minus_home": "the goal less the offset at home",
+    "joint_limits": "joint limits",
+    "operational_space": "operational space",
+    "computed_torque": "computed torque",
+    "euler": "Euler",
+}
+_CODE_NAME = re.compile(rf"\b({'|'.join(_WORDS)})\b")
+
+
+def in_words(name: str) -> str:
+    """Return a preset, plant, coupling, law or variant such as "sound, decoupled" in words; other names stay."""
+    return _CODE_NAME.sub(lambda found: _WORDS[found[0]], name)
