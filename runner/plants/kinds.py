@@ -62,3 +62,10 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
         """Return the step that a kind takes when its config names none, in s."""
         chooser: ChoosesStep = self.module(kind)
         return chooser.default_step(tick, stages)
+
+    def contacts_implicitly(self, kind: str) -> bool:
+        """Tell whether a kind makes contacts itself, in each step and from the velocity at its end.
+
+        It is one whose module says so by IMPLICIT_CONTACT.
+        """
+        return bool(getattr(self.module(kind), "IMPLICIT_CONTACT", False))
