@@ -40,6 +40,13 @@ class HasServo(Protocol):
     servo: ServoConfig
 
 
+@runtime_checkable
+class ContactsImplicitly(Protocol):
+    """A module whose plants make contacts themselves, and says whether in each step, from the velocity at its end."""
+
+    IMPLICIT_CONTACT: bool
+
+
 class ChoosesStep(Protocol):
     """The part of a plant's module that chooses the integration step where the config names none."""
 
@@ -64,8 +71,6 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
         return chooser.default_step(tick, stages)
 
     def contacts_implicitly(self, kind: str) -> bool:
-        """Tell whether a kind makes contacts itself, in each step and from the velocity at its end.
-
-        It is one whose module says so by IMPLICIT_CONTACT.
-        """
-        return bool(getattr(self.module(kind), "IMPLICIT_CONTACT", False))
+        """Tell whether a kind makes contacts in each step, from the velocity at its end; see ContactsImplicitly."""
+        module = self.module(kind)
+        return isinstance(module, ContactsImplicitly) and bool(module.IMPLICIT_CONTACT)
