@@ -8,9 +8,9 @@ import numpy as np
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS, ControllerConfig
 from runner.controllers.admittance_stability import check_wall
-from runner.controllers.kinds import ChecksStability, FollowsWithinReach
+from runner.controllers.kinds import ChecksStability, FollowsWithinReach, LeadsByForce
 from runner.environments import ENVIRONMENTS, Environment
-from runner.environments.wall import Wall
+from runner.environments.wall import Wall, WallConfig
 from runner.errors import ConfigError
 from runner.feasibility import check_path
 from runner.interaction import Interaction
@@ -18,11 +18,12 @@ from runner.loop.closed_loop import ClosedLoop
 from runner.metrics import MetricContext
 from runner.plants import PLANTS, ContactPlant, Plant, PositionPlant, innermost
 from runner.plants.kinds import HasServo
-from runner.plants.servo import JointServo
+from runner.plants.servo import JointServo, ServoLaw
 from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.mismatch import believe
 from runner.robots.robot import Robot, end_points
 from runner.sensing import EncoderNoise, ForceTorqueConfig, ForceTorqueSensor, JointEncoders
+from runner.servo_contact import ServoContact
 from runner.trace import FloatArray
 
 _BELIEFS = 2**32 - 1  # in the seeds of what controllers believe; the loops' places count from 0
@@ -116,16 +117,16 @@ def _put_up(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
     """Put up a wall in a plant that makes contacts itself, and return what of it is left for the loop to do.
 
     Raises:
-        ConfigError: where there is no tool to touch it, or the controller would bounce on it.
+        ConfigError: where there is no tool to touch it, or the controller would bounce on it with ideal joints.
     """
     tool = config.robot.tool
     if tool is None:
         raise ConfigError(["environment.kind: a wall is touched by the tip of a tool, and robot.tool is null"])
-    if isinstance(config.controller, ChecksStability) and config.controller.check_stability:
-        own = 0 if PLANTS.commands(config.plant.kind) == "position" else 1
+    ideal = PLANTS.commands(config.plant.kind) == "position"
+    if ideal and isinstance(config.controller, ChecksStability) and config.controller.check_stability:
         late = math.ceil(config.timing.delay * config.timing.tick / config.controller.period - 1e-9)
         controller, values = config.controller, wall.config
-        check_wall(controller.law, controller.period, values.stiffness, values.damping, own + late)
+        check_wall(controller.law, controller.period, values.stiffness, values.damping, late)
     within = innermost(plant)
     if not isinstance(within, ContactPlant):
         return wall
@@ -133,6 +134,40 @@ def _put_up(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
     ball = tool.tip_radius * wall.normal  # it is the ball's centre that is led
     within.add_wall(wall.point - ball, wall.normal.copy(), wall.config.stiffness, wall.config.damping)
     return None
+
+
+def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None:
+    """Return the contact of an arm behind joint servos with a wall; None where a run has none that can be followed.
+
+    Args:
+        config: The checked config.
+        q_start: Joint positions at the start, shape (nq,), in rad.
+    """
+    plant, law, wall, timing = config.plant, config.controller, config.environment, config.timing
+    if not isinstance(wall, WallConfig) or not isinstance(law, LeadsByForce) or not isinstance(plant, HasServo):
+        return None
+    if PLANTS.commands(plant.kind) != "torque" or config.commands != "position" or len(config.arm.stages) > 1:
+        return None
+    low_pass = config.wrist_sensor.low_pass
+    return ServoContact(
+        arm=config.arm,
+        q=q_start,
+        servo=ServoLaw(config.arm.model, plant.servo, config.arm.home),
+        step=timing.step,
+        steps=timing.steps_per_tick,
+        tick=timing.tick,
+        ticks=round(law.period / timing.tick),
+        delay=timing.delay,
+        interpolate=plant.servo.interpolate,
+        implicit=PLANTS.contacts_implicitly(plant.kind),
+        law=law.law,
+        at_tip=law.at == "tip",
+        inertia=law.compensation == "gravity_and_inertia",
+        seen=1.0 if low_pass is None else float(-np.expm1(-2.0 * np.pi * low_pass * timing.tick)),
+        normal=np.array(wall.normal) / np.linalg.norm(wall.normal),
+        stiffness=wall.stiffness,
+        damping=wall.damping,
+    )
 
 
 def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition: int) -> list[JointEncoders]:

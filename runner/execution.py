@@ -88,7 +88,7 @@ def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
     wall, cpu = time.perf_counter(), time.process_time()
     loop = assemble(config)
     context = metric_context(config)
-    watch = Watch(setting_of(config), config.caveats)
+    watch = Watch(setting_of(config, loop.q_start), config.caveats)
     first: Trace | None = None
     failure: tuple[int, Failure] | None = None
     metrics, ticks = [], []

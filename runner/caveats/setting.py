@@ -14,6 +14,7 @@ if TYPE_CHECKING:  # the store knows caveats, and is to be imported without rigi
     from runner.config.run import RunConfig
     from runner.robots.mismatch import MismatchConfig
     from runner.sensing import EncoderNoise
+    from runner.servo_contact import ServoContact
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,7 @@ class Setting:
         noise: Noise of the joint measurement.
         mismatch: How what controllers believe of the robot differs from it.
         mass: Mass of all moving links, in kg.
+        contact: Of an arm behind joint servos with a wall, under an admittance law; None where there is none.
     """
 
     repetitions: int
@@ -51,10 +53,18 @@ class Setting:
     noise: "EncoderNoise"
     mismatch: "MismatchConfig"
     mass: float
+    contact: "ServoContact | None"
 
 
-def setting_of(config: "RunConfig") -> Setting:
-    """Return the setting of a run."""
+def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Setting:
+    """Return the setting of a run.
+
+    Args:
+        config: The checked config.
+        q_start: Joint positions at the start, shape (nq,), in rad; None leaves contact out.
+    """
+    from runner.assembly import servo_contact
+
     model = config.arm.model
     ticks = np.ones(model.nq, dtype=np.intp)
     if config.commands == "torque":
@@ -75,4 +85,5 @@ def setting_of(config: "RunConfig") -> Setting:
         noise=config.noise,
         mismatch=config.mismatch,
         mass=model.mass,
+        contact=None if q_start is None else servo_contact(config, q_start),
     )

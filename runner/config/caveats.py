@@ -89,6 +89,16 @@ class NoEffortLimitThreshold(StrictModel):
     payload: NonNegativeFloat
 
 
+class UnstableContactThreshold(StrictModel):
+    """Threshold of the rule on contact behind joint servos.
+
+    Attributes:
+        radius: How many times a small motion in contact with a wall may grow in each period of the controller.
+    """
+
+    radius: PositiveFloat
+
+
 class CaveatsConfig(StrictModel):
     """When a run tells that its result may mislead; a rule each, which is sprung by what is above its threshold.
 
@@ -101,6 +111,7 @@ class CaveatsConfig(StrictModel):
         fixed_mismatch: Repetitions that vary noise alone, under a wrong model.
         overload: A payload beyond the rating.
         no_effort_limit: A payload on an arm that lifts anything.
+        unstable_contact: A wall too stiff for an admittance behind joint servos.
     """
 
     saturation: SaturationThreshold
@@ -111,3 +122,4 @@ class CaveatsConfig(StrictModel):
     fixed_mismatch: FixedMismatchThreshold
     overload: OverloadThreshold
     no_effort_limit: NoEffortLimitThreshold
+    unstable_contact: UnstableContactThreshold

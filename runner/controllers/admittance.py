@@ -34,7 +34,8 @@ class AdmittanceConfig(StrictModel):
         tip_speed: Largest speed at which the spring's rest goes to a goal that jumps, in m/s.
         limit_approach: How fast a joint may near its position limit, as a share of what is left, in 1/s.
         sensor: What is believed of the wrist's sensor: its bias, rotation and height.
-        check_stability: Whether a wall is refused that the sampled law would bounce on.
+        check_stability: Whether a wall is refused that the sampled law would bounce on with ideal joints, as those of a
+            kinematic plant; behind servos nothing is refused, and a caveat tells (unstable_contact).
     """
 
     kind: Literal["admittance"]

@@ -1,4 +1,7 @@
-"""Against which wall a sampled admittance stays stable."""
+"""Against which wall a sampled admittance stays stable, with ideal joints, which go where they are told.
+
+Behind joint servos the arm's masses and the servos' springs decide with it; see runner/servo_contact.py.
+"""
 
 import numpy as np
 
@@ -22,7 +25,7 @@ def contact_matrix(
         period: h, in s.
         stiffness: k of the wall, in N/m, or N m/rad.
         damping: c of the wall, in N s/m, or N m s/rad.
-        delay: d, in ticks: 0 for an arm that follows exactly, 1 for a servo that lags by a tick.
+        delay: d, in ticks: 0 for an arm that follows exactly, more for commands that act late.
 
     Returns:
         For the state (dx_k, x_k, x_{k-1} ... x_{k-d-1}), shape (d + 3, d + 3).

@@ -53,7 +53,10 @@ class FollowsWithinReach(Protocol):
 
 @runtime_checkable
 class ChecksStability(Protocol):
-    """A config of controllers that give way by a law, and may refuse a wall on which they would bounce."""
+    """A config of controllers that give way by a law, and may refuse a wall on which they would bounce.
+
+    It is refused where joints go where they are told; behind servos the law does not decide alone.
+    """
 
     check_stability: bool
     period: float
@@ -62,6 +65,14 @@ class ChecksStability(Protocol):
     def law(self) -> Admittance:
         """The law: mass, damping and stiffness."""
         ...
+
+
+@runtime_checkable
+class LeadsByForce(ChecksStability, Protocol):
+    """A config of such controllers that says, too, where they feel, and what they take off the reading."""
+
+    at: str
+    compensation: str
 
 
 class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):

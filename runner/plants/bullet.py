@@ -16,6 +16,7 @@ from runner.robots.tool_link import TOOL_MOUNT
 with quiet_stderr():  # PyBullet announces its build time
     import pybullet
 
+IMPLICIT_CONTACT = True  # a wall's spring and damper act in each step, from the velocity at its end
 # Bullet clamps joint speeds at 100 rad/s by default; a Mini's free goal move is faster than that.
 _NO_SPEED_LIMIT = 1e12
 

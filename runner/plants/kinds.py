@@ -40,6 +40,13 @@ class HasServo(Protocol):
     servo: ServoConfig
 
 
+@runtime_checkable
+class ContactsImplicitly(Protocol):
+    """A module whose plants make contacts themselves, and says whether in each step, from the velocity at its end."""
+
+    IMPLICIT_CONTACT: bool
+
+
 class ChoosesStep(Protocol):
     """The part of a plant's module that chooses the integration step where the config names none."""
 
@@ -62,3 +69,8 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
         """Return the step that a kind takes when its config names none, in s."""
         chooser: ChoosesStep = self.module(kind)
         return chooser.default_step(tick, stages)
+
+    def contacts_implicitly(self, kind: str) -> bool:
+        """Tell whether a kind makes contacts in each step, from the velocity at its end; see ContactsImplicitly."""
+        module = self.module(kind)
+        return isinstance(module, ContactsImplicitly) and bool(module.IMPLICIT_CONTACT)

@@ -30,8 +30,8 @@ class ServoConfig(StrictModel):
     interpolate: bool
 
 
-class JointServo:
-    r"""Proportional-derivative control of every joint around a plant that takes torques.
+class ServoLaw:
+    r"""Proportional-derivative control of every joint.
 
     The spring and the damper are evaluated at the end of the servo's period h, with the acceleration that follows from
     them, so that no stiffness or damping makes the sampled servo unstable (as Tan, Liu and Turk do for the damper,
@@ -43,7 +43,58 @@ class JointServo:
         (M + h D + h^2 K) \ddot q = K (q_c - q - h \dot q) + D (\dot q_c - \dot q) - V
 
     q_c and its velocity are the set-point's at the end of the period; G is there with gravity compensation, and in the
-    second equation -G without. The torques are clipped at the effort limits.
+    second equation -G without.
+
+    Args:
+        model: The arm as the servo believes it to be, for M, V and G.
+        config: The servo's numbers.
+        home: Posture at which the damping is set, shape (nq,), in rad.
+
+    Raises:
+        ConfigError: if the stiffness is a list of another length than the arm has joints.
+    """
+
+    def __init__(self, model: RobotModel, config: ServoConfig, home: FloatArray) -> None:
+        self._model = pin.Model(model.pin_model)
+        self._data = self._model.createData()
+        self._period = config.period
+        self._stiffness = np.array(expand("plant.servo.stiffness", config.stiffness, model.joint_names))
+        inertia = np.diagonal(model.mass_matrix(home))
+        self._damping = 2.0 * config.damping_ratio * np.sqrt(self._stiffness * inertia)
+        self._added_inertia = config.period * self._damping + config.period**2 * self._stiffness
+        self._gravity_compensation = config.gravity_compensation
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector; see Plant."""
+        self._model.gravity.linear = gravity
+
+    def torques(self, q: FloatArray, dq: FloatArray, position: FloatArray, velocity: FloatArray) -> FloatArray:
+        """Return what the law asks for, no limit applied.
+
+        Args:
+            q: Joint positions, shape (nq,), in rad.
+            dq: Joint velocities, shape (nq,), in rad/s.
+            position: Set-point at the end of the period, shape (nq,), in rad.
+            velocity: Its velocity, shape (nq,), in rad/s.
+
+        Returns:
+            Shape (nq,), in N m.
+        """
+        model, data, h = self._model, self._data, self._period
+        bias = pin.nonLinearEffects(model, data, q, dq).copy()
+        M = pin.crba(model, data, q)  # its upper triangle is all that dposv reads
+        G = pin.computeGeneralizedGravity(model, data, q) if self._gravity_compensation else 0.0
+        spring = self._stiffness * (position - q - h * dq)
+        slip = velocity - dq
+        np.einsum("ii->i", M)[:] += self._added_inertia
+        asked = spring + self._damping * slip + G
+        _, ddq, _ = dposv(M, asked - bias)
+        tau: FloatArray = asked - self._added_inertia * ddq
+        return tau
+
+
+class JointServo:
+    """Position servos, by ServoLaw, around a plant that takes torques; these are clipped at the effort limits.
 
     Args:
         plant: The plant; one `advance` of it takes a servo period.
@@ -73,15 +124,8 @@ class JointServo:
         self.q, self.dq = plant.q, plant.dq
         self.tau = np.zeros(model.nq)
         self.load = np.zeros(model.nq)
-        self._model = pin.Model(model.pin_model)
-        self._data = self._model.createData()
-        self._period = config.period
+        self._law = ServoLaw(model, config, home)
         self._limits = limits
-        self._stiffness = np.array(expand("plant.servo.stiffness", config.stiffness, model.joint_names))
-        inertia = np.diagonal(model.mass_matrix(home))
-        self._damping = 2.0 * config.damping_ratio * np.sqrt(self._stiffness * inertia)
-        self._added_inertia = config.period * self._damping + config.period**2 * self._stiffness
-        self._gravity_compensation = config.gravity_compensation
         self._set_points = SetPoints(ticks_per_command, config.period, model.velocity_limits, config.interpolate, delay)
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
@@ -92,21 +136,13 @@ class JointServo:
     def set_gravity(self, gravity: FloatArray) -> None:
         """Take another gravity vector; see Plant."""
         self.plant.set_gravity(gravity)
-        self._model.gravity.linear = gravity
+        self._law.set_gravity(gravity)
 
     def advance(self, command: FloatArray) -> None:
         """Pull the joints towards their commanded positions for one servo period; see PositionPlant."""
         self._set_points.advance(command)
-        model, data, q, dq, h = self._model, self._data, self.q, self.dq, self._period
-        bias = pin.nonLinearEffects(model, data, q, dq).copy()
-        M = pin.crba(model, data, q)  # its upper triangle is all that dposv reads
-        G = pin.computeGeneralizedGravity(model, data, q) if self._gravity_compensation else 0.0
-        spring = self._stiffness * (self._set_points.position - q - h * dq)
-        slip = self._set_points.velocity - dq
-        np.einsum("ii->i", M)[:] += self._added_inertia
-        asked = spring + self._damping * slip + G
-        _, ddq, _ = dposv(M, asked - bias)
-        np.clip(asked - self._added_inertia * ddq, -self._limits, self._limits, out=self.tau)
+        tau = self._law.torques(self.q, self.dq, self._set_points.position, self._set_points.velocity)
+        np.clip(tau, -self._limits, self._limits, out=self.tau)
         self.plant.advance(self.tau + self.load)
 
     def close(self) -> None:

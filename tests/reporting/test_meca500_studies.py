@@ -7,13 +7,13 @@ from thin_plans import make_runs
 from runner.controllers.admittance_response import sampled_frequency_response
 from runner.controllers.admittance_stability import stiffest_wall
 from runner.reporting.meca500.at_the_tip import filtered_turn, tool_turn
+from runner.reporting.meca500.bouncing import bounces
 from runner.reporting.meca500.contact import felt_force, reading_error
 from runner.reporting.meca500.frequency_response import fitted_response
 from runner.reporting.meca500.limits import smallest_margin
 from runner.reporting.meca500.plan import LIMITS, REPORTED, law, plan
 from runner.reporting.meca500.servo_compliance import servo_compliance
 from runner.reporting.meca500.signals import displacement, wrenches
-from runner.reporting.meca500.stability_map import bounces
 from runner.reporting.meca500.step_response import law_of, step_error
 
 

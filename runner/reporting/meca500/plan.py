@@ -1,6 +1,7 @@
 """Which runs the Meca500 report needs: a name for each, and the overrides that make it."""
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -38,13 +39,43 @@ WALLS = {1e3: 20.0, 1e4: 20.0, 1e5: 200.0}  # N/m: N s/m
 PLANTS: Mapping[str, tuple[str, ...]] = {"kinematic": (), "bullet": _SERVO}
 # The law that is held against walls: M, B and K along every axis, in kg, N s/m and N/m.
 MASS, DAMPING, STIFFNESS = 2.0, 80.0, 800.0
-MAP_PERIODS = {"kinematic": (0.001, 0.005, 0.01, REPORTED), "bullet": (0.005, REPORTED)}  # s
-MAP_SHARES = {"kinematic": (0.5, 0.8, 0.9, 1.1, 1.25, 2.0), "bullet": (2.0, 8.0, 32.0)}  # of the bound
+MAP_PERIODS = (0.001, 0.005, 0.01, REPORTED)  # s
+MAP_SHARES = (0.5, 0.8, 0.9, 1.1, 1.25, 2.0)  # of the bound
 LIMITS = ("speed_limit", "joint_limit", "out_of_reach")
 ORIENTATIONS = 100
 SWINGS = (4.0, 2.0, 1.0, 0.5)  # s, around the circle
 STEPS = (1e-3, 5e-4, 2.5e-4)  # s, of PyBullet
 INERTIALS = ("cad_closed", "uniform_density")
+
+
+class ServoCase(NamedTuple):
+    """Joint servos that press on walls.
+
+    Attributes:
+        period: Of the controller, in s.
+        tick: Period of the servos and step of the plant, in s.
+        spring: Stiffness of the servos, in N m/rad.
+        wall: Stiffness about which those of the walls are spread, in N/m: the predicted bound to three digits.
+    """
+
+    period: float
+    tick: float
+    spring: float
+    wall: float
+
+    def job_name(self, share: float) -> str:
+        """Return the name of the run against a share of the wall."""
+        return f"map/bullet/{self.period}/{self.tick}/{self.spring:g}/{share}"
+
+
+SERVO_CASES = (
+    ServoCase(0.005, 0.001, 1.5e5, 3.49e4),
+    ServoCase(0.01, 0.001, 1.5e4, 2.01e4),
+    ServoCase(REPORTED, 0.000835, 1.5e4, 1.06e4),
+    ServoCase(REPORTED, 0.000835, 1.5e5, 9.52e3),
+    ServoCase(REPORTED, 0.000167, 1.5e3, 3.70e4),
+    ServoCase(REPORTED, 0.000167, 1.5e5, 8.90e3),
+)
 
 
 def law() -> Admittance:
@@ -89,14 +120,17 @@ def _contact() -> Jobs:
               (("mass", MASS, 0.02), ("damping", DAMPING, 0.8), ("stiffness", STIFFNESS, 8.0)))  # fmt: skip
     base = (*values, "environment.distance=0", "environment.damping=0", "controller.check_stability=false",
             "duration=1.2")  # fmt: skip
-    for plant, periods in MAP_PERIODS.items():
-        for period in periods:
-            bound = stiffest_wall(law(), period, 0, 0.0, 0)
-            step = 0.000835 if period == REPORTED else 0.001
-            servo = ("plant=bullet", f"plant.servo.period={step}", f"plant.step={step}") if plant == "bullet" else ()
-            for share in MAP_SHARES[plant]:
-                own = (f"controller.period={period}", f"environment.stiffness={share * bound:.5g}")
-                jobs[f"map/{plant}/{period}/{share}"] = _job("wall", (*base, *servo, *own))
+    for period in MAP_PERIODS:
+        bound = stiffest_wall(law(), period, 0, 0.0, 0)
+        for share in MAP_SHARES:
+            own = (f"controller.period={period}", f"environment.stiffness={share * bound:.5g}")
+            jobs[f"map/kinematic/{period}/{share}"] = _job("wall", (*base, *own))
+    for case in SERVO_CASES:
+        servo = ("plant=bullet", f"plant.servo.period={case.tick}", f"plant.step={case.tick}",
+                 f"plant.servo.stiffness={case.spring:g}", "trajectory.goal=[0.185,0.01,0.06]")  # fmt: skip
+        for share in MAP_SHARES:
+            own = (f"controller.period={case.period}", f"environment.stiffness={share * case.wall:.5g}")
+            jobs[case.job_name(share)] = _job("wall", (*base, *servo, *own))
     return jobs
 
 

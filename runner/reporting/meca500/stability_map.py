@@ -9,47 +9,30 @@ from runner.reporting.document import Curves, Formula, Panel, Section, Series, T
 from runner.reporting.figures import origin
 from runner.reporting.findings import Finding, finding
 from runner.reporting.measured import Measured
+from runner.reporting.meca500.bouncing import bounces
 from runner.reporting.meca500.plan import DAMPING, MAP_PERIODS, MAP_SHARES, MASS, STIFFNESS, law
-from runner.reporting.meca500.servo_compliance import servo_compliance
-from runner.reporting.meca500.signals import wrenches
+from runner.reporting.meca500.servo_walls import servo_wall_blocks, wall_of
 from runner.reporting.quantities import number
 from runner.store import Run
 
-_STILL = 1e-4  # N, below which a force that swings is rounding
-
-
-def bounces(run: Run) -> bool:
-    """Tell whether contact is unstable as observed.
-
-    It is where in the last third of a run the tip leaves the wall, or the force swings more widely than in the third
-    before.
-    """
-    force = -wrenches(run, "external")[:, 0]
-    third = len(force) // 3
-    before, last = force[third : 2 * third], force[-third:]
-    return bool(last.min() <= 0.0 or np.ptp(last) > max(np.ptp(before), _STILL))
-
 
 def stability_map_section(runs: Mapping[str, Run]) -> Section:
-    """Return the map over the wall's stiffness and the period, on both plants."""
+    """Return the map over the wall's stiffness and the period, and what servos make of it."""
     rows = []
-    for plant, periods in MAP_PERIODS.items():
-        for period in periods:
-            found = {share: runs[f"map/{plant}/{period}/{share}"] for share in MAP_SHARES[plant]}
-            stable = [_wall(run) for run in found.values() if not bounces(run)]
-            unstable = [_wall(run) for run in found.values() if bounces(run)]
-            rows.append(
-                [
-                    plant,
-                    f"{1e3 * period:g}",
-                    number(stiffest_wall(law(), period, 0, 0.0, 0)),
-                    number(stiffest_wall(law(), period, 0, 0.0, 1)),
-                    _servo_spring(next(iter(found.values()))) if plant == "bullet" else "–",
-                    number(max(stable)) if stable else "–",
-                    number(min(unstable)) if unstable else "none",
-                ]
-            )
-    first = runs[f"map/kinematic/0.001/{MAP_SHARES['kinematic'][0]}"]
+    for period in MAP_PERIODS:
+        found = [runs[f"map/kinematic/{period}/{share}"] for share in MAP_SHARES]
+        stable = [wall_of(run) for run in found if not bounces(run)]
+        unstable = [wall_of(run) for run in found if bounces(run)]
+        rows.append(
+            [
+                f"{1e3 * period:g}",
+                number(stiffest_wall(law(), period, 0, 0.0, 0)),
+                number(stiffest_wall(law(), period, 0, 0.0, 1)),
+                number(max(stable)) if stable else "none",
+                number(min(unstable)) if unstable else "none",
+            ]
+        )
+    first = runs[f"map/kinematic/{MAP_PERIODS[0]}/{MAP_SHARES[0]}"]
     return Section(
         "Stability at a wall over its stiffness and the sample time",
         (
@@ -69,28 +52,26 @@ def stability_map_section(runs: Mapping[str, Run]) -> Section:
             ),
             Text(
                 f"The law has $M = {MASS:g}$ kg, $B = {DAMPING:g}$ N s/m, $K = {STIFFNESS:g}$ N/m; the wall has no "
-                "damping. The tip stands at the wall, and its goal goes 10 mm into it. A run counts as unstable when "
-                "in its last third the tip leaves the wall, or the force swings more widely than in the third before. "
-                "The spring of the servos is what the arm gives way by at the tip, along the wall's normal."
+                "damping. The tip stands at the wall, and with ideal joints its goal goes 10 mm into it. A run counts "
+                "as unstable when in its last third the tip leaves the wall, or the force swings more widely than in "
+                "the third before."
             ),
             _map(runs),
             Table(
                 "Stiffest wall, in N/m: predicted for ideal joints, and between which runs the observed bound lies.",
                 [
-                    "plant",
                     "period (ms)",
                     "predicted, delay 0",
                     "predicted, delay 1",
-                    "spring of the servos",
                     "stiffest stable",
                     "softest unstable",
                 ],
                 rows,
-                tuple(range(1, 7)),
+                tuple(range(5)),
                 origin(first),
             ),
             ideal_wall_finding(**ideal_wall_values(runs)),
-            servo_wall_finding(**servo_wall_values(runs)),
+            *servo_wall_blocks(runs),
         ),
     )
 
@@ -98,7 +79,7 @@ def stability_map_section(runs: Mapping[str, Run]) -> Section:
 def ideal_wall_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
     """Return what the finding on walls before ideal joints is about."""
     right, count = agreement(runs)
-    shares, periods = MAP_SHARES["kinematic"], MAP_PERIODS["kinematic"]
+    shares, periods = MAP_SHARES, MAP_PERIODS
     about = [stiffest_wall(law(), period, 0, 0.0, 0) * period / (2.0 * DAMPING) for period in periods]
     return {
         "right": Measured("runs stable or not as predicted", right),
@@ -141,78 +122,35 @@ def ideal_wall_finding(
     )
 
 
-def servo_wall_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
-    """Return what the finding on walls before an arm with servos is about."""
-    found = [
-        (runs[f"map/bullet/{period}/{share}"], period)
-        for period in MAP_PERIODS["bullet"]
-        for share in MAP_SHARES["bullet"]
-    ]
-    over = {delay: max(_wall(run) / stiffest_wall(law(), h, 0, 0.0, delay) for run, h in found) for delay in (0, 1)}
-    return {
-        "count": Measured("runs on servos", len(found)),
-        "bounced": Measured("runs on servos that bounced", sum(bounces(run) for run, _ in found)),
-        "stiffest": Measured("stiffest wall tried on servos", max(_wall(run) for run, _ in found), "N/m"),
-        "over": Measured("stiffest wall over the bound without delay", over[0]),
-        "over_late": Measured("stiffest wall over the bound with a delay of a tick", over[1]),
-    }
-
-
-def servo_wall_finding(
-    count: Measured, bounced: Measured, stiffest: Measured, over: Measured, over_late: Measured
-) -> Finding:
-    """Return that the bound says little of an arm with masses and servos."""
-    return finding(
-        "Behind servos the bound is not where contact becomes unstable",
-        f"Of {count} runs on joint servos {bounced} bounced, on walls up to {stiffest}: {over} times the bound without "
-        f"delay, and {over_late} times the one with a delay of a tick. So the bound is far on the safe side there, and "
-        "does not tell which wall such an arm stands: that depends on servos, masses, filter and wall together.",
-        bounced < 1.0,
-        over > 10.0,
-        over_late > 10.0,
-    )
-
-
-def _wall(run: Run) -> float:
-    return float(run.config["environment"]["stiffness"])
-
-
-def _servo_spring(run: Run) -> str:
-    return number(1.0 / float(servo_compliance(run)[0, 0]))
-
-
 def agreement(runs: Mapping[str, Run]) -> tuple[int, int]:
     """Return how many runs on the kinematic plant are stable or not as predicted, and of how many."""
     agree = [
         bounces(runs[f"map/kinematic/{period}/{share}"]) == (share > 1.0)
-        for period in MAP_PERIODS["kinematic"]
-        for share in MAP_SHARES["kinematic"]
+        for period in MAP_PERIODS
+        for share in MAP_SHARES
     ]
     return sum(agree), len(agree)
 
 
 def _map(runs: Mapping[str, Run]) -> Curves:
-    periods = np.geomspace(MAP_PERIODS["kinematic"][0], MAP_PERIODS["kinematic"][-1], 12)
+    periods = np.geomspace(MAP_PERIODS[0], MAP_PERIODS[-1], 12)
     bounds = {delay: np.array([stiffest_wall(law(), h, 0, 0.0, delay) for h in periods]) for delay in (0, 1)}
-    panels = []
-    for plant in MAP_PERIODS:
-        points: dict[bool, list[tuple[float, float]]] = {False: [], True: []}
-        for period in MAP_PERIODS[plant]:
-            for share in MAP_SHARES[plant]:
-                run = runs[f"map/{plant}/{period}/{share}"]
-                points[bounces(run)].append((1e3 * period, _wall(run)))
-        series = [
-            Series(f"predicted, delay {delay}", 1e3 * periods, bound, "line" if delay == 0 else "dashed")
-            for delay, bound in bounds.items()
-        ]
-        for unstable, name in ((False, "stable"), (True, "unstable")):
-            if points[unstable]:
-                x, y = np.array(points[unstable]).T
-                series.append(Series(name, x, y, "points"))
-        panels.append(Panel(plant, "sample time (ms)", "stiffness of the wall (N/m)", series, x_log=True, y_log=True))
+    points: dict[bool, list[tuple[float, float]]] = {False: [], True: []}
+    for period in MAP_PERIODS:
+        for share in MAP_SHARES:
+            run = runs[f"map/kinematic/{period}/{share}"]
+            points[bounces(run)].append((1e3 * period, wall_of(run)))
+    series = [
+        Series(f"predicted, delay {delay}", 1e3 * periods, bound, "line" if delay == 0 else "dashed")
+        for delay, bound in bounds.items()
+    ]
+    for unstable, name in ((False, "stable"), (True, "unstable")):
+        if points[unstable]:
+            x, y = np.array(points[unstable]).T
+            series.append(Series(name, x, y, "points"))
     return Curves(
-        "Stability of contact over sample time and stiffness of the wall; the predictions are for ideal joints.",
-        panels,
-        2,
-        origin(runs[f"map/kinematic/0.001/{MAP_SHARES['kinematic'][0]}"]),
+        "Stability of contact with ideal joints over sample time and stiffness of the wall.",
+        [Panel("kinematic", "sample time (ms)", "stiffness of the wall (N/m)", series, x_log=True, y_log=True)],
+        1,
+        origin(runs[f"map/kinematic/{MAP_PERIODS[0]}/{MAP_SHARES[0]}"]),
     )

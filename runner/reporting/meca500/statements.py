@@ -10,12 +10,8 @@ from runner.reporting.meca500.at_the_tip import tip_finding, tip_values
 from runner.reporting.meca500.contact import contact_finding, contact_values
 from runner.reporting.meca500.hand_guiding import guiding_values
 from runner.reporting.meca500.limits import limits_values
-from runner.reporting.meca500.stability_map import (
-    ideal_wall_finding,
-    ideal_wall_values,
-    servo_wall_finding,
-    servo_wall_values,
-)
+from runner.reporting.meca500.servo_walls import servo_wall_finding, servo_wall_values
+from runner.reporting.meca500.stability_map import ideal_wall_finding, ideal_wall_values
 from runner.reporting.meca500.step_response import (
     ideal_step_finding,
     ideal_step_values,
@@ -51,8 +47,7 @@ def statements_section(runs: Mapping[str, Run]) -> Section:
         ["5", "Forces can be mapped into positions (no word on contact)",
          _verdict(contact_finding(**wall), ideal_wall_finding(**ideal), servo_wall_finding(**behind)),
          f"the force on walls is read within {wall['reading']}; on ideal joints {ideal['right']} of {ideal['count']} "
-         f"runs bounce or not as predicted, behind servos {behind['bounced']} of {behind['count']} bounce, up to "
-         f"{behind['over']} times the bound"],
+         f"runs bounce or not as predicted, behind servos {behind['right']} of {behind['count']}"],
         ["5", "Torques are related to the axis angle by eq. (8)",
          equations["meca500-turn"],
          "the printed sum of angles along the axes, by which the axis angle is to be found; the rotation vector is "

@@ -1,0 +1,31 @@
+"""Rules on contact with the world."""
+
+import numpy as np
+
+from runner.caveats.rule import SettingRule
+from runner.caveats.setting import Setting
+
+_DIGITS = 6  # of the radius; an axis without a spring has an eigenvalue of 1 but for rounding
+
+
+def _radius(setting: Setting) -> float | None:
+    """Return the spectral radius of contact behind servos; None where there is no such contact, or no way to tell."""
+    if setting.contact is None:
+        return None
+    from runner.servo_contact import contact_radius  # the store knows rules, and is imported without rigid bodies
+
+    try:
+        return round(contact_radius(setting.contact), _DIGITS)
+    except np.linalg.LinAlgError:  # at a singular posture
+        return None
+
+
+def _tell_radius(value: float, setting: Setting) -> str:
+    return (
+        f"by the linear map of servos, arm, filter and wall at the start, contact with the wall is unstable: a small "
+        f"motion grows {value:.4g} times in each controller.period, unless a joint is at its torque limit; take a "
+        "softer wall, a shorter controller.period, or more controller.damping or controller.mass"
+    )
+
+
+UNSTABLE_CONTACT = SettingRule("unstable_contact", "radius", _radius, _tell_radius)

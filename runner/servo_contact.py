@@ -1,0 +1,211 @@
+"""Whether an admittance behind joint servos is stable in contact with a wall, from the whole loop's linear map.
+
+An ideal joint goes where it is told, and filter and wall alone decide (`controllers/admittance_stability.py`). Behind
+servos the arm's masses and the servos' springs stand between them, so that one controller period is followed here as
+the loop does it, tick by tick, for small motions about the posture at the start: reading, filter, inverse kinematics,
+set-points, servos, arm and wall. The wall is taken to be touched throughout, limits are not met, joints have no
+friction, and what the controller believes is true.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pinocchio as pin
+from scipy.linalg import expm
+
+from runner.controllers.admittance_filter import Admittance, discretise
+from runner.plants.servo import ServoLaw
+from runner.robots.robot import Robot
+from runner.robots.tool_link import find_tool
+from runner.trace import FloatArray
+
+_STEP = 1e-5  # rad and rad/s, of the differences
+_ROUNDING = 1e-9  # of the radius, which an axis without spring makes 1
+_REACHED = 1e-3  # of the largest singular value of the tip's Jacobian: below it a posture is singular
+
+
+@dataclass(frozen=True)
+class ServoContact:
+    """An arm behind servos, in contact with a wall, under an admittance law.
+
+    Attributes:
+        arm: The robot.
+        q: Posture, shape (nq,), in rad, where the tip touches the wall.
+        servo: Its servos' law.
+        step: Integration step of the plant, in s.
+        steps: Integration steps in a tick of the servos.
+        tick: Period of the servos, in s.
+        ticks: Ticks in a period of the controller.
+        delay: Ticks from a command until it acts.
+        interpolate: Whether set-points move evenly between commands, or jump.
+        implicit: Whether the plant makes the contact itself, in each step and from the velocity at its end, as PyBullet
+            does; else the wall's force at a tick is held for the tick, on an arm that is integrated exactly.
+        law: The admittance.
+        at_tip: Whether it feels the moment about the tip, or about the flange.
+        inertia: Whether the tool's inertia is taken off the reading, from velocities a controller period apart.
+        seen: Share of a change of the load that the reading follows within a tick: 1 without a low-pass.
+        normal: Out of the wall, shape (3,).
+        stiffness: Of the wall, in N/m.
+        damping: Of the wall, in N s/m.
+    """
+
+    arm: Robot
+    q: FloatArray
+    servo: ServoLaw
+    step: float
+    steps: int
+    tick: float
+    ticks: int
+    delay: int
+    interpolate: bool
+    implicit: bool
+    law: Admittance
+    at_tip: bool
+    inertia: bool
+    seen: float
+    normal: FloatArray
+    stiffness: float
+    damping: float
+
+
+def contact_map(contact: ServoContact) -> FloatArray:
+    """Return the matrix that takes small motions in contact from one tick of the controller to the next.
+
+    The state: joint positions, velocities, velocities a tick before and at the controller's last tick, set-points;
+    the sensor's reading, the filter's displacement and velocity; the commands on their way.
+
+    Raises:
+        numpy.linalg.LinAlgError: at a singular posture.
+    """
+    law, n, ticks = contact.law, contact.arm.model.nq, contact.ticks
+    period = ticks * contact.tick
+    J = contact.arm.model.tip_jacobian(contact.q)
+    values = np.linalg.svd(J, compute_uv=False)
+    if values[-1] < _REACHED * values[0]:
+        raise np.linalg.LinAlgError
+    lead = np.linalg.pinv(J)
+    press, moved = _wrenches(contact, J)
+    pull, slow, towards, along = _servo_gradients(contact)
+    stay, push = _arm(contact, J)
+    late, rest = divmod(contact.delay, ticks)
+    Phi, Gamma = discretise(law, period)
+    sizes = np.cumsum([n, n, n, n, n, 6, 6, 6] + [n] * (late + (rest > 0)))
+    whole = np.eye(sizes[-1])
+    q, dq, before, last, point, reading, x, dx, *commands = np.split(whole, sizes[:-1])
+    wall = -(contact.stiffness * J[:3].T @ contact.normal)[:, None] * (contact.normal @ J[:3])
+    damper = wall * (contact.damping / contact.stiffness)
+    for tick in range(ticks):
+        # what the sensor feels in each tick: the wall, and the tool's inertia
+        load = press @ (contact.stiffness * q + contact.damping * dq) - moved @ (dq - before) / contact.tick
+        reading = reading + contact.seen * (load - reading)
+        before = dq
+        if tick == 0:
+            felt = reading + moved @ (dq - last) / period if contact.inertia else reading
+            last = dq
+            x, dx = (Phi[:, i, 0, None] * x + Phi[:, i, 1, None] * dx + Gamma[:, i, None] * felt for i in (0, 1))
+            commands = [lead @ x, *commands]
+        acting = commands[late if tick >= rest else late + 1]
+        left = ticks - (tick - rest) % ticks if contact.interpolate else 1
+        way = (acting - point) / left
+        point = point + way
+        tau = pull @ q + slow @ dq + towards @ point
+        if contact.interpolate:
+            tau = tau + along @ way / contact.tick
+        if not contact.implicit:
+            tau = tau + wall @ q + damper @ dq
+        q, dq = np.split(stay @ np.vstack([q, dq]) + push @ tau, 2)
+    return np.vstack([q, dq, before, last, point, reading, x, dx, *commands[: late + (rest > 0)]])
+
+
+def contact_radius(contact: ServoContact) -> float:
+    """Return the spectral radius of the contact's map; it is stable below 1, and an axis without spring gives 1.
+
+    Raises:
+        numpy.linalg.LinAlgError: at a singular posture.
+    """
+    return float(np.abs(np.linalg.eigvals(contact_map(contact))).max())
+
+
+def stiffest_servo_wall(contact: ServoContact) -> float | None:
+    """Return the softest wall, in N/m, from 100 N/m up, beyond which contact becomes unstable; None up to 10^7 N/m.
+
+    Raises:
+        numpy.linalg.LinAlgError: at a singular posture.
+    """
+    from scipy.optimize import brentq
+
+    def excess(exponent: float) -> float:
+        return contact_radius(replace(contact, stiffness=10.0**exponent)) - 1.0
+
+    exponents = np.linspace(2.0, 7.0, 41)
+    first = next((place for place, exponent in enumerate(exponents) if excess(exponent) > _ROUNDING), None)
+    if first is None:
+        return None
+    return 0.0 if first == 0 else float(10.0 ** brentq(excess, exponents[first - 1], exponents[first], xtol=1e-5))
+
+
+def _wrenches(contact: ServoContact, J: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the wrench on the tool for each joint, along the base's axes about where the law takes it.
+
+    Returns:
+        Of the wall, for a unit of its stiffness, and of what accelerates the tool, shapes (6, nq).
+    """
+    model, q = contact.arm.model.pin_model, contact.q
+    data = model.createData()
+    flange = model.getFrameId(contact.arm.flange)
+    of_flange = pin.computeFrameJacobian(model, data, q, flange, pin.LOCAL)
+    pin.framesForwardKinematics(model, data, q)  # the Jacobian leaves poses in the base frame as they were
+    place, tip = data.oMf[flange], data.oMf[contact.arm.model.tip_frame].translation
+    about = tip if contact.at_tip else place.translation
+    force = -np.concatenate([contact.normal, np.cross(tip - about, contact.normal)])
+    to_point = pin.SE3(place.rotation, place.translation - about).toDualActionMatrix()
+    moved: FloatArray = to_point @ find_tool(model, flange).matrix() @ of_flange
+    return np.outer(force, contact.normal @ J[:3]), moved
+
+
+def _servo_gradients(contact: ServoContact) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return how the servos' torques change with q, dq, set-point and its velocity, shapes (nq, nq), by differences."""
+    zero = np.zeros_like(contact.q)
+    at = (contact.q, zero, contact.q, zero)
+    gradients = []
+    for place in range(4):
+        columns = []
+        for unit in _STEP * np.eye(len(zero)):
+            there, back = list(at), list(at)
+            there[place], back[place] = at[place] + unit, at[place] - unit
+            columns.append((contact.servo.torques(*there) - contact.servo.torques(*back)) / (2.0 * _STEP))
+        gradients.append(np.column_stack(columns))
+    return gradients[0], gradients[1], gradients[2], gradients[3]
+
+
+def _arm(contact: ServoContact, J: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return how the arm's state (q, dq) follows in a tick from itself, and from torques held for the tick.
+
+    Returns:
+        Shapes (2 nq, 2 nq) and (2 nq, nq).
+    """
+    model, q = contact.arm.model, contact.q
+    n, h = model.nq, contact.step
+    M = model.mass_matrix(q)
+    weight = np.column_stack(
+        [
+            (model.gravity_torque(q + unit) - model.gravity_torque(q - unit)) / (2.0 * _STEP)
+            for unit in _STEP * np.eye(n)
+        ]
+    )
+    whole = np.zeros((3 * n, 3 * n))
+    if contact.implicit:
+        along = contact.normal @ J[:3]
+        yields = np.outer(along, along)
+        inverse = np.linalg.inv(M + h * (h * contact.stiffness + contact.damping) * yields)
+        to_dq = np.hstack([-h * inverse @ (weight + contact.stiffness * yields), inverse @ M, h * inverse])
+        whole[n : 2 * n] = to_dq
+        whole[:n] = h * to_dq
+        whole[:n, :n] += np.eye(n)
+        whole[2 * n :, 2 * n :] = np.eye(n)
+        whole = np.linalg.matrix_power(whole, contact.steps)
+    else:
+        whole[:n, n : 2 * n] = np.eye(n)
+        whole[n : 2 * n] = np.hstack([-np.linalg.solve(M, weight), np.zeros((n, n)), np.linalg.inv(M)])
+        whole = expm(contact.steps * h * whole)
+    return whole[: 2 * n, : 2 * n], whole[: 2 * n, 2 * n :]
