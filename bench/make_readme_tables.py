@@ -12,6 +12,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from runner.reporting.words import in_words
+
 PAGE = Path(__file__).resolve().parents[1] / "README.md"
 _TABLE = re.compile(r"(<!-- claims of (\w+): ([\d, ]+) -->\n)((?:\|.*\n)+)")
 
@@ -50,10 +52,14 @@ def made_from(page: str, works: Mapping[str, Mapping[str, Any]]) -> str:
 def _lines(verdicts: Sequence[Verdict]) -> list[str]:
     """Return the lines of a table of claims; one without a printed value has no column for it."""
     printed = ["printed"] if any(verdict["printed"] for verdict in verdicts) else []
-    header = ["claim", *printed, *(ours["preset"] or "found" for ours in verdicts[0]["ours"])]
+    header = ["claim", *printed, *(in_words(ours["preset"]) or "found" for ours in verdicts[0]["ours"])]
     rows: list[list[str]] = []
     for verdict in verdicts:
         found = [f"{ours['verdict']}: {ours['measured']}" for ours in verdict["ours"]]
         rows.append([verdict["statement"], *([verdict["printed"]] if printed else []), *found])
     lines = [f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in row)} |\n" for row in (header, *rows)]
     return [lines[0], "|---" * len(header) + "|\n", *lines[1:]]
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -16,7 +16,7 @@ def verdict(number, printed="9 mm", **ours):
 
 WORKS = {
     "thesis": {"verdicts": [verdict("1", sound="8 mm"), verdict("2", sound="7 | mm"), verdict("3", sound="6 mm")]},
-    "meca500": {"verdicts": [verdict("1", "", found="within 1 %")]},
+    "meca500": {"verdicts": [verdict("1", "", **{"": "within 1 %"})]},
 }
 STALE = """Before.
 
@@ -37,7 +37,7 @@ After.
 def test_rows_are_made_in_the_order_that_the_page_names():
     assert made_from(STALE, WORKS).splitlines()[2:12] == [
         "<!-- claims of thesis: 3, 2 -->",
-        "| claim | printed | sound |",
+        "| claim | printed | full equations |",
         "|---|---|---|",
         "| Statement 3 | 9 mm | holds: 6 mm |",
         r"| Statement 2 | 9 mm | holds: 7 \| mm |",

@@ -17,6 +17,8 @@ VERDICT_SIGNS = {
     "better": "▲",
     "worse": "▼",
     CONTRADICTION: "≠",
+    "no longer holds": "✕",
+    "not testable here": "–",
     "not run": "–",
     "correct": "✓",
     "correct after repair": "✓",
