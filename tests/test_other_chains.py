@@ -213,7 +213,7 @@ def bent(checked_config):
 def test_a_rider_s_target_leaves_the_later_ones_at_their_home_offset(bent, stage):
     arm, q, points, desired = bent
     law, later = Recorder(), later_home_offset(arm, stage)
-    rider = RiderController(arm, stage, law, True, later, False, True, 0.25, False, None)
+    rider = RiderController(arm, stage, law, "rest", later, False, True, 0.25, False, None)
     rider.torque(0.0, q, np.zeros(9), desired)
     R = arm.model.frame_poses(q, (arm.stages[stage].base_frame,))[0, :3, :3]
     np.testing.assert_allclose(law.target, R.T @ (desired[0] - later - points[stage - 1]), atol=1e-12)
@@ -223,12 +223,12 @@ def test_reach_counts_to_the_stage_s_own_target(bent):
     arm, q, points, desired = bent
     law, later = Recorder(), later_home_offset(arm, 1)
     assert np.linalg.norm(desired[0] - points[0]) > 0.2 > np.linalg.norm(desired[0] - later - points[0])
-    RiderController(arm, 1, law, True, later, False, True, 0.2, False, None).torque(0.0, q, np.zeros(9), desired)
+    RiderController(arm, 1, law, "rest", later, False, True, 0.2, False, None).torque(0.0, q, np.zeros(9), desired)
     assert law.target is not None
     desired[0] += 0.2
-    RiderController(arm, 1, law, True, later, False, True, 0.2, False, None).torque(0.0, q, np.zeros(9), desired)
+    RiderController(arm, 1, law, "rest", later, False, True, 0.2, False, None).torque(0.0, q, np.zeros(9), desired)
     assert law.target is None
-    stretched = RiderController(arm, 1, law, True, later, False, True, 0.2, True, None)
+    stretched = RiderController(arm, 1, law, "rest", later, False, True, 0.2, True, None)
     stretched.torque(0.0, q, np.zeros(9), desired)
     assert np.linalg.norm(law.target) == pytest.approx(0.2)
 

@@ -36,7 +36,7 @@ def rider(combined):
 
     def make(moving_target=True, stretch=False, turns=None, later=(0.0, 0.0, 0.0)):
         law = Spy()
-        loop = RiderController(combined, 1, law, True, np.array(later), False, moving_target, REACH, stretch, turns)
+        loop = RiderController(combined, 1, law, "rest", np.array(later), False, moving_target, REACH, stretch, turns)
 
         def ask(way, q=None, time=0.0):
             q = np.array([0.3, -0.5, 0.7, 0.2, -0.4, 0.9]) if q is None else q
@@ -153,7 +153,7 @@ def test_in_two_way_coupling_the_carrier_makes_up_for_all_its_riders(three_stage
 def test_the_rider_sees_target_and_gravity_from_its_base(combined):
     """R^T (x_d - x_E), R^T (xd_d - xd_E - w x (x_d - x_E)) and R^T g, R turned by every joint of the Macro."""
     law = Spy()
-    loop = RiderController(combined, 1, law, True, np.zeros(3), False, True, REACH, False, None)
+    loop = RiderController(combined, 1, law, "rest", np.zeros(3), False, True, REACH, False, None)
     macro, generator = combined.stages[0].model, np.random.default_rng(2)
     for _ in range(5):
         q, dq = generator.uniform(-2.0, 2.0, (2, 6))
