@@ -97,8 +97,23 @@ def _block(claim: PublishedClaim, findings: list[Verdict], runs: Mapping[str, Ru
             for preset in PRESETS
         )
         reason = f"{claim.bound.reason} A tenth of the simulated Macro's median is {times}."
+    if claim.metric == "steady_state_error":
+        late = (_late(claim, preset, runs) for preset in PRESETS)
+        reason = " ".join(text for text in (reason, *late) if text)
     command = f"runner experiment={claim.experiment} preset={PRESETS[0]}"
     return Claim(str(claim.number), claim.statement, claim.place, _printed(claim), findings, reason, command)
+
+
+def _late(claim: PublishedClaim, preset: str, runs: Mapping[str, Run]) -> str:
+    """Return how many repetitions have not settled when the error at rest is taken; nothing where all have."""
+    run = runs[f"{_figure(claim.experiment)}/{preset}"]
+    band = float(run.config["robot"]["settling_band"])
+    errors = run.metrics.get("steady_state_error", {"values": ()})["values"]
+    late = sum(1 for error in errors if error is not None and error > band)
+    if not late:
+        return ""
+    told = f"{late} of {len(errors)} repetitions ({PRESET[preset]})"
+    return f"{told} are beyond {quantity(band, 'm')} in the last half second."
 
 
 def _findings(claim: PublishedClaim, runs: Mapping[str, Run]) -> list[Verdict]:
