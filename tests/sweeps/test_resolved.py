@@ -9,8 +9,9 @@ from runner.sweeps.resolved import DISTANCE, Resolver
 
 
 @pytest.fixture
-def stored():
-    return run("robot=macro", "trajectory=quintic", "trajectory.goal=[0.8,0.6,0.7]", "duration=0.05", "outputs=o")
+def stored(tmp_path):
+    short = ("robot=macro", "trajectory=quintic", "trajectory.goal=[0.8,0.6,0.7]", "duration=0.05")
+    return run(*short, f"outputs={tmp_path}")
 
 
 def test_the_step_of_the_plant_and_the_way_to_the_goal_are_told(stored):
