@@ -239,14 +239,12 @@ def test_the_rows_of_the_readme_are_what_was_measured():
     step, servo, ideal = (MEASURED[make] for make in (ideal_step_finding, servo_step_finding, ideal_wall_finding))
     wall, behind, tip = (MEASURED[make] for make in (contact_finding, servo_wall_finding, tip_finding))
     told = (
-        f"within {number(step['fast'])} % of the peak at 1 ms, {number(step['slow'])} % at the real controller's "
+        f"within {number(step['fast'])} % of the peak on all axes at 1 ms, {number(step['slow'])} % at "
         f"{number(step['period'])} ms; joint servos add up to {number(servo['fast'])} % |",
-        f"{number(tip['law'], rounding=ROUNDING)} through the law; {number(tip['flange'])} rad where",
-        f"read within {number(wall['reading'])} % |",
-        f"{ideal['right']} of {ideal['count']} runs, from {ideal['least']} to {ideal['most']} times the bound |",
-        f"{behind['right']} of {behind['count']} runs; {behind['wrong']} bounce below its bound, with a joint at its "
-        f"torque limit in {number(behind['saturated'])} % of the ticks or more |",
-        f"off by {number(MEASURED[reaction_finding]['weighed'], rounding=ROUNDING)} |",
+        f"turns the law by {number(tip['law'], rounding=ROUNDING)} and",
+        f"taken at the flange {number(tip['flange'])} rad |",
+        f"read within {number(wall['reading'])} %; on ideal joints {ideal['right']} of {ideal['count']} runs",
+        f"behind servos {behind['right']} of {behind['count']} |",
     )
     readme = Path("README.md").read_text()
     assert [words for words in told if words not in readme] == []
