@@ -19,7 +19,7 @@ from tqdm import tqdm
 from runner import open_run
 from runner.config.compose import quiet_environment
 from runner.config.options import group_options
-from runner.paths import package_dir
+from runner.paths import works_dir
 from runner.store import Run
 
 SEEDS = range(5)
@@ -208,7 +208,8 @@ def main() -> None:
         for preset in PRESETS:
             runs = [open_run(stored[experiment, preset, seed]) for seed in SEEDS]
             bands = {metric: make_band(runs, experiment, preset, metric) for metric in metrics}
-            path = package_dir() / "references" / f"{experiment}.{preset}.yaml"
+            work, _, name = experiment.partition("/")
+            path = works_dir() / work / "references" / f"{name}.{preset}.yaml"
             path.parent.mkdir(parents=True, exist_ok=True)
             head = (
                 f"# {group_options('experiment')[experiment]}, preset {preset}\n# Made by bench/make_references.py.\n"

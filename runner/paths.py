@@ -27,6 +27,11 @@ def robots_dir() -> Path:
     return _root() / "robots"
 
 
+def works_dir() -> Path:
+    """Return the folder of the published works, a folder each."""
+    return _PACKAGE / "works"
+
+
 def templates_dir() -> Path:
     """Return the folder of the report templates."""
     return _root() / "reports" / "templates"

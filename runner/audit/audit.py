@@ -5,8 +5,8 @@ import io
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
-from runner.audit.entry import SOURCES, Form, parts
-from runner.audit.truth import resolve
+from runner.audit.entry import Form, parts
+from runner.audit.sources import sources, truth_of
 from runner.audit.verdict import SAMPLES, VERDICTS, Judge, Judged, Verdict
 from runner.texts import table_cell
 
@@ -36,7 +36,7 @@ def audit(source: str, samples: int = SAMPLES) -> list[Judged]:
     """Return the verdict on every equation of a source, in the order of the text.
 
     Args:
-        source: One of `SOURCES`.
+        source: Name of the work.
         samples: How many configurations each is tried at.
 
     Raises:
@@ -47,7 +47,7 @@ def audit(source: str, samples: int = SAMPLES) -> list[Judged]:
 
 def audit_all(samples: int = SAMPLES) -> dict[str, list[Judged]]:
     """Return the same for every source, by its name."""
-    return {source: audit(source, samples) for source in SOURCES}
+    return {source: audit(source, samples) for source in sources()}
 
 
 def counts(judged: Iterable[Judged]) -> dict[Verdict, int]:
@@ -63,7 +63,7 @@ def as_csv(judged: Sequence[Judged]) -> str:
     table.writerow(_COLUMNS)
     for each in judged:
         entry, measured, second = each.entry, each.measured, each.second
-        ways = resolve(entry.truth).ways if entry.truth else ("", "")
+        ways = truth_of(each.source, entry.truth).ways if entry.truth else ("", "")
         cells = [
             each.source,
             entry.id,

@@ -1,9 +1,9 @@
 """One printed equation as data: where it stands, how it is printed, what it claims to equal.
 
-Entries live in YAML files, one for each part of a source (`runner/audit/data/<source>/*.yaml`):
+Entries live in YAML files, one for each part of a source (`runner/works/<source>/equations/*.yaml`):
 
     source: xarm7                  # the work, by its folder
-    symbols: xarm7.symbols         # function of runner/audit/truths that draws the sample, by name of the symbol
+    symbols: xarm7.symbols         # function of equations/truths that draws the sample, by name of the symbol
     entries:
       - id: xarm7-A13
         number: "A_13"             # as the source numbers or names it
@@ -17,7 +17,7 @@ Entries live in YAML files, one for each part of a source (`runner/audit/data/<s
           elements: {A_13: ...}
         corrected:                 # only where it is wrong as printed
           elements: {A_13: ...}
-        truth: xarm7.transform     # what it claims to equal: a Truth of runner/audit/truths, worked out twice
+        truth: xarm7.transform     # what it claims to equal: a Truth of equations/truths, worked out twice
         finding: ...               # what is wrong, in words
 
 Elements are expressions of `expressions.py`. An equation that is no arithmetic, such as a relation between matrices,
@@ -27,16 +27,14 @@ verdict is never stored: `verdict.py` works it out.
 
 from collections.abc import Iterator
 from functools import lru_cache
-from importlib.resources import files
 from typing import Self
 
 import yaml
 from pydantic import Field, ValidationError, model_validator
 
+from runner.audit.sources import folder
 from runner.errors import RunnerError
 from runner.registry import StrictModel
-
-SOURCES = ("thesis", "xarm7", "meca500")
 
 
 class Form(StrictModel):
@@ -45,7 +43,7 @@ class Form(StrictModel):
     Attributes:
         elements: Expression of each element, by name.
         math: The equation in Typst mathematics, where it is no arithmetic or where its layout matters.
-        code: Function of runner/audit/truths that returns its elements at the samples.
+        code: Function of equations/truths that returns its elements at the samples.
     """
 
     elements: dict[str, str] = Field(default_factory=dict)
@@ -86,7 +84,7 @@ class Entry(StrictModel):
         unit: Unit of its error. Errors in "rad" are angles: they are taken the short way round.
         tolerance: Largest error, in its unit, that rounding may cause.
         finding: What is wrong and what it does, in words; Text of a report.
-        rollout: Function of runner/audit/rollouts that runs the wrong form beside the right one, or "".
+        rollout: Function of equations/rollouts that runs the wrong form beside the right one, or "".
     """
 
     id: str
@@ -108,7 +106,7 @@ class Part(StrictModel):
 
     Attributes:
         source: The work.
-        symbols: Function of runner/audit/truths that draws the sample.
+        symbols: Function of equations/truths that draws the sample.
         entries: Its equations, in the order of the text.
     """
 
@@ -124,8 +122,7 @@ def parts(source: str) -> tuple[Part, ...]:
     Raises:
         RunnerError: If a file does not fit the format; names the file and the keys.
     """
-    folder = files("runner.audit") / "data" / source
-    found = sorted((path for path in folder.iterdir() if path.name.endswith(".yaml")), key=lambda path: path.name)
+    found = sorted(folder(source).glob("*.yaml"))
     return tuple(_read(path.name, path.read_text(encoding="utf-8")) for path in found if path.name != "inventory.yaml")
 
 

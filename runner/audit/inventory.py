@@ -1,6 +1,7 @@
 """What each source prints, place by place: the list that the audit is counted against.
 
-It is made from the source's text alone, in reading order, and not from the entries: `data/<source>/inventory.yaml`.
+It is made from the source's text alone, in reading order, and not from the entries. It stands in
+`equations/inventory.yaml` of the work:
 
     source: xarm7
     counted: one line for each equation with a sign of equality; ...
@@ -12,12 +13,12 @@ It is made from the source's text alone, in reading order, and not from the entr
 
 from collections import Counter
 from functools import lru_cache
-from importlib.resources import files
 
 import yaml
 from pydantic import Field
 
 from runner.audit.entry import entries
+from runner.audit.sources import folder
 from runner.registry import StrictModel
 
 
@@ -40,11 +41,15 @@ class Inventory(StrictModel):
 
     Attributes:
         source: The work.
+        title: How it is cited.
+        found: What is wrong with its equations, and why, in a few sentences; inline mathematics as in reports.
         counted: What counts as an equation, in a sentence.
         places: In order.
     """
 
     source: str
+    title: str
+    found: str
     counted: str
     places: list[Place]
 
@@ -52,7 +57,7 @@ class Inventory(StrictModel):
 @lru_cache(maxsize=8)
 def inventory(source: str) -> Inventory:
     """Return the inventory of a source."""
-    text = (files("runner.audit") / "data" / source / "inventory.yaml").read_text(encoding="utf-8")
+    text = (folder(source) / "inventory.yaml").read_text(encoding="utf-8")
     return Inventory.model_validate(yaml.safe_load(text))
 
 

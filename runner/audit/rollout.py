@@ -1,9 +1,9 @@
 """A wrong formula run beside the right one."""
 
-import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from runner.audit.sources import rollout_of
 from runner.audit.truth import FloatArray
 
 
@@ -30,8 +30,7 @@ class Rollout:
     logarithmic: bool = False
 
 
-def run_rollout(name: str) -> Rollout:
-    """Run the rollout that "module.name" stands for, of a module of runner/audit/rollouts."""
-    module, attribute = name.split(".")
-    run: Callable[[], Rollout] = getattr(importlib.import_module(f"runner.audit.rollouts.{module}"), attribute)
+def run_rollout(source: str, name: str) -> Rollout:
+    """Run the rollout of a work that "module.name" stands for."""
+    run: Callable[[], Rollout] = rollout_of(source, name)
     return run()

@@ -1,9 +1,7 @@
-"""Functions of runner/audit/truths by name: what an equation claims to equal, in two independent ways."""
+"""What an equation claims to equal, in two independent ways."""
 
-import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,9 +29,3 @@ class Truth:
     first: Way
     second: Way
     ways: tuple[str, str]
-
-
-def resolve(name: str) -> Any:
-    """Return the function or Truth that "module.name" stands for, of a module of runner/audit/truths."""
-    module, attribute = name.split(".")
-    return getattr(importlib.import_module(f"runner.audit.truths.{module}"), attribute)

@@ -10,7 +10,8 @@ import numpy as np
 from runner.audit.entry import Entry, Form, Part
 from runner.audit.evaluation import evaluate
 from runner.audit.expressions import ExpressionError, parse
-from runner.audit.truth import Elements, FloatArray, Symbols, Truth, resolve
+from runner.audit.sources import truth_of
+from runner.audit.truth import Elements, FloatArray, Symbols, Truth
 
 SAMPLES = 1000
 Verdict = Literal["correct", "correct after repair", "wrong as printed", "unreadable", "definition"]
@@ -78,7 +79,7 @@ class Judge:
     @cached_property
     def symbols(self) -> Symbols:
         """The sample: a value of each symbol at each configuration."""
-        return _draw(self._part.symbols, self._samples)
+        return _draw(self._part.source, self._part.symbols, self._samples)
 
     def judge(self, entry: Entry) -> Judged:
         """Return the verdict on an entry.
@@ -133,7 +134,7 @@ class Judge:
 
     def _evaluate(self, form: Form) -> Elements:
         if form.code:
-            values: Elements = resolve(form.code)(self.symbols)
+            values: Elements = truth_of(self._part.source, form.code)(self.symbols)
             return values
         try:
             return {name: evaluate(parse(text), self.symbols) for name, text in form.elements.items()}
@@ -142,7 +143,7 @@ class Judge:
 
     def _truth(self, name: str, way: int) -> Elements:
         if (name, way) not in self._truths:
-            truth: Truth = resolve(name)
+            truth: Truth = truth_of(self._part.source, name)
             self._truths[name, way] = (truth.first, truth.second)[way](self.symbols)
         return self._truths[name, way]
 
@@ -158,8 +159,8 @@ def _unread(form: Form) -> str:
 
 
 @lru_cache(maxsize=8)
-def _draw(name: str, samples: int) -> Symbols:
-    symbols: Symbols = resolve(name)(samples, np.random.default_rng(0))
+def _draw(source: str, name: str, samples: int) -> Symbols:
+    symbols: Symbols = truth_of(source, name)(samples, np.random.default_rng(0))
     return symbols
 
 

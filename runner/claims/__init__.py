@@ -1,6 +1,6 @@
 """Published numbers, and whether our runs bear them out."""
 
-from runner.claims.claim import Bound, Extent, PublishedClaim, load_claims
+from runner.claims.claim import Bound, Extent, PublishedClaim, claimed, load_claims
 from runner.claims.verdict import CONTRADICTION, FACTOR, Verdict, judge, judge_motion
 
 __all__ = [
@@ -10,6 +10,7 @@ __all__ = [
     "Extent",
     "PublishedClaim",
     "Verdict",
+    "claimed",
     "judge",
     "judge_motion",
     "load_claims",

@@ -1,6 +1,5 @@
 """The published numbers as data."""
 
-from importlib.resources import files
 from typing import Annotated, Literal, Self
 
 import numpy as np
@@ -8,7 +7,10 @@ import yaml
 from numpy.typing import NDArray
 from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
+from runner.paths import works_dir
 from runner.registry import StrictModel
+
+_FILE = "claims.yaml"
 
 
 class Bound(StrictModel):
@@ -104,7 +106,12 @@ class PublishedClaim(StrictModel):
         return self.printed[-1] if self.printed else None
 
 
-def load_claims(source: str) -> list[PublishedClaim]:
-    """Return the published numbers of a source, such as "thesis", in order."""
-    entries = yaml.safe_load((files("runner.claims") / f"{source}.yaml").read_text())
+def claimed() -> list[str]:
+    """Return the names of the works that have claims, sorted."""
+    return sorted(path.parent.name for path in works_dir().glob(f"*/{_FILE}"))
+
+
+def load_claims(work: str) -> list[PublishedClaim]:
+    """Return the published numbers of a work, such as "thesis", in order."""
+    entries = yaml.safe_load((works_dir() / work / _FILE).read_text(encoding="utf-8"))
     return [PublishedClaim.model_validate(entry) for entry in entries]

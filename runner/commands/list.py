@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.commands.arguments import Parser
-from runner.config.options import described_files, group_options
+from runner.config.options import group_options
 from runner.errors import RunnerError, nearest
-from runner.paths import package_dir
 from runner.texts import escaped, one_line
 
 if TYPE_CHECKING:
@@ -77,11 +76,11 @@ def _read_bullets(docstring: str) -> dict[str, str]:
 
 
 def _list_claims(_: Sequence[Path]) -> dict[str, str]:
-    from runner.claims import load_claims
+    from runner.claims import claimed, load_claims
 
     return {
         f"{source} {claim.number}": f"{claim.statement}{_printed(claim)} ({claim.place})"
-        for source in described_files(package_dir() / "claims")
+        for source in claimed()
         for claim in load_claims(source)
     }
 
@@ -92,7 +91,9 @@ def _printed(claim: "PublishedClaim") -> str:
 
 
 def _list_references(_: Sequence[Path]) -> dict[str, str]:
-    return described_files(package_dir() / "references")
+    from runner.references.shipped import described_references
+
+    return described_references()
 
 
 TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {

@@ -1,21 +1,30 @@
 """The references that come with the package, one for each published experiment and preset."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.config.options import described_files
 from runner.errors import RunnerError, nearest
+from runner.paths import works_dir
 from runner.references.reference import Reference, load_reference
 
 if TYPE_CHECKING:
     from runner.store import Run
 
-_FOLDER = Path(__file__).resolve().parent
+_FOLDER = "references"
 
 
 def shipped_references() -> list[str]:
     """Return their names, such as "thesis/figure_3_5.as_reported", sorted."""
-    return list(described_files(_FOLDER))
+    return list(described_references())
+
+
+def described_references() -> dict[str, str]:
+    """Return their names, sorted, each with the first line of its comment."""
+    return {
+        f"{folder.parent.name}/{name}": description
+        for folder in sorted(works_dir().glob(f"*/{_FOLDER}"))
+        for name, description in described_files(folder).items()
+    }
 
 
 def find_shipped(run: "Run") -> Reference:
@@ -33,4 +42,5 @@ def find_shipped(run: "Run") -> Reference:
             f"{run.folder}: no reference comes with the runner for {what}; give one by --reference FILE; there are: "
             f"{', '.join(known) or 'none'}"
         )
-    return load_reference(_FOLDER / f"{name}.yaml", name)
+    work, _, file = name.partition("/")
+    return load_reference(works_dir() / work / _FOLDER / f"{file}.yaml", name)

@@ -1,7 +1,8 @@
 import pytest
 
 from runner.audit import entry as module
-from runner.audit.entry import SOURCES, Entry, entries, parts
+from runner.audit.entry import Entry, entries, parts
+from runner.audit.sources import sources
 from runner.errors import RunnerError
 from runner.reporting.markup import spans
 
@@ -26,7 +27,7 @@ def test_a_file_that_does_not_fit_names_the_keys():
         module._read("bad.yaml", "source: a\nsymbols: b\nentries: [{id: a, verdict: correct}]")
 
 
-@pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.parametrize("source", sources())
 def test_ids_are_unique_and_name_the_source(source):
     ids = [entry.id for _, entry in entries(source)]
     assert len(set(ids)) == len(ids) > 0
@@ -34,7 +35,7 @@ def test_ids_are_unique_and_name_the_source(source):
     assert all(name.startswith(f"{source}-") for name in ids)
 
 
-@pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.parametrize("source", sources())
 def test_the_mathematics_of_every_finding_is_valid(source):
     from runner.reporting import formulas
 

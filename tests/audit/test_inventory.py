@@ -1,16 +1,17 @@
 import pytest
 
 from runner.audit import inventory as module
-from runner.audit.entry import SOURCES, entries
+from runner.audit.entry import entries
 from runner.audit.inventory import differences, inventory
+from runner.audit.sources import sources
 
 
-@pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.parametrize("source", sources())
 def test_every_equation_listed_is_audited_and_the_other_way_round(source):
     assert differences(source) == []
 
 
-@pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.parametrize("source", sources())
 def test_the_places_stand_in_one_order(source):
     listed = [place.place for place in inventory(source).places]
     assert len(set(listed)) == len(listed)

@@ -1,15 +1,16 @@
 import numpy as np
 import pytest
 
-from runner.audit.entry import SOURCES, entries
+from runner.audit.entry import entries
 from runner.audit.rollout import run_rollout
+from runner.audit.sources import sources
 
-NAMES = sorted({entry.rollout for source in SOURCES for _, entry in entries(source) if entry.rollout})
+NAMES = sorted({(source, entry.rollout) for source in sources() for _, entry in entries(source) if entry.rollout})
 
 
 @pytest.fixture(scope="module", params=NAMES)
 def rollout(request):
-    return run_rollout(request.param)
+    return run_rollout(*request.param)
 
 
 def test_the_right_formula_does_much_better_than_the_wrong_one(rollout):

@@ -3,36 +3,39 @@
 import numpy as np
 import pytest
 
-from runner.audit.entry import SOURCES, entries, parts
+from runner.audit.chains import derivative, jacobian_by_differences, rotation
+from runner.audit.entry import entries, parts
 from runner.audit.evaluation import evaluate
 from runner.audit.expressions import parse
-from runner.audit.truth import resolve
-from runner.audit.truths import meca500, xarm7, xarm7_claims, xarm7_inverse
-from runner.audit.truths.chains import derivative, jacobian_by_differences, rotation
+from runner.audit.sources import sources, truth_of
 from runner.audit.verdict import error
+from runner.works.meca500.equations.truths import meca500
+from runner.works.xarm7.equations.truths import xarm7, xarm7_claims, xarm7_inverse
 
 SAMPLES = 40
 
 
-@pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.parametrize("source", sources())
 def test_the_two_ways_to_every_truth_agree(source):
     for part in parts(source):
-        values = resolve(part.symbols)(SAMPLES, np.random.default_rng(1))
+        values = truth_of(part.source, part.symbols)(SAMPLES, np.random.default_rng(1))
         for name, unit in {(entry.truth, entry.unit) for entry in part.entries if entry.truth}:
-            first, second = resolve(name).first(values), resolve(name).second(values)
+            first, second = truth_of(part.source, name).first(values), truth_of(part.source, name).second(values)
             assert set(first) == set(second), name
             for element, expected in first.items():
                 size = max(1.0, float(np.abs(expected).max()))
                 assert error(second[element], expected, unit).max() <= 2e-5 * size, f"{name}: {element}"
 
 
-@pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.parametrize("source", sources())
 def test_a_tolerance_is_small_beside_what_it_measures(source):
     for part in parts(source):
-        values = resolve(part.symbols)(SAMPLES, np.random.default_rng(1))
+        values = truth_of(part.source, part.symbols)(SAMPLES, np.random.default_rng(1))
         for entry in part.entries:
             if entry.truth:
-                largest = max(float(np.abs(true).max()) for true in resolve(entry.truth).first(values).values())
+                largest = max(
+                    float(np.abs(true).max()) for true in truth_of(part.source, entry.truth).first(values).values()
+                )
                 assert entry.tolerance <= 3e-4 * max(1.0, largest), entry.id
 
 
@@ -69,7 +72,7 @@ def test_the_angular_rows_of_a_rotation_about_an_axis_are_the_axis():
 def test_the_printed_angular_rows_of_the_meca500_are_derivatives_of_summed_angles():
     """What the findings say of them: in the base frame, and in frame 6."""
     part = next(part for part in parts("meca500") if part.entries[0].number == "Table 1, row 1")
-    values = resolve(part.symbols)(SAMPLES, np.random.default_rng(2))
+    values = truth_of(part.source, part.symbols)(SAMPLES, np.random.default_rng(2))
     q = meca500.positions(values)
 
     def axes(angles):

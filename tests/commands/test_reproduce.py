@@ -1,5 +1,6 @@
 import csv
 import json
+from dataclasses import replace
 from functools import partial
 from types import SimpleNamespace
 
@@ -9,7 +10,6 @@ from runner.audit import entry
 from runner.audit.audit import audit
 from runner.audit.verdict import VERDICTS
 from runner.commands import reproduce
-from runner.commands.reproduce import WORKS, make_all
 from runner.reporting.document import Document, Section, Text
 from runner.reporting.expected_caveats import ExpectedCaveat
 from runner.reporting.findings import finding
@@ -19,6 +19,14 @@ from runner.reporting.run_report import run_document
 from runner.reporting.work_report import parts, work_document
 from runner.sweeps import work as workers
 from runner.sweeps.lock import at_work
+from runner.works.making import make_all
+from runner.works.names import work_names
+from runner.works.thesis import work as thesis
+from runner.works.work import Work
+
+
+def _listed(runs, calibrations):
+    return run_document(list(runs.values()))
 
 
 @pytest.fixture
@@ -30,16 +38,13 @@ def small_work(monkeypatch):
         "singular": Job(("experiment=thesis/singular",)),
     }
     for work in ("thesis", "xarm7"):
-        monkeypatch.setattr(f"runner.reporting.{work}.plan.plan", lambda: jobs)
-        monkeypatch.setattr(
-            f"runner.reporting.{work}.report.{work}_document", lambda runs: run_document(list(runs.values()))
-        )
+        monkeypatch.setattr(f"runner.works.{work}.work.WORK", Work(lambda: jobs, _listed))
 
 
 def test_an_unknown_work_names_the_nearest(cli, tmp_path):
     ending = cli("reproduce", "thesys")
     assert ending.code == 2
-    assert ending.err == "runner: no work 'thesys' (did you mean thesis?); works: thesis, xarm7, meca500, audit, all\n"
+    assert ending.err == "runner: no work 'thesys' (did you mean thesis?); works: meca500, thesis, xarm7, audit, all\n"
     assert list(tmp_path.iterdir()) == []
 
 
@@ -78,7 +83,7 @@ def test_a_run_that_was_cut_short_is_an_error_and_the_report_says_what_is_missin
         return simulate(config, composed)
 
     monkeypatch.setattr(workers, "simulate_job", breaks)
-    monkeypatch.setattr("runner.reporting.thesis.report.thesis_document", _document)
+    monkeypatch.setattr(thesis, "WORK", replace(thesis.WORK, document=_document))
     ending = cli("reproduce", "thesis", HERE)
     assert ending.code == 1
     assert "runner: thesis: quintic is missing in the report: cut short: RuntimeError: the machine broke" in ending.err
@@ -89,7 +94,7 @@ def test_a_run_that_was_cut_short_is_an_error_and_the_report_says_what_is_missin
     assert cli("reproduce", "thesis", HERE).code == 0
 
 
-def _document(runs):
+def _document(runs, calibrations):
     """A report of one part for each run; the one that diverged is a result like any other."""
     assert runs["singular"].status == "failed"
     makers = [partial(_part, name=name) for name in ("goal", "quintic")]
@@ -147,9 +152,10 @@ def test_the_audit_is_a_report_and_a_table(cli, monkeypatch, tmp_path):
 
 def test_all_reproduces_every_work(cli, small_work, monkeypatch, tmp_path):
     empty = reproduce._Reproduced(Document("", "", "", (), "2026-01-01"), {}, {})
-    monkeypatch.setattr("runner.commands.reproduce._WORKS", {name: lambda *_: empty for name in WORKS})
+    monkeypatch.setattr(reproduce, "_reproduce_work", lambda *_: empty)
+    monkeypatch.setattr(reproduce, "_audit", lambda *_: empty)
     monkeypatch.setattr("runner.reporting.render.write_report", lambda *_: None)
-    assert cli("reproduce").out.split() == [f"outputs/reports/{name}" for name in WORKS]
+    assert cli("reproduce").out.split() == [f"outputs/reports/{name}" for name in (*work_names(), "audit")]
 
 
 def test_outputs_that_cannot_be_written_are_told_before_anything_is_simulated(cli, small_work, tmp_path):
@@ -165,7 +171,7 @@ def one_finding(monkeypatch):
     error = Measured("tip error", 2e-3, "m")
     section = Section("One", (finding("Small", f"It is {error}.", error < 1e-3), finding("Not zero", "-", error > 0.0)))
     made = reproduce._Reproduced(Document("The thesis", "", "", (section,), "2026-01-01"), {}, {})
-    monkeypatch.setitem(reproduce._WORKS, "thesis", lambda *_: made)
+    monkeypatch.setattr(reproduce, "_reproduce_work", lambda *_: made)
 
 
 def test_check_lists_the_findings_that_no_longer_hold(cli, one_finding):
@@ -189,7 +195,7 @@ def test_check_lists_the_caveats_that_a_work_does_not_expect(cli, monkeypatch):
     runs = {"heavy": SimpleNamespace(caveats=caveats)}
     expected = [ExpectedCaveat("overload", "heavy", "It is to be heavy.")]
     made = reproduce._Reproduced(Document("The thesis", "", "", (), "2026-01-01"), runs, {}, expected)
-    monkeypatch.setitem(reproduce._WORKS, "thesis", lambda *_: made)
+    monkeypatch.setattr(reproduce, "_reproduce_work", lambda *_: made)
     assert cli("reproduce", "thesis").code == 0
     ending = cli("reproduce", "thesis", "--check")
     assert ending.code == 1

@@ -60,9 +60,9 @@ def test_programs_get_every_caveat_with_why_it_is_expected():
 
 @pytest.mark.parametrize("work", ["thesis", "xarm7", "meca500"])
 def test_what_a_work_expects_is_of_known_rules_and_of_runs_that_it_has(work):
-    names = import_module(f"runner.reporting.{work}.plan").plan()
+    names = import_module(f"runner.works.{work}.plan").plan()
     rules = {rule.name for rule in (*TRACE_RULES, *SETTING_RULES)}
-    for expected in import_module(f"runner.reporting.{work}.caveats").EXPECTED:
+    for expected in import_module(f"runner.works.{work}.caveats").EXPECTED:
         assert expected.rule in rules
         assert any(expected.covers(name, {"rule": expected.rule}) for name in names), expected
         assert expected.why.endswith(".")

@@ -7,7 +7,7 @@ from runner import provenance
 from runner.audit.audit import counts
 from runner.audit.inventory import inventory
 from runner.audit.rollout import Rollout, run_rollout
-from runner.audit.truth import resolve
+from runner.audit.sources import truth_of
 from runner.audit.verdict import SAMPLES, VERDICTS, Judged
 from runner.reporting.audit.equations import rolled_out, row
 from runner.reporting.document import (
@@ -26,39 +26,6 @@ from runner.reporting.document import (
 )
 
 COMMAND = "runner reproduce audit"
-_TITLES = {
-    "thesis": "Control of a Macro-Mini Robotic Manipulator (thesis, 2008)",
-    "xarm7": "xArm7 path planning (report, 2024)",
-    "meca500": "Meca500 kinematics and force control (report)",
-}
-_FOUND = {
-    "thesis": (
-        "The elements of both arms' transforms, Jacobians, inertia, centrifugal and Coriolis matrices are right but "
-        "for one of $J_v6$, the operational-space relations too. The appendix is the complete equation of motion of "
-        "the six-joint arm, nearly three thousand terms; those that are off have a digit too many or too few. What "
-        "is wrong are general formulas around them: axes and lever arms that are one joint off (3.4 to 3.6), exchanged "
-        "indices, an inertia that is turned twice (3.16 and 3.17), and a gravity vector that lost an index. What "
-        "hurts a robot most is the frame between the arms. Frame 3 as the Macro's tables leave it is not the base "
-        "that the Mini's tables begin with; gravity does not stand upright in it, and the Mini's reference must be "
-        "turned into it."
-    ),
-    "xarm7": (
-        "The transform is right in all its elements. The tip position and the Jacobian, printed in symbols, are not: a "
-        "replacement of names put joint positions where the constant angles of two links belong, and every column of "
-        "the Jacobian but the first stands one place too far to the right. The inverse kinematics has a sign and a "
-        "root wrong; the pseudo-inverse printed does not exist for a matrix with more columns than rows. The report "
-        "says that its second program, built on Jacobian and pseudo-inverse, did not work. These equations say why."
-    ),
-    "meca500": (
-        "The linear rows of both Jacobians are right but for one root; their angular rows are not, and all for one "
-        "reason. The report takes an attitude to be the sum of the joint angles along their axes, "
-        "$sum_i theta_i z_i$, and differentiates that: the elements carry bare angles, and in the base frame agree "
-        "with this derivative to the last digit. The table has lost two offsets. In the gravity compensation two names "
-        "are swapped and three moments lose a force's offset; its equations with the elements of a rotation are right "
-        "if that is the inverse one, which the report does not define. The appendix's text is damaged beyond reading "
-        "in places."
-    ),
-}
 
 
 def audit_document(judged: Mapping[str, Sequence[Judged]]) -> Document:
@@ -132,15 +99,17 @@ def _inventory(judged: Mapping[str, Sequence[Judged]]) -> Table:
 
 
 def _source(source: str, judged: Sequence[Judged]) -> Section:
-    ways = sorted({resolve(each.entry.truth).ways for each in judged if each.entry.truth})
+    ways = sorted({truth_of(source, each.entry.truth).ways for each in judged if each.entry.truth})
     blocks: list[Block] = [
-        Notice("finding", "What is wrong, and why", _FOUND[source]),
+        Notice("finding", "What is wrong, and why", inventory(source).found),
         Equations(f"Equations of the {source} source.", [row(each) for each in judged], Origin(command=COMMAND)),
         Table("Ways to what the equations claim to equal.", ["one way", "another"], ways),
     ]
-    runs = tuple(_run(run_rollout(name)) for name in rolled_out(list(judged)))
+    runs = tuple(_run(run_rollout(source, name)) for name in rolled_out(list(judged)))
     return Section(
-        _TITLES[source], blocks, runs and (Section("What a robot does when it uses the wrong formulas", (), runs),)
+        inventory(source).title,
+        blocks,
+        runs and (Section("What a robot does when it uses the wrong formulas", (), runs),),
     )
 
 

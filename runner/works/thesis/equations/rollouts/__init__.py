@@ -1,0 +1,1 @@
+"""Wrong formulas run beside the right ones."""

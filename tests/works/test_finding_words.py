@@ -1,0 +1,34 @@
+"""Numbers in the words of findings come from runs, or are levels of an axis."""
+
+from importlib import import_module
+
+import pytest
+from finding_words import typed_numbers
+
+from runner.paths import package_dir, works_dir
+
+
+@pytest.mark.parametrize("work", ["thesis", "xarm7", "meca500"])
+def test_no_number_is_typed_in_the_words_of_a_finding(work):
+    names = import_module(f"runner.works.{work}.plan").plan()
+    assert [told for path in sorted((works_dir() / work).rglob("*.py")) for told in typed_numbers(path, names)] == []
+
+
+def test_no_finding_of_all_works_has_one():
+    assert [told for path in (package_dir() / "reporting").rglob("*.py") for told in typed_numbers(path, ())] == []
+
+
+def lint(tmp_path, words, names=()):
+    module = tmp_path / "module.py"
+    module.write_text(f"def conclude(error):\n    more = f'about 7 m'\n    return finding({words})\n")
+    return [told.split(": ")[1] for told in typed_numbers(module, names)]
+
+
+def test_the_lint_finds_typed_numbers_and_no_others(tmp_path):
+    assert lint(tmp_path, "'Small', f'It is {error} at 12 s and 0.2 kg.', error < 2.0") in (
+        ["12 s", "0.2 kg"],
+        ["0.2 kg", "12 s"],
+    )
+    assert lint(tmp_path, "'3 times as good', f'{error} {more}'") == ["3 times", "7 m"]
+    assert lint(tmp_path, "'6b. Figure 5.3 and claims 8, 9', f'$x_3 = 4$ of {error:.3g} (3.32), joint 2'") == ["3.32"]
+    assert lint(tmp_path, "'At 1 ms', f'and 16.7 ms {error}'", ["step/servo, 16.7 ms/x", "map/1 ms"]) == []

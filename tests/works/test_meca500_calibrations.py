@@ -1,0 +1,198 @@
+"""The calibrations' sections of the Meca500 report: they build, and what they compute themselves is right."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from study_sections import blocks, unfinished_texts
+from thin_plans import make_calibrations, make_runs
+from work_plans import meca500_calibrations
+
+from runner.calibration import REST, GravityCalibration, Tool, WrenchCompensation
+from runner.calibration.tool_centre_point import identify_tool_centre_point
+from runner.reporting import formulas
+from runner.reporting.document import Curves, Document, Table
+from runner.works.meca500.calibration_plan import name_of
+from runner.works.meca500.calibration_studies import (
+    consistency_finding,
+    consistency_values,
+    fit,
+    found_error,
+    predicted_error,
+    refusal,
+)
+from runner.works.meca500.gravity import gravity_section
+from runner.works.meca500.gravity_printed import (
+    force_step,
+    swapped_moment_step,
+    theta_by_arc_cosine,
+    theta_by_arc_sine,
+)
+from runner.works.meca500.gravity_residual import exact_readings
+from runner.works.meca500.tool_centre_point import (
+    common_point_covariance,
+    independent_rows_covariance,
+    tool_centre_point_section,
+)
+from runner.works.meca500.tool_direction import tool_direction_section
+
+GRAVITY = 9.81
+PARAMETERS = np.array([0.25, 0.3, 0.01, -0.003, 0.028, 0.4, -0.3, 0.8, 0.01, -0.02, 0.005])
+ORIENTATIONS = Rotation.random(12, rng=np.random.default_rng(3)).as_matrix()
+
+
+@pytest.fixture(scope="module")
+def calibrations(shared_store):
+    """Every calibration of the plan, with few repetitions."""
+    return make_calibrations(shared_store, meca500_calibrations())
+
+
+@pytest.fixture(scope="module")
+def weighed(shared_store):
+    homes = ("[0,0.5,0,0,1.07,0]", "[0,0.2,-0.5,1,-1,0]", "[1,0,0.3,2,1.5,1]", "[0.5,0.4,-1,-1,0.5,2]")
+    jobs = {f"rest/{i}": ("experiment=meca500/weighing", f"robot.home={home}") for i, home in enumerate(homes)}
+    return make_runs(shared_store, jobs)
+
+
+@pytest.fixture(scope="module")
+def sections(calibrations, weighed):
+    return (
+        tool_centre_point_section(calibrations),
+        tool_direction_section(calibrations),
+        gravity_section(calibrations, weighed),
+    )
+
+
+def table(section, caption):
+    return next(block for block in blocks(section) if isinstance(block, Table) and block.caption.startswith(caption))
+
+
+def test_every_section_builds(sections):
+    assert formulas.faulty(Document("Calibrations", "", "", sections, "2026-01-01")) == []
+    for section in sections:
+        refused = "condition numbers inf (force)"  # is a finding here
+        assert not [text for text in unfinished_texts(section) if not text.startswith(refused)]
+
+
+def test_every_table_and_figure_carries_its_command(sections):
+    for section in sections:
+        for block in blocks(section):
+            if isinstance(block, Curves) or (isinstance(block, Table) and not block.caption.startswith("Sets of")):
+                assert block.origin.command.startswith("runner ")
+
+
+def test_each_calibration_is_carried_out_once(calibrations):
+    assert len({done.hash for done in calibrations.values()}) == len(calibrations)
+    assert name_of("tool_centre_point/poses", 4) == "tool_centre_point/base"
+    assert name_of("tool_centre_point/poses", 6) == "tool_centre_point/poses/6"
+
+
+def test_refusals_name_the_reason(sections):
+    poses, _, gravity = sections
+    reasons = [reason for _, reason in table(poses, "Sets of poses").rows]
+    assert "needs 3 or more" in reasons[0]
+    assert all("condition number" in reason for reason in reasons[1:])
+    assert all("not refused" not in reason for _, reason in table(gravity, "Sets of orientations").rows)
+    assert refusal(lambda: None) == "not refused"
+
+
+def test_weighed_by_pybullet_s_reaction_the_tool_is_the_true_one(sections):
+    (row,) = table(sections[2], "Identified from PyBullet").rows
+    assert len(row) == 5
+    assert set(row) <= {"0", "0 (rounding)"}
+
+
+def test_without_noise_errors_are_rounding(calibrations):
+    for variation in ("tool_centre_point/repeatability", "tool_direction/repeatability", "gravity/noise"):
+        done = calibrations[name_of(variation, 0.0)]
+        assert found_error(done) < 1e-9
+        assert predicted_error(done) == 0.0
+
+
+def test_the_tip_s_error_is_proportional_to_the_repeatability(calibrations):
+    values = np.array([1e-6, 2e-5, 1e-4])
+    errors = [predicted_error(calibrations[name_of("tool_centre_point/repeatability", v)]) for v in values]
+    assert fit(values, np.array(errors)) == pytest.approx(1.0, abs=1e-3)
+
+
+def test_averaging_readings_makes_the_error_smaller_by_the_root(calibrations):
+    values = np.array([1.0, 10.0, 100.0])
+    errors = [predicted_error(calibrations[name_of("gravity/samples", v)], "mass") for v in values]
+    assert fit(values, np.array(errors)) == pytest.approx(-0.5, abs=0.01)
+
+
+def test_what_lies_in_the_band_is_counted(calibrations):
+    base = calibrations["gravity/base"]
+    outside = replace(base, record={**base.record, "consistency": {**base.consistency, "holds": False}})
+    inside = replace(base, record={**base.record, "consistency": {**base.consistency, "holds": True}})
+    exact = calibrations[name_of("gravity/noise", 0.0)]
+    good = consistency_finding(**consistency_values({"a/1": inside, "a/2": exact, "b/1": outside}, "a"))
+    assert (good.holds, " in 1 of 1 of these" in good.sentences) == (True, True)
+    bad = consistency_finding(**consistency_values({"a/1": inside, "a/2": outside, "a/3": outside}, "a"))
+    assert (bad.holds, " in 1 of 3 of these" in bad.sentences) == (False, True)
+
+
+def test_each_calibration_draws_from_a_seed_of_its_own(calibrations):
+    assert len({done.config["seed"] for done in calibrations.values()}) == len(calibrations)
+
+
+def half_turns():
+    poses = np.tile(np.eye(4), (4, 1, 1))
+    poses[:, :3, :3] = [np.eye(3), np.diag([1.0, -1.0, -1.0]), np.diag([-1.0, 1.0, -1.0]), np.diag([-1.0, -1.0, 1.0])]
+    return poses
+
+
+def test_covariances_by_hand_for_half_turns():
+    tips = np.tile(1e-10 * np.eye(3), (4, 1, 1))
+    # A'A is 8 along each axis: two of three rows hold a difference of 2.
+    np.testing.assert_allclose(independent_rows_covariance(half_turns(), tips), 2e-10 / 8.0 * np.eye(3), atol=1e-25)
+    # Along x the tips of poses 1, 2 less those of 3, 4 are 4 x: four independent errors over 4.
+    np.testing.assert_allclose(common_point_covariance(half_turns(), tips), 4e-10 / 16.0 * np.eye(3), atol=1e-25)
+
+
+def test_no_pose_singled_out_is_never_worse():
+    rng = np.random.default_rng(5)
+    poses = np.tile(np.eye(4), (10, 1, 1))
+    poses[:, :3, :3] = Rotation.random(10, rng=rng).as_matrix()
+    covariances = np.zeros((10, 6, 6))
+    covariances[:, :3, :3] = 1e-10 * np.eye(3)
+    first = identify_tool_centre_point(poses, covariances).covariance
+    assert np.linalg.eigvalsh(first - common_point_covariance(poses, covariances[:, :3, :3])).min() > 0.0
+
+
+def test_exact_readings_are_what_compensation_takes_off():
+    readings = exact_readings(PARAMETERS, ORIENTATIONS, GRAVITY)
+    mass, theta, centre, force, moment = PARAMETERS[0], PARAMETERS[1], *np.split(PARAMETERS[2:], 3)
+    known = GravityCalibration(mass, theta, centre, force, moment, np.zeros((11, 11)), (1.0, 1.0))
+    compensation = WrenchCompensation(known, np.zeros((3, 3)), GRAVITY)
+    left = [compensation.external(reading, R, REST) for reading, R in zip(readings, ORIENTATIONS, strict=True)]
+    np.testing.assert_allclose(left, np.zeros((12, 6)), atol=1e-14)
+    upright = Tool(mass, centre, np.zeros((3, 3))).load(np.array([0.0, 0.0, -GRAVITY]), REST) + PARAMETERS[5:]
+    np.testing.assert_allclose(exact_readings(PARAMETERS, np.eye(3)[None], GRAVITY)[0], upright, atol=1e-15)
+
+
+def test_readings_of_many_parameters_at_once():
+    several = np.stack([PARAMETERS, 2.0 * PARAMETERS])
+    found = exact_readings(several, ORIENTATIONS, GRAVITY)
+    assert found.shape == (2, 12, 6)
+    np.testing.assert_array_equal(found[0], exact_readings(PARAMETERS, ORIENTATIONS, GRAVITY))
+
+
+def test_the_third_row_gives_the_angle_and_the_third_column_does_not():
+    forces = exact_readings(PARAMETERS, ORIENTATIONS, GRAVITY)[:, :3]
+    right, printed = force_step(forces, ORIENTATIONS), force_step(forces, ORIENTATIONS.transpose(0, 2, 1))
+    assert np.arctan2(right.G_s, right.G_c) == pytest.approx(0.3, abs=1e-12)
+    assert pytest.approx(0.25 * GRAVITY) == right.G
+    assert right.residual < 1e-12
+    assert printed.residual > 0.1
+
+
+def test_swapped_axes_give_another_centre_of_mass():
+    readings = exact_readings(PARAMETERS, ORIENTATIONS, GRAVITY)
+    assert np.linalg.norm(swapped_moment_step(readings[:, :3], readings[:, 3:]) - PARAMETERS[2:5]) > 5e-3
+
+
+def test_arc_cosine_loses_the_sign_and_arc_sine_the_half_turn():
+    assert theta_by_arc_cosine(np.cos(-0.3), 1.0) == pytest.approx(0.3)
+    assert theta_by_arc_sine(np.sin(2.0), 1.0) == pytest.approx(np.pi - 2.0)

@@ -1,0 +1,83 @@
+"""What the Meca500 report's sections compute of single runs."""
+
+import numpy as np
+import pytest
+from thin_plans import make_runs
+
+from runner.controllers.admittance_response import sampled_frequency_response
+from runner.controllers.admittance_stability import stiffest_wall
+from runner.works.meca500.at_the_tip import filtered_turn, tool_turn
+from runner.works.meca500.bouncing import bounces
+from runner.works.meca500.contact import felt_force, reading_error
+from runner.works.meca500.frequency_response import fitted_response
+from runner.works.meca500.limits import smallest_margin
+from runner.works.meca500.plan import LIMITS, REPORTED, law, plan
+from runner.works.meca500.servo_compliance import servo_compliance
+from runner.works.meca500.signals import displacement, wrenches
+from runner.works.meca500.step_response import law_of, step_error
+
+
+@pytest.fixture(scope="module")
+def planned(shared_store):
+    """Run a job of the plan by its name, with further overrides."""
+    jobs = plan()
+    return lambda name, *overrides: make_runs(shared_store, {name: (*jobs[name].overrides, *overrides)})[name]
+
+
+@pytest.mark.parametrize("axis", ["y", "rotation x"])
+def test_a_step_response_is_the_analytic_one_and_a_late_load_makes_it_late(planned, axis):
+    assert step_error(planned(f"step/kinematic, 1 ms/{axis}"), axis) < 1e-4
+    slow = step_error(planned(f"step/kinematic, 16.7 ms/{axis}"), axis)
+    late = step_error(planned(f"step/kinematic, 16.7 ms, felt late/{axis}"), axis)
+    # The steepest the answer gets is omega_n / e of its peak a second: so far it goes in a period, at most.
+    assert slow < 0.01 < late < 20.0 / np.e * REPORTED
+
+
+@pytest.mark.parametrize(("axis", "load"), [("x", 2.0), ("rotation z", 0.05)])
+def test_servos_give_way_as_their_springs_do_at_rest(planned, axis, load):
+    found = planned(f"step/servo, 1 ms/{axis}", "duration=1")
+    index = 0 if axis == "x" else 5
+    rest = load / law_of(found).stiffness[index]
+    give = displacement(found)[-1, index] - rest
+    assert give == pytest.approx(servo_compliance(found)[index, index] * load, rel=0.01)
+    assert give > 0.05 * rest
+
+
+def test_a_fitted_sine_is_the_sampled_laws_answer(planned):
+    found = planned("sine/kinematic, 16.7 ms/4.0")
+    expected = sampled_frequency_response(law_of(found), REPORTED, np.array([2.0 * np.pi * 4.0]))[0]
+    np.testing.assert_allclose(fitted_response(found), expected, rtol=1e-3)
+
+
+def test_a_force_through_the_tip_turns_neither_law_nor_tool(planned):
+    found = planned("tip/at the tip")
+    assert filtered_turn(found) < 1e-12
+    assert tool_turn(found) < 1e-9
+    assert tool_turn(planned("tip/at the flange")) > 0.01
+
+
+def test_the_force_on_a_wall_is_read_true(planned):
+    found = planned("wall/bullet/100000")
+    assert reading_error(found) < 0.01
+    assert felt_force(found) > 1.0
+
+
+@pytest.mark.parametrize(("share", "unstable"), [(0.9, False), (1.1, True)])
+def test_contact_bounces_beyond_the_predicted_bound_alone(planned, share, unstable):
+    found = planned(f"map/kinematic/{REPORTED}/{share}")
+    bound = stiffest_wall(law(), REPORTED, 0, 0.0, 0)
+    assert found.config["environment"]["stiffness"] == pytest.approx(share * bound, rel=1e-4)
+    assert bounces(found) is unstable
+
+
+def test_the_same_orientation_is_weighed_by_reaction_and_balance(planned):
+    found = planned("rest/7")
+    apart = wrenches(found, "load")[1:] - wrenches(found, "reaction")[1:]
+    assert np.abs(apart).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_no_joint_passes_a_limit_and_the_run_says_what_held_it(planned, name):
+    found = planned(f"limit/{name}")
+    assert smallest_margin(found) >= 0.0
+    assert any("has held the tool back, first at t =" in text for text in found.provenance["warnings"])

@@ -1,0 +1,113 @@
+"""The whole thesis report, from its plan with two repetitions in place of forty, and from one made thin."""
+
+import re
+from collections import Counter
+
+import pytest
+from mutated_runs import mutants, never_failing
+from thin_plans import make_runs, stand_ins
+from work_plans import thesis_jobs, thesis_moments
+
+from runner.reporting import outline
+from runner.reporting.document import Claim, Curves, Picture, Table, Text
+from runner.reporting.formulas import faulty
+from runner.reporting.job import PRESETS
+from runner.reporting.render import write_report
+from runner.works.thesis import claims, mini_accuracy, questions
+from runner.works.thesis.report import document as thesis_document
+
+ONCE = (
+    *("2.3", "2.4", "3.1", "3.4", "3.6", "3.7", "3.8", "4.1", "4.3"),
+    *("5.1", "5.2", "5.3", "5.4", "5.5", "5.6", "5.7", "5.9", "5.11"),
+)
+FOR_EACH_PRESET = ("3.5", "3.9", "3.10", "4.2", "4.4", "5.8", "5.10", "5.12", "5.13")
+TABLES = ("2.1", "3.1", "4.1", "5.1")
+
+
+@pytest.fixture(scope="module")
+def runs(shared_store, thin):
+    jobs = thesis_moments() if thin else thesis_jobs()
+    return make_runs(shared_store, jobs, stand_ins(jobs, thin))
+
+
+@pytest.fixture(scope="module")
+def document(runs):
+    return thesis_document(runs, {})
+
+
+def blocks_of(document, *kinds):
+    return [block for block in outline.blocks(document) if isinstance(block, kinds)]
+
+
+def test_every_figure_and_table_of_chapters_2_to_5_is_there(document):
+    numbers = Counter(block.origin.number for block in blocks_of(document, Curves, Picture, Table))
+    del numbers[""]  # our own
+    expected = {f"figure {number}": 1 for number in ONCE}
+    expected |= {f"figure {number}": len(PRESETS) for number in FOR_EACH_PRESET}
+    expected |= {f"table {number}": 1 for number in TABLES}
+    assert numbers == expected
+
+
+def test_every_published_figure_carries_its_command(document):
+    for block in blocks_of(document, Curves, Picture, Table):
+        if block.origin.number:
+            assert re.match(r"runner (.* )?experiment=thesis/", block.origin.command)
+
+
+def test_every_number_has_a_finding_for_each_preset(document):
+    claims = blocks_of(document, Claim)
+    assert [claim.number for claim in claims] == [str(number) for number in range(1, 18)]
+    for claim in claims:
+        assert tuple(finding.preset for finding in claim.findings) == PRESETS
+        assert claim.reason
+
+
+def test_the_minis_settling_time_contradicts_the_macros(document):
+    claim = next(claim for claim in blocks_of(document, Claim) if claim.number == "5")
+    assert [finding.verdict for finding in claim.findings] == ["contradicts itself", "contradicts itself"]
+
+
+def test_the_table_of_verdicts_says_what_the_claims_say(document):
+    table = next(block for block in blocks_of(document, Table) if block.caption.startswith("Verdicts"))
+    claims = blocks_of(document, Claim)
+    assert [list(row) for row in table.rows] == [
+        [c.number, c.statement, c.printed, *(f"{f.measured}: {f.verdict}" for f in c.findings)] for c in claims
+    ]
+
+
+def test_the_plants_disagreement_is_measured_on_every_compared_figure(document):
+    sentences = [
+        block.text for block in blocks_of(document, Text) if "PyBullet is the plant, in steps of" in block.text
+    ]
+    assert len(sentences) == len(FOR_EACH_PRESET)
+    for text in sentences:
+        assert text.count("the tip is at most") == len(PRESETS)
+
+
+def test_every_formula_can_be_set(document):
+    assert faulty(document) == []
+
+
+def test_html_and_pdf_are_written(document, tmp_path):
+    html, pdf = write_report(document, tmp_path)
+    page = html.read_text()
+    for number in (*ONCE, *FOR_EACH_PRESET):
+        assert f"figure {number}" in page.lower()
+    assert not re.findall(r"(?:src|href)=[\"']?(?:https?:)?//", page)
+    assert pdf.read_bytes().startswith(b"%PDF")
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        claims._what_falls,
+        questions._strategy,
+        questions._independent,
+        questions._effect,
+        questions._together,
+        mini_accuracy.mini_accuracy,
+    ],
+    ids=lambda make: make.__name__,
+)
+def test_every_condition_of_a_finding_can_fail(runs, make):
+    assert never_failing(list(mutants(make, runs))) == []

@@ -1,0 +1,148 @@
+"""The xArm7 report, from the real plan; the studies, which have tests of their own, stand in it as empty sections."""
+
+import re
+
+import numpy as np
+import pytest
+from thin_plans import make_runs
+
+from runner.reporting import outline
+from runner.reporting.document import Claim, Curves, Notice, Picture, Playback, Section, Table, Text
+from runner.reporting.findings import findings
+from runner.reporting.formulas import faulty
+from runner.reporting.job import PRESETS
+from runner.reporting.render import write_report
+from runner.works.xarm7.plan import STEPS, plan
+from runner.works.xarm7.report import document as xarm7_document
+from runner.works.xarm7.studies_plan import studies_jobs
+
+STUDIES = ("why_it_failed", "null_space", "rates", "servo", "payload", "torque_level")
+OWN_FIGURES = ("sketch of the motion", "Graphs of x, y and z", "Graphs of q1, q2 and q4")
+
+
+@pytest.fixture(scope="module")
+def runs(shared_store):
+    studies = studies_jobs()
+    return make_runs(shared_store, {name: job.overrides for name, job in plan().items() if name not in studies})
+
+
+@pytest.fixture(scope="module")
+def document(runs):
+    with pytest.MonkeyPatch.context() as patch:
+        for name in STUDIES:
+            title = "Why the second part failed" if name == "why_it_failed" else name
+            patch.setattr(f"runner.works.xarm7.report.{name}_section", lambda runs, title=title: Section(title))
+        return xarm7_document(runs, {})
+
+
+def blocks_of(document, *kinds):
+    return [block for block in outline.blocks(document) if isinstance(block, kinds)]
+
+
+def table(document, caption):
+    return next(block for block in blocks_of(document, Table) if block.caption.startswith(caption))
+
+
+def test_every_figure_of_the_source_is_there_once_with_its_command(document):
+    found = [block.origin for block in blocks_of(document, Curves, Picture, Table, Playback) if block.origin.number]
+    assert [origin.number for origin in found] == list(OWN_FIGURES)
+    assert all(re.match(r"runner experiment=xarm7/three_joints preset=", origin.command) for origin in found)
+
+
+def test_every_study_has_its_place(document):
+    titles = [chapter.section.title for chapter in outline.chapters(document)]
+    assert {"Why the second part failed", *STUDIES[1:]} <= set(titles)
+
+
+def test_the_checklist_finds_a_place_for_everything(document):
+    rows = table(document, "Figures and formulas of the report").rows
+    assert len(rows) == 10
+    assert all(re.fullmatch(r"§\d+(\.\d+)?", where) and state != "missing" for *_, state, where in rows)
+
+
+def test_the_verdicts(document):
+    verdicts = {claim.number: [f.verdict for f in claim.findings] for claim in blocks_of(document, Claim)}
+    same = {number: ["holds", "holds"] for number in "123467"}
+    assert verdicts == {**same, "5": ["contradicts itself", "contradicts itself"]}
+    for claim in blocks_of(document, Claim):
+        assert tuple(finding.preset for finding in claim.findings) == PRESETS
+
+
+def test_the_table_of_verdicts_says_what_the_claims_say(document):
+    assert [list(row) for row in table(document, "Verdicts").rows] == [
+        [c.number, c.statement, c.printed, *(f"{f.measured}: {f.verdict}" for f in c.findings)]
+        for c in blocks_of(document, Claim)
+    ]
+
+
+def test_one_branch_alone_is_inside_the_joint_limits(document):
+    rows = table(document, "Joint positions along the line").rows
+    inside = {branch for branch, *_, margin in rows if not margin.startswith("-")}
+    assert inside == {"facing the point, plus"}
+    assert len(rows) == 8
+
+
+def test_the_formulas_put_right_lead_to_the_line_and_no_others_do(document):
+    misses = {row[0]: row[-1] for row in table(document, "Largest errors of the printed formulas").rows}
+    assert misses.pop("both put right") == "1.52·10⁻⁵"
+    assert all(float(miss) > 1e-2 for miss in misses.values())
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_seven_joints_meet_what_is_asked_of_them(runs, preset):
+    for name in ("seven_joints", "seven_joints_pose"):
+        metrics = runs[f"{name}/{preset}"].metrics
+        assert metrics["cross_track_error"]["median"] < 1e-4
+        if preset == "sound":
+            assert metrics["max_tracking_error"]["median"] < 1e-5
+
+
+def test_both_values_of_x_are_reached_with_room_at_every_joint(document):
+    rows = {row[0]: row[1:] for row in table(document, "Both values of X").rows}
+    assert rows["smallest margin to a joint limit (rad)"] == ["1.14 (q2)", "1.25 (q2)"]
+    assert any("1.14 rad" in notice.text and "1.25 rad" in notice.text for notice in blocks_of(document, Notice))
+
+
+def test_the_findings_that_need_no_study_hold(document):
+    """These runs are those of the plan; the studies' runs take longer."""
+    held = [found for _, found in findings(document)]
+    assert [found.title for found in held if not found.holds] == []
+    assert len(held) == 8
+
+
+def test_what_is_rounding_is_told_as_rounding(document):
+    rows = {row[0]: row[1:] for row in table(document, "Errors and efforts").rows}
+    assert rows["largest distance from the path"][0] == "0 (rounding)"
+    cells = [cell for each in blocks_of(document, Table) for row in each.rows for cell in row]
+    assert not [cell for cell in cells if re.search("10⁻¹[2-9]", cell)]
+
+
+def test_a_motion_is_shown_from_a_to_b_as_its_caption_says(document):
+    shown = blocks_of(document, Playback)
+    assert len(shown) == 2
+    for playback in shown:
+        assert playback.caption.endswith("from A to B.")
+        assert playback.times[-1] == pytest.approx(5.0)
+        np.testing.assert_allclose(playback.path[-1], [0.643, 0.2, 0.1508], atol=1e-4)
+
+
+def test_the_plants_disagreement_is_measured_and_shrinks_with_the_step(document):
+    (text,) = [block.text for block in blocks_of(document, Text) if "PyBullet is the plant, in steps of" in block.text]
+    assert text.count("the tip is at most") == len(PRESETS)
+    distances = [float(re.sub("·10⁻⁶$", "e-6", row[2]).replace("·10⁻⁷", "e-7")) for row in
+                 table(document, "PyBullet's step against Runge-Kutta").rows]  # fmt: skip
+    for first in range(0, len(distances), len(STEPS)):
+        coarse, middle, fine = distances[first : first + len(STEPS)]
+        assert middle / coarse == pytest.approx(0.5, rel=0.05)  # first order
+        assert fine / middle == pytest.approx(0.5, rel=0.05)
+
+
+def test_every_formula_can_be_set(document):
+    assert faulty(document) == []
+
+
+def test_html_and_pdf_are_written(document, tmp_path):
+    html, pdf = write_report(document, tmp_path)
+    page = html.read_text()
+    assert not re.findall(r"(?:src|href)=[\"']?(?:https?:)?//", page)
+    assert pdf.read_bytes().startswith(b"%PDF")

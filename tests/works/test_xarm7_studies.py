@@ -1,0 +1,178 @@
+"""The studies of the xArm7 report build from short runs and failed ones, and their closed forms are right."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from study_sections import every_run, texts, unfinished_texts, whatever_has_failed
+from thin_plans import make_runs, stand_ins
+from work_plans import xarm7_moments
+
+from runner import run
+from runner.reporting import formulas
+from runner.reporting.document import Document, Section
+from runner.store import Run
+from runner.works.xarm7.null_space import BOUND, null_space_section, standing
+from runner.works.xarm7.null_space_cycles import drifts
+from runner.works.xarm7.payload import largest_payloads, payload_section, stretched
+from runner.works.xarm7.rates import lag, rates_section
+from runner.works.xarm7.servo import sag, servo_section
+from runner.works.xarm7.studies import first_saturation, lost_at
+from runner.works.xarm7.studies_plan import RULES, SPEEDS, studies_jobs
+from runner.works.xarm7.torque_level import BOUND as TORQUE_BOUND
+from runner.works.xarm7.torque_level import torque_level_section
+from runner.works.xarm7.why_it_failed import ROWS, invert, why_it_failed_section
+from runner.works.xarm7.why_it_failed_columns import jacobians, random_postures
+
+SECTIONS = (
+    why_it_failed_section,
+    null_space_section,
+    rates_section,
+    servo_section,
+    payload_section,
+    torque_level_section,
+)
+Make = Callable[[str], Run]
+
+
+@pytest.fixture(scope="module")
+def runs(shared_store: Path, thin: bool) -> dict[str, Run]:
+    """Every run of the plan, cut to a moment."""
+    return make_runs(shared_store, xarm7_moments(), stand_ins(xarm7_moments(), thin, every=("payload/",)))
+
+
+@pytest.fixture(scope="module")
+def planned(shared_store: Path) -> Make:
+    """Make a run of the plan, as it is planned."""
+    return lambda name: make_runs(shared_store, {name: studies_jobs()[name].overrides})[name]
+
+
+@whatever_has_failed
+def test_every_section_builds_whatever_has_failed(runs: dict[str, Run], spoil: Callable[..., dict[str, Run]]) -> None:
+    sections = [build(spoil(runs)) for build in SECTIONS]
+    assert formulas.faulty(Document("Studies", "", "", sections, "2026-01-01")) == []
+    for section in sections:
+        assert section.blocks
+        assert not unfinished_texts(section)
+
+
+@pytest.mark.parametrize("build", SECTIONS)
+def test_a_failed_run_is_shown_with_its_failure(
+    runs: dict[str, Run], build: Callable[[Mapping[str, Run]], Section]
+) -> None:
+    assert any("for this test" in text for text in texts(build(every_run(runs))))
+
+
+def test_the_printed_inverse_has_nothing_to_invert_and_the_right_one_is_right(xarm7: Any) -> None:
+    J = np.array([xarm7.model.tip_jacobian(q) for q in random_postures(xarm7.model)[:200]])
+    for rows in ROWS.values():
+        result = invert(J[:, :rows])
+        assert (result.ranks == rows).all()
+        assert result.refused + result.offs.size == len(J)
+        assert result.right.max() < 1e-9
+        assert (result.offs > 1e-3).all()
+
+
+def test_of_a_tall_matrix_the_printed_inverse_is_right() -> None:
+    tall = np.random.default_rng(1).normal(size=(5, 7, 3))
+    for J in tall:
+        np.testing.assert_allclose(np.linalg.inv(J.T @ J) @ J.T, np.linalg.pinv(J), atol=1e-12)
+
+
+def test_equal_columns_get_equal_speeds(planned: Make) -> None:
+    """Columns 1 and 2 of the printed Jacobian are one and the same, so its shortest motion shares between them."""
+    trace = planned("printed/position/columns alone").trace
+    np.testing.assert_allclose(trace["dq1"], trace["dq2"], atol=1e-12)
+    assert trace["dq1"].abs().max() > 0.01
+
+
+def test_the_last_true_column_is_missing(xarm7: Any) -> None:
+    postures = random_postures(xarm7.model)[:50]
+    true, printed = (jacobians(xarm7.model, postures, shifted, False) for shifted in (False, True))
+    distance = np.linalg.norm(printed - true[:, :, 6:], axis=1).min(axis=1)
+    assert (distance > 1e-3).all()
+
+
+def test_the_tip_stands_still_at_1_rad_per_s_by_rk4_alone(planned: Make) -> None:
+    fastest = {rule: planned(f"null_space/{rule}/{SPEEDS[-1]}") for rule in RULES}
+    moved = {rule: standing(run).at_ticks for rule, run in fastest.items()}
+    assert moved["rk4"] < BOUND < moved["midpoint"] < moved["euler"]
+    assert fastest["rk4"].metrics["peak_joint_speed"]["median"] == pytest.approx(1.0, abs=1e-3)
+
+
+def test_between_commands_the_tip_bulges_with_the_square_of_the_period(planned: Make) -> None:
+    slow, fast = (
+        standing(planned(name)).between for name in (f"null_space/rk4/{SPEEDS[-1]}", "null_space/fastest rate")
+    )
+    assert slow / fast == pytest.approx(2.5**2, rel=0.02)
+
+
+def test_the_shortest_motion_drifts_around_a_circle_and_not_along_a_line(planned: Make) -> None:
+    circle, line = (drifts(planned(f"cycles/{path}/none")) for path in ("circle", "line"))
+    assert (circle > 1e-2).all()
+    assert line.max() < 1e-2 * circle.min()
+    assert (line[1:] < 1e-6).all()  # the first cycle begins without the error that the others carry
+    assert drifts(planned("cycles/circle/posture"))[-1] < 1e-12
+
+
+@pytest.mark.parametrize("rate", [25, 100])
+def test_the_lag_is_the_closed_form(planned: Make, rate: int) -> None:
+    run = planned(f"rates/kinematic/as_reported/{rate}")
+    assert run.metrics["max_tracking_error"]["median"] == pytest.approx(lag(run, rate), rel=2e-3)
+
+
+def test_the_sag_is_the_closed_form_where_the_servo_is_stiff(planned: Make) -> None:
+    stiff = planned("stiffness/7500/false/commanded")
+    error = float(np.abs(stiff.trace[["error_x", "error_y", "error_z"]].to_numpy()[-1]).max())
+    assert error == pytest.approx(sag(stiff), rel=0.02)
+
+
+def test_a_payload_meets_each_limit_where_the_torque_is_the_limit() -> None:
+    torque = np.array([[10.0, -5.0, 1.0], [20.0, -8.0, 1.0]])
+    added = np.array([[4.0, -1.0, 0.0], [5.0, -2.0, 0.0]])
+    masses = largest_payloads(torque, added, np.array([50.0, 20.0, 5.0]))
+    np.testing.assert_allclose(masses, [6.0, 6.0, np.inf])
+
+
+def test_the_torques_asked_for_are_linear_in_the_payload(planned: Make) -> None:
+    names = [f"tau{joint}" for joint in range(1, 8)]
+    light, heavy = (planned(f"payload/0.643/asked/{mass}").trace[names].to_numpy() for mass in (0, 5))
+    outputs = planned("payload/0.643/asked/0").folder.parent.parent
+    between = run(*studies_jobs()["payload/0.643/asked/0"].overrides[:-1], "robot.payload.mass=2", f"outputs={outputs}")
+    np.testing.assert_allclose(between.trace[names].to_numpy(), light + 0.4 * (heavy - light), atol=1e-9)
+
+
+def test_stretched_out_the_arm_is_as_long_as_its_links(xarm7: Any) -> None:
+    """Shoulder to elbow, elbow to wrist, wrist to flange: the limits allow all three to point the same way."""
+    links = ((0.293, 0.0525), (0.0775, 0.3425), (0.076, 0.097))  # m, offsets along and across each
+    assert stretched(xarm7.model).distance == pytest.approx(sum(np.hypot(*link) for link in links), abs=1e-9)
+
+
+def test_stretched_out_the_shoulder_holds_what_balances_about_its_axis(xarm7: Any) -> None:
+    """Its limit less the payload's moment is the arm's own weight's, larger than in any other posture."""
+    stretch = stretched(xarm7.model)
+    own = xarm7.model.effort_limits[1] - 9.81 * stretch.payloads[1] * stretch.distance
+    heaviest = max(abs(xarm7.model.gravity_torque(q)[1]) for q in random_postures(xarm7.model))
+    assert own == pytest.approx(heaviest, rel=0.1)
+    assert own > heaviest
+
+
+def test_the_printed_line_takes_3_kg_and_not_the_rated_payload(planned: Make) -> None:
+    held, lost = (planned(f"payload/0.643/{mass}") for mass in ("3", "3.5"))
+    assert (lost_at(held), first_saturation(held)) == (None, None)
+    saturated = first_saturation(lost)
+    assert saturated is not None
+    assert saturated[0] == 1  # the shoulder
+    assert (lost_at(lost) or 0.0) > saturated[1]
+
+
+@pytest.mark.parametrize("law", ["operational_space", "computed_torque"])
+def test_the_torque_laws_hold_the_line_without_load_and_lose_it_above_what_the_shoulder_holds(
+    planned: Make, law: str
+) -> None:
+    unloaded = planned(f"torque/{law}/0")
+    assert unloaded.metrics["max_tracking_error"]["median"] < TORQUE_BOUND
+    assert first_saturation(unloaded) is None
+    assert planned(f"torque/{law}/3.5").metrics["max_tracking_error"]["median"] > TORQUE_BOUND

@@ -1,0 +1,63 @@
+"""Which runs the tests of the works' reports make: those of the plans, with what takes long cut to a moment."""
+
+from thin_plans import Overrides
+
+from runner.works.meca500.calibration_plan import calibration_jobs
+from runner.works.meca500.plan import plan as meca500_plan
+from runner.works.thesis.combined_plan import combined_jobs
+from runner.works.thesis.plan import COMBINED
+from runner.works.thesis.plan import plan as thesis_plan
+from runner.works.xarm7.studies_plan import studies_jobs
+
+MOMENT = 0.08  # s
+_MECA500 = {"step": 0.2, "sine": 0.8, "tip": 0.2, "wall": 0.4, "map": 0.4, "hand": 0.4, "swing": 1.0, "limit": 0.7,
+            "noise": 0.3, "inertials": 0.4, "plants": 0.4}  # s, by what the names begin with  # fmt: skip
+
+
+def cut(overrides: Overrides, duration: float) -> Overrides:
+    """Return the overrides of a run cut short."""
+    return (*(o for o in overrides if not o.startswith("duration=")), f"duration={duration}")
+
+
+def thesis_jobs() -> dict[str, Overrides]:
+    """Return all runs of the thesis, with two repetitions in place of forty; the twins of another plant have one."""
+    return {name: _repeated(job.overrides) for name, job in thesis_plan().items()}
+
+
+def _repeated(overrides: Overrides) -> Overrides:
+    kept = (override for override in overrides if not override.startswith("repetitions="))
+    return (*kept, f"repetitions={1 if 'plant=rk4' in overrides else 2}")
+
+
+def thesis_moments() -> dict[str, Overrides]:
+    """Return the same, the runs of six joints and of the Macro beside them cut to a moment, those of the Mini alone."""
+    combined = combined_jobs()
+    moments = {}
+    for name, overrides in thesis_jobs().items():
+        if name in combined or name.partition("/")[0] in COMBINED:
+            moments[name] = cut(overrides, MOMENT)
+        elif name.startswith("figure_4"):
+            moments[name] = (*(o for o in overrides if not o.startswith("repetitions=")), "repetitions=1")
+        else:
+            moments[name] = overrides
+    return moments
+
+
+def xarm7_moments() -> dict[str, Overrides]:
+    """Return the runs of the studies on the xArm7, cut to a moment."""
+    return {name: cut(job.overrides, MOMENT) for name, job in studies_jobs().items()}
+
+
+def meca500_jobs() -> dict[str, Overrides]:
+    """Return all runs of the Meca500 report; those of contact, guiding and steps as short as shows what they do."""
+    jobs = {name: job.overrides for name, job in meca500_plan().items()}
+    lengths = {name: _MECA500.get(name.partition("/")[0]) for name in jobs}
+    return {name: o if lengths[name] is None else cut(o, lengths[name]) for name, o in jobs.items()}
+
+
+def meca500_calibrations() -> dict[str, Overrides]:
+    """Return all calibrations of the Meca500 report, with few repetitions."""
+    return {
+        name: (*(override for override in overrides if override != "repetitions=1"), "repetitions=4")
+        for name, overrides in calibration_jobs().items()
+    }
