@@ -19,7 +19,7 @@ from tqdm import tqdm
 from runner import open_run
 from runner.config.compose import quiet_environment
 from runner.config.options import group_options
-from runner.paths import works_dir
+from runner.references.shipped import reference_path
 from runner.store import Run
 
 SEEDS = range(5)
@@ -208,8 +208,7 @@ def main() -> None:
         for preset in PRESETS:
             runs = [open_run(stored[experiment, preset, seed]) for seed in SEEDS]
             bands = {metric: make_band(runs, experiment, preset, metric) for metric in metrics}
-            work, _, name = experiment.partition("/")
-            path = works_dir() / work / "references" / f"{name}.{preset}.yaml"
+            path = reference_path(f"{experiment}.{preset}")
             path.parent.mkdir(parents=True, exist_ok=True)
             head = (
                 f"# {group_options('experiment')[experiment]}, preset {preset}\n# Made by bench/make_references.py.\n"

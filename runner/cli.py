@@ -29,6 +29,7 @@ runner: config-driven experiments for robot-arm control, with reports
   runner verify [DIR]                            is all in an outputs folder as it was written?
   runner check DIR [--reference FILE]            is every metric inside its reference band? --learn a sweep's
   runner diff A B                                two runs side by side: config and metrics
+  runner work diff OLD NEW                       what changed between two makings of a published work
   runner calibrate [OVERRIDES]                   calibrate tool or sensor against the truth: calibration=gravity
   runner audit URDF --tip FRAME --jacobian FILE  your own formulas against a robot; also --position, --mass-matrix,
                                                  --gravity
@@ -50,6 +51,7 @@ codes: 0 good, 1 a run failed or a check fell short, 2 bad input.
 """
 COMMANDS = (
     "reproduce", "report", "table", "status", "tune", "verify", "check", "diff", "calibrate", "audit", "doctor", "list",
+    "work",
 )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from printed import without_caveats
 
 from runner.references import shipped_references
+from runner.references.shipped import reference_path
 
 ROOT = Path(__file__).resolve().parents[1]
 SCRIPT = """\
@@ -32,7 +33,7 @@ def test_the_wheel_holds_configs_robots_templates_and_references(wheel):
     for folder, inside in (("conf", "conf"), ("robots", "robots"), ("reports/templates", "reports/templates")):
         ours = {path.relative_to(ROOT / folder).as_posix() for path in (ROOT / folder).rglob("*.*")}
         assert {f"runner/_data/{inside}/{name}" for name in ours} <= names
-    assert {f"runner/references/{name}.yaml" for name in shipped_references()} <= names
+    assert {reference_path(name).relative_to(ROOT).as_posix() for name in shipped_references()} <= names
     assert not [name for name in names if name.startswith(("tests", "bench", "outputs"))]
 
 

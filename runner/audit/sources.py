@@ -11,7 +11,7 @@ _FOLDER = "equations"
 
 def sources() -> tuple[str, ...]:
     """Return the names of the works whose equations are audited."""
-    return tuple(sorted(path.parent.name for path in works_dir().glob(f"*/{_FOLDER}/inventory.yaml")))
+    return tuple(sorted(path.parents[1].name for path in works_dir().glob(f"*/{_FOLDER}/inventory.yaml")))
 
 
 def folder(source: str) -> Path:

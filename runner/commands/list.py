@@ -96,11 +96,20 @@ def _list_references(_: Sequence[Path]) -> dict[str, str]:
     return described_references()
 
 
+def _list_works(_: Sequence[Path]) -> dict[str, str]:
+    from importlib import import_module
+
+    from runner.works.names import work_names
+
+    return {name: (import_module(f"runner.works.{name}").__doc__ or "").strip() for name in work_names()}
+
+
 TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {
     **{topic: _list_group(group) for topic, group in _GROUPS.items()},
     "metrics": _list_metrics,
     "claims": _list_claims,
     "references": _list_references,
+    "works": _list_works,
 }
 """What can be listed: each gives names and one-line descriptions."""
 

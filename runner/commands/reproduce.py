@@ -8,19 +8,20 @@ import json
 import shlex
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.commands.arguments import Parser
 from runner.config.compose import quiet_environment
 from runner.errors import RunnerError, nearest
+from runner.works.changes import FILE
 from runner.works.names import work_names
 
 if TYPE_CHECKING:
     from runner.reporting.document import Document
     from runner.reporting.expected_caveats import ExpectedCaveat
-    from runner.store import Run
+    from runner.store import Calibration, Run
 
 AUDIT = "audit"
 _FREE = ("hydra.sweeper.", "sweep.", "limits.", "caveats.")
@@ -43,6 +44,7 @@ class _Reproduced:
     runs: "Mapping[str, Run]"
     missing: Mapping[str, str]
     expected: "Sequence[ExpectedCaveat]" = ()
+    calibrations: "Mapping[str, Calibration]" = field(default_factory=dict)
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -65,12 +67,19 @@ def main(arguments: Sequence[str]) -> int:
     quiet_environment()
     way = _Way(options.outputs, options.overrides, shlex.join(["runner", "reproduce", *arguments]))
     made = {}
-    for work in works if options.work == "all" else (options.work,):
+    for work in _shortest_first(works) if options.work == "all" else (options.work,):
         made[work] = _reproduce(work, way)
     if options.json is not None:
         _write_conclusions(made, options.json)
     fallen = _tell_fallen(made) if options.check else False
     return 1 if fallen or any(each.missing for each in made.values()) else 0
+
+
+def _shortest_first(works: Sequence[str]) -> list[str]:
+    """Return works in the order of the number of their runs, so that there is something to read soon."""
+    from runner.works.work import load_work
+
+    return sorted(works, key=lambda name: 0 if name == AUDIT else len(load_work(name).jobs()))
 
 
 def _reproduce(work: str, way: _Way) -> _Reproduced:
@@ -82,6 +91,7 @@ def _reproduce(work: str, way: _Way) -> _Reproduced:
     made = (_audit if work == AUDIT else _reproduce_work)(work, way, folder)
     print("writing the report ...", file=sys.stderr)
     write_report(made.document, folder)
+    _write_conclusions({work: made}, folder / FILE)
     for name, why in made.missing.items():
         print(f"runner: {work}: {name} is missing in the report: {why}", file=sys.stderr)
     print(folder)
@@ -107,7 +117,9 @@ def _write_conclusions(made: Mapping[str, _Reproduced], path: Path) -> None:
     from runner.reporting.conclusions import conclusions
     from runner.store.atomic import write_atomically
 
-    content = {work: conclusions(each.document, each.runs, each.expected) for work, each in made.items()}
+    content = {
+        work: conclusions(each.document, each.runs, each.calibrations, each.expected) for work, each in made.items()
+    }
     write_atomically(path, (json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())
 
 
@@ -120,7 +132,7 @@ def _reproduce_work(name: str, way: _Way, folder: Path) -> _Reproduced:
     work.measure(way.outputs)
     runs, calibrations = make_all(work.jobs(), work.calibrations(), way.outputs, way.overrides, way.command)
     missing = runs.missing | calibrations.missing
-    return _Reproduced(work.document(runs, calibrations), runs, missing, work.expected)
+    return _Reproduced(work.document(runs, calibrations), runs, missing, work.expected, calibrations)
 
 
 def _audit(work: str, way: _Way, folder: Path) -> _Reproduced:

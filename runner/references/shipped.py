@@ -1,5 +1,6 @@
 """The references that come with the package, one for each published experiment and preset."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.config.options import described_files
@@ -42,5 +43,10 @@ def find_shipped(run: "Run") -> Reference:
             f"{run.folder}: no reference comes with the runner for {what}; give one by --reference FILE; there are: "
             f"{', '.join(known) or 'none'}"
         )
+    return load_reference(reference_path(name), name)
+
+
+def reference_path(name: str) -> Path:
+    """Return the file of a reference, such as "thesis/figure_3_5.sound", whether it is there or not."""
     work, _, file = name.partition("/")
-    return load_reference(works_dir() / work / _FOLDER / f"{file}.yaml", name)
+    return works_dir() / work / _FOLDER / f"{file}.yaml"

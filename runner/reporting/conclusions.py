@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 
-from runner.reporting.document import Claim, Document
+from runner.reporting.document import Claim, Document, Equations
 from runner.reporting.expected_caveats import ExpectedCaveat, caveats_as_data
 from runner.reporting.findings import findings
 from runner.reporting.outline import blocks
-from runner.store import Run
+from runner.store import Calibration, Run
 
 
 def fallen(document: Document) -> list[str]:
@@ -19,12 +19,18 @@ def fallen(document: Document) -> list[str]:
     ]
 
 
-def conclusions(document: Document, runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> dict[str, object]:
+def conclusions(
+    document: Document,
+    runs: Mapping[str, Run],
+    calibrations: Mapping[str, Calibration],
+    expected: Sequence[ExpectedCaveat],
+) -> dict[str, object]:
     """Return all that a report concludes, as plain data.
 
     Args:
         document: The report.
         runs: The stored runs behind it, by name.
+        calibrations: The stored calibrations behind it, by name.
         expected: The caveats that it expects of them.
     """
     return {
@@ -40,8 +46,15 @@ def conclusions(document: Document, runs: Mapping[str, Run], expected: Sequence[
             }
             for number, found in findings(document)
         ],
+        "equations": [
+            {"title": row.title, "number": row.number, "place": row.place, "verdict": row.verdict}
+            for block in blocks(document)
+            if isinstance(block, Equations)
+            for row in block.rows
+        ],
         "caveats": caveats_as_data(runs, expected),
         "numbers": {name: _numbers(run) for name, run in runs.items()},
+        "calibrations": {name: _calibrated(calibration) for name, calibration in calibrations.items()},
     }
 
 
@@ -56,7 +69,17 @@ def _numbers(run: Run) -> dict[str, object]:
     return {
         "run": run.hash,
         "status": run.status,
-        "metrics": {
-            name: {key: metric[key] for key in ("unit", "median", "min", "max")} for name, metric in run.metrics.items()
-        },
+        "metrics": _summaries(run.metrics),
     }
+
+
+def _calibrated(calibration: Calibration) -> dict[str, object]:
+    return {
+        "calibration": calibration.hash,
+        "truth": dict(calibration.truth),
+        **{table: _summaries(calibration.record[table]) for table in ("estimates", "errors", "deviations")},
+    }
+
+
+def _summaries(table: Mapping[str, Mapping[str, object]]) -> dict[str, dict[str, object]]:
+    return {name: {key: each[key] for key in ("unit", "median", "min", "max")} for name, each in table.items()}

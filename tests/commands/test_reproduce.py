@@ -20,7 +20,6 @@ from runner.reporting.work_report import parts, work_document
 from runner.sweeps import work as workers
 from runner.sweeps.lock import at_work
 from runner.works.making import make_all
-from runner.works.names import work_names
 from runner.works.thesis import work as thesis
 from runner.works.work import Work
 
@@ -58,7 +57,7 @@ def test_a_second_time_nothing_is_simulated(cli, small_work, tmp_path):
     first = cli("reproduce", "thesis", "hydra.sweeper.workers=1")
     assert first.code == 0
     assert first.folder == tmp_path / "outputs" / "reports" / "thesis"
-    assert sorted(path.name for path in first.folder.iterdir()) == ["report.html", "report.pdf"]
+    assert sorted(path.name for path in first.folder.iterdir()) == ["conclusions.json", "report.html", "report.pdf"]
     records = sorted((tmp_path / "outputs" / "runs").glob("*/metrics.json"))
     assert len(records) == 3
     written = [path.stat().st_mtime_ns for path in records]
@@ -144,7 +143,7 @@ def test_the_audit_is_a_report_and_a_table(cli, monkeypatch, tmp_path):
     ending = cli("reproduce", "audit")
     assert (ending.code, ending.folder) == (0, tmp_path / "outputs" / "reports" / "audit")
     names = sorted(path.name for path in ending.folder.iterdir())
-    assert names == ["equations.csv", "report.html", "report.pdf"]
+    assert names == ["conclusions.json", "equations.csv", "report.html", "report.pdf"]
     table = list(csv.DictReader(ending.folder.joinpath("equations.csv").read_text(encoding="utf-8").splitlines()))
     assert len(table) == sum(len(part.entries) for part in entry.parts("xarm7"))
     assert {row["verdict"] for row in table} <= set(VERDICTS)
@@ -155,7 +154,9 @@ def test_all_reproduces_every_work(cli, small_work, monkeypatch, tmp_path):
     monkeypatch.setattr(reproduce, "_reproduce_work", lambda *_: empty)
     monkeypatch.setattr(reproduce, "_audit", lambda *_: empty)
     monkeypatch.setattr("runner.reporting.render.write_report", lambda *_: None)
-    assert cli("reproduce").out.split() == [f"outputs/reports/{name}" for name in (*work_names(), "audit")]
+    assert cli("reproduce").out.split() == [
+        f"outputs/reports/{name}" for name in ("audit", "xarm7", "meca500", "thesis")
+    ]
 
 
 def test_outputs_that_cannot_be_written_are_told_before_anything_is_simulated(cli, small_work, tmp_path):
@@ -192,7 +193,7 @@ def test_conclusions_are_written_for_programs(cli, one_finding, tmp_path):
 
 def test_check_lists_the_caveats_that_a_work_does_not_expect(cli, monkeypatch):
     caveats = [{"rule": rule, "text": f"what {rule} found", "value": 1.0} for rule in ("saturation", "overload")]
-    runs = {"heavy": SimpleNamespace(caveats=caveats)}
+    runs = {"heavy": SimpleNamespace(caveats=caveats, hash="0a", status="ok", metrics={})}
     expected = [ExpectedCaveat("overload", "heavy", "It is to be heavy.")]
     made = reproduce._Reproduced(Document("The thesis", "", "", (), "2026-01-01"), runs, {}, expected)
     monkeypatch.setattr(reproduce, "_reproduce_work", lambda *_: made)

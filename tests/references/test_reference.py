@@ -6,8 +6,8 @@ from pydantic import ValidationError
 from runner.config.options import group_options
 from runner.errors import StoreError
 from runner.metrics import unit_of
-from runner.paths import package_dir
 from runner.references import Band, Reference, check_run, load_reference, shipped_references
+from runner.references.shipped import reference_path
 from runner.store import Run
 
 
@@ -149,7 +149,7 @@ def test_a_failed_run_has_no_good_metric(tmp_path):
 
 @pytest.mark.parametrize("name", shipped_references())
 def test_the_shipped_references_are_valid(name):
-    reference = load_reference(package_dir() / "references" / f"{name}.yaml", name)
+    reference = load_reference(reference_path(name), name)
     experiment, _, preset = name.rpartition(".")
     assert experiment in group_options("experiment")
     assert preset in group_options("preset")

@@ -87,7 +87,7 @@ def test_every_room_is_physics_or_known_not_to_be():
     after_the_run = {
         "audit", "caveats", "claims", "cli.py", "commands", "doctor", "engine_output.py", "errors.py", "paths.py",
         "plugins.py", "provenance.py", "references", "reporting", "servo_contact.py", "statistics", "store", "sweeps",
-        "texts.py", "tuning",
+        "texts.py", "tuning", "works",
         "__init__.py", "__main__.py",
     }  # fmt: skip
     rooms = {path.name for path in package_dir().iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()}

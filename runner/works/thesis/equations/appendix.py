@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 
 import numpy as np
 
@@ -120,7 +120,7 @@ def motion(factor: str, dq: FloatArray, ddq: FloatArray) -> FloatArray:
 def read_appendix() -> Appendix:
     """Return the appendix of the thesis as its text stands."""
     rows: list[str] = []
-    for line in (files("runner.audit") / "data" / "thesis" / "appendix.txt").read_text().splitlines():
+    for line in Path(__file__).with_name("appendix.txt").read_text(encoding="utf-8").splitlines():
         if line.startswith("["):
             rows.append("")
         elif rows:

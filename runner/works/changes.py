@@ -1,0 +1,147 @@
+"""What changed between two makings of a work: verdicts, findings, equations, caveats and numbers that moved."""
+
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from runner.errors import RunnerError
+
+FILE = "conclusions.json"
+"""Name of the file with a work's conclusions in the folder of its report."""
+
+KINDS = ("work", "verdict", "finding", "equation", "caveat", "measured", "words", "number")
+"""Kinds of changes, those that matter most first."""
+
+Value = str | float | None
+
+
+@dataclass(frozen=True)
+class Change:
+    """Something that is not the same in both.
+
+    Attributes:
+        kind: One of KINDS.
+        name: What it is, with the name of its work.
+        old: What it was; None where there was none.
+        new: What it is; None where there is none.
+    """
+
+    kind: str
+    name: str
+    old: Value
+    new: Value
+
+    @property
+    def size(self) -> float:
+        """How far a number moved, as a share of what it was; infinite where that cannot be said."""
+        if not isinstance(self.old, float) or not isinstance(self.new, float) or self.old == 0.0:
+            return float("inf")
+        return abs(self.new / self.old - 1.0)
+
+
+def read_conclusions(path: Path) -> Mapping[str, Any]:
+    """Return what `runner reproduce --json` wrote, from the file itself or from the folder of a report.
+
+    Raises:
+        RunnerError: if it cannot be read, or is something else.
+    """
+    file = path / FILE if path.is_dir() else path
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise RunnerError(f"cannot read {file}: {error}; `runner reproduce NAME --json FILE` writes one") from None
+    if not isinstance(content, dict) or not all(
+        isinstance(work, dict) and "title" in work for work in content.values()
+    ):
+        raise RunnerError(f"{file} does not hold the conclusions of works; `runner reproduce NAME --json FILE` does")
+    return content
+
+
+def changes(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Change]:
+    """Return what is not the same in two makings, by kind, numbers that moved most first.
+
+    Args:
+        old: Conclusions by the works' names, also those of an earlier version of this package.
+        new: The same of another making.
+    """
+    before, after = dict(_flat(old, new)), dict(_flat(new, old))
+    found = [
+        Change(kind, name, before.get((kind, name)), after.get((kind, name)))
+        for kind, name in dict.fromkeys([*before, *after])
+        if before.get((kind, name)) != after.get((kind, name))
+    ]
+    return sorted(
+        found, key=lambda change: (KINDS.index(change.kind), -change.size if change.kind == "number" else 0.0)
+    )
+
+
+def _flat(works: Mapping[str, Any], others: Mapping[str, Any]) -> Iterator[tuple[tuple[str, str], Value]]:
+    """Yield everything that is compared, by kind and name; of what the others tell nothing only that it is there."""
+    for work, content in works.items():
+        yield ("work", work), str(content["title"])
+        for part, tell in _PARTS.items():
+            if part not in content:
+                continue
+            if work in others and part not in others[work]:
+                yield ("work", f"{work}: {part}"), "there"
+                continue
+            for kind, name, value in tell(content[part]):
+                yield (kind, f"{work}: {name}"), value
+
+
+_Told = Iterator[tuple[str, str, Value]]
+
+
+def _verdicts(verdicts: Sequence[Mapping[str, Any]]) -> _Told:
+    for claim in verdicts:
+        for ours in claim["ours"]:
+            name = f"claim {claim['claim']}{', ' if ours['preset'] else ''}{ours['preset']}"
+            yield "verdict", name, ours["verdict"]
+            yield "measured", name, ours["measured"]
+
+
+def _findings(findings: Sequence[Mapping[str, Any]]) -> _Told:
+    for finding in findings:
+        yield "finding", finding["title"], "holds" if finding["holds"] else "no longer holds"
+        yield "words", finding["title"], finding["text"]
+
+
+def _equations(equations: Sequence[Mapping[str, Any]]) -> _Told:
+    for equation in equations:
+        yield "equation", f"{equation['number']}, {equation['place']}: {equation['title']}", equation["verdict"]
+
+
+def _caveats(caveats: Sequence[Mapping[str, Any]]) -> _Told:
+    for caveat in caveats:
+        yield "caveat", f"{caveat['run']}: {caveat['rule']}", caveat["text"]
+
+
+def _numbers(runs: Mapping[str, Any]) -> _Told:
+    for run, told in runs.items():
+        yield "number", f"{run} status", told["status"]
+        yield from _summaries(run, told["metrics"])
+
+
+def _calibrations(calibrations: Mapping[str, Any]) -> _Told:
+    for name, told in calibrations.items():
+        for table in ("estimates", "errors", "deviations"):
+            yield from _summaries(f"{name} {table}", told[table])
+
+
+def _summaries(name: str, metrics: Mapping[str, Any]) -> _Told:
+    for metric, summary in metrics.items():
+        for key in ("median", "min", "max"):
+            value = summary[key]
+            yield "number", f"{name} {metric} {key} ({summary['unit']})", None if value is None else float(value)
+
+
+_PARTS: Mapping[str, Callable[[Any], _Told]] = {
+    "verdicts": _verdicts,
+    "findings": _findings,
+    "equations": _equations,
+    "caveats": _caveats,
+    "numbers": _numbers,
+    "calibrations": _calibrations,
+}

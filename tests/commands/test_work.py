@@ -1,0 +1,59 @@
+import copy
+import json
+
+import pytest
+
+METRIC = {"unit": "m", "median": 1.0, "min": 1.0, "max": 1.0}
+OLD = {
+    "thesis": {
+        "title": "The thesis",
+        "findings": [{"title": "It follows", "text": "By 2 mm.", "holds": True}],
+        "numbers": {"goal": {"status": "ok", "metrics": {f"metric_{n}": dict(METRIC) for n in range(30)}}},
+    }
+}
+
+
+@pytest.fixture
+def makings(tmp_path):
+    """Two files: the later making has another finding, and a number that moved in each of 30 metrics."""
+    new = copy.deepcopy(OLD)
+    new["thesis"]["findings"][0] |= {"title": "It follows \x1b[31mwell"}
+    for n, metric in enumerate(new["thesis"]["numbers"]["goal"]["metrics"].values()):
+        metric["median"] = 1.0 + n / 100.0
+    for name, content in (("old", OLD), ("new", new)):
+        (tmp_path / f"{name}.json").write_text(json.dumps(content))
+    return tmp_path / "old.json", tmp_path / "new.json"
+
+
+def test_what_moved_is_printed_and_counted(cli, makings):
+    ending = cli("work", "diff", *makings)
+    assert (ending.code, ending.err) == (0, "")
+    lines = ending.out.splitlines()
+    assert lines[:2] == [
+        "finding: thesis: It follows: holds -> none",
+        r"finding: thesis: It follows \x1b[31mwell: none -> holds",
+    ]
+    assert lines[4] == "number: thesis: goal metric_29 median (m): 1 -> 1.29 (29 %)"
+    assert lines[-2:] == [
+        "number: 9 more; --all prints them",
+        "finding: 2 changed; words: 2 changed; number: 29 changed",
+    ]
+    assert len(cli("work", "diff", *makings, "--all").out.splitlines()) == 2 + 2 + 29 + 1
+
+
+def test_the_same_twice(cli, makings):
+    assert cli("work", "diff", makings[0], makings[0]).out == "nothing changed\n"
+
+
+def test_programs_get_all_of_it(cli, makings, tmp_path):
+    assert cli("work", "diff", *makings, "--json", tmp_path / "changes.json").code == 0
+    written = json.loads((tmp_path / "changes.json").read_text())
+    assert len(written) == 2 + 2 + 29
+    assert written[0] == {"kind": "finding", "name": "thesis: It follows", "old": "holds", "new": None}
+
+
+def test_bad_input_is_told(cli, makings):
+    ending = cli("work", "diff", makings[0], "nowhere.json")
+    assert ending.code == 2
+    assert ending.err.startswith("runner: cannot read nowhere.json: ")
+    assert cli("work", "change", *makings).code == 2
