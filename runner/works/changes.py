@@ -78,13 +78,13 @@ def changes(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Change]:
 
 
 def _flat(works: Mapping[str, Any], others: Mapping[str, Any]) -> Iterator[tuple[tuple[str, str], Value]]:
-    """Yield everything that is compared, by kind and name; of what the others tell nothing only that it is there."""
+    """Yield everything that is compared, by kind and name; of what the others do not have only that it is there."""
     for work, content in works.items():
         yield ("work", work), str(content["title"])
         for part, tell in _PARTS.items():
-            if part not in content:
+            if part not in content or work not in others:
                 continue
-            if work in others and part not in others[work]:
+            if part not in others[work]:
                 yield ("work", f"{work}: {part}"), "there"
                 continue
             for kind, name, value in tell(content[part]):

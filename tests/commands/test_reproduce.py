@@ -155,7 +155,7 @@ def test_all_reproduces_every_work(cli, small_work, monkeypatch, tmp_path):
     monkeypatch.setattr(reproduce, "_audit", lambda *_: empty)
     monkeypatch.setattr("runner.reporting.render.write_report", lambda *_: None)
     assert cli("reproduce").out.split() == [
-        f"outputs/reports/{name}" for name in ("audit", "xarm7", "meca500", "thesis")
+        f"outputs/reports/{name}" for name in ("audit", "thesis", "xarm7", "meca500")
     ]
 
 

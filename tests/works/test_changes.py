@@ -95,7 +95,7 @@ def test_a_work_from_before_there_were_caveats_is_read(new):
 
 
 def test_a_work_that_only_one_has_is_told():
-    assert changes({}, OLD)[0] == Change("work", "thesis", None, "The thesis")
+    assert changes({}, OLD) == [Change("work", "thesis", None, "The thesis")]
 
 
 def test_conclusions_are_read_from_a_file_or_a_report_s_folder(tmp_path):
