@@ -30,6 +30,14 @@ class Text:
 
 
 @dataclass(frozen=True)
+class Items:
+    """A list of short texts; inline mathematics as in Text."""
+
+    block: ClassVar[str] = "items"
+    items: Sequence[str]
+
+
+@dataclass(frozen=True)
 class Notice:
     """A paragraph set apart: a failed run, a limit of the comparison, a finding that contradicts the source."""
 
@@ -401,7 +409,21 @@ class Provenance:
     rows: Sequence[tuple[str, str]]
 
 
-Block = Text | Notice | Formula | Curves | Maps | RunList | Picture | Table | Claim | Equations | Playback | Provenance
+Block = (
+    Text
+    | Items
+    | Notice
+    | Formula
+    | Curves
+    | Maps
+    | RunList
+    | Picture
+    | Table
+    | Claim
+    | Equations
+    | Playback
+    | Provenance
+)
 
 
 @dataclass(frozen=True)

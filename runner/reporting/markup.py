@@ -1,4 +1,8 @@
-"""Text of a report taken apart: what is shown literally, mathematics between dollar signs, links to sections."""
+"""Text of a report taken apart: what is shown literally, mathematics between dollar signs, links, emphasis, code.
+
+Emphasis, code and addresses stand between characters for private use, which no keyboard types: `marked` puts them
+there, and a reader of files refuses them in what it is given.
+"""
 
 import re
 import unicodedata
@@ -8,15 +12,33 @@ _OVERRIDES = ("LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")
 _SPAN = re.compile(r"\$\$|\$((?:[^$])+)\$|\$|[^$]+")
 _LINK = re.compile(r"§(\d+(?:\.\d+)*)")
 _SPACE = re.compile(r"\s+")
+MARKS = {"emphasis": ("\ue000", "\ue001"), "code": ("\ue002", "\ue003")}
+"""First and last character around each kind of marked text."""
+_ADDRESS_MARKS = ("\ue004", "\ue005", "\ue006")  # before the text, between text and address, behind the address
+_MARKED = re.compile(
+    "|".join(f"{first}(?P<{kind}>[^\ue000-\ue006]*){last}" for kind, (first, last) in MARKS.items())
+    + "|{}(?P<text>[^\ue000-\ue006]*){}(?P<address>[^\ue000-\ue006]*){}".format(*_ADDRESS_MARKS)
+)
+_WEB = re.compile(r"https?://\S+")
 
 
 @dataclass(frozen=True)
 class Literal:
-    """Characters shown as they are."""
+    """Characters shown as they are.
+
+    Attributes:
+        text: The characters.
+        math: False, as of all that is no mathematics.
+        anchor: Empty, as of all that is no link within the report.
+        mark: "emphasis" or "code" where they are set so.
+        address: Where a link to a page of the web leads to.
+    """
 
     text: str
     math: bool = False
     anchor: str = ""
+    mark: str = ""
+    address: str = ""
 
 
 @dataclass(frozen=True)
@@ -25,6 +47,8 @@ class Link:
 
     number: str
     math: bool = False
+    mark: str = ""
+    address: str = ""
 
     @property
     def text(self) -> str:
@@ -51,6 +75,18 @@ Span = Literal | Link | Math
 def anchor(number: str) -> str:
     """Return the name of the place of a section, such as "s2-1" for number "2.1"."""
     return "s" + number.replace(".", "-")
+
+
+def marked(text: str, mark: str) -> str:
+    """Return a text with the marks of "emphasis" or "code" around it."""
+    first, last = MARKS[mark]
+    return f"{first}{text}{last}"
+
+
+def linked(text: str, address: str) -> str:
+    """Return a text as a link to an address of the web; any other address is shown beside it."""
+    before, between, behind = _ADDRESS_MARKS
+    return f"{before}{text}{between}{address}{behind}"
 
 
 def plain(text: str) -> str:
@@ -85,7 +121,26 @@ def spans(text: str) -> list[Span]:
         if result and isinstance(result[-1], Literal):
             literal = result.pop().text + literal
         result.append(Literal(literal))
-    return [part for span in result for part in (_links(span.text) if isinstance(span, Literal) else [span])]
+    return [part for span in result for part in (_marks(span.text) if isinstance(span, Literal) else [span])]
+
+
+def _marks(text: str) -> list[Span]:
+    found: list[Span] = []
+    end = 0
+    for match in _MARKED.finditer(text):
+        found += _links(text[end : match.start()])
+        found += _marked_span(match)
+        end = match.end()
+    return found + _links(text[end:])
+
+
+def _marked_span(match: re.Match[str]) -> list[Span]:
+    for mark in MARKS:
+        if match[mark] is not None:
+            return [Literal(match[mark], mark=mark)]
+    if _WEB.fullmatch(match["address"]):
+        return [Literal(match["text"], address=match["address"])]
+    return [Literal(f"{match['text']} ({match['address']})")]
 
 
 def _links(text: str) -> list[Span]:

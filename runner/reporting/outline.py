@@ -10,6 +10,7 @@ from runner.reporting.document import (
     Document,
     Equations,
     Formula,
+    Items,
     Maps,
     Notice,
     Picture,
@@ -84,6 +85,8 @@ def _texts(block: Block) -> Iterator[str]:
     match block:
         case Text() | Notice():
             yield block.text
+        case Items():
+            yield from block.items
         case Curves() | Maps() | RunList() | Picture() | Playback():
             yield block.caption
         case Table():

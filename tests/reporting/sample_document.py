@@ -13,6 +13,7 @@ from runner.reporting.document import (
     Equations,
     Finding,
     Formula,
+    Items,
     Map,
     Maps,
     Notice,
@@ -27,6 +28,7 @@ from runner.reporting.document import (
     Table,
     Text,
 )
+from runner.reporting.markup import linked, marked
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 20" width="40" height="20"><path d="M0 0h40v20z"/></svg>'
 
@@ -102,6 +104,12 @@ def document(text: str = "words") -> Document:
     origin = Origin(text, text, text)
     blocks = [
         Text(text),
+        Items(
+            (
+                f"of {marked('emphasis', 'emphasis')} and $tau_1$",
+                f"{marked('code <b>', 'code')}; {linked('page', 'https://example.org/a')}",
+            )
+        ),
         Notice("warning", text, text),
         Formula(text, text, text),
         curves(text, origin=origin),

@@ -13,6 +13,8 @@ _NAMED = re.compile(
 )
 
 
+_BOX = re.compile(r"^::: finding (.*?)^:::$", re.MULTILINE | re.DOTALL)
+_INSERTED = re.compile(r"\{\{.*?\}\}", re.DOTALL)
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?: [a-zA-Z%]+)?")
 
 
@@ -37,9 +39,21 @@ def typed_numbers(path: Path, names: Iterable[str]) -> Iterator[str]:
             if isinstance(call.func, ast.Name) and call.func.id == "finding":
                 for words in call.args[:2]:
                     for line, text in _pieces(words, assigned):
-                        rest = _NAMED.sub("", _MATHEMATICS.sub("", text))
-                        for number in set(_NUMBER.findall(rest)) - levels:
+                        for number in _typed(text, levels):
                             yield f"{path.name}:{line}: {number}: {text}"
+
+
+def typed_in_chapter(path: Path, names: Iterable[str]) -> Iterator[str]:
+    """Yield the same for the boxes of a chapter in Markdown."""
+    levels = set(re.split(r"[/,] ?", "/".join(names)))
+    for box in _BOX.findall(path.read_text(encoding="utf-8")):
+        words = "\n".join(line for line in _INSERTED.sub("…", box).splitlines() if not line.startswith("holds:"))
+        for number in _typed(words, levels):
+            yield f"{path.name}: {number}: {words}"
+
+
+def _typed(text: str, levels: set[str]) -> set[str]:
+    return set(_NUMBER.findall(_NAMED.sub("", _MATHEMATICS.sub("", text)))) - levels
 
 
 def _pieces(words: ast.expr, assigned: dict[str, ast.expr]) -> Iterator[tuple[int, str]]:

@@ -3,7 +3,7 @@
 from importlib import import_module
 
 import pytest
-from finding_words import typed_numbers
+from finding_words import typed_in_chapter, typed_numbers
 
 from runner.paths import package_dir, works_dir
 
@@ -11,7 +11,9 @@ from runner.paths import package_dir, works_dir
 @pytest.mark.parametrize("work", ["thesis", "xarm7", "meca500"])
 def test_no_number_is_typed_in_the_words_of_a_finding(work):
     names = import_module(f"runner.works.{work}.plan").plan()
-    assert [told for path in sorted((works_dir() / work).rglob("*.py")) for told in typed_numbers(path, names)] == []
+    folder = works_dir() / work
+    assert [told for path in sorted(folder.rglob("*.py")) for told in typed_numbers(path, names)] == []
+    assert [told for path in sorted(folder.rglob("*.md")) for told in typed_in_chapter(path, names)] == []
 
 
 def test_no_finding_of_all_works_has_one():
@@ -22,6 +24,12 @@ def lint(tmp_path, words, names=()):
     module = tmp_path / "module.py"
     module.write_text(f"def conclude(error):\n    more = f'about 7 m'\n    return finding({words})\n")
     return [told.split(": ")[1] for told in typed_numbers(module, names)]
+
+
+def test_the_lint_finds_typed_numbers_in_a_chapter(tmp_path):
+    chapter = tmp_path / "chapter.md"
+    chapter.write_text("# T\n\nAfter 3 s.\n\n::: finding It takes {{ x / 2 }} or 4 s\nClaim 3.\nholds: x > 7\n:::\n")
+    assert [told.split(": ")[1] for told in typed_in_chapter(chapter, ())] == ["4 s"]
 
 
 def test_the_lint_finds_typed_numbers_and_no_others(tmp_path):

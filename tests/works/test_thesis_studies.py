@@ -23,9 +23,9 @@ from runner.works.thesis.folding import folding_section
 from runner.works.thesis.mass_ratio import mass_ratio_section
 from runner.works.thesis.questions import questions_section
 from runner.works.thesis.reference_velocity import reference_velocity_section
+from runner.works.thesis.report import markdown
 from runner.works.thesis.stage_sampling import stage_sampling_section
 from runner.works.thesis.stretch import stretch_section
-from runner.works.thesis.turns import turns_section
 from runner.works.thesis.whole_body import whole_body_section
 
 SECTIONS = (
@@ -37,7 +37,7 @@ SECTIONS = (
     stretch_section,
     reference_velocity_section,
     bandwidth_section,
-    turns_section,
+    markdown("turns"),
     whole_body_section,
     dynamics_cost_section,
 )

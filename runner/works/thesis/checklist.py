@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from runner.reporting import outline
-from runner.reporting.document import Claim, Formula, Notice, Provenance, Section, Table, Text
+from runner.reporting.document import Claim, Formula, Items, Notice, Provenance, Section, Table, Text
 
 _SIMULATED, _DRAWN, _FOREIGN, _LOST = "reproduced", "drawn anew", "of others", "lost"
 _PHOTOGRAPH = "a photograph from the literature"
@@ -96,6 +96,6 @@ def _places(sections: Sequence[Section]) -> dict[str, str]:
     places: dict[str, str] = {}
     for chapter in outline.numbered(sections):
         for block in chapter.section.blocks:
-            if not isinstance(block, Text | Notice | Formula | Claim | Provenance) and block.origin.number:
+            if not isinstance(block, Text | Items | Notice | Formula | Claim | Provenance) and block.origin.number:
                 places.setdefault(block.origin.number.lower(), f"§{chapter.number}")
     return places

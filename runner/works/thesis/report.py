@@ -1,16 +1,17 @@
 """The whole thesis report, from its stored runs."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from pathlib import Path
 
 from runner.reporting.document import Document, Section
 from runner.reporting.work_report import parts, work_document
 from runner.store import Calibration, Run
+from runner.works.chapters import chapter
+from runner.works.thesis import figures
 from runner.works.thesis.bandwidth import bandwidth_section
 from runner.works.thesis.base_axis import base_axis_section, duration_section
 from runner.works.thesis.caveats import EXPECTED
 from runner.works.thesis.chapter2 import chapter2
-from runner.works.thesis.chapter3 import chapter3
-from runner.works.thesis.chapter4 import chapter4
 from runner.works.thesis.chapter5 import chapter5
 from runner.works.thesis.checklist import checklist_section
 from runner.works.thesis.claims import claims_section
@@ -24,7 +25,6 @@ from runner.works.thesis.questions import questions_section
 from runner.works.thesis.reference_velocity import reference_velocity_section
 from runner.works.thesis.stage_sampling import stage_sampling_section
 from runner.works.thesis.stretch import stretch_section
-from runner.works.thesis.turns import turns_section
 from runner.works.thesis.whole_body import whole_body_section
 
 
@@ -49,8 +49,8 @@ def document(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -
             claims_section,
             questions_section,
             chapter2,
-            chapter3,
-            chapter4,
+            markdown("chapter3"),
+            markdown("chapter4"),
             chapter5,
             _explanations,
             _beyond,
@@ -64,6 +64,11 @@ def document(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -
         expected=EXPECTED,
         checklist=checklist_section,
     )
+
+
+def markdown(name: str) -> Callable[[Mapping[str, Run]], Section]:
+    """Return what makes a chapter of this folder that is written in Markdown."""
+    return chapter(Path(__file__).with_name(f"{name}.md"), figures)
 
 
 def _explanations(runs: Mapping[str, Run]) -> Section:
@@ -83,7 +88,7 @@ def _beyond(runs: Mapping[str, Run]) -> Section:
             stretch_section,
             reference_velocity_section,
             bandwidth_section,
-            turns_section,
+            markdown("turns"),
             whole_body_section,
             dynamics_cost_section,
         ),

@@ -1,0 +1,118 @@
+"""Chapters as Markdown with expressions: what they become, and what is refused with its place."""
+
+import pytest
+
+from runner.reporting.document import Items, Table, Text
+from runner.reporting.markup import linked, marked
+from runner.reporting.measured import Measured
+from runner.reporting.prose import ProseError, read_chapter
+
+TABLE = Table("Caption", ["a"], [["1"]])
+NAMES = {
+    "turns": Measured("error in turns", 5e-2, "m"),
+    "both": Measured("error of both", 1e-6, "m"),
+    "missing": Measured("time", None, "s"),
+    "table": lambda: TABLE,
+    "tables": lambda: [TABLE, TABLE],
+    "x": 3.5,
+    "evil": "<b>$x$ *a* [l](http://q) {{ 1 }} \ue000b\ue001 ::: finding",
+}
+
+
+def read(text, names=NAMES):
+    return read_chapter("chapter.md", f"# Title\n\n{text}\n", names)
+
+
+def test_paragraphs_lists_and_sections_become_blocks():
+    chapter = read(
+        "One *word*.\n\n- a {{ x }}\n- b\n\n{{ table() }}\n\n## Below\n\nTwo.\n\n### Deeper\n\n{{ tables() }}"
+    )
+    assert chapter.title == "Title"
+    assert chapter.blocks == (Text(f"One {marked('word', 'emphasis')}."), Items(("a 3.5", "b")), TABLE)
+    (below,) = chapter.sections
+    assert (below.title, below.blocks) == ("Below", (Text("Two."),))
+    assert (below.sections[0].title, below.sections[0].blocks) == ("Deeper", (TABLE, TABLE))
+
+
+def test_marks_and_mathematics_of_a_sentence():
+    (text,) = read("`a_b` costs $5, $tau_1 = {{ x }}$ is *so*, see [a page](https://example.org/a_b).").blocks
+    page = linked("a page", "https://example.org/a_b")
+    assert text == Text(f"{marked('a_b', 'code')} costs $$5, $tau_1 = 3.5$ is {marked('so', 'emphasis')}, see {page}.")
+
+
+def test_values_have_their_unit():
+    assert (
+        read("It errs by {{ turns }}, {{ turns / both }} times more.").blocks[0].text
+        == "It errs by 50 mm, 5.00·10⁴ times more."
+    )
+
+
+def test_no_value_becomes_markup_a_block_or_an_expression():
+    (text,) = read("Say {{ evil }} here.").blocks
+    assert text.text == "Say <b>$$x$$ *a* [l](http://q) {{ 1 }} \ufffdb\ufffd ::: finding here."
+
+
+def test_a_finding_has_its_conditions():
+    words = "Turns do {{ turns }} harm\nThey err by {{ turns }}\nagainst {{ both }}."
+    box = f"::: finding {words}\nholds: turns > 10 * both\n:::"
+    (found,) = read(box).blocks
+    assert found.holds
+    assert (found.claim, found.sentences) == ("Turns do 50 mm harm", "They err by 50 mm against 1 µm.")
+    assert [condition.text for condition in found.conditions] == ["error in turns > 10 times error of both"]
+    (fallen,) = read(box.replace("> 10", "< 10")).blocks
+    assert fallen.title == "No longer holds: Turns do 50 mm harm"
+    (without,) = read(box.replace("turns > 10", "missing > 10")).blocks
+    assert "time: has no value" in without.text
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "message"),
+    [
+        ("::: fnding A\nSo.\n:::", 3, r"no box 'fnding' \(did you mean finding\?\); boxes: finding"),
+        ("::: finding\nSo.\n:::", 3, "a box without a title; write `::: finding TITLE`"),
+        ("So.\n\n::: finding A\nSo.", 5, "a box that is not closed"),
+        ("::: finding A\n::: finding B\n:::", 4, "a box in a box; close that of line 3"),
+        ("So.\nholds: turns > both", 4, "a condition outside a box"),
+        ("::: finding A\nSo.\n:::", 3, "a finding without a condition"),
+        ("::: finding A\nSo.\nholds: x > 1\n:::", 5, "holds: x > 1: gives bool, no condition"),
+        ("::: finding A\n{{ table() }}\nholds: turns > both\n:::", 3, "a finding holds sentences alone"),
+        ("{{\n1 }} a\n\n{{ turs }}", 6, r"turs: no name 'turs' \(did you mean turns\?\)"),
+        ("{{ turns if x else both }}", 3, "chooses between words; a chapter has one branch"),
+        ("{{ x and turns }}", 3, "chooses between words"),
+        ("{{ x|upper }}", 3, "filters and tests are not used here; call a function"),
+        ("{{ x + }}", 3, "is no expression"),
+        ("{{ x", 3, "{{ is not closed"),
+        ("{% if x %}a{% endif %}", 3, "{% is not used here: a chapter has one branch and no loops"),
+        ("{{ x.__class__ }}", 3, "access to attribute '__class__' of 'float' object is unsafe"),
+        ("{{ table.__globals__ }}", 3, "access to attribute '__globals__'"),
+        ("{{ 'a' * 100000000 }}", 3, "is not allowed here"),
+        ("{{ 9 ** 9 ** 9 }}", 3, "is not allowed here"),
+        ("{{ 1 / 0 }}", 3, "ZeroDivisionError"),
+        ("So {{ table() }} it is", 3, "not Table; a block stands in a paragraph of its own"),
+        ("{{ [1, 2] }}", 3, "a sentence takes texts, numbers and measured values, not list"),
+        ("$a_{{ evil }}$", 3, "a formula takes numbers, not str"),
+        ("1. a", 3, "a report has no numbered lists"),
+        ("a\n\n> b", 5, "a report has no quotations"),
+        ("    code", 3, "a report has no blocks of code"),
+        ("![a](b.png)", 3, "a report has no images"),
+        ("**a**", 3, r"a report has no strong emphasis \(write \*so\*\)"),
+        ("# Other", 3, "a second title; sections of a chapter begin with ##"),
+        ("### Deep", 3, "leaves out a level; write ## Deep"),
+        ("a \ue000 b", 3, "has a character for private use"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_read_is_told_with_its_line(text, line, message):
+    with pytest.raises(ProseError, match=message) as told:
+        read(text)
+    assert told.value.line == line
+    assert str(told.value).startswith(f"chapter.md:{line}: ")
+
+
+def test_a_chapter_begins_with_its_title():
+    with pytest.raises(ProseError, match=r"chapter.md:1: begins without a title; write `# Title`"):
+        read_chapter("chapter.md", "Text.", NAMES)
+
+
+@pytest.mark.parametrize("text", ["<b>a</b>", "[a](javascript:b)", "<script>a</script> b"])
+def test_raw_html_and_code_in_addresses_are_shown_as_they_are(text):
+    assert read(text).blocks == (Text(text),)
