@@ -19,11 +19,13 @@ class Bound(StrictModel):
     Attributes:
         claim: Number of the claim that has the other number.
         scale: What that is multiplied by.
+        name: What the simulated number, so multiplied, is called at the start of a sentence.
         reason: Why the one follows from the other, and how strictly; inline mathematics between dollar signs.
     """
 
     claim: int
     scale: PositiveFloat
+    name: str
     reason: str
 
 
