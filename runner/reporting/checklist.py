@@ -1,14 +1,12 @@
 """What of a published work stands where in its report: a list in `checklist.yaml` of the work's folder."""
 
 from collections.abc import Sequence
-from pathlib import Path
 from string import Formatter
-from typing import Annotated, Any, Self
+from typing import Annotated, Self
 
-import yaml
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
-from runner.errors import RunnerError
+from runner.data_file import read_data
 from runner.paths import works_dir
 from runner.registry import StrictModel
 from runner.reporting import outline
@@ -105,33 +103,7 @@ def load_checklist(work: str) -> Checklist:
     Raises:
         RunnerError: if its file cannot be read or does not fit; names the file, and the items and keys.
     """
-    return read_checklist(works_dir() / work / _FILE)
-
-
-def read_checklist(path: Path) -> Checklist:
-    """Return the checklist that a file holds; see `load_checklist`."""
-    try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, yaml.YAMLError) as error:
-        raise RunnerError(f"cannot read {path}: {error}") from error
-    try:
-        return Checklist.model_validate(content)
-    except ValidationError as error:
-        lines = [
-            f"{_entry(content, problem['loc'])}{problem['msg'].removeprefix('Value error, ')}"
-            for problem in error.errors()
-        ]
-        raise RunnerError(f"{path}: " + "; ".join(lines)) from error
-
-
-def _entry(content: Any, location: tuple[int | str, ...]) -> str:
-    """Return where in a file a problem is, the name of its item beside the number."""
-    words = [str(part) for part in location]
-    if location[:1] == ("items",) and len(location) > 1:
-        item = content["items"][location[1]]
-        if isinstance(item, dict) and "name" in item:
-            words[1] += f" ({item['name']})"
-    return f"{'.'.join(words)}: " if words else ""
+    return read_data(works_dir() / work / _FILE, Checklist)
 
 
 def _row(item: Item, place: str | None) -> list[str]:

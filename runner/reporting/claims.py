@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
-from runner.claims import Bound, PublishedClaim, Verdict, judge, judge_motion
-from runner.reporting.document import Claim, Finding, Table
+from runner.claims import Bound, PublishedClaim, PublishedStatement, Verdict, judge, judge_motion
+from runner.reporting.document import Claim, EquationVerdict, Finding, StatementVerdict, Table
 from runner.reporting.figures import columns
 from runner.reporting.job import PRESETS, MissingError
 from runner.reporting.quantities import quantity, ranged, spread
@@ -25,6 +25,27 @@ def claim_blocks(claims: Sequence[PublishedClaim], runs: Mapping[str, Run]) -> l
         MissingError: if a claim's run was not made, or one that it is compared with gave no value.
     """
     return [_Claimed(claim, claims, runs).block() for claim in claims]
+
+
+def statement_blocks(
+    statements: Sequence[PublishedStatement], judged: Mapping[str, tuple[StatementVerdict | EquationVerdict, str]]
+) -> list[Claim]:
+    """Return each statement with its verdict, numbered in order.
+
+    Args:
+        statements: All statements of a work.
+        judged: Verdict on each by its name, and what was measured.
+
+    Raises:
+        ValueError: if another set of names is judged than is stated.
+    """
+    if {each.name for each in statements} != set(judged):
+        raise ValueError(f"stated: {', '.join(each.name for each in statements)}; judged: {', '.join(judged)}")
+    return [
+        Claim(str(number), each.statement, each.place, "", (Finding("", measured, verdict),), each.reason)
+        for number, each in enumerate(statements, start=1)
+        for verdict, measured in [judged[each.name]]
+    ]
 
 
 def verdict_table(caption: str, blocks: Sequence[Claim]) -> Table:

@@ -1,12 +1,9 @@
 """The checklist of a work, from its file to the section of its report."""
 
-from pathlib import Path
-
 import pytest
-import yaml
+from pydantic import ValidationError
 
-from runner.errors import RunnerError
-from runner.reporting.checklist import Checklist, load_checklist, read_checklist
+from runner.reporting.checklist import Checklist, load_checklist
 from runner.reporting.document import Curves, Origin, Section
 from runner.works.names import work_names
 
@@ -39,12 +36,6 @@ def checklist(content=CONTENT):
 
 def figure(number):
     return Curves("A figure.", (), origin=Origin(number))
-
-
-def written(tmp_path: Path, **changes: object) -> Path:
-    path = tmp_path / "checklist.yaml"
-    path.write_text(yaml.safe_dump(CONTENT | changes))
-    return path
 
 
 def test_items_are_found_by_title_at_any_depth():
@@ -85,26 +76,12 @@ def test_every_work_has_a_checklist_that_names_each_thing_once(work):
 @pytest.mark.parametrize(
     ("changes", "told"),
     [
-        ({"items": [CONTENT["items"][0], {"name": "Sketch", "state": "drawn"}]}, r"items\.1 \(Sketch\)\.about: Field"),
-        ({"items": [CONTENT["items"][0] | {"place": "1"}]}, r"items\.0 \(Mass\)\.place: Extra inputs"),
-        ({"items": ["Mass"]}, r"items\.0: Input should be"),
-        ({"items": []}, "items: List should have at least 1 item"),
-        ({"columns": ["what it is"]}, "columns: List should have at least 2 items"),
+        ({"items": []}, "items\n.* at least 1 item"),
+        ({"columns": ["what it is"]}, "columns\n.* at least 2 items"),
         ({"text": "{missing} and {more}"}, r"text: \{more\} is unknown; known in braces: figures, tables, expected"),
-        ({"incomplete": "not {"}, "incomplete: .*Single '{' encountered"),
+        ({"incomplete": "not {"}, "incomplete: Single '{' encountered"),
     ],
 )
-def test_a_file_that_does_not_fit_is_refused_with_file_and_entry(tmp_path, changes, told):
-    path = written(tmp_path, **changes)
-    with pytest.raises(RunnerError, match=told) as error:
-        read_checklist(path)
-    assert str(path) in str(error.value)
-
-
-def test_a_file_that_is_no_yaml_or_is_not_there_is_refused(tmp_path):
-    path = written(tmp_path)
-    path.write_text("title: [")
-    with pytest.raises(RunnerError, match="cannot read"):
-        read_checklist(path)
-    with pytest.raises(RunnerError, match="cannot read"):
-        read_checklist(tmp_path / "none.yaml")
+def test_a_checklist_that_cannot_be_shown_is_refused(changes, told):
+    with pytest.raises(ValidationError, match=told):
+        checklist(CONTENT | changes)

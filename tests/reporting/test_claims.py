@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from runner.claims import CONTRADICTION, PublishedClaim
-from runner.reporting.claims import claim_blocks, run_name, verdict_table
+from runner.claims import CONTRADICTION, PublishedClaim, PublishedStatement
+from runner.reporting.claims import claim_blocks, run_name, statement_blocks, verdict_table
 from runner.reporting.job import PRESETS, MissingError
 from runner.reporting.words import PRESET
 from runner.store import Run
@@ -129,3 +129,12 @@ def test_the_table_has_a_row_for_each_claim_and_a_column_for_each_preset():
     table = verdict_table("Verdicts.", made)
     assert table.header == ["claim", "statement", "printed", "as reported", "full equations"]
     assert table.rows == [[n, "It settles", "1.4 s", "1.4 s: holds", "1.4 s: holds"] for n in "12"]
+
+
+def test_statements_are_numbered_and_take_their_verdicts_by_name():
+    stated = [PublishedStatement(name=n, statement=n.upper(), place="section 1", reason="So.") for n in ("a", "b")]
+    first, second = statement_blocks(stated, {"b": ("no longer holds", "3 mm"), "a": ("holds", "1 mm")})
+    assert (first.number, first.statement, first.findings[0].verdict) == ("1", "A", "holds")
+    assert (second.number, second.findings[0].measured, second.reason) == ("2", "3 mm", "So.")
+    with pytest.raises(ValueError, match="stated: a, b; judged: a, c"):
+        statement_blocks(stated, {"a": ("holds", ""), "c": ("holds", "")})
