@@ -1,6 +1,7 @@
 """Published numbers, and whether our runs bear them out."""
 
 from runner.claims.claim import Bound, Extent, PublishedClaim, claimed, load_claims
+from runner.claims.statement import PublishedStatement, load_statements
 from runner.claims.verdict import CONTRADICTION, FACTOR, Verdict, judge, judge_motion
 
 __all__ = [
@@ -9,9 +10,11 @@ __all__ = [
     "Bound",
     "Extent",
     "PublishedClaim",
+    "PublishedStatement",
     "Verdict",
     "claimed",
     "judge",
     "judge_motion",
     "load_claims",
+    "load_statements",
 ]

@@ -3,10 +3,11 @@
 from typing import Annotated, Literal, Self
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
+from runner.data_file import read_data
+from runner.errors import RunnerError
 from runner.paths import works_dir
 from runner.registry import StrictModel
 
@@ -19,11 +20,13 @@ class Bound(StrictModel):
     Attributes:
         claim: Number of the claim that has the other number.
         scale: What that is multiplied by.
+        name: What the simulated number, so multiplied, is called at the start of a sentence.
         reason: Why the one follows from the other, and how strictly; inline mathematics between dollar signs.
     """
 
     claim: int
     scale: PositiveFloat
+    name: str
     reason: str
 
 
@@ -112,6 +115,15 @@ def claimed() -> list[str]:
 
 
 def load_claims(work: str) -> list[PublishedClaim]:
-    """Return the published numbers of a work, such as "thesis", in order."""
-    entries = yaml.safe_load((works_dir() / work / _FILE).read_text(encoding="utf-8"))
-    return [PublishedClaim.model_validate(entry) for entry in entries]
+    """Return the published numbers of a work, such as "thesis", in order.
+
+    Raises:
+        RunnerError: if its file does not fit, or a bound names no claim of it; names the file, the entries and keys.
+    """
+    path = works_dir() / work / _FILE
+    claims = read_data(path, list[PublishedClaim])
+    numbers = [claim.number for claim in claims]
+    for claim in claims:
+        if claim.bound is not None and claim.bound.claim not in numbers:
+            raise RunnerError(f"{path}: claim {claim.number}: bound.claim: there is no claim {claim.bound.claim}")
+    return claims

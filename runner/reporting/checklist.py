@@ -1,31 +1,73 @@
-"""What of a published work stands where in its report."""
+"""What of a published work stands where in its report: a list in `checklist.yaml` of the work's folder."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from string import Formatter
+from typing import Annotated, Self
 
+from pydantic import Field, model_validator
+
+from runner.data_file import read_data
+from runner.paths import works_dir
+from runner.registry import StrictModel
 from runner.reporting import outline
-from runner.reporting.document import Section, Table, Text
+from runner.reporting.document import Claim, Formula, Notice, Provenance, Section, Table, Text
+
+_FILE = "checklist.yaml"
+_MISSING, _NOWHERE = "missing", "–"
+_DRAWN = "drawn anew"  # what was not to be expected, and is there
 
 
-@dataclass(frozen=True)
-class Checklist:
-    """A checklist whose items are found by the titles of our sections.
+class Item(StrictModel):
+    """A figure, table or formula of the source.
+
+    Attributes:
+        name: What it is called: "Figure 3.5" where the source has a number.
+        about: What it shows, or where the source has it.
+        state: What became of it in the report.
+        section: Title of our section where it stands; where none is named it is found by its number in the source.
+        absent: Why it is not to be expected in the report; empty where it is.
+    """
+
+    name: Annotated[str, Field(min_length=1)]
+    about: str
+    state: Annotated[str, Field(min_length=1)]
+    section: str = ""
+    absent: str = ""
+
+
+class Checklist(StrictModel):
+    """All that a source shows, and what is said of it.
 
     Attributes:
         title: Title of the section.
-        text: What is to be said of the source.
-        complete: What is said where nothing is missing.
+        text: What is to be said of the source. In braces: `figures` and `tables`, how many items are called so;
+            `expected`, how many items are to be in the report; `here`, how many of these are; `missing`, the sentence
+            on those that are not.
+        complete: What stands for `missing` where nothing is.
+        incomplete: What stands for it otherwise; in braces `names`, those of the items.
         caption: Caption of the table.
-        place: Header of the items' places in the source.
-        items: What it is, its place in the source, what we did with it, and the title of our section.
+        columns: Headers of the items' names and of what they are about.
+        items: The items in the order of the source.
     """
 
     title: str
     text: str
     complete: str
+    incomplete: str
     caption: str
-    place: str
-    items: Sequence[tuple[str, str, str, str]]
+    columns: Annotated[list[str], Field(min_length=2, max_length=2)]
+    items: Annotated[list[Item], Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _check_braces(self) -> Self:
+        for key, text, known in (
+            ("text", self.text, ("figures", "tables", "expected", "here", "missing")),
+            ("incomplete", self.incomplete, ("names",)),
+        ):
+            for name in _in_braces(key, text):
+                if name not in known:
+                    raise ValueError(f"{key}: {{{name}}} is unknown; known in braces: {', '.join(known)}")
+        return self
 
     def section(self, sections: Sequence[Section]) -> Section:
         """Return the checklist, its places found in the report itself.
@@ -33,13 +75,52 @@ class Checklist:
         Args:
             sections: All chapters of the report from its first on, those that follow the checklist may be left out.
         """
-        places = {chapter.section.title: f"§{chapter.number}" for chapter in outline.numbered(sections)}
-        rows = [
-            [what, place, state if title in places else "missing", places.get(title, "–")]
-            for what, place, state, title in self.items
-        ]
-        missing = [what for what, _, _, title in self.items if title not in places]
-        text = f"{self.text} " + (f"Missing here: {', '.join(missing)}." if missing else self.complete)
-        return Section(
-            self.title, (Text(text), Table(self.caption, ["what it is", self.place, "state", "where"], rows))
+        titles, numbers = _places(sections)
+        places = [titles.get(item.section) if item.section else numbers.get(item.name.lower()) for item in self.items]
+        rows = [_row(item, place) for item, place in zip(self.items, places, strict=True)]
+        missing = [name for name, _, state, _ in rows if state == _MISSING]
+        expected = sum(not item.absent for item in self.items)
+        text = self.text.format(
+            figures=sum(item.name.startswith("Figure ") for item in self.items),
+            tables=sum(item.name.startswith("Table ") for item in self.items),
+            expected=expected,
+            here=expected - len(missing),
+            missing=self.incomplete.format(names=", ".join(missing)) if missing else self.complete,
         )
+        return Section(self.title, (Text(text), Table(self.caption, [*self.columns, "state", "where"], rows)))
+
+
+def _in_braces(key: str, text: str) -> list[str]:
+    try:
+        return [name for _, name, _, _ in Formatter().parse(text) if name is not None]
+    except ValueError as error:
+        raise ValueError(f"{key}: {error}") from None
+
+
+def load_checklist(work: str) -> Checklist:
+    """Return the checklist of a work, such as "thesis".
+
+    Raises:
+        RunnerError: if its file cannot be read or does not fit; names the file, and the items and keys.
+    """
+    return read_data(works_dir() / work / _FILE, Checklist)
+
+
+def _row(item: Item, place: str | None) -> list[str]:
+    """Return an item's name, what it is about, its state, and where it stands."""
+    if place is not None:
+        return [item.name, item.about, _DRAWN if item.absent else item.state, place]
+    return [item.name, item.about, f"{item.state}: {item.absent}" if item.absent else _MISSING, _NOWHERE]
+
+
+def _places(sections: Sequence[Section]) -> tuple[dict[str, str], dict[str, str]]:
+    """Return the section of each title, and that in which each number of the source stands first, in small letters."""
+    titles: dict[str, str] = {}
+    numbers: dict[str, str] = {}
+    for chapter in outline.numbered(sections):
+        place = f"§{chapter.number}"
+        titles[chapter.section.title] = place
+        for block in chapter.section.blocks:
+            if not isinstance(block, Text | Notice | Formula | Claim | Provenance) and block.origin.number:
+                numbers.setdefault(block.origin.number.lower(), place)
+    return titles, numbers

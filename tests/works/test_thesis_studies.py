@@ -11,12 +11,12 @@ from work_plans import thesis_moments
 
 from runner import store
 from runner.reporting import formulas
+from runner.reporting.checklist import load_checklist
 from runner.reporting.document import Document, Section, Table
 from runner.reporting.figures import torque_and_error
 from runner.store import Run
 from runner.works.thesis import dynamics_benchmark
 from runner.works.thesis.bandwidth import bandwidth_section
-from runner.works.thesis.checklist import checklist_section
 from runner.works.thesis.coupling import coupling_section
 from runner.works.thesis.dynamics_cost import dynamics_cost_section
 from runner.works.thesis.folding import folding_section
@@ -93,7 +93,9 @@ def test_the_dynamics_are_measured_once_and_read(
 
 def test_the_checklist_finds_its_places_and_names_what_is_missing(runs: dict[str, Run]) -> None:
     figure = torque_and_error(runs["figure_5_8/sound"], "A figure.", "figure 5.8")
-    section = checklist_section([Section("Elsewhere"), Section("Here", sections=(Section("Below", (figure,)),))])
+    section = load_checklist("thesis").section(
+        [Section("Elsewhere"), Section("Here", sections=(Section("Below", (figure,)),))]
+    )
     rows = {row[0]: row for block in section.blocks if isinstance(block, Table) for row in block.rows}
     assert len(rows) == 38
     assert rows["Figure 5.8"][2:] == ["reproduced", "§2.1"]

@@ -3,12 +3,12 @@
 from collections.abc import Mapping
 from functools import partial
 
+from runner.reporting.checklist import load_checklist
 from runner.reporting.document import Document, Section
 from runner.reporting.work_report import parts, work_document
 from runner.store import Calibration, Run
 from runner.works.meca500.at_the_tip import at_the_tip_section
 from runner.works.meca500.caveats import EXPECTED
-from runner.works.meca500.checklist import CHECKLIST
 from runner.works.meca500.contact import contact_section
 from runner.works.meca500.frequency_response import frequency_response_section
 from runner.works.meca500.gravity import gravity_section
@@ -60,7 +60,7 @@ def document(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -
         ),
         runs=runs,
         expected=EXPECTED,
-        checklist=CHECKLIST.section,
+        checklist=load_checklist("meca500").section,
     )
 
 

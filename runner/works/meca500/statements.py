@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 
 from runner.audit.audit import audit
-from runner.reporting.document import Claim, Section, StatementVerdict, Text
-from runner.reporting.document import Finding as Verdict
+from runner.claims import load_statements
+from runner.reporting.claims import statement_blocks
+from runner.reporting.document import EquationVerdict, Section, StatementVerdict, Text
 from runner.reporting.findings import Finding
 from runner.store import Run
 from runner.works.meca500.at_the_tip import tip_finding, tip_values
@@ -30,33 +31,33 @@ def statements_section(runs: Mapping[str, Run]) -> Section:
     ideal, behind = ideal_wall_values(runs), servo_wall_values(runs)
     hand, limits = guiding_values(runs), limits_values(runs)
     equations = {each.entry.id: each.verdict for each in audit("meca500", _SAMPLES)}
-    statements = [
-        ("5", "Admittance control makes the robot move like a spring-mass-damper system",
-         _verdict(ideal_step_finding(**step), servo_step_finding(**servo)),
-         f"within {step['fast']} of the peak on all axes at 1 ms, {step['slow']} at {step['period']}; joint servos add "
-         f"up to {servo['fast']}", ""),
-        ("5", "It is triggered by the end effector on the sensor instead of each wrist of the arm",
-         _verdict(tip_finding(**tip)),
-         f"a force through the tip turns the law by {tip['law'].shown} and the tool by {tip['tool'].shown}; taken at "
-         f"the flange {tip['flange']}", ""),
-        ("5", "It allows an arm to cooperate with a human safely",
-         "not testable here",
-         f"guided by hand the tool ends {hand['lab_left']} from where it was led; least margin to a joint's limit: "
-         f"{limits['margin'].shown}",
-         "Safety needs a bound on harm, of which the report names none and the simulation has none."),
-        ("5", "Forces can be mapped into positions (no word on contact)",
-         _verdict(contact_finding(**wall), ideal_wall_finding(**ideal), servo_wall_finding(**behind)),
-         f"the force on walls is read within {wall['reading']}; on ideal joints {ideal['right']} of {ideal['count']} "
-         f"runs bounce or not as predicted, behind servos {behind['right']} of {behind['count']}", ""),
-        ("5", "Torques are related to the axis angle by eq. (8)",
-         equations["meca500-turn"],
-         "the printed sum of angles along the axes, by which the axis angle is to be found",
-         "The rotation vector is taken in its place."),
-        ("6", "The wrench is moved from the sensor to the tool by two matrices",
-         equations["meca500-wrench"],
-         "the final matrix",
-         "Of the lines that lead to it the audit has the verdicts."),
-    ]  # fmt: skip
+    judged: dict[str, tuple[StatementVerdict | EquationVerdict, str]] = {
+        "spring-mass-damper": (
+            _verdict(ideal_step_finding(**step), servo_step_finding(**servo)),
+            f"within {step['fast']} of the peak on all axes at 1 ms, {step['slow']} at {step['period']}; joint servos "
+            f"add up to {servo['fast']}",
+        ),
+        "end effector": (
+            _verdict(tip_finding(**tip)),
+            f"a force through the tip turns the law by {tip['law'].shown} and the tool by {tip['tool'].shown}; taken "
+            f"at the flange {tip['flange']}",
+        ),
+        "safety": (
+            "not testable here",
+            f"guided by hand the tool ends {hand['lab_left']} from where it was led; least margin to a joint's limit: "
+            f"{limits['margin'].shown}",
+        ),
+        "contact": (
+            _verdict(contact_finding(**wall), ideal_wall_finding(**ideal), servo_wall_finding(**behind)),
+            f"the force on walls is read within {wall['reading']}; on ideal joints {ideal['right']} of "
+            f"{ideal['count']} runs bounce or not as predicted, behind servos {behind['right']} of {behind['count']}",
+        ),
+        "axis angle": (
+            equations["meca500-turn"],
+            "the printed sum of angles along the axes, by which the axis angle is to be found",
+        ),
+        "wrench": (equations["meca500-wrench"], "the final matrix"),
+    }
     return Section(
         "What it claims, and whether it holds",
         (
@@ -67,10 +68,7 @@ def statements_section(runs: Mapping[str, Run]) -> Section:
                 "What the simulation has no measure for is not testable here. On equations stand the words of the "
                 "audit: an equation is correct, correct after repair of a damaged text, or wrong as printed."
             ),
-            *(
-                Claim(str(number), statement, f"section {place}", "", (Verdict("", measured, verdict),), reason)
-                for number, (place, statement, verdict, measured, reason) in enumerate(statements, start=1)
-            ),
+            *statement_blocks(load_statements("meca500"), judged),
         ),
     )
 

@@ -2,25 +2,20 @@
 
 from collections.abc import Mapping
 
-from runner.claims import CONTRADICTION, FACTOR, Bound, PublishedClaim, judge, load_claims
-from runner.reporting.document import Block, Claim, Section, Table, Text
-from runner.reporting.document import Finding as Verdict
+from runner.claims import CONTRADICTION, FACTOR, PublishedClaim, load_claims
+from runner.reporting.claims import claim_blocks, run_name, verdict_table
+from runner.reporting.document import Block, Section, Text
 from runner.reporting.findings import Finding, finding
 from runner.reporting.job import PRESETS
 from runner.reporting.measured import Measured
-from runner.reporting.quantities import quantity, ranged, spread
-from runner.reporting.run_values import measured, median
+from runner.reporting.run_values import measured
 from runner.reporting.words import PRESET
 from runner.store import Run
 
 
 def claims_section(runs: Mapping[str, Run]) -> Section:
     """Return the verdicts on the numbers of chapters 3 to 5, as a table and one by one."""
-    claims = [(claim, _findings(claim, runs)) for claim in load_claims("thesis")]
-    rows = [
-        [str(claim.number), claim.statement, _printed(claim), *(f"{f.measured}: {f.verdict}" for f in findings)]
-        for claim, findings in claims
-    ]
+    claims = claim_blocks(load_claims("thesis"), runs)
     blocks: list[Block] = [
         Text(
             f"A printed value holds when the median of 40 simulated repetitions lies within a factor of {FACTOR} of "
@@ -39,12 +34,8 @@ def claims_section(runs: Mapping[str, Run]) -> Section:
             "$t_f$. Both take the law as printed, without damping near singular postures."
         ),
         _what_falls(runs),
-        Table(
-            "Verdicts, with median (smallest to largest) of 40 repetitions.",
-            ["claim", "statement", "printed", *PRESET.values()],
-            rows,
-        ),
-        *(_block(claim, findings, runs) for claim, findings in claims),
+        verdict_table("Verdicts, with median (smallest to largest) of 40 repetitions.", claims),
+        *claims,
     ]
     return Section("Verdict on every number", blocks)
 
@@ -83,80 +74,7 @@ def _what_falls(runs: Mapping[str, Run]) -> Finding:
 
 def _fall(claim: PublishedClaim, runs: Mapping[str, Run]) -> Measured:
     as_reported, sound = (
-        measured(runs[f"{_figure(claim.experiment)}/{preset}"], claim.metric, f"claim {claim.number}, {preset}")
+        measured(runs[run_name(claim.experiment, preset)], claim.metric, f"claim {claim.number}, {preset}")
         for preset in PRESETS
     )
     return as_reported / sound
-
-
-def _block(claim: PublishedClaim, findings: list[Verdict], runs: Mapping[str, Run]) -> Claim:
-    reason = claim.reason
-    if claim.bound is not None:
-        times = " and ".join(
-            f"{quantity(_scaled_median(claim.bound, preset, runs), claim.unit)} ({PRESET[preset]})"
-            for preset in PRESETS
-        )
-        reason = f"{claim.bound.reason} A tenth of the simulated Macro's median is {times}."
-    if claim.metric == "steady_state_error":
-        late = (_late(claim, preset, runs) for preset in PRESETS)
-        reason = " ".join(text for text in (reason, *late) if text)
-    command = f"runner experiment={claim.experiment} preset={PRESETS[0]}"
-    return Claim(str(claim.number), claim.statement, claim.place, _printed(claim), findings, reason, command)
-
-
-def _late(claim: PublishedClaim, preset: str, runs: Mapping[str, Run]) -> str:
-    """Return how many repetitions have not settled when the error at rest is taken; nothing where all have."""
-    run = runs[f"{_figure(claim.experiment)}/{preset}"]
-    band = float(run.config["robot"]["settling_band"])
-    errors = run.metrics.get("steady_state_error", {"values": ()})["values"]
-    late = sum(1 for error in errors if error is not None and error > band)
-    if not late:
-        return ""
-    told = f"{late} of {len(errors)} repetitions ({PRESET[preset]})"
-    return f"{told} are beyond {quantity(band, 'm')} in the last half second."
-
-
-def _findings(claim: PublishedClaim, runs: Mapping[str, Run]) -> list[Verdict]:
-    findings = []
-    for preset in PRESETS:
-        metric = runs[f"{_figure(claim.experiment)}/{preset}"].metrics[claim.metric]
-        verdict = judge(_value(claim, preset, runs), metric["median"], _bound(claim, preset, runs))
-        findings.append(Verdict(preset, spread(metric, claim.value), verdict))
-    return findings
-
-
-def _value(claim: PublishedClaim, preset: str, runs: Mapping[str, Run]) -> float:
-    """Return what the simulation is compared with: the printed value, or the run that it is said to be like."""
-    if claim.value is not None or claim.like is None:
-        return float(claim.value or 0.0)
-    return float(runs[f"{_figure(claim.like.experiment)}/{preset}"].metrics[claim.like.metric]["median"])
-
-
-def _bound(claim: PublishedClaim, preset: str, runs: Mapping[str, Run]) -> float | None:
-    """Return what the thesis' other number, or the simulated one in its place where that is larger, lets one expect."""
-    if claim.bound is None:
-        return None
-    printed = _other(claim.bound).value
-    expected = [None if printed is None else printed * claim.bound.scale, _scaled_median(claim.bound, preset, runs)]
-    return max((value for value in expected if value is not None), default=None)
-
-
-def _scaled_median(bound: Bound, preset: str, runs: Mapping[str, Run]) -> float | None:
-    other = _other(bound)
-    simulated = median(runs[f"{_figure(other.experiment)}/{preset}"], other.metric)
-    return None if simulated is None else simulated * bound.scale
-
-
-def _other(bound: Bound) -> PublishedClaim:
-    return next(claim for claim in load_claims("thesis") if claim.number == bound.claim)
-
-
-def _figure(experiment: str) -> str:
-    return experiment.rpartition("/")[2]
-
-
-def _printed(claim: PublishedClaim) -> str:
-    if not claim.printed:
-        return "in words"
-    low, high = claim.printed[0], claim.printed[-1]
-    return quantity(low, claim.unit) if low == high else ranged(low, high, claim.unit)

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from runner.reporting.checklist import load_checklist
 from runner.reporting.document import Document, Section
 from runner.reporting.work_report import parts, work_document
 from runner.store import Calibration, Run
@@ -13,7 +14,6 @@ from runner.works.thesis.base_axis import base_axis_section, duration_section
 from runner.works.thesis.caveats import EXPECTED
 from runner.works.thesis.chapter2 import chapter2
 from runner.works.thesis.chapter5 import chapter5
-from runner.works.thesis.checklist import checklist_section
 from runner.works.thesis.claims import claims_section
 from runner.works.thesis.coupling import coupling_section
 from runner.works.thesis.dynamics_cost import dynamics_cost_section
@@ -62,7 +62,7 @@ def document(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -
         ),
         runs=runs,
         expected=EXPECTED,
-        checklist=checklist_section,
+        checklist=load_checklist("thesis").section,
     )
 
 

@@ -4,14 +4,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from runner.claims import CONTRADICTION, PublishedClaim, judge_motion, load_claims
-from runner.reporting.document import Claim, Finding, Section, Table, Text
-from runner.reporting.figures import columns
-from runner.reporting.findings import Finding as Conclusion
-from runner.reporting.findings import finding
+from runner.claims import CONTRADICTION, load_claims
+from runner.reporting.claims import claim_blocks, verdict_table
+from runner.reporting.document import Claim, Section, Text
+from runner.reporting.findings import Finding, finding
 from runner.reporting.job import PRESETS
 from runner.reporting.measured import Measured
-from runner.reporting.quantities import quantity
 from runner.reporting.run_values import measured
 from runner.reporting.words import PRESET
 from runner.store import Run
@@ -19,8 +17,7 @@ from runner.store import Run
 
 def claims_section(runs: Mapping[str, Run]) -> Section:
     """Return the verdicts, as a table and one by one."""
-    claims = [_block(claim, runs) for claim in load_claims("xarm7")]
-    rows = [[c.number, c.statement, c.printed, *(f"{f.measured}: {f.verdict}" for f in c.findings)] for c in claims]
+    claims = claim_blocks(load_claims("xarm7"), runs)
     return Section(
         "Verdict on every statement",
         (
@@ -37,19 +34,15 @@ def claims_section(runs: Mapping[str, Run]) -> Section:
                 "the command line), is a controller that knows the desired position alone and so is late; the second, "
                 f"{PRESET['sound']} (sound on the command line), also takes desired velocity and acceleration."
             ),
-            Table(
-                "Verdicts, with the least and the largest coordinate of the tip.",
-                ["claim", "statement", "printed", *PRESET.values()],
-                rows,
-            ),
+            verdict_table("Verdicts, with the least and the largest coordinate of the tip.", claims),
             _concluded(claims, runs),
             *claims,
         ),
     )
 
 
-def _concluded(claims: Sequence[Claim], runs: Mapping[str, Run]) -> Conclusion:
-    given = [{finding.verdict for finding in claim.findings} for claim in claims]
+def _concluded(claims: Sequence[Claim], runs: Mapping[str, Run]) -> Finding:
+    given = [{each.verdict for each in claim.findings} for claim in claims]
     late = runs["three_joints/as_reported"]
     trajectory, period = late.config["trajectory"], float(late.config["controller"]["period"])
     length = float(np.linalg.norm(np.subtract(trajectory["goal"], trajectory["start"])))
@@ -71,7 +64,7 @@ def _concluded(claims: Sequence[Claim], runs: Mapping[str, Run]) -> Conclusion:
 
 def conclude(
     count: int, holding: Measured, contradicting: Measured, off: Sequence[Measured], late: Measured, way: Measured
-) -> Conclusion:
+) -> Finding:
     """Return what comes of the report's statements.
 
     Args:
@@ -92,24 +85,3 @@ def conclude(
         *(each < 1e-5 for each in off),
         late.near(way, 0.02),
     )
-
-
-def _block(claim: PublishedClaim, runs: Mapping[str, Run]) -> Claim:
-    name = claim.experiment.rpartition("/")[2]
-    findings = [_finding(claim, preset, runs[f"{name}/{preset}"]) for preset in PRESETS]
-    printed = quantity(claim.value, claim.unit, 4) if claim.printed else "in words"
-    command = f"runner experiment={claim.experiment} preset={PRESETS[0]}"
-    return Claim(str(claim.number), claim.statement, claim.place, printed, findings, claim.reason, command)
-
-
-def _finding(claim: PublishedClaim, preset: str, run: Run) -> Finding:
-    tip = columns(run.trace, "tip")
-    verdict = judge_motion(claim.extents, claim.fails, tip, columns(run.trace, "desired"))
-    if run.status == "failed":
-        return Finding(preset, run.failure_text, verdict)
-    moved = [
-        f"{extent.axis} {values.min():.4f} to {values.max():.4f} m"
-        for extent in claim.extents
-        for values in [tip[:, "xyz".index(extent.axis)]]
-    ]
-    return Finding(preset, ", ".join(moved), verdict)

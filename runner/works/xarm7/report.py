@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 
+from runner.reporting.checklist import load_checklist
 from runner.reporting.document import Document, Section
 from runner.reporting.work_report import parts, work_document
 from runner.store import Calibration, Run
 from runner.works.xarm7.caveats import EXPECTED
-from runner.works.xarm7.checklist import CHECKLIST
 from runner.works.xarm7.claims import claims_section
 from runner.works.xarm7.kinematics import kinematics_section
 from runner.works.xarm7.null_space import null_space_section
@@ -56,7 +56,7 @@ def document(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -
         ),
         runs=runs,
         expected=EXPECTED,
-        checklist=CHECKLIST.section,
+        checklist=load_checklist("xarm7").section,
     )
 
 

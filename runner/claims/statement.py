@@ -1,0 +1,32 @@
+"""What a source states in words and no number or path can judge, as data."""
+
+from runner.data_file import read_data
+from runner.paths import works_dir
+from runner.registry import StrictModel
+
+_FILE = "statements.yaml"
+
+
+class PublishedStatement(StrictModel):
+    """One statement, which findings on many runs judge.
+
+    Attributes:
+        name: A short name, by which its judgement is found.
+        statement: What the source says.
+        place: Where.
+        reason: What is to be said of the verdict; inline mathematics between dollar signs.
+    """
+
+    name: str
+    statement: str
+    place: str
+    reason: str = ""
+
+
+def load_statements(work: str) -> list[PublishedStatement]:
+    """Return the statements of a work, such as "meca500", in order.
+
+    Raises:
+        RunnerError: if its file does not fit; names the file, the entries and keys.
+    """
+    return read_data(works_dir() / work / _FILE, list[PublishedStatement])

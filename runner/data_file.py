@@ -1,0 +1,50 @@
+"""Data files of this package in YAML, each checked against its model."""
+
+from pathlib import Path
+from typing import Any, TypeVar
+
+import yaml
+from pydantic import TypeAdapter, ValidationError
+
+from runner.errors import RunnerError
+
+T = TypeVar("T")
+
+
+def read_data(path: Path, model: type[T]) -> T:
+    """Return the content of a data file.
+
+    Args:
+        path: The file.
+        model: A pydantic model, or a list of one.
+
+    Raises:
+        RunnerError: if the file cannot be read or does not fit; names the file, and the entries and keys.
+    """
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, yaml.YAMLError) as error:
+        raise RunnerError(f"cannot read {path}: {error}") from error
+    try:
+        return TypeAdapter(model).validate_python(content)
+    except ValidationError as error:
+        lines = [
+            f"{_entry(content, problem['loc'])}{problem['msg'].removeprefix('Value error, ')}"
+            for problem in error.errors()
+        ]
+        raise RunnerError(f"{path}: {'; '.join(lines)}") from error
+
+
+def _entry(content: Any, location: tuple[int | str, ...]) -> str:
+    """Return where in a file a problem is; entries of lists with the name or number that they have."""
+    words, inside = [], content
+    for key in location:
+        word = str(key)
+        if isinstance(key, int) and isinstance(inside, list):
+            inside = inside[key]
+            own = inside.get("name", inside.get("number")) if isinstance(inside, dict) else None
+            word += "" if own is None else f" ({own})"
+        else:
+            inside = inside.get(key) if isinstance(inside, dict) else None
+        words.append(word)
+    return f"{'.'.join(words)}: " if words else ""

@@ -1,0 +1,160 @@
+"""A work's published numbers and statements beside the stored runs, with verdicts."""
+
+from collections.abc import Mapping, Sequence
+
+from runner.claims import Bound, PublishedClaim, PublishedStatement, Verdict, judge, judge_motion
+from runner.reporting.document import Claim, EquationVerdict, Finding, StatementVerdict, Table
+from runner.reporting.figures import columns
+from runner.reporting.job import PRESETS, MissingError
+from runner.reporting.quantities import quantity, ranged, spread
+from runner.reporting.run_values import median
+from runner.reporting.words import PRESET
+from runner.store import Run
+
+_DIGITS = 4  # at least as many as a source prints
+
+
+def claim_blocks(claims: Sequence[PublishedClaim], runs: Mapping[str, Run]) -> list[Claim]:
+    """Return each claim with what the runs say of it, under each preset.
+
+    Args:
+        claims: All claims of a work: a bound of one names another.
+        runs: The stored runs of the work, by names such as "figure_3_5/sound"; see `run_name`.
+
+    Raises:
+        MissingError: if a claim's run was not made, or one that it is compared with gave no value.
+    """
+    return [_Claimed(claim, claims, runs).block() for claim in claims]
+
+
+def statement_blocks(
+    statements: Sequence[PublishedStatement], judged: Mapping[str, tuple[StatementVerdict | EquationVerdict, str]]
+) -> list[Claim]:
+    """Return each statement with its verdict, numbered in order.
+
+    Args:
+        statements: All statements of a work.
+        judged: Verdict on each by its name, and what was measured.
+
+    Raises:
+        ValueError: if another set of names is judged than is stated.
+    """
+    if {each.name for each in statements} != set(judged):
+        raise ValueError(f"stated: {', '.join(each.name for each in statements)}; judged: {', '.join(judged)}")
+    return [
+        Claim(str(number), each.statement, each.place, "", (Finding("", measured, verdict),), each.reason)
+        for number, each in enumerate(statements, start=1)
+        for verdict, measured in [judged[each.name]]
+    ]
+
+
+def verdict_table(caption: str, blocks: Sequence[Claim]) -> Table:
+    """Return the claims as a table: a row for each, a column for each preset."""
+    rows = [[c.number, c.statement, c.printed, *(f"{f.measured}: {f.verdict}" for f in c.findings)] for c in blocks]
+    return Table(caption, ["claim", "statement", "printed", *PRESET.values()], rows)
+
+
+def run_name(experiment: str, preset: str) -> str:
+    """Return the name that the run of an experiment has among the runs of a work: "sources/name" is "name/preset"."""
+    return f"{experiment.rpartition('/')[2]}/{preset}"
+
+
+class _Claimed:
+    """One claim, with all that it is judged by.
+
+    Args:
+        claim: The claim.
+        claims: All claims of its work.
+        runs: The stored runs of its work, by name.
+    """
+
+    def __init__(self, claim: PublishedClaim, claims: Sequence[PublishedClaim], runs: Mapping[str, Run]) -> None:
+        self._claim = claim
+        self._claims = claims
+        self._runs = runs
+
+    def block(self) -> Claim:
+        """Return it with its verdicts."""
+        claim = self._claim
+        command = f"runner experiment={claim.experiment} preset={PRESETS[0]}"
+        findings = [self._finding(preset) for preset in PRESETS]
+        return Claim(
+            str(claim.number), claim.statement, claim.place, _printed(claim), findings, self._reason(), command
+        )
+
+    def _finding(self, preset: str) -> Finding:
+        claim, run = self._claim, self._run(self._claim.experiment, preset)
+        verdict = self._of_motion(run) if claim.extents else self._of_number(run, preset)
+        if run.status == "failed":
+            return Finding(preset, run.failure_text, verdict)
+        shown = self._moved(run) if claim.extents else spread(run.metrics[claim.metric], claim.value)
+        return Finding(preset, shown, verdict)
+
+    def _of_motion(self, run: Run) -> Verdict:
+        tip, desired = columns(run.trace, "tip"), columns(run.trace, "desired")
+        return judge_motion(self._claim.extents, self._claim.fails, tip, desired)
+
+    def _moved(self, run: Run) -> str:
+        """Return where the tip moves along the axes that the claim speaks of."""
+        tip = columns(run.trace, "tip")
+        paths = {extent.axis: tip[:, "xyz".index(extent.axis)] for extent in self._claim.extents}
+        return ", ".join(f"{axis} {path.min():.4f} to {path.max():.4f} m" for axis, path in paths.items())
+
+    def _of_number(self, run: Run, preset: str) -> Verdict:
+        return judge(self._value(preset), median(run, self._claim.metric), self._expected(preset))
+
+    def _value(self, preset: str) -> float:
+        """Return what the simulation is compared with: the printed value, or the run that it is said to be like."""
+        claim, like = self._claim, self._claim.like
+        value = claim.value if like is None else median(self._run(like.experiment, preset), like.metric)
+        if value is None:
+            raise MissingError(f"claim {claim.number}: there is nothing to compare it with under {preset}")
+        return value
+
+    def _expected(self, preset: str) -> float | None:
+        """Return what the source's other number, or the simulated one in its place where larger, lets one expect."""
+        bound = self._claim.bound
+        if bound is None:
+            return None
+        printed = self._other(bound).value
+        expected = [None if printed is None else printed * bound.scale, self._scaled(bound, preset)]
+        return max((value for value in expected if value is not None), default=None)
+
+    def _scaled(self, bound: Bound, preset: str) -> float | None:
+        other = self._other(bound)
+        simulated = median(self._run(other.experiment, preset), other.metric)
+        return None if simulated is None else simulated * bound.scale
+
+    def _other(self, bound: Bound) -> PublishedClaim:
+        return next(claim for claim in self._claims if claim.number == bound.claim)
+
+    def _reason(self) -> str:
+        claim, told = self._claim, [self._claim.reason]
+        if claim.bound is not None:
+            scaled = {preset: quantity(self._scaled(claim.bound, preset), claim.unit) for preset in PRESETS}
+            times = " and ".join(f"{text} ({PRESET[preset]})" for preset, text in scaled.items())
+            told = [f"{claim.bound.reason} {claim.bound.name} is {times}."]
+        if claim.metric == "steady_state_error":
+            told += [self._late(preset) for preset in PRESETS]
+        return " ".join(text for text in told if text)
+
+    def _late(self, preset: str) -> str:
+        """Return how many repetitions have not settled when the error at rest is taken; nothing where all have."""
+        run = self._run(self._claim.experiment, preset)
+        band = float(run.config["robot"]["settling_band"])
+        errors = run.metrics.get("steady_state_error", {"values": ()})["values"]
+        late = sum(1 for error in errors if error is not None and error > band)
+        if not late:
+            return ""
+        told = f"{late} of {len(errors)} repetitions ({PRESET[preset]})"
+        return f"{told} are beyond {quantity(band, 'm')} in the last half second."
+
+    def _run(self, experiment: str, preset: str) -> Run:
+        return self._runs[run_name(experiment, preset)]
+
+
+def _printed(claim: PublishedClaim) -> str:
+    if not claim.printed:
+        return "in words"
+    low, high = claim.printed[0], claim.printed[-1]
+    return quantity(high, claim.unit, _DIGITS) if low == high else ranged(low, high, claim.unit)
