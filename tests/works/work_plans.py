@@ -2,12 +2,13 @@
 
 from thin_plans import Overrides
 
+from runner.reporting.job import Job
 from runner.works.meca500.calibration_plan import calibration_jobs
 from runner.works.meca500.plan import plan as meca500_plan
 from runner.works.thesis.combined_plan import combined_jobs
 from runner.works.thesis.plan import COMBINED
 from runner.works.thesis.plan import plan as thesis_plan
-from runner.works.xarm7.studies_plan import studies_jobs
+from runner.works.xarm7.plan import plan as xarm7_plan
 
 MOMENT = 0.08  # s
 _MECA500 = {"step": 0.2, "sine": 0.8, "tip": 0.2, "wall": 0.4, "map": 0.4, "hand": 0.4, "swing": 1.0, "limit": 0.7,
@@ -43,9 +44,14 @@ def thesis_moments() -> dict[str, Overrides]:
     return moments
 
 
+def xarm7_studies() -> dict[str, Job]:
+    """Return the runs of the studies on the xArm7, of which none is an experiment of the report's."""
+    return {name: job for name, job in xarm7_plan().items() if not job.overrides[0].startswith("experiment=")}
+
+
 def xarm7_moments() -> dict[str, Overrides]:
     """Return the runs of the studies on the xArm7, cut to a moment."""
-    return {name: cut(job.overrides, MOMENT) for name, job in studies_jobs().items()}
+    return {name: cut(job.overrides, MOMENT) for name, job in xarm7_studies().items()}
 
 
 def meca500_jobs() -> dict[str, Overrides]:

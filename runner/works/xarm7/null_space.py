@@ -15,7 +15,7 @@ from runner.reporting.words import in_words
 from runner.store import Run
 from runner.works.xarm7.null_space_cycles import cycles_section
 from runner.works.xarm7.null_space_manipulability import manipulability_section
-from runner.works.xarm7.studies_plan import FASTEST_RATE, RULES, SPEEDS
+from runner.works.xarm7.plan import FASTEST_RATE, RULES, SPEEDS
 
 BOUND = 1e-6  # m, of the tip at the commands
 

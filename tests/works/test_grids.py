@@ -1,0 +1,188 @@
+"""Grids of a work's runs: which runs they stand for, and what is said of those that cannot be read."""
+
+import pytest
+
+from runner.errors import RunnerError
+from runner.works.arithmetic import fill
+from runner.works.grids import Grids
+from runner.works.names import work_names
+from runner.works.work import load_work
+
+
+@pytest.fixture
+def read(tmp_path):
+    def make(text):
+        path = tmp_path / "runs.yaml"
+        path.write_text(text)
+        return Grids(path)
+
+    return make
+
+
+def test_a_grid_is_a_run_for_each_combination_in_the_order_of_its_axes(read):
+    grids = read("""
+grids:
+  turns:
+    with: [experiment=thesis/figure_5_12]
+    over: {preset: [as_reported, sound], schedule: {both: controller.schedule=both, turns: [a=1, b=2]}}
+  alone: {with: [robot=xarm7]}
+""")
+    begin = "experiment=thesis/figure_5_12"
+    assert list(grids.runs.items()) == [
+        ("turns/as_reported/both", (begin, "preset=as_reported", "controller.schedule=both")),
+        ("turns/as_reported/turns", (begin, "preset=as_reported", "a=1", "b=2")),
+        ("turns/sound/both", (begin, "preset=sound", "controller.schedule=both")),
+        ("turns/sound/turns", (begin, "preset=sound", "a=1", "b=2")),
+        ("alone", ("robot=xarm7",)),
+    ]
+    assert grids.jobs()["alone"].overrides == ("robot=xarm7",)
+    assert grids.labels("turns", "schedule")["turns"] == ("a=1", "b=2")
+    assert grids.calibrations == {}
+
+
+def test_an_axis_stands_where_an_override_puts_it(read):
+    grids = read("""
+grids:
+  g:
+    name: "{{ x }}/at/{{ t }}"
+    with: ["{{ y }}", "{{ t }}", "at={{ x }}"]
+    over: {x: [1.0, 0.25], t: [3.0], y: {one: "{{ z }}", two: ["plant=rk4", "{{ z }}"]}, z: {a: [], b: z=b}}
+""")
+    assert grids.runs == {
+        "1/at/3/one/a": ("t=3.0", "at=1"),
+        "1/at/3/one/b": ("z=b", "t=3.0", "at=1"),
+        "1/at/3/two/a": ("plant=rk4", "t=3.0", "at=1"),
+        "1/at/3/two/b": ("plant=rk4", "z=b", "t=3.0", "at=1"),
+        "0.25/at/3/one/a": ("t=3.0", "at=0.25"),
+        "0.25/at/3/one/b": ("z=b", "t=3.0", "at=0.25"),
+        "0.25/at/3/two/a": ("plant=rk4", "t=3.0", "at=0.25"),
+        "0.25/at/3/two/b": ("plant=rk4", "z=b", "t=3.0", "at=0.25"),
+    }
+
+
+def test_numbers_stand_in_names_and_overrides_as_they_are_written(read):
+    grids = read("grids: {g: {over: {controller.period: [1, 2.0, 0.00025, 0.00001, 1.0e-4]}}}")
+    texts = ["1", "2.0", "0.00025", "1e-05", "0.0001"]
+    assert list(grids.runs.items()) == [(f"g/{text}", (f"controller.period={text}",)) for text in texts]
+    assert grids.levels("g", "controller.period", float)[:2] == (1, 2.0)
+
+
+def test_expressions_take_axes_and_values(read):
+    grids = read("""
+grids: {g: {with: ["m={{ mass / parts }}", "s={{ controller.period * 2 }}"],
+            over: {mass: [0.2, 3], controller.period: [0.1]}, values: {parts: 2}}}
+""")
+    assert grids.runs == {"g/0.2/0.1": ("m=0.1", "s=0.2"), "g/3/0.1": ("m=1.5", "s=0.2")}
+    assert grids.value("g", "parts") == 2
+
+
+@pytest.mark.parametrize(
+    ("expression", "value"),
+    [("1 / 250", "0.004"), ("round(0.01 / h) * h", "0.0096"), ("-h + 1", "0.9968"), ("round(1 / 3, 4)", "0.3333"),
+     ("(1 + 2) * 3 - 1", "8"), ("1 / 3", "0.333333333"), ("word", "both")],
+)  # fmt: skip
+def test_arithmetic(expression, value):
+    assert fill(f"a={{{{ {expression} }}}}", {"h": 0.0032, "word": "both"}) == f"a={value}"
+
+
+@pytest.mark.parametrize(
+    ("expression", "message"),
+    [
+        ("mas / 2", r"'mas' is neither an axis nor a value \(did you mean mass\?\); known: mass, word"),
+        ("word * 2", "'word' is the text 'both', which no arithmetic takes"),
+        ("mass / 0", "has no value"),
+        ("2 ** 9", "only numbers, names"),
+        ("__import__('os')", "only numbers, names"),
+        ("mass if mass else 1", "only numbers, names"),
+        ("'a' * 3", "only numbers, names"),
+        ("True", "only numbers, names"),
+        ("round(mass, 1, 2)", "only numbers, names"),
+        ("round()", "only numbers, names"),
+        ("1 +", "is no expression"),
+        ("", "is no expression"),
+        ("+".join("1" * 200), "is no expression of at most 200"),
+    ],
+)
+def test_an_expression_that_has_no_value_is_refused(expression, message):
+    with pytest.raises(RunnerError, match=message):
+        fill(f"a={{{{ {expression} }}}}", {"mass": 1.0, "word": "both"})
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("grids: {turns: {ovr: {a: [1]}}}", r"runs.yaml: grids.turns.ovr: unknown key \(did you mean over\?\); keys: name,"),
+        ("grid: {}", r"grid: unknown key \(did you mean grids\?\)"),
+        ("grids: {g: {over: {a: {both: null}}}}", "grids.g.over.a: .*'both' must stand for an override or a list"),
+        ("grids: {g: {over: {a: [1, null]}}}", "grids.g.over.a: .*a level must be a number or a text"),
+        ("grids: {g: {over: {a: [true]}}}", "a level must be a number or a text"),
+        ("grids: {g: {over: {a: [1, 1]}}}", "has a level twice"),
+        ("grids: {g: {over: {a: []}}}", "grids.g.over.a: .*must be a list of levels"),
+        ("grids: {g: {over: {a: 1}}}", "must be a list of levels"),
+        ("grids: {g: {with: a=1}}", "grids.g.with: must be a list"),
+        ("grids: [a]", "grids: must be a group of grids"),
+        ("- grids", "grids: must be a group of grids"),
+        ("grids: {g: 1}", "grids.g"),
+        ("grids: {g: {}, h: {name: g}}", "grids.h: the name 'g' is that of another run"),
+        ("grids: {g: {}, g: {}}", "the key 'g' stands twice in one group"),
+        ("grids: {g: {with: ['m={{ mas / 2 }}'], over: {mass: [1]}}}", r"grids.g: 'mas' is neither .*mean mass\?"),
+        ("grids: {g: {over: {a: {x: '{{ b }}'}, b: {x: '{{ a }}'}}, with: ['{{ a }}']}}", "'a' is put into itself"),
+        ("grids: {g: {with: [}}", "runs.yaml, line 1"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_told_with_file_and_grid(read, text, message):
+    with pytest.raises(RunnerError, match=message):
+        read(text)
+
+
+def test_every_problem_is_told_at_once(read):
+    with pytest.raises(RunnerError) as caught:
+        read("grids: {g: {wth: []}, h: {over: {a: 1}}}")
+    assert [line.split(": ")[1] for line in str(caught.value).splitlines()] == ["grids.g.wth", "grids.h.over.a"]
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(RunnerError, match=r"cannot read .*runs\.yaml"):
+        Grids(tmp_path / "runs.yaml")
+
+
+def test_what_a_chapter_asks_for_is_there_or_refused_with_the_nearest_name(read):
+    grids = read("grids: {rates: {over: {rate: [1, 2.5], plant: [rk4]}, values: {gain: 2}}}")
+    assert grids.levels("rates", "plant", str) == ("rk4",)
+    for ask, message in (
+        (lambda: grids.grid("rate"), r"there is no grid 'rate' \(did you mean rates\?\)"),
+        (lambda: grids.levels("rates", "rat", str), r"grid 'rates': there is no axis 'rat' \(did you mean rate\?\)"),
+        (lambda: grids.levels("rates", "rate", int), "the levels of 'rate' are not all of kind int"),
+        (lambda: grids.value("rates", "gan"), r"there is no value 'gan' \(did you mean gain\?\)"),
+    ):
+        with pytest.raises(RunnerError, match=message):
+            ask()
+
+
+SOME = {
+    "xarm7": {
+        "servo/sound/0.00025": ("experiment=xarm7/three_joints", "duration=5", "preset=sound", "plant=bullet",
+                                "plant.step=0.00025"),
+        "printed/pose/angles alone/fed back": (
+            "robot=xarm7", "controller=xarm7_as_printed", "controller.task=pose", "controller.feedforward=true",
+            "controller.columns=right", "controller.angles=printed", "controller.inverse=right", "controller.gain=20"),
+        "rates/bullet/sound/100": ("robot=xarm7", "plant=bullet", "plant.step=0.001", "preset=sound",
+                                   "controller.period=0.01", "duration=5"),
+        "payload/0.6043/asked/5": ("robot=xarm7", "robot.start=[0.6043,-0.2,0.1508]",
+                                   "robot.goal=[0.6043,0.2,0.1508]", "duration=5", "robot.payload.mass=5"),
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("work", "runs", "calibrations"), [("thesis", 304, 0), ("xarm7", 115, 0), ("meca500", 242, 36)]
+)
+def test_a_work_has_its_runs(work, runs, calibrations):
+    planned = load_work(work)
+    jobs = planned.jobs()
+    assert (len(jobs), len(planned.calibrations())) == (runs, calibrations)
+    assert {name: jobs[name].overrides for name in SOME.get(work, {})} == SOME.get(work, {})
+
+
+def test_every_work_is_counted():
+    assert set(work_names()) == {"thesis", "xarm7", "meca500"}
