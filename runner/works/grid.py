@@ -4,7 +4,7 @@ import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated
 
-from pydantic import Field, PlainValidator
+from pydantic import BeforeValidator, Field, PlainValidator
 
 from runner.errors import RunnerError
 from runner.registry import StrictModel
@@ -28,10 +28,20 @@ def _levels(value: object) -> Mapping[Level, Overrides | None]:
 
 
 def _stands_for(label: str, value: object) -> Overrides:
-    overrides = [value] if isinstance(value, str) else value
-    if not isinstance(overrides, list) or not all(isinstance(each, str) for each in overrides):
-        raise ValueError(f"level '{label}' must stand for an override or a list of them")
-    return tuple(overrides)
+    try:
+        return tuple(_flat([value] if isinstance(value, str) else value))
+    except ValueError:
+        raise ValueError(f"level '{label}' must stand for an override or a list of them") from None
+
+
+def _flat(value: object) -> list[str]:
+    """Return the overrides of a list whose items are overrides or lists of them, as an alias puts in."""
+    if not isinstance(value, list):
+        raise ValueError("must be a list of overrides")
+    overrides = []
+    for item in value:
+        overrides += [item] if isinstance(item, str) else _flat(item)
+    return overrides
 
 
 class Grid(StrictModel):
@@ -45,22 +55,23 @@ class Grid(StrictModel):
     """
 
     name: str = ""
-    with_: list[str] = Field(default_factory=list, alias="with")
+    with_: Annotated[list[str], BeforeValidator(_flat)] = Field(default_factory=list, alias="with")
     over: dict[str, Annotated[Mapping[Level, Overrides | None], PlainValidator(_levels)]] = Field(default_factory=dict)
     values: dict[str, int | float] = Field(default_factory=dict)
 
-    def runs(self, key: str) -> Iterator[tuple[str, Overrides]]:
+    def runs(self, key: str, values: Mapping[str, float]) -> Iterator[tuple[str, Overrides]]:
         """Yield name and overrides of each run.
 
         Args:
             key: The grid's key.
+            values: Numbers that expressions of all grids may name.
         """
         items = [*self.with_, *(f"{{{{ {axis} }}}}" for axis in self.over if not self._is_placed(axis))]
         begin = self.name or key
         rest = [axis for axis in self.over if axis not in names_in(begin)]
         for levels in itertools.product(*self.over.values()):
             chosen = dict(zip(self.over, levels, strict=True))
-            scope = {**self.values, **chosen}
+            scope = {**values, **self.values, **chosen}
             name = "/".join([fill(begin, scope), *(str(chosen[axis]) for axis in rest)])
             yield name, tuple(text for item in items for text in self._expand(item, chosen, scope, ()))
 

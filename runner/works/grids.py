@@ -14,7 +14,8 @@ else its key, and the levels of the axes that `name` does not hold, divided by s
 `with` and then those of each axis: `axis=level` of a list, what a label stands for of a group of labels. An override
 that is `{{ axis }}` alone puts the axis there instead. A listed axis that an expression holds makes no override of its
 own. Levels are put in as they are written (3.0), expressions with nine digits at most (3). `values` are further numbers
-for expressions. Calibrations are grids under `calibrations`.
+for expressions, of a grid or, beside `grids`, of all. A list within a list of overrides, as an alias puts in, stands
+for what it holds. Calibrations are grids under `calibrations`.
 """
 
 from collections.abc import Iterator, Mapping
@@ -27,11 +28,16 @@ from pydantic import ValidationError
 from runner.config.bounded_yaml import read_yaml
 from runner.config.messages import describe
 from runner.errors import RunnerError, nearest
+from runner.registry import StrictModel
 from runner.reporting.job import Job, Jobs
 from runner.works.grid import Grid, Overrides
 
 FILE = "runs.yaml"
 L = TypeVar("L", str, int, float)
+
+
+class _Values(StrictModel):
+    values: dict[str, int | float]
 
 
 class Grids:
@@ -57,14 +63,18 @@ class Grids:
         content = read_yaml(text, path)
         problems = [*_twice(yaml.compose(text, yaml.CSafeLoader))]
         roots = {root: _parse(root, content, problems) for root in ("grids", "calibrations")}
-        if isinstance(content, dict):
-            problems += [
-                f"{key}: unknown key{nearest(key, roots)}; keys: {', '.join(roots)}"
-                for key in content
-                if key not in roots
-            ]
+        shared = content.get("values", {}) if isinstance(content, dict) else {}
+        try:
+            self._values = _Values(values=shared).values
+        except ValidationError as error:
+            problems += [*describe("", _Values, error)]
+            self._values = {}
+        keys = ("values", *roots)
+        for key in content if isinstance(content, dict) else ():
+            if key not in keys:
+                problems.append(f"{key}: unknown key{nearest(key, keys)}; keys: {', '.join(keys)}")
         self._grids = {**roots["grids"], **roots["calibrations"]}
-        self.runs, self.calibrations = (_expanded(roots[root], root, problems) for root in roots)
+        self.runs, self.calibrations = (_expanded(roots[root], self._values, root, problems) for root in roots)
         if problems:
             raise RunnerError("\n".join(f"{path}: {problem}" for problem in problems))
 
@@ -102,8 +112,8 @@ class Grids:
         return {label: self.grid(key).over[axis][label] or () for label in self.levels(key, axis, str)}
 
     def value(self, key: str, name: str) -> float:
-        """Return one of the `values` of a grid."""
-        values = self.grid(key).values
+        """Return one of the `values` of a grid, or of all."""
+        values = {**self._values, **self.grid(key).values}
         if name not in values:
             raise RunnerError(f"{self._path}: grid '{key}': there is no value '{name}'{nearest(name, values)}")
         return values[name]
@@ -123,11 +133,13 @@ def _parse(root: str, content: object, problems: list[str]) -> dict[str, Grid]:
     return grids
 
 
-def _expanded(grids: Mapping[str, Grid], root: str, problems: list[str]) -> dict[str, Overrides]:
+def _expanded(
+    grids: Mapping[str, Grid], values: Mapping[str, float], root: str, problems: list[str]
+) -> dict[str, Overrides]:
     runs: dict[str, Overrides] = {}
     for key, grid in grids.items():
         try:
-            for name, overrides in grid.runs(key):
+            for name, overrides in grid.runs(key, values):
                 if name in runs:
                     raise RunnerError(f"the name '{name}' is that of another run")
                 runs[name] = overrides

@@ -60,6 +60,11 @@ grids:
     }
 
 
+def test_an_alias_puts_its_overrides_in(read):
+    grids = read("grids: {g: {with: [&one [a=1, b=2], c=3], over: {x: {l: [*one, d=4]}}}}")
+    assert grids.runs == {"g/l": ("a=1", "b=2", "c=3", "a=1", "b=2", "d=4")}
+
+
 def test_numbers_stand_in_names_and_overrides_as_they_are_written(read):
     grids = read("grids: {g: {over: {controller.period: [1, 2.0, 0.00025, 0.00001, 1.0e-4]}}}")
     texts = ["1", "2.0", "0.00025", "1e-05", "0.0001"]
@@ -69,11 +74,12 @@ def test_numbers_stand_in_names_and_overrides_as_they_are_written(read):
 
 def test_expressions_take_axes_and_values(read):
     grids = read("""
-grids: {g: {with: ["m={{ mass / parts }}", "s={{ controller.period * 2 }}"],
+grids: {g: {with: ["m={{ mass / parts }}", "s={{ controller.period * twice }}"],
             over: {mass: [0.2, 3], controller.period: [0.1]}, values: {parts: 2}}}
+values: {parts: 9, twice: 2}
 """)
     assert grids.runs == {"g/0.2/0.1": ("m=0.1", "s=0.2"), "g/3/0.1": ("m=1.5", "s=0.2")}
-    assert grids.value("g", "parts") == 2
+    assert (grids.value("g", "parts"), grids.value("g", "twice")) == (2, 2)
 
 
 @pytest.mark.parametrize(
@@ -111,7 +117,7 @@ def test_an_expression_that_has_no_value_is_refused(expression, message):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("grids: {turns: {ovr: {a: [1]}}}", r"runs.yaml: grids.turns.ovr: unknown key \(did you mean over\?\); keys: name,"),
+        ("grids: {turns: {ovr: {a: [1]}}}", r"runs.yaml: grids.turns.ovr: unknown key \(did you mean over\?\)"),
         ("grid: {}", r"grid: unknown key \(did you mean grids\?\)"),
         ("grids: {g: {over: {a: {both: null}}}}", "grids.g.over.a: .*'both' must stand for an override or a list"),
         ("grids: {g: {over: {a: [1, null]}}}", "grids.g.over.a: .*a level must be a number or a text"),
@@ -119,11 +125,12 @@ def test_an_expression_that_has_no_value_is_refused(expression, message):
         ("grids: {g: {over: {a: [1, 1]}}}", "has a level twice"),
         ("grids: {g: {over: {a: []}}}", "grids.g.over.a: .*must be a list of levels"),
         ("grids: {g: {over: {a: 1}}}", "must be a list of levels"),
-        ("grids: {g: {with: a=1}}", "grids.g.with: must be a list"),
+        ("grids: {g: {with: a=1}}", "grids.g.with: must be a list of overrides"),
         ("grids: [a]", "grids: must be a group of grids"),
         ("- grids", "grids: must be a group of grids"),
         ("grids: {g: 1}", "grids.g"),
         ("grids: {g: {}, h: {name: g}}", "grids.h: the name 'g' is that of another run"),
+        ("values: {a: b}", "values.a: must be a number"),
         ("grids: {g: {}, g: {}}", "the key 'g' stands twice in one group"),
         ("grids: {g: {with: ['m={{ mas / 2 }}'], over: {mass: [1]}}}", r"grids.g: 'mas' is neither .*mean mass\?"),
         ("grids: {g: {over: {a: {x: '{{ b }}'}, b: {x: '{{ a }}'}}, with: ['{{ a }}']}}", "'a' is put into itself"),
@@ -160,6 +167,24 @@ def test_what_a_chapter_asks_for_is_there_or_refused_with_the_nearest_name(read)
 
 
 SOME = {
+    "meca500": {
+        "step/servo, 16.7 ms/rotation x": (
+            "experiment=meca500/push", "controller.period=0.0167", "plant=bullet", "plant.servo.period=0.000835",
+            "plant.step=0.000835", "environment.begin=0.0501", "environment.force=[0.0, 0.0, 0.0]",
+            "environment.moment=[0.05, 0.0, 0.0]"),
+        "sine/servo, 1 ms/24.0": ("experiment=meca500/sine", "plant=bullet", "plant.step=0.001",
+                                  "environment.frequency=24.0"),
+        "rest/0": ("experiment=meca500/weighing",
+                   "robot.home=[0.836651,-0.468344,-2.209594,-2.868983,1.257547,2.59342]", "wrist_sensor=mini40",
+                   "seed=0"),
+        "tool_centre_point/repeatability/2e-05": (
+            "calibration=tool_centre_point", "calibration.posture=[0,0.2,0.3,0,1.2,0]", "calibration.spread=0.5236",
+            "calibration.repeatability=2e-05", "seed=3"),
+        "gravity/noise/0.25": (
+            "calibration=gravity", "wrist_sensor.noise=[0.003625,0.003625,0.00725,0.000125,0.000125,0.000125]",
+            "seed=22"),
+        "gravity/samples/100": ("calibration=gravity", "calibration.samples=100", "seed=35"),
+    },
     "xarm7": {
         "servo/sound/0.00025": ("experiment=xarm7/three_joints", "duration=5", "preset=sound", "plant=bullet",
                                 "plant.step=0.00025"),
@@ -179,9 +204,10 @@ SOME = {
 )
 def test_a_work_has_its_runs(work, runs, calibrations):
     planned = load_work(work)
-    jobs = planned.jobs()
-    assert (len(jobs), len(planned.calibrations())) == (runs, calibrations)
-    assert {name: jobs[name].overrides for name in SOME.get(work, {})} == SOME.get(work, {})
+    jobs, calibrated = planned.jobs(), planned.calibrations()
+    assert (len(jobs), len(calibrated)) == (runs, calibrations)
+    found = {name: job.overrides for name, job in jobs.items()} | dict(calibrated)
+    assert {name: found[name] for name in SOME[work]} == SOME[work]
 
 
 def test_every_work_is_counted():
