@@ -1,6 +1,7 @@
 """Expressions in double braces, as `{{ mass / 2 }}`: arithmetic on numbers with names, read without running code."""
 
 import ast
+import math
 import re
 from collections.abc import Callable, Mapping
 
@@ -38,6 +39,8 @@ def fill(text: str, scope: Mapping[str, Level]) -> str:
         value = _evaluate(match[1].strip(), scope)
         return value if isinstance(value, str) else f"{value:.9g}"
 
+    if "{{" in _BRACES.sub("", text):
+        raise ExpressionError(f"'{text}' has double braces that are not closed")
     return _BRACES.sub(put_in, text)
 
 
@@ -61,7 +64,10 @@ def _evaluate(text: str, scope: Mapping[str, Level]) -> Level:
         raise ExpressionError(f"{{{{ {text} }}}} is no expression of at most {_LONGEST} characters")
     name = _dotted(node)
     try:
-        return _value_of(name, scope) if name else _number(node, scope)
+        value = _value_of(name, scope) if name else _number(node, scope)
+        if isinstance(value, str) or math.isfinite(value):
+            return value
+        raise OverflowError("it is not finite")
     except (ZeroDivisionError, OverflowError, TypeError, ValueError) as error:
         raise ExpressionError(f"{{{{ {text} }}}} has no value: {error}") from None
 

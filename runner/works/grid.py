@@ -1,6 +1,7 @@
 """One grid of a work: from its overrides and axes to its runs; runner/works/grids.py tells the format."""
 
 import itertools
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated
 
@@ -11,6 +12,7 @@ from runner.registry import StrictModel
 from runner.works.arithmetic import Level, alone, fill, names_in
 
 Overrides = tuple[str, ...]
+_MOST = 10_000  # runs of a grid
 
 
 def _levels(value: object) -> Mapping[Level, Overrides | None]:
@@ -20,9 +22,9 @@ def _levels(value: object) -> Mapping[Level, Overrides | None]:
     if isinstance(value, dict):
         return {label: _stands_for(label, own) for label, own in value.items()}
     for level in value:
-        if type(level) not in (str, int, float):
-            raise ValueError("a level must be a number or a text, 'true' in quotes")
-    if len({str(level) for level in value}) < len(value):
+        if type(level) not in (str, int, float) or (isinstance(level, float) and not math.isfinite(level)):
+            raise ValueError("a level must be a finite number or a text, 'true' in quotes")
+    if len(set(value)) < len(value):
         raise ValueError("has a level twice")
     return dict.fromkeys(value)
 
@@ -57,7 +59,7 @@ class Grid(StrictModel):
     name: str = ""
     with_: Annotated[list[str], BeforeValidator(_flat)] = Field(default_factory=list, alias="with")
     over: dict[str, Annotated[Mapping[Level, Overrides | None], PlainValidator(_levels)]] = Field(default_factory=dict)
-    values: dict[str, int | float] = Field(default_factory=dict)
+    values: dict[str, float] = Field(default_factory=dict)
 
     def runs(self, key: str, values: Mapping[str, float]) -> Iterator[tuple[str, Overrides]]:
         """Yield name and overrides of each run.
@@ -67,6 +69,8 @@ class Grid(StrictModel):
             values: Numbers that expressions of all grids may name.
         """
         items = [*self.with_, *(f"{{{{ {axis} }}}}" for axis in self.over if not self._is_placed(axis))]
+        if (count := math.prod(map(len, self.over.values()))) > _MOST:
+            raise RunnerError(f"stands for {count} runs; allowed: up to {_MOST}")
         begin = self.name or key
         rest = [axis for axis in self.over if axis not in names_in(begin)]
         for levels in itertools.product(*self.over.values()):

@@ -37,7 +37,7 @@ L = TypeVar("L", str, int, float)
 
 
 class _Values(StrictModel):
-    values: dict[str, int | float]
+    values: dict[str, float]
 
 
 class Grids:

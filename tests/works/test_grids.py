@@ -3,10 +3,7 @@
 import pytest
 
 from runner.errors import RunnerError
-from runner.works.arithmetic import fill
 from runner.works.grids import Grids
-from runner.works.names import work_names
-from runner.works.work import load_work
 
 
 @pytest.fixture
@@ -83,46 +80,17 @@ values: {parts: 9, twice: 2}
 
 
 @pytest.mark.parametrize(
-    ("expression", "value"),
-    [("1 / 250", "0.004"), ("round(0.01 / h) * h", "0.0096"), ("-h + 1", "0.9968"), ("round(1 / 3, 4)", "0.3333"),
-     ("(1 + 2) * 3 - 1", "8"), ("1 / 3", "0.333333333"), ("word", "both")],
-)  # fmt: skip
-def test_arithmetic(expression, value):
-    assert fill(f"a={{{{ {expression} }}}}", {"h": 0.0032, "word": "both"}) == f"a={value}"
-
-
-@pytest.mark.parametrize(
-    ("expression", "message"),
-    [
-        ("mas / 2", r"'mas' is neither an axis nor a value \(did you mean mass\?\); known: mass, word"),
-        ("word * 2", "'word' is the text 'both', which no arithmetic takes"),
-        ("mass / 0", "has no value"),
-        ("2 ** 9", "only numbers, names"),
-        ("__import__('os')", "only numbers, names"),
-        ("mass if mass else 1", "only numbers, names"),
-        ("'a' * 3", "only numbers, names"),
-        ("True", "only numbers, names"),
-        ("round(mass, 1, 2)", "only numbers, names"),
-        ("round()", "only numbers, names"),
-        ("1 +", "is no expression"),
-        ("", "is no expression"),
-        ("+".join("1" * 200), "is no expression of at most 200"),
-    ],
-)
-def test_an_expression_that_has_no_value_is_refused(expression, message):
-    with pytest.raises(RunnerError, match=message):
-        fill(f"a={{{{ {expression} }}}}", {"mass": 1.0, "word": "both"})
-
-
-@pytest.mark.parametrize(
     ("text", "message"),
     [
         ("grids: {turns: {ovr: {a: [1]}}}", r"runs.yaml: grids.turns.ovr: unknown key \(did you mean over\?\)"),
         ("grid: {}", r"grid: unknown key \(did you mean grids\?\)"),
         ("grids: {g: {over: {a: {both: null}}}}", "grids.g.over.a: .*'both' must stand for an override or a list"),
-        ("grids: {g: {over: {a: [1, null]}}}", "grids.g.over.a: .*a level must be a number or a text"),
-        ("grids: {g: {over: {a: [true]}}}", "a level must be a number or a text"),
+        ("grids: {g: {over: {a: [1, null]}}}", "grids.g.over.a: .*a level must be a finite number or a text"),
+        ("grids: {g: {over: {a: [true]}}}", "a level must be a finite number or a text"),
         ("grids: {g: {over: {a: [1, 1]}}}", "has a level twice"),
+        ("grids: {g: {over: {a: [1, 1.0]}}}", "has a level twice"),
+        ("grids: {g: {over: {a: [.inf]}}}", "a level must be a finite number"),
+        (f"grids: {{g: {{over: {{a: {[*range(200)]}, b: {[*range(100)]}}}}}}}", "stands for 20000 runs; allowed"),
         ("grids: {g: {over: {a: []}}}", "grids.g.over.a: .*must be a list of levels"),
         ("grids: {g: {over: {a: 1}}}", "must be a list of levels"),
         ("grids: {g: {with: a=1}}", "grids.g.with: must be a list of overrides"),
@@ -164,51 +132,3 @@ def test_what_a_chapter_asks_for_is_there_or_refused_with_the_nearest_name(read)
     ):
         with pytest.raises(RunnerError, match=message):
             ask()
-
-
-SOME = {
-    "meca500": {
-        "step/servo, 16.7 ms/rotation x": (
-            "experiment=meca500/push", "controller.period=0.0167", "plant=bullet", "plant.servo.period=0.000835",
-            "plant.step=0.000835", "environment.begin=0.0501", "environment.force=[0.0, 0.0, 0.0]",
-            "environment.moment=[0.05, 0.0, 0.0]"),
-        "sine/servo, 1 ms/24.0": ("experiment=meca500/sine", "plant=bullet", "plant.step=0.001",
-                                  "environment.frequency=24.0"),
-        "rest/0": ("experiment=meca500/weighing",
-                   "robot.home=[0.836651,-0.468344,-2.209594,-2.868983,1.257547,2.59342]", "wrist_sensor=mini40",
-                   "seed=0"),
-        "tool_centre_point/repeatability/2e-05": (
-            "calibration=tool_centre_point", "calibration.posture=[0,0.2,0.3,0,1.2,0]", "calibration.spread=0.5236",
-            "calibration.repeatability=2e-05", "seed=3"),
-        "gravity/noise/0.25": (
-            "calibration=gravity", "wrist_sensor.noise=[0.003625,0.003625,0.00725,0.000125,0.000125,0.000125]",
-            "seed=22"),
-        "gravity/samples/100": ("calibration=gravity", "calibration.samples=100", "seed=35"),
-    },
-    "xarm7": {
-        "servo/sound/0.00025": ("experiment=xarm7/three_joints", "duration=5", "preset=sound", "plant=bullet",
-                                "plant.step=0.00025"),
-        "printed/pose/angles alone/fed back": (
-            "robot=xarm7", "controller=xarm7_as_printed", "controller.task=pose", "controller.feedforward=true",
-            "controller.columns=right", "controller.angles=printed", "controller.inverse=right", "controller.gain=20"),
-        "rates/bullet/sound/100": ("robot=xarm7", "plant=bullet", "plant.step=0.001", "preset=sound",
-                                   "controller.period=0.01", "duration=5"),
-        "payload/0.6043/asked/5": ("robot=xarm7", "robot.start=[0.6043,-0.2,0.1508]",
-                                   "robot.goal=[0.6043,0.2,0.1508]", "duration=5", "robot.payload.mass=5"),
-    },
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("work", "runs", "calibrations"), [("thesis", 304, 0), ("xarm7", 115, 0), ("meca500", 242, 36)]
-)
-def test_a_work_has_its_runs(work, runs, calibrations):
-    planned = load_work(work)
-    jobs, calibrated = planned.jobs(), planned.calibrations()
-    assert (len(jobs), len(calibrated)) == (runs, calibrations)
-    found = {name: job.overrides for name, job in jobs.items()} | dict(calibrated)
-    assert {name: found[name] for name in SOME[work]} == SOME[work]
-
-
-def test_every_work_is_counted():
-    assert set(work_names()) == {"thesis", "xarm7", "meca500"}

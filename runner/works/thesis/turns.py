@@ -13,7 +13,7 @@ from runner.reporting.quantities import number, quantity
 from runner.reporting.run_values import cell, clock, failures, measured
 from runner.reporting.words import in_words
 from runner.store import Run
-from runner.works.thesis.combined_plan import SCHEDULES, TURN_DURATIONS
+from runner.works.thesis.plan import SCHEDULES, TURN_DURATIONS
 from runner.works.thesis.studies import settled
 
 _SCHEDULE = {"both": "both at any time", "turns": "in turns"}
