@@ -51,7 +51,7 @@ def describe(group: str, model: type[StrictModel], error: ValidationError) -> It
 def _explain(model: type[StrictModel], location: list[str], item: dict[str, Any]) -> str:
     kind, found, context = item["type"], item["input"], item.get("ctx", {})
     if kind == "extra_forbidden":
-        keys = list(model.model_fields)
+        keys = [field.alias or name for name, field in model.model_fields.items()]
         return f"unknown key{nearest(location[-1], keys)}; keys: {', '.join(keys)}"
     if kind == "missing":
         return "missing"

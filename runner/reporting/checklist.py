@@ -10,7 +10,7 @@ from runner.data_file import read_data
 from runner.paths import works_dir
 from runner.registry import StrictModel
 from runner.reporting import outline
-from runner.reporting.document import Claim, Formula, Notice, Provenance, Section, Table, Text
+from runner.reporting.document import Claim, Formula, Items, Notice, Provenance, Section, Table, Text
 
 _FILE = "checklist.yaml"
 _MISSING, _NOWHERE = "missing", "–"
@@ -121,6 +121,6 @@ def _places(sections: Sequence[Section]) -> tuple[dict[str, str], dict[str, str]
         place = f"§{chapter.number}"
         titles[chapter.section.title] = place
         for block in chapter.section.blocks:
-            if not isinstance(block, Text | Notice | Formula | Claim | Provenance) and block.origin.number:
+            if not isinstance(block, Text | Items | Notice | Formula | Claim | Provenance) and block.origin.number:
                 numbers.setdefault(block.origin.number.lower(), place)
     return titles, numbers

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from thin_plans import make_runs
+from work_plans import xarm7_studies
 
 from runner.reporting import outline
 from runner.reporting.document import Claim, Curves, Notice, Picture, Playback, Section, Table, Text
@@ -14,7 +15,6 @@ from runner.reporting.job import PRESETS
 from runner.reporting.render import write_report
 from runner.works.xarm7.plan import STEPS, plan
 from runner.works.xarm7.report import document as xarm7_document
-from runner.works.xarm7.studies_plan import studies_jobs
 
 STUDIES = ("why_it_failed", "null_space", "rates", "servo", "payload", "torque_level")
 OWN_FIGURES = ("sketch of the motion", "Graphs of x, y and z", "Graphs of q1, q2 and q4")
@@ -22,7 +22,7 @@ OWN_FIGURES = ("sketch of the motion", "Graphs of x, y and z", "Graphs of q1, q2
 
 @pytest.fixture(scope="module")
 def runs(shared_store):
-    studies = studies_jobs()
+    studies = xarm7_studies()
     return make_runs(shared_store, {name: job.overrides for name, job in plan().items() if name not in studies})
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from study_sections import every_run, texts, unfinished_texts, whatever_has_failed
 from thin_plans import make_runs, stand_ins
-from work_plans import xarm7_moments
+from work_plans import xarm7_moments, xarm7_studies
 
 from runner import run
 from runner.reporting import formulas
@@ -17,10 +17,10 @@ from runner.store import Run
 from runner.works.xarm7.null_space import BOUND, null_space_section, standing
 from runner.works.xarm7.null_space_cycles import drifts
 from runner.works.xarm7.payload import largest_payloads, payload_section, stretched
+from runner.works.xarm7.plan import RULES, SPEEDS
 from runner.works.xarm7.rates import lag, rates_section
 from runner.works.xarm7.servo import sag, servo_section
 from runner.works.xarm7.studies import first_saturation, lost_at
-from runner.works.xarm7.studies_plan import RULES, SPEEDS, studies_jobs
 from runner.works.xarm7.torque_level import BOUND as TORQUE_BOUND
 from runner.works.xarm7.torque_level import torque_level_section
 from runner.works.xarm7.why_it_failed import ROWS, invert, why_it_failed_section
@@ -46,7 +46,7 @@ def runs(shared_store: Path, thin: bool) -> dict[str, Run]:
 @pytest.fixture(scope="module")
 def planned(shared_store: Path) -> Make:
     """Make a run of the plan, as it is planned."""
-    return lambda name: make_runs(shared_store, {name: studies_jobs()[name].overrides})[name]
+    return lambda name: make_runs(shared_store, {name: xarm7_studies()[name].overrides})[name]
 
 
 @whatever_has_failed
@@ -140,7 +140,9 @@ def test_the_torques_asked_for_are_linear_in_the_payload(planned: Make) -> None:
     names = [f"tau{joint}" for joint in range(1, 8)]
     light, heavy = (planned(f"payload/0.643/asked/{mass}").trace[names].to_numpy() for mass in (0, 5))
     outputs = planned("payload/0.643/asked/0").folder.parent.parent
-    between = run(*studies_jobs()["payload/0.643/asked/0"].overrides[:-1], "robot.payload.mass=2", f"outputs={outputs}")
+    between = run(
+        *xarm7_studies()["payload/0.643/asked/0"].overrides[:-1], "robot.payload.mass=2", f"outputs={outputs}"
+    )
     np.testing.assert_allclose(between.trace[names].to_numpy(), light + 0.4 * (heavy - light), atol=1e-9)
 
 

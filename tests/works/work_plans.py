@@ -2,14 +2,14 @@
 
 from thin_plans import Overrides
 
+from runner.reporting.job import Job
 from runner.works.meca500.calibration_plan import calibration_jobs
 from runner.works.meca500.plan import plan as meca500_plan
-from runner.works.thesis.combined_plan import combined_jobs
-from runner.works.thesis.plan import COMBINED
 from runner.works.thesis.plan import plan as thesis_plan
-from runner.works.xarm7.studies_plan import studies_jobs
+from runner.works.xarm7.plan import plan as xarm7_plan
 
 MOMENT = 0.08  # s
+_ONE_ARM = ("gravity_term", "similarity", "lag", "base_axis", "plants", "sampling", "singular")
 _MECA500 = {"step": 0.2, "sine": 0.8, "tip": 0.2, "wall": 0.4, "map": 0.4, "hand": 0.4, "swing": 1.0, "limit": 0.7,
             "noise": 0.3, "inertials": 0.4, "plants": 0.4}  # s, by what the names begin with  # fmt: skip
 
@@ -31,21 +31,25 @@ def _repeated(overrides: Overrides) -> Overrides:
 
 def thesis_moments() -> dict[str, Overrides]:
     """Return the same, the runs of six joints and of the Macro beside them cut to a moment, those of the Mini alone."""
-    combined = combined_jobs()
     moments = {}
     for name, overrides in thesis_jobs().items():
-        if name in combined or name.partition("/")[0] in COMBINED:
-            moments[name] = cut(overrides, MOMENT)
-        elif name.startswith("figure_4"):
+        if name.startswith("figure_4"):
             moments[name] = (*(o for o in overrides if not o.startswith("repetitions=")), "repetitions=1")
-        else:
+        elif name.partition("/")[0] in _ONE_ARM or name.startswith("figure_3"):
             moments[name] = overrides
+        else:
+            moments[name] = cut(overrides, MOMENT)
     return moments
+
+
+def xarm7_studies() -> dict[str, Job]:
+    """Return the runs of the studies on the xArm7, of which none is an experiment of the report's."""
+    return {name: job for name, job in xarm7_plan().items() if not job.overrides[0].startswith("experiment=")}
 
 
 def xarm7_moments() -> dict[str, Overrides]:
     """Return the runs of the studies on the xArm7, cut to a moment."""
-    return {name: cut(job.overrides, MOMENT) for name, job in studies_jobs().items()}
+    return {name: cut(job.overrides, MOMENT) for name, job in xarm7_studies().items()}
 
 
 def meca500_jobs() -> dict[str, Overrides]:

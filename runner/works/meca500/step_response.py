@@ -13,7 +13,7 @@ from runner.reporting.measured import Measured
 from runner.reporting.quantities import number, quantity
 from runner.reporting.run_values import clock
 from runner.store import Run
-from runner.works.meca500.plan import FORCE, MOMENT, REPORTED, STEP_CASES
+from runner.works.meca500.plan import REPORTED, STEP_CASES
 from runner.works.meca500.servo_compliance import kept_stiffness, servo_compliance
 from runner.works.meca500.signals import displacement
 
@@ -36,11 +36,13 @@ def step_response_section(runs: Mapping[str, Run]) -> Section:
         cells = [_percent(errors[case, axis]) for case in STEP_CASES]
         rows.append([axis, quantity(1e3 * float(np.abs(answer).max()), unit), *cells, _percent(_give(runs, axis))])
     law = law_of(runs["step/kinematic, 1 ms/x"])
+    force = max(runs["step/kinematic, 1 ms/x"].config["environment"]["force"])
+    moment = max(runs["step/kinematic, 1 ms/rotation x"].config["environment"]["moment"])
     return Section(
         "Step response of each axis",
         (
             Text(
-                f"A force of {FORCE:g} N, or a moment of {MOMENT:g} N m, sets in at rest, on one axis at a time. The "
+                f"A force of {force:g} N, or a moment of {moment:g} N m, sets in at rest, on one axis at a time. The "
                 f"law has $M = {law.mass[0]:g}$ kg, $B = {law.damping[0]:g}$ N s/m, $K = {law.stiffness[0]:g}$ N/m "
                 f"along the axes and $M = {law.mass[3]:g}$ kg m², $B = {law.damping[3]:g}$ N m s/rad, "
                 f"$K = {law.stiffness[3]:g}$ N m/rad about them: critically damped at 20 rad/s. The answer is held "

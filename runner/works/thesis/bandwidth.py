@@ -12,7 +12,7 @@ from runner.reporting.measured import Measured
 from runner.reporting.quantities import number, quantity
 from runner.reporting.run_values import cell, failures, measured, values
 from runner.store import Run
-from runner.works.thesis.combined_plan import BANDWIDTHS, BIASED, MACRO_BIAS
+from runner.works.thesis.plan import BANDWIDTHS, BIASED, MACRO_BIAS
 
 _METRICS = {"steady_state_error": "at rest", "max_tracking_error": "largest while it moves"}
 

@@ -12,7 +12,7 @@ from runner.reporting.quantities import above_rounding
 from runner.reporting.run_values import apart, cell, clock, failures, measured
 from runner.reporting.words import in_words
 from runner.store import Run
-from runner.works.thesis.combined_plan import METHODS, MOTIONS
+from runner.works.thesis.plan import METHODS, MOTIONS
 from runner.works.thesis.studies import largest, settled
 from runner.works.thesis.vanishing_mass import vanishing_section
 

@@ -11,7 +11,7 @@ from runner.reporting.run_values import cell, clock
 from runner.reporting.words import in_words
 from runner.store import Run
 from runner.works.thesis import arm
-from runner.works.thesis.combined_plan import SCHEDULES, TURN_DURATIONS
+from runner.works.thesis.plan import SCHEDULES, TURN_DURATIONS
 from runner.works.thesis.studies import settled
 
 _GOAL = ("settling_time", "steady_state_error", "overshoot", "peak_torque", "saturation_fraction")

@@ -12,8 +12,8 @@ from runner.reporting.quantities import number, quantity
 from runner.reporting.run_values import cell, clock, failures, measured
 from runner.reporting.words import in_words
 from runner.store import Run
-from runner.works.thesis.combined_plan import FOLDING, MOTIONS, TARGETS
 from runner.works.thesis.left_out_gravity import missing_acceleration
+from runner.works.thesis.plan import FOLDING, MOTIONS, TARGETS
 from runner.works.thesis.studies import extension, mini_dexterity
 
 _CASES = ("sound", "as_reported")

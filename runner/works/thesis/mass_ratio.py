@@ -11,7 +11,7 @@ from runner.reporting.measured import Measured
 from runner.reporting.quantities import number, quantity
 from runner.reporting.run_values import cell, failures, measured, median, values
 from runner.store import Run
-from runner.works.thesis.combined_plan import MASSES, NOISY_MASSES, NOMINAL_MASS, PAYLOADS
+from runner.works.thesis.plan import MASSES, NOISY_MASSES, NOMINAL_MASS, PAYLOADS
 
 _FACTOR = 10.0  # of the tip error of the thesis' own Mini
 _COLUMNS = {

@@ -12,7 +12,7 @@ from runner.reporting.quantities import number, quantity
 from runner.reporting.run_values import measured
 from runner.store import Run
 from runner.works.thesis.bandwidth import at_rest, floor, in_motion
-from runner.works.thesis.combined_plan import BANDWIDTHS, BIASED, MACRO_BIAS
+from runner.works.thesis.plan import BANDWIDTHS, BIASED, MACRO_BIAS
 
 
 def mini_accuracy(runs: Mapping[str, Run]) -> Finding:

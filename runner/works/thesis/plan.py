@@ -1,72 +1,49 @@
-"""Which runs the thesis report needs: a name for each, and the overrides that make it."""
+"""Which runs the thesis report needs, as runs.yaml has them, and the levels that its chapters go through."""
 
-from runner.reporting.job import PRESETS, Job, Jobs
-from runner.works.thesis.combined_plan import combined_jobs
+from runner.reporting.job import Jobs
+from runner.works.grids import grids_of
 
-FIGURES = (
-    "figure_3_5",
-    "figure_3_6",
-    "figure_3_8",
-    "figure_3_9",
-    "figure_3_10",
-    "figure_4_2",
-    "figure_4_3",
-    "figure_4_4",
-)
-COMBINED = (
-    "figure_5_3",
-    "figure_5_8",
-    "figure_5_10",
-    "figure_5_11",
-    "figure_5_12",
-    "figure_5_13",
-    "macro_alone",
-    "macro_alone_goal",
-)
-TRACKED = ("figure_3_9", "figure_3_10")
-COMPARED = ("figure_3_5", "figure_3_9", "figure_3_10", "figure_4_2", "figure_4_4")
-DURATIONS = (1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0)  # s, t_f
-TORQUE_DURATIONS = (2.0, 2.5, 3.0, 3.5, 3.86, 4.0, 5.0, 6.0, 8.0)  # s, t_f
-LAG_DURATIONS = (1.0, 2.0, 3.0, 4.0, 6.0)  # s, t_f
-STEPS = (1e-3, 5e-4, 2.5e-4, 1.25e-4)  # s, of PyBullet
-SAMPLING = (0.5, 0.8, 0.95, 1.05)  # omega_n h on the Runge-Kutta plant
-ARMS = ("macro", "mini")
+_GRIDS = grids_of(__file__)
+_DURATION = "trajectory.duration"  # t_f, in s
+
+TRACKED = _GRIDS.levels("figures/durations", "figure", str)
+DURATIONS = _GRIDS.levels("figures/durations", _DURATION, float)
+ARMS = _GRIDS.levels("lag", "robot", str)
+LAG_DURATIONS = _GRIDS.levels("lag", _DURATION, float)
+TORQUE_DURATIONS = _GRIDS.levels("base_axis/durations", _DURATION, float)
+STEPS = _GRIDS.levels("plants", "plant.step", float)  # s, of PyBullet
+SAMPLING = _GRIDS.levels("sampling", "product", float)  # omega_n h on the Runge-Kutta plant
+
+MOTIONS = _GRIDS.levels("coupling", "motion", str)
+METHODS = _GRIDS.levels("coupling", "method", str)
+DYNAMICS = _GRIDS.levels("coupling", "plant.dynamics", str)
+VANISHING = _GRIDS.levels("vanishing", "mass", float)  # kg, each of the Mini's two point masses
+MASSES = _GRIDS.levels("mass", "mass", float)  # kg, the whole Mini
+NOMINAL_MASS = _GRIDS.value("mass", "nominal")  # kg, the thesis' Mini
+PAYLOADS = _GRIDS.levels("mass", "controller.payload", str)
+NOISY_MASSES = _GRIDS.levels("mass_noise", "mass", float)  # kg
+MACRO_PERIODS = _GRIDS.levels("stage_sampling/macro", "controller.period.macro", float)  # s
+MINI_PERIODS = _GRIDS.levels("stage_sampling/mini", "h", float)  # s
+EULER_PERIODS = {  # s, by steps in a period
+    int(_GRIDS.value(grid, "steps")): _GRIDS.levels(grid, "h", float)
+    for grid in ("stage_sampling/euler1", "stage_sampling/euler4")
+}
+FOLDING = _GRIDS.levels("folding", "case", str)
+TARGETS = _GRIDS.levels("folding", "controller.macro_target", str)
+STRETCHING = _GRIDS.levels("stretch", "case", str)
+NOISES = _GRIDS.levels("reference", "noise", str)
+VELOCITIES = _GRIDS.levels("reference", "controller.mini_reference_velocity", str)
+REFERENCE_DURATIONS = _GRIDS.levels("reference", _DURATION, float)
+SCHEDULES = _GRIDS.levels("turns", "controller.schedule", str)
+TURN_DURATIONS = _GRIDS.levels("turns/durations", _DURATION, float)
+COMPARED_RATES = _GRIDS.levels("whole_body", "rate", str)
+TIP_SPEEDS = _GRIDS.levels("whole_body/speed", "speed", float)  # m/s
+SLOW_DURATION = _GRIDS.value("whole_body/slow", "duration")  # s, t_f, of whole-body control at 10 ms
+BANDWIDTHS = _GRIDS.levels("bandwidth", "rate", float)  # rad/s, of the Mini; the first is that of the thesis
+BIASED = _GRIDS.levels("bandwidth/bias", "rate", float)  # rad/s, of the Mini under a bias of the Macro's encoders
+MACRO_BIAS = _GRIDS.value("bandwidth/bias", "bias")  # rad
 
 
 def plan() -> Jobs:
     """Return every run by name."""
-    jobs: Jobs = {}
-
-    def add(name: str, *overrides: str) -> None:
-        jobs[name] = Job(overrides)
-
-    for figure in FIGURES:
-        for preset in PRESETS:
-            base = (f"experiment=thesis/{figure}", f"preset={preset}")
-            add(f"{figure}/{preset}", *base)
-            if figure in COMPARED:
-                add(f"{figure}/{preset}/rk4", *base, "plant=rk4", "repetitions=1")
-            for t_f in DURATIONS if figure in TRACKED else ():
-                add(f"{figure}/{preset}/{t_f}", *base, f"trajectory.duration={t_f}", "repetitions=5")
-    for name in COMBINED:
-        for preset in PRESETS:
-            base = (f"experiment=thesis/{name}", f"preset={preset}")
-            add(f"{name}/{preset}", *base)
-            if name in ("figure_5_8", "figure_5_10", "figure_5_12", "figure_5_13"):
-                add(f"{name}/{preset}/rk4", *base, "plant=rk4", "repetitions=1")
-    jobs |= combined_jobs()
-    for arm in ARMS:
-        add(f"gravity_term/{arm}", "experiment=thesis/gravity_term", f"robot={arm}")
-        add(f"similarity/{arm}", "experiment=thesis/similarity", f"robot={arm}")
-        for t_f in LAG_DURATIONS:
-            add(f"lag/{arm}/{t_f}", "experiment=thesis/lag", f"robot={arm}", f"trajectory.duration={t_f}")
-    add("base_axis", "experiment=thesis/base_axis")
-    for t_f in TORQUE_DURATIONS:
-        add(f"base_axis/{t_f}", "experiment=thesis/base_axis", "torque_limits=none", f"trajectory.duration={t_f}")
-    add("plants/rk4", "experiment=thesis/plants", "plant=rk4")
-    for step in STEPS:
-        add(f"plants/{step}", "experiment=thesis/plants", f"plant.step={step}")
-    for w in SAMPLING:
-        add(f"sampling/{w}", "experiment=thesis/sampling", f"controller.period={w / 30.0:.6g}")
-    add("singular", "experiment=thesis/singular")
-    return jobs
+    return _GRIDS.jobs()

@@ -10,9 +10,9 @@ from runner.reporting.measured import Measured
 from runner.reporting.run_values import cell, measured, median
 from runner.reporting.words import PRESET, in_words
 from runner.store import Run
-from runner.works.thesis.combined_plan import NOMINAL_MASS
 from runner.works.thesis.mass_ratio import breaking_masses
 from runner.works.thesis.mini_accuracy import mini_accuracy
+from runner.works.thesis.plan import NOMINAL_MASS
 from runner.works.thesis.whole_body import fastest_method_3, fastest_speed
 
 

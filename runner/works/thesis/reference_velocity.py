@@ -11,7 +11,7 @@ from runner.reporting.measured import Measured
 from runner.reporting.quantities import number
 from runner.reporting.run_values import cell, clock, failures, measured, median, values
 from runner.store import Run
-from runner.works.thesis.combined_plan import NOISES, REFERENCE_DURATIONS, VELOCITIES
+from runner.works.thesis.plan import NOISES, REFERENCE_DURATIONS, VELOCITIES
 from runner.works.thesis.studies import largest, ratio, wrist_rotations
 
 _NOISY = {"none": "no noise", "thesis": "thesis noise"}

@@ -11,7 +11,7 @@ from runner.reporting.measured import Condition, Measured
 from runner.reporting.quantities import number
 from runner.reporting.run_values import clock, failures
 from runner.store import Run
-from runner.works.thesis.combined_plan import DYNAMICS, EULER_PERIODS, MACRO_PERIODS, MINI_PERIODS
+from runner.works.thesis.plan import DYNAMICS, EULER_PERIODS, MACRO_PERIODS, MINI_PERIODS
 
 _SHOWN = (MINI_PERIODS[2], MINI_PERIODS[4], MINI_PERIODS[5])
 _FLOOR, _CEILING = 1e-13, 1e-2  # m, within which a decay or growth is exponential

@@ -13,8 +13,8 @@ from runner.reporting.quantities import above_rounding, number
 from runner.reporting.run_values import cell, clock, failures
 from runner.reporting.words import in_words
 from runner.store import Run
-from runner.works.thesis.combined_plan import STRETCHING
 from runner.works.thesis.left_out_gravity import missing_acceleration
+from runner.works.thesis.plan import STRETCHING
 from runner.works.thesis.studies import extension, rest_of_way
 
 _SETTLED = 1e-3  # m, of the tip error, from where on the drift is measured

@@ -12,7 +12,7 @@ from runner.reporting.measured import Measured
 from runner.reporting.quantities import number
 from runner.reporting.run_values import clock, failures
 from runner.store import Run
-from runner.works.thesis.combined_plan import VANISHING
+from runner.works.thesis.plan import VANISHING
 from runner.works.thesis.studies import largest
 
 _MINI = slice(3, 6)

@@ -12,7 +12,7 @@ from runner.reporting.quantities import number, quantity
 from runner.reporting.run_values import cell, clock, failures, measured, median
 from runner.reporting.words import in_words
 from runner.store import Run
-from runner.works.thesis.combined_plan import COMPARED_RATES, SLOW_DURATION, TIP_SPEEDS
+from runner.works.thesis.plan import COMPARED_RATES, SLOW_DURATION, TIP_SPEEDS
 from runner.works.thesis.studies import settled
 
 _METHOD_3 = tuple(rate for rate in COMPARED_RATES if not rate.startswith("whole body"))

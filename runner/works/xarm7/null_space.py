@@ -15,7 +15,7 @@ from runner.reporting.words import in_words
 from runner.store import Run
 from runner.works.xarm7.null_space_cycles import cycles_section
 from runner.works.xarm7.null_space_manipulability import manipulability_section
-from runner.works.xarm7.studies_plan import FASTEST_RATE, RULES, SPEEDS
+from runner.works.xarm7.plan import FASTEST_RATE, RULES, SPEEDS
 
 BOUND = 1e-6  # m, of the tip at the commands
 
@@ -140,7 +140,7 @@ def _concluded(runs: Mapping[str, Run]) -> Finding:
         [Measured(f"tip's way at the commands, {rule}", moved[rule].at_ticks, "m") for rule in RULES],
         Measured(f"tip's way at the commands, midpoint, {SPEEDS[-2]:g} rad/s", slower.at_ticks, "m"),
         [Measured(f"tip's way between the commands, {rule}", moved[rule].between, "m") for rule in RULES],
-        Measured(f"tip's way between the commands at {FASTEST_RATE} Hz", often.between, "m"),
+        Measured(f"tip's way between the commands at {FASTEST_RATE:g} Hz", often.between, "m"),
         FASTEST_RATE * period,
         Measured("tip's way with servos", servo.at_ticks, "m"),
         Measured("time of the tip's largest distance with servos", _time_of_farthest(runs["null_space/servo"]), "s"),
@@ -175,7 +175,7 @@ def conclude(
         f"{SPEEDS[-2]:g} rad/s ({slower}); faster null-space motion asks for controller.integration={RULES[-1]}. "
         "Between two commands the joints move evenly, along a chord of that curved surface, and the tip leaves its "
         f"place by {between[-1]} or more, whatever the rule: it falls with the square of the rate, to {often} at "
-        f"{FASTEST_RATE} Hz. With servos on an arm with mass it is the servos that move the tip, by {servo} as the "
+        f"{FASTEST_RATE:g} Hz. With servos on an arm with mass it is the servos that move the tip, by {servo} as the "
         f"motion sets in, {farthest} after the start.",
         rk4 < 0.1 * BOUND,
         midpoint > 2.0 * BOUND,

@@ -12,8 +12,8 @@ from runner.reporting.quantities import above_rounding
 from runner.reporting.run_values import cell, failures, measured
 from runner.reporting.words import in_words
 from runner.store import Run
+from runner.works.xarm7.plan import CYCLE, CYCLES, NULL_SPACE_TASKS, PATHS
 from runner.works.xarm7.studies import rate, smallest_margin
-from runner.works.xarm7.studies_plan import CYCLE, CYCLES, NULL_SPACE_TASKS, PATHS
 
 
 def drifts(run: Run) -> FloatArray:

@@ -12,8 +12,8 @@ from runner.reporting.measured import Measured
 from runner.reporting.quantities import number
 from runner.reporting.run_values import cell, clock, failures, measured
 from runner.store import Run
+from runner.works.xarm7.plan import CLIMB_CYCLE, CLIMB_CYCLES, TASKS
 from runner.works.xarm7.studies import smallest_margin
-from runner.works.xarm7.studies_plan import CLIMB_CYCLE, CLIMB_CYCLES, TASKS
 from runner.works.xarm7.why_it_failed import ROWS
 
 _ASIDE = [2, 4]  # the joints that lead the elbow out of the arm's vertical plane

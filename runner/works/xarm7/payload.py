@@ -14,8 +14,8 @@ from runner.reporting.quantities import number
 from runner.reporting.run_values import cell, failures, measured, median, values
 from runner.robots import RobotModel
 from runner.store import Run
+from runner.works.xarm7.plan import ASKED_PAYLOADS, PAYLOADS, XS
 from runner.works.xarm7.studies import SHOULDER, clipped_share, error_at_end, first_saturation, lost_at, rate
-from runner.works.xarm7.studies_plan import ASKED_PAYLOADS, PAYLOADS, XS
 
 _PLANE = [1, 3, 5]  # the joints that turn in the arm's vertical plane
 _KEPT = dict(zip(XS, PAYLOADS[1:], strict=False))  # kg, with which the tip stays on the line

@@ -1,24 +1,36 @@
-"""Which runs the xArm7 report needs: a name for each, and the overrides that make it."""
+"""Which runs the xArm7 report needs, as runs.yaml has them, and the levels that its chapters go through."""
 
-from runner.reporting.job import PRESETS, Job, Jobs
-from runner.works.xarm7.studies_plan import studies_jobs
+from runner.reporting.job import Jobs
+from runner.works.grids import grids_of
 
-EXPERIMENTS = ("three_joints", "round_posture", "seven_joints", "seven_joints_pose", "as_printed")
-STEPS = (1e-3, 5e-4, 2.5e-4)  # s, of PyBullet
-_HALF = "duration=5"  # s, half a period: from A to B
+_GRIDS = grids_of(__file__)
+STEPS = _GRIDS.levels("servo", "plant.step", float)  # s, of PyBullet
+TASKS = _GRIDS.levels("printed", "controller.task", str)
+# The report's errors, each of which can be put right: which of them a case keeps.
+ERRORS = {
+    case: tuple(own.removeprefix("controller.").removesuffix("=printed") for own in overrides if "=printed" in own)
+    for case, overrides in _GRIDS.labels("printed", "case").items()
+}
+GAIN = _GRIDS.value("printed/fed back", "gain")  # 1/s, of the tip's error, where it is fed back
+RULES = _GRIDS.levels("null_space", "rule", str)
+SPEEDS = _GRIDS.levels("null_space", "speed", float)  # rad/s, of the null-space motion
+FASTEST_RATE = _GRIDS.value("null_space/fastest", "rate")  # Hz
+NULL_SPACE_TASKS = _GRIDS.levels("cycles", "task", str)
+PATHS = _GRIDS.levels("cycles", "path", str)
+CYCLES, CYCLE = int(_GRIDS.value("cycles", "cycles")), _GRIDS.value("cycles", "cycle")  # number, and s
+CLIMB_CYCLES, CLIMB_CYCLE = int(_GRIDS.value("climb", "cycles")), _GRIDS.value("climb", "cycle")
+RATES = _GRIDS.levels("rates", "rate", int)  # Hz
+PLANTS = _GRIDS.levels("rates", "plant", str)
+STIFFNESSES = _GRIDS.levels("stiffness", "stiffness", float)  # N m/rad
+GRAVITY_COMPENSATION = _GRIDS.levels("stiffness", "compensation", str)
+FEEDBACKS = _GRIDS.levels("stiffness", "feedback", str)
+XS = _GRIDS.levels("payload", "x", float)  # m, as printed, and of the round posture
+ASKED_PAYLOADS = _GRIDS.levels("payload/asked", "robot.payload.mass", float)  # kg
+PAYLOADS = _GRIDS.levels("payload", "robot.payload.mass", float)  # kg
+LAWS = _GRIDS.levels("torque", "controller", str)
+TORQUE_PAYLOADS = _GRIDS.levels("torque", "robot.payload.mass", float)  # kg
 
 
 def plan() -> Jobs:
     """Return every run by name."""
-    jobs = {
-        f"{name}/{preset}": Job((f"experiment=xarm7/{name}", f"preset={preset}"))
-        for name in EXPERIMENTS
-        for preset in PRESETS
-    }
-    for preset in PRESETS:
-        servo = ("experiment=xarm7/three_joints", _HALF, f"preset={preset}")
-        jobs[f"servo/{preset}/rk4"] = Job((*servo, "plant=rk4"))
-        for step in STEPS:
-            overrides = (*servo, "plant=bullet", f"plant.step={step}")
-            jobs[f"servo/{preset}/{step}"] = Job(overrides)
-    return jobs | studies_jobs()
+    return _GRIDS.jobs()

@@ -13,8 +13,8 @@ from runner.reporting.quantities import number
 from runner.reporting.run_values import cell, failures, measured, values
 from runner.reporting.words import PRESET, in_words
 from runner.store import Run
+from runner.works.xarm7.plan import PLANTS, RATES
 from runner.works.xarm7.studies import largest_error_at
-from runner.works.xarm7.studies_plan import PLANTS, RATES
 
 _MAKERS = (100, 250)  # Hz, recommended and allowed
 _TITLES = {"as_reported": "Without feedforward", "sound": "With feedforward"}

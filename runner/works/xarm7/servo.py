@@ -11,8 +11,8 @@ from runner.reporting.measured import Measured
 from runner.reporting.quantities import above_rounding, number
 from runner.reporting.run_values import cell, failures, measured, values
 from runner.store import Run
+from runner.works.xarm7.plan import FEEDBACKS, GRAVITY_COMPENSATION, STIFFNESSES
 from runner.works.xarm7.studies import error_at_end, largest_error_at, rate
-from runner.works.xarm7.studies_plan import FEEDBACKS, GRAVITY_COMPENSATION, STIFFNESSES
 
 _COMPENSATED = {"true": "with gravity term", "false": "without"}
 

@@ -12,6 +12,7 @@ from runner.reporting.quantities import quantity
 from runner.reporting.run_values import cell, clock, failures, measured, median, values
 from runner.reporting.words import in_words
 from runner.store import Run
+from runner.works.xarm7.plan import LAWS, TORQUE_PAYLOADS
 from runner.works.xarm7.studies import (
     SHOULDER,
     clipped,
@@ -20,7 +21,6 @@ from runner.works.xarm7.studies import (
     first_saturation,
     smallest_margin,
 )
-from runner.works.xarm7.studies_plan import LAWS, TORQUE_PAYLOADS
 
 BOUND = 1e-4  # m, of the largest axis error
 _LAST = 2  # the last of the payloads with which both laws hold the line

@@ -11,7 +11,7 @@ from runner.reporting.findings import Finding, finding
 from runner.reporting.measured import Measured
 from runner.reporting.quantities import above_rounding, number
 from runner.store import Run
-from runner.works.xarm7.studies_plan import TASKS
+from runner.works.xarm7.plan import TASKS
 from runner.works.xarm7.why_it_failed_columns import columns_section, random_postures
 from runner.works.xarm7.why_it_failed_motion import motion_section
 

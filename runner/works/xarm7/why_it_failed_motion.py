@@ -11,8 +11,8 @@ from runner.reporting.findings import Finding, finding
 from runner.reporting.measured import Measured
 from runner.reporting.run_values import cell, clock, measured, median
 from runner.store import Run
+from runner.works.xarm7.plan import ERRORS, GAIN, TASKS
 from runner.works.xarm7.studies import error_norm, smallest_margin
-from runner.works.xarm7.studies_plan import ERRORS, GAIN, TASKS
 
 _SHOWN = ("columns and angles", "columns alone", "angles alone", "none")
 _METRICS = ("max_tracking_error", "cross_track_error", "peak_joint_speed")

@@ -1,0 +1,162 @@
+"""The runs of a work as data: grids of overrides in `runs.yaml` of its folder.
+
+    grids:
+      turns:
+        name: turns/{{ preset }}
+        with: [experiment=thesis/figure_5_12, "duration={{ cycles * 4 }}"]
+        over:
+          preset: [as_reported, sound]
+          schedule: {both: controller.schedule=both, turns: [controller.schedule=turns, plant=rk4]}
+        values: {cycles: 5}
+
+A grid is one run for each combination of levels of the axes in `over`. The run's name is that of the grid, `name` or
+else its key, and the levels of the axes that `name` does not hold, divided by slashes. Its overrides are those of
+`with` and then those of each axis: `axis=level` of a list, what a label stands for of a group of labels. An override
+that is `{{ axis }}` alone puts the axis there instead. A listed axis that an expression holds makes no override of its
+own. Levels are put in as they are written (3.0), expressions with nine digits at most (3). `values` are further numbers
+for expressions, of a grid or, beside `grids`, of all. A list within a list of overrides, as an alias puts in, stands
+for what it holds. Calibrations are grids under `calibrations`.
+"""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+import yaml
+from pydantic import ValidationError
+
+from runner.config.bounded_yaml import read_yaml
+from runner.config.messages import describe
+from runner.errors import RunnerError, nearest
+from runner.registry import StrictModel
+from runner.reporting.job import Job, Jobs
+from runner.works.grid import Grid, Overrides
+
+FILE = "runs.yaml"
+L = TypeVar("L", str, int, float)
+
+
+class _Values(StrictModel):
+    values: dict[str, float]
+
+
+class Grids:
+    """The grids of a work.
+
+    Args:
+        path: Its runs.yaml.
+
+    Attributes:
+        runs: Overrides of every run by name.
+        calibrations: Overrides of every calibration by name.
+
+    Raises:
+        RunnerError: with file, grid and every problem found.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        try:
+            text = path.read_text(encoding="utf-8")
+        except (OSError, ValueError) as error:
+            raise RunnerError(f"cannot read {path}: {error}") from None
+        content = read_yaml(text, path)
+        problems = [*_twice(yaml.compose(text, yaml.CSafeLoader))]
+        roots = {root: _parse(root, content, problems) for root in ("grids", "calibrations")}
+        shared = content.get("values", {}) if isinstance(content, dict) else {}
+        try:
+            self._values = _Values(values=shared).values
+        except ValidationError as error:
+            problems += [*describe("", _Values, error)]
+            self._values = {}
+        keys = ("values", *roots)
+        for key in content if isinstance(content, dict) else ():
+            if key not in keys:
+                problems.append(f"{key}: unknown key{nearest(key, keys)}; keys: {', '.join(keys)}")
+        self._grids = {**roots["grids"], **roots["calibrations"]}
+        self.runs, self.calibrations = (_expanded(roots[root], self._values, root, problems) for root in roots)
+        if problems:
+            raise RunnerError("\n".join(f"{path}: {problem}" for problem in problems))
+
+    def jobs(self) -> Jobs:
+        """Return every run by name."""
+        return {name: Job(overrides) for name, overrides in self.runs.items()}
+
+    def grid(self, key: str) -> Grid:
+        """Return a grid.
+
+        Raises:
+            RunnerError: if there is none.
+        """
+        if key not in self._grids:
+            raise RunnerError(f"{self._path}: there is no grid '{key}'{nearest(key, self._grids)}")
+        return self._grids[key]
+
+    def levels(self, key: str, axis: str, kind: type[L]) -> tuple[L, ...]:
+        """Return the levels of an axis, all of one kind: str, int or float.
+
+        Raises:
+            RunnerError: if there is no such grid or axis, or a level is of another kind.
+        """
+        over = self.grid(key).over
+        if axis not in over:
+            raise RunnerError(f"{self._path}: grid '{key}': there is no axis '{axis}'{nearest(axis, over)}")
+        allowed = (int, float) if kind is float else (kind,)
+        levels: list[Any] = [level for level in over[axis] if isinstance(level, allowed)]
+        if len(levels) < len(over[axis]):
+            raise RunnerError(f"{self._path}: grid '{key}': the levels of '{axis}' are not all of kind {kind.__name__}")
+        return tuple(levels)
+
+    def labels(self, key: str, axis: str) -> dict[str, Overrides]:
+        """Return what each label of an axis stands for, expressions as they are written."""
+        return {label: self.grid(key).over[axis][label] or () for label in self.levels(key, axis, str)}
+
+    def value(self, key: str, name: str) -> float:
+        """Return one of the `values` of a grid, or of all."""
+        values = {**self._values, **self.grid(key).values}
+        if name not in values:
+            raise RunnerError(f"{self._path}: grid '{key}': there is no value '{name}'{nearest(name, values)}")
+        return values[name]
+
+
+def _parse(root: str, content: object, problems: list[str]) -> dict[str, Grid]:
+    found = content.get(root, {}) if isinstance(content, dict) else None
+    if not isinstance(found, dict):
+        problems.append(f"{root}: must be a group of grids by name")
+        return {}
+    grids = {}
+    for key, value in found.items():
+        try:
+            grids[key] = Grid.model_validate(value)
+        except ValidationError as error:
+            problems += [*describe(f"{root}.{key}", Grid, error)]
+    return grids
+
+
+def _expanded(
+    grids: Mapping[str, Grid], values: Mapping[str, float], root: str, problems: list[str]
+) -> dict[str, Overrides]:
+    runs: dict[str, Overrides] = {}
+    for key, grid in grids.items():
+        try:
+            for name, overrides in grid.runs(key, values):
+                if name in runs:
+                    raise RunnerError(f"the name '{name}' is that of another run")
+                runs[name] = overrides
+        except RunnerError as error:
+            problems.append(f"{root}.{key}: {error}")
+    return runs
+
+
+def _twice(node: yaml.Node | None) -> Iterator[str]:
+    """Yield the keys that stand twice in one group, of which YAML would keep the last alone."""
+    for child in node.value if isinstance(node, yaml.CollectionNode) else ():
+        yield from _twice(child[1] if isinstance(child, tuple) else child)
+    if isinstance(node, yaml.MappingNode):
+        keys = [key.value for key, _ in node.value]
+        yield from (f"the key '{key}' stands twice in one group" for key in dict.fromkeys(keys) if keys.count(key) > 1)
+
+
+def grids_of(package_file: str) -> Grids:
+    """Return the grids beside a module of a work, given its `__file__`."""
+    return Grids(Path(package_file).with_name(FILE))

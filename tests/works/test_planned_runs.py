@@ -1,0 +1,69 @@
+"""The works have the runs and calibrations that they had: their number, and a handful of overrides."""
+
+import pytest
+
+from runner.works.names import work_names
+from runner.works.work import load_work
+
+SOME = {
+    "thesis": {
+        "figure_3_9/sound/2.0": ("experiment=thesis/figure_3_9", "preset=sound", "trajectory.duration=2.0",
+                                 "repetitions=5"),
+        "coupling/goal/whole_body/decoupled": ("experiment=thesis/whole_body", "trajectory=goal", "repetitions=1",
+                                               "noise=none", "plant.dynamics=decoupled"),
+        "mass/1.75/known": ("experiment=thesis/figure_5_12", "repetitions=1", "noise=none",
+                            "robot.stages.mini.masses.link2=0.875", "robot.stages.mini.masses.link3=0.875",
+                            "controller.payload=known"),
+        "stage_sampling/euler4/coupled/0.0031": (
+            "experiment=thesis/figure_5_8", "repetitions=1", "noise=none", "torque_limits=none",
+            "trajectory.goal=[0.001,1.099,1.1]", "duration=2", "plant.step=0.000775", "controller.period.mini=0.0031",
+            "controller.period.macro=0.0093", "plant.dynamics=coupled"),
+        "bandwidth/bias/30.0": ("experiment=thesis/figure_5_12", "controller.payload=known", "repetitions=7",
+                                "controller.natural_frequency.mini=30", "noise.bias.macro=0.001"),
+        "sampling/0.95": ("experiment=thesis/sampling", "controller.period=0.0316667"),
+    },
+    "meca500": {
+        "step/servo, 16.7 ms/rotation x": (
+            "experiment=meca500/push", "controller.period=0.0167", "plant=bullet", "plant.servo.period=0.000835",
+            "plant.step=0.000835", "environment.begin=0.0501", "environment.force=[0.0, 0.0, 0.0]",
+            "environment.moment=[0.05, 0.0, 0.0]"),
+        "sine/servo, 1 ms/24.0": ("experiment=meca500/sine", "plant=bullet", "plant.step=0.001",
+                                  "environment.frequency=24.0"),
+        "rest/0": ("experiment=meca500/weighing",
+                   "robot.home=[0.836651,-0.468344,-2.209594,-2.868983,1.257547,2.59342]", "wrist_sensor=mini40",
+                   "seed=0"),
+        "tool_centre_point/repeatability/2e-05": (
+            "calibration=tool_centre_point", "calibration.posture=[0,0.2,0.3,0,1.2,0]", "calibration.spread=0.5236",
+            "calibration.repeatability=2e-05", "seed=3"),
+        "gravity/noise/0.25": (
+            "calibration=gravity", "wrist_sensor.noise=[0.003625,0.003625,0.00725,0.000125,0.000125,0.000125]",
+            "seed=22"),
+        "gravity/samples/100": ("calibration=gravity", "calibration.samples=100", "seed=35"),
+    },
+    "xarm7": {
+        "servo/sound/0.00025": ("experiment=xarm7/three_joints", "duration=5", "preset=sound", "plant=bullet",
+                                "plant.step=0.00025"),
+        "printed/pose/angles alone/fed back": (
+            "robot=xarm7", "controller=xarm7_as_printed", "controller.task=pose", "controller.feedforward=true",
+            "controller.columns=right", "controller.angles=printed", "controller.inverse=right", "controller.gain=20"),
+        "rates/bullet/sound/100": ("robot=xarm7", "plant=bullet", "plant.step=0.001", "preset=sound",
+                                   "controller.period=0.01", "duration=5"),
+        "payload/0.6043/asked/5": ("robot=xarm7", "robot.start=[0.6043,-0.2,0.1508]",
+                                   "robot.goal=[0.6043,0.2,0.1508]", "duration=5", "robot.payload.mass=5"),
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("work", "runs", "calibrations"), [("thesis", 304, 0), ("xarm7", 115, 0), ("meca500", 242, 36)]
+)
+def test_a_work_has_its_runs(work, runs, calibrations):
+    planned = load_work(work)
+    jobs, calibrated = planned.jobs(), planned.calibrations()
+    assert (len(jobs), len(calibrated)) == (runs, calibrations)
+    found = {name: job.overrides for name, job in jobs.items()} | dict(calibrated)
+    assert {name: found[name] for name in SOME[work]} == SOME[work]
+
+
+def test_every_work_is_counted():
+    assert set(work_names()) == {"thesis", "xarm7", "meca500"}
