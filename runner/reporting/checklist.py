@@ -10,7 +10,8 @@ from runner.data_file import read_data
 from runner.paths import works_dir
 from runner.registry import StrictModel
 from runner.reporting import outline
-from runner.reporting.document import Claim, Formula, Items, Notice, Provenance, Section, Table, Text
+from runner.reporting.claim import Claim
+from runner.reporting.document import Formula, Items, Notice, Provenance, Section, Table, Text
 
 _FILE = "checklist.yaml"
 _MISSING, _NOWHERE = "missing", "–"

@@ -3,7 +3,8 @@
 from collections.abc import Mapping, Sequence
 
 from runner.claims import Bound, PublishedClaim, PublishedStatement, Verdict, judge, judge_motion
-from runner.reporting.document import Claim, EquationVerdict, Finding, StatementVerdict, Table
+from runner.reporting.claim import Claim, ClaimResult, EquationVerdict, StatementVerdict
+from runner.reporting.document import Table
 from runner.reporting.figures import columns
 from runner.reporting.job import PRESETS, MissingError
 from runner.reporting.quantities import quantity, ranged, spread
@@ -42,7 +43,7 @@ def statement_blocks(
     if {each.name for each in statements} != set(judged):
         raise ValueError(f"stated: {', '.join(each.name for each in statements)}; judged: {', '.join(judged)}")
     return [
-        Claim(str(number), each.statement, each.place, "", (Finding("", measured, verdict),), each.reason)
+        Claim(str(number), each.statement, each.place, "", (ClaimResult("", measured, verdict),), each.reason)
         for number, each in enumerate(statements, start=1)
         for verdict, measured in [judged[each.name]]
     ]
@@ -82,13 +83,13 @@ class _Claimed:
             str(claim.number), claim.statement, claim.place, _printed(claim), findings, self._reason(), command
         )
 
-    def _finding(self, preset: str) -> Finding:
+    def _finding(self, preset: str) -> ClaimResult:
         claim, run = self._claim, self._run(self._claim.experiment, preset)
         verdict = self._of_motion(run) if claim.extents else self._of_number(run, preset)
         if run.status == "failed":
-            return Finding(preset, run.failure_text, verdict)
+            return ClaimResult(preset, run.failure_text, verdict)
         shown = self._moved(run) if claim.extents else spread(run.metrics[claim.metric], claim.value)
-        return Finding(preset, shown, verdict)
+        return ClaimResult(preset, shown, verdict)
 
     def _of_motion(self, run: Run) -> Verdict:
         tip, desired = columns(run.trace, "tip"), columns(run.trace, "desired")

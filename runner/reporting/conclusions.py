@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
-from runner.reporting.document import Claim, Document, Equations
+from runner.reporting.claim import Claim
+from runner.reporting.document import Document, Equations
 from runner.reporting.expected_caveats import ExpectedCaveat, caveats_as_data
 from runner.reporting.findings import findings
 from runner.reporting.outline import blocks

@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from runner.reporting.claim import Claim
 from runner.reporting.document import (
     Block,
-    Claim,
     Curves,
     Document,
     Equations,

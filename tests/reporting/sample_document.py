@@ -3,15 +3,14 @@
 import numpy as np
 
 from runner.audit.expressions import parse
+from runner.reporting.claim import Claim, ClaimResult
 from runner.reporting.document import (
     Body,
-    Claim,
     Curves,
     Document,
     Equation,
     EquationForm,
     Equations,
-    Finding,
     Formula,
     Items,
     Map,
@@ -122,7 +121,7 @@ def document(text: str = "words") -> Document:
             text,
             text,
             text,
-            [Finding(text, text, "holds"), Finding(text, text, "contradicts itself")],
+            [ClaimResult(text, text, "holds"), ClaimResult(text, text, "contradicts itself")],
             text,
             text,
         ),

@@ -9,7 +9,8 @@ from thin_plans import make_runs, stand_ins
 from work_plans import thesis_jobs, thesis_moments
 
 from runner.reporting import outline
-from runner.reporting.document import Claim, Curves, Picture, Table, Text
+from runner.reporting.claim import Claim
+from runner.reporting.document import Curves, Picture, Table, Text
 from runner.reporting.formulas import faulty
 from runner.reporting.job import PRESETS
 from runner.reporting.render import write_report

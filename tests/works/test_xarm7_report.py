@@ -8,7 +8,8 @@ from thin_plans import make_runs
 from work_plans import xarm7_studies
 
 from runner.reporting import outline
-from runner.reporting.document import Claim, Curves, Notice, Picture, Playback, Section, Table, Text
+from runner.reporting.claim import Claim
+from runner.reporting.document import Curves, Notice, Picture, Playback, Section, Table, Text
 from runner.reporting.findings import findings
 from runner.reporting.formulas import faulty
 from runner.reporting.job import PRESETS

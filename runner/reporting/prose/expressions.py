@@ -21,7 +21,7 @@ OPEN, CLOSE = "\uf000", "\uf001"
 """Characters around the number of a value that stands elsewhere."""
 PLACEHOLDER = re.compile(f"{OPEN}(\\d+){CLOSE}")
 
-_PRIVATE = re.compile("[\ue000-\uf8ff]")
+PRIVATE = re.compile("[\ue000-\uf8ff]")
 _STATEMENT = re.compile(r"\{%|%\}|\{#")
 _SET = re.compile(r"^\{% set (\w+) = (.*) %\}$", re.MULTILINE)
 _BRANCHES = (nodes.CondExpr, nodes.And, nodes.Or, nodes.Not)
@@ -63,7 +63,7 @@ class Values:
             ProseError: if one cannot be evaluated, or there is a branch, a loop or a private character.
         """
         for number, content in enumerate(text.splitlines(), start=1):
-            if _PRIVATE.search(content):
+            if PRIVATE.search(content):
                 raise ProseError(self._file, number, "has a character for private use; leave it out")
         text = self._without_names(text)
         parts: list[str] = []

@@ -4,11 +4,9 @@ import re
 from typing import Any
 
 from runner.reporting.measured import Measured
-from runner.reporting.prose.expressions import PLACEHOLDER, Values
+from runner.reporting.prose.expressions import PLACEHOLDER, PRIVATE, Values
 from runner.reporting.prose.problem import ProseError
 from runner.reporting.quantities import number
-
-_PRIVATE = re.compile("[\ue000-\uf8ff]")
 
 
 def filled(text: str, values: Values, file: str, mathematics: bool = False) -> str:
@@ -31,7 +29,7 @@ def filled(text: str, values: Values, file: str, mathematics: bool = False) -> s
             what = "a formula takes numbers" if mathematics else "a sentence takes texts, numbers and measured values"
             hint = "; a block stands in a paragraph of its own" if not mathematics else ""
             raise ProseError(file, line, f"{what}, not {type(value).__name__}{hint}")
-        return _PRIVATE.sub("\ufffd", shown).replace("$", "$$")
+        return PRIVATE.sub("\ufffd", shown).replace("$", "$$")
 
     return PLACEHOLDER.sub(show, text)
 

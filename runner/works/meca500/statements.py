@@ -4,8 +4,9 @@ from collections.abc import Mapping
 
 from runner.audit.audit import audit
 from runner.claims import load_statements
+from runner.reporting.claim import EquationVerdict, StatementVerdict
 from runner.reporting.claims import statement_blocks
-from runner.reporting.document import EquationVerdict, Section, StatementVerdict, Text
+from runner.reporting.document import Section, Text
 from runner.reporting.findings import Finding
 from runner.store import Run
 from runner.works.meca500.at_the_tip import tip_finding, tip_values

@@ -5,8 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from runner.claims import CONTRADICTION, load_claims
+from runner.reporting.claim import Claim
 from runner.reporting.claims import claim_blocks, verdict_table
-from runner.reporting.document import Claim, Section, Text
+from runner.reporting.document import Section, Text
 from runner.reporting.findings import Finding, finding
 from runner.reporting.job import PRESETS
 from runner.reporting.measured import Measured
