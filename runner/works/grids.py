@@ -30,6 +30,7 @@ from runner.config.messages import describe
 from runner.errors import RunnerError, nearest
 from runner.registry import StrictModel
 from runner.reporting.job import Job, Jobs
+from runner.works.arithmetic import Level
 from runner.works.grid import Grid, Overrides
 
 FILE = "runs.yaml"
@@ -98,14 +99,25 @@ class Grids:
         Raises:
             RunnerError: if there is no such grid or axis, or a level is of another kind.
         """
+        over = self._axis(key, axis)
+        allowed = (int, float) if kind is float else (kind,)
+        levels: list[Any] = [level for level in over if isinstance(level, allowed)]
+        if len(levels) < len(over):
+            raise RunnerError(f"{self._path}: grid '{key}': the levels of '{axis}' are not all of kind {kind.__name__}")
+        return tuple(levels)
+
+    def level(self, key: str, axis: str, place: int) -> Level:
+        """Return a level of an axis by its place, which is counted from 0, from the last one if it is negative."""
+        levels = [*self._axis(key, axis)]
+        if not -len(levels) <= place < len(levels):
+            raise RunnerError(f"{self._path}: grid '{key}': axis '{axis}' has {len(levels)} levels, no place {place}")
+        return levels[place]
+
+    def _axis(self, key: str, axis: str) -> Mapping[Level, Overrides | None]:
         over = self.grid(key).over
         if axis not in over:
             raise RunnerError(f"{self._path}: grid '{key}': there is no axis '{axis}'{nearest(axis, over)}")
-        allowed = (int, float) if kind is float else (kind,)
-        levels: list[Any] = [level for level in over[axis] if isinstance(level, allowed)]
-        if len(levels) < len(over[axis]):
-            raise RunnerError(f"{self._path}: grid '{key}': the levels of '{axis}' are not all of kind {kind.__name__}")
-        return tuple(levels)
+        return over[axis]
 
     def labels(self, key: str, axis: str) -> dict[str, Overrides]:
         """Return what each label of an axis stands for, expressions as they are written."""

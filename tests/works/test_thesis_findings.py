@@ -32,7 +32,8 @@ from runner.works.thesis import (
     whole_body,
 )
 from runner.works.thesis.plan import TRACKED
-from runner.works.thesis.report import markdown
+from runner.works.chapters import chapter
+from runner.works.thesis import report
 from runner.works.thesis.studies import mini_dexterity
 
 Build = Callable[[Mapping[str, Run]], Finding]
@@ -54,7 +55,7 @@ def folded(runs: Mapping[str, Run]) -> Finding:
 
 
 BUILD: dict[str, Build] = {
-    "turns": of_section(markdown("turns"), 0),
+    "turns": of_section(chapter(report.__file__, "turns"), 0),
     "breaks, payload unknown": partial(mass_ratio._breaking, payload="unknown", carrier=2.0),
     "breaks, payload known": partial(mass_ratio._breaking, payload="known", carrier=2.0),
     "breaks, noise": partial(mass_ratio._noisy, carrier=2.0),

@@ -23,7 +23,8 @@ from runner.works.thesis.folding import folding_section
 from runner.works.thesis.mass_ratio import mass_ratio_section
 from runner.works.thesis.questions import questions_section
 from runner.works.thesis.reference_velocity import reference_velocity_section
-from runner.works.thesis.report import markdown
+from runner.works.chapters import chapter
+from runner.works.thesis import report
 from runner.works.thesis.stage_sampling import stage_sampling_section
 from runner.works.thesis.stretch import stretch_section
 from runner.works.thesis.whole_body import whole_body_section
@@ -37,7 +38,7 @@ SECTIONS = (
     stretch_section,
     reference_velocity_section,
     bandwidth_section,
-    markdown("turns"),
+    chapter(report.__file__, "turns"),
     whole_body_section,
     dynamics_cost_section,
 )

@@ -23,7 +23,7 @@ PLACEHOLDER = re.compile(f"{OPEN}(\\d+){CLOSE}")
 
 PRIVATE = re.compile("[\ue000-\uf8ff]")
 _STATEMENT = re.compile(r"\{%|%\}|\{#")
-_SET = re.compile(r"^\{% set (\w+) = (.*) %\}$", re.MULTILINE)
+_SET = re.compile(r"^\{% set (\w+) = (.*?) %\}$", re.MULTILINE | re.DOTALL)
 _BRANCHES = (nodes.CondExpr, nodes.And, nodes.Or, nodes.Not)
 _LONGEST = 10_000  # of a text or list that an expression makes
 
@@ -49,6 +49,7 @@ class Values:
 
     def __init__(self, file: str, names: Mapping[str, Any]) -> None:
         self._file, self._names = file, dict(names)
+        self._set: list[str] = []
         self.found: list[tuple[Any, int]] = []
         self._lines = [1]
         self._environment = _Sandbox(undefined=jinja2.StrictUndefined, autoescape=False)
@@ -81,13 +82,14 @@ class Values:
         return rest
 
     def _without_names(self, text: str) -> str:
-        """Give names to the values of `{% set name = EXPRESSION %}` lines; return the text with these lines empty."""
+        """Give names to the values of `{% set name = EXPRESSION %}`; return the text with these left empty."""
         for found in _SET.finditer(text):
             line = text.count("\n", 0, found.start()) + 1
             if found[1] in self._names:
                 raise ProseError(self._file, line, f"set {found[1]}: the name is taken; choose another")
             self._names[found[1]] = self.value(found[2], line)
-        return _SET.sub("", text)
+            self._set.append(found[1])
+        return _SET.sub(lambda found: "\n" * found[0].count("\n"), text)
 
     def line_of(self, number: int) -> int:
         """Return on which line of the file a line of the text without expressions stands; both count from 1."""
@@ -106,8 +108,18 @@ class Values:
         self.found.append((value, line))
         return f"{OPEN}{len(self.found) - 1}{CLOSE}"
 
-    def value(self, expression: str, line: int) -> Any:
+    @property
+    def named(self) -> dict[str, Any]:
+        """The values that the chapter itself gives a name, by that."""
+        return {name: self._names[name] for name in self._set}
+
+    def value(self, expression: str, line: int, instead: Mapping[str, Any] | None = None) -> Any:
         """Return the value of an expression.
+
+        Args:
+            expression: The expression.
+            line: Where it stands.
+            instead: Values that some names have in place of their own.
 
         Raises:
             ProseError: if it has none; names the place.
@@ -117,7 +129,9 @@ class Values:
             tree = self._environment.parse("{{ " + source + " }}")
             for node in tree.find_all((*_BRANCHES, nodes.Filter, nodes.Test)):
                 raise ProseError(self._file, line, f"{source}: {_refused(node)}")
-            value = self._environment.compile_expression(source, undefined_to_none=False)(**self._names)
+            value = self._environment.compile_expression(source, undefined_to_none=False)(
+                **self._names | dict(instead or {})
+            )
             if isinstance(value, jinja2.Undefined):
                 str(value)  # raises, and says what is not there
             return value

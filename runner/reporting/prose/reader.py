@@ -19,6 +19,19 @@ _FENCE = ":::"
 _HOLDS = re.compile(r"\s*holds:(.*)")
 
 
+@dataclass(frozen=True)
+class Stated:
+    """A condition as it stands in a chapter.
+
+    Attributes:
+        expression: Its expression.
+        line: Where it stands.
+    """
+
+    expression: str
+    line: int
+
+
 @dataclass
 class _Container:
     """A box that is being read: where it begins in the file and among the lines read, title, lines, conditions."""
@@ -27,15 +40,15 @@ class _Container:
     count: int
     title: str
     lines: list[str] = field(default_factory=list)
-    conditions: list[tuple[str, int]] = field(default_factory=list)
+    conditions: list[Stated] = field(default_factory=list)
 
 
 def read_chapter(file: str, text: str, names: Mapping[str, Any]) -> Section:
     """Return the section that a chapter's file makes.
 
     Its first line is its title, `# Title`; `## Title` begins a section of it. `{{ CALL }}` in a paragraph of its own is
-    a block, a list of blocks or a section, anywhere else a value in the sentence; a line `{% set name = EXPRESSION %}`
-    gives a value a name. A conclusion stands in a box:
+    a block, a list of blocks or a section, anywhere else a value in the sentence; `{% set name = EXPRESSION %}` at the
+    begin of a line gives a value a name. A conclusion stands in a box:
 
         ::: finding Taking turns does harm
         The error is {{ turns }}, that of both arms at once {{ both }}.
@@ -50,14 +63,20 @@ def read_chapter(file: str, text: str, names: Mapping[str, Any]) -> Section:
     Raises:
         ProseError: if it cannot be read; names the line, and what to write.
     """
+    return read_with_conditions(file, text, names)[0]
+
+
+def read_with_conditions(file: str, text: str, names: Mapping[str, Any]) -> tuple[Section, Values, list[Stated]]:
+    """Return the section that a chapter's file makes, its values, and the conditions of its findings as they stand."""
     values = Values(file, names)
-    pieces = list(_pieces(file, values.put_away(text), values))
+    stated: list[Stated] = []
+    pieces = list(_pieces(file, values.put_away(text), values, stated))
     if not pieces or not isinstance(pieces[0], Heading) or pieces[0].level != 1:
         raise ProseError(file, 1, "begins without a title; write `# Title` in the first line")
-    return _section(file, pieces)
+    return _section(file, pieces), values, stated
 
 
-def _pieces(file: str, text: str, values: Values) -> Iterator[Piece]:
+def _pieces(file: str, text: str, values: Values, stated: list[Stated]) -> Iterator[Piece]:
     """Yield headings, blocks and findings in reading order."""
     paragraphs = Paragraphs(file, values)
     plain: list[str] = []
@@ -71,13 +90,14 @@ def _pieces(file: str, text: str, values: Values) -> Iterator[Piece]:
                 box = _opened(file, line, number, count)
             elif line.strip() == _FENCE:
                 yield _finding(file, box, values, paragraphs)
+                stated += box.conditions
                 plain, first, box = [], count + 1, None
             else:
                 raise ProseError(file, number, f"a box in a box; close that of line {box.line} by `:::` first")
         elif condition and box is None:
             raise ProseError(file, number, "a condition outside a box; `holds:` stands between `::: finding` and `:::`")
         elif condition and box is not None:
-            box.conditions.append((condition[1], number))
+            box.conditions.append(Stated(condition[1].strip(), number))
             box.lines.append("")
         else:
             (plain if box is None else box.lines).append(line)
@@ -97,13 +117,7 @@ def _opened(file: str, line: str, number: int, count: int) -> _Container:
 
 
 def _finding(file: str, box: _Container, values: Values, paragraphs: Paragraphs) -> Finding:
-    conditions = []
-    for expression, line in box.conditions:
-        condition = values.value(expression, line)
-        if not isinstance(condition, Condition):
-            what = f"gives {type(condition).__name__}, no condition; compare measured values"
-            raise ProseError(file, line, f"holds: {expression.strip()}: {what}")
-        conditions.append(condition)
+    conditions = [own for stated in box.conditions for own in conditions_of(file, stated, values)]
     if not conditions:
         raise ProseError(file, box.line, "a finding without a condition; write `holds: EXPRESSION` for each sentence")
     blocks = list(paragraphs.blocks("\n".join(box.lines), box.count + 1))
@@ -111,6 +125,29 @@ def _finding(file: str, box: _Container, values: Values, paragraphs: Paragraphs)
         raise ProseError(file, box.line, "a finding holds sentences alone; blocks stand before or behind it")
     text = " ".join(block.text for block in blocks if isinstance(block, Text))
     return finding(filled(box.title, values, file), text, *conditions)
+
+
+def conditions_of(
+    file: str, stated: Stated, values: Values, instead: Mapping[str, Any] | None = None
+) -> list[Condition]:
+    """Return the condition that an expression states, or each of a list of them.
+
+    Args:
+        file: Name of the chapter's file.
+        stated: The condition as it stands.
+        values: The values of the chapter.
+        instead: Values that some of its names have in place of their own.
+
+    Raises:
+        ProseError: if it states none.
+    """
+    given = values.value(stated.expression, stated.line, instead)
+    conditions = given if isinstance(given, list | tuple) else [given]
+    for condition in conditions or [None]:
+        if not isinstance(condition, Condition):
+            what = f"gives {type(condition).__name__}, no condition; compare measured values"
+            raise ProseError(file, stated.line, f"holds: {stated.expression}: {what}")
+    return list(conditions)
 
 
 def _section(file: str, pieces: list[Piece]) -> Section:

@@ -1,14 +1,12 @@
 """The whole thesis report, from its stored runs."""
 
-from collections.abc import Callable, Mapping
-from pathlib import Path
+from collections.abc import Mapping
 
 from runner.reporting.checklist import load_checklist
 from runner.reporting.document import Document, Section
 from runner.reporting.work_report import parts, work_document
 from runner.store import Calibration, Run
 from runner.works.chapters import chapter
-from runner.works.thesis import figures
 from runner.works.thesis.bandwidth import bandwidth_section
 from runner.works.thesis.base_axis import base_axis_section, duration_section
 from runner.works.thesis.caveats import EXPECTED
@@ -49,8 +47,8 @@ def document(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -
             claims_section,
             questions_section,
             chapter2,
-            markdown("chapter3"),
-            markdown("chapter4"),
+            chapter(__file__, "chapter3"),
+            chapter(__file__, "chapter4"),
             chapter5,
             _explanations,
             _beyond,
@@ -64,11 +62,6 @@ def document(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -
         expected=EXPECTED,
         checklist=load_checklist("thesis").section,
     )
-
-
-def markdown(name: str) -> Callable[[Mapping[str, Run]], Section]:
-    """Return what makes a chapter of this folder that is written in Markdown."""
-    return chapter(Path(__file__).with_name(f"{name}.md"), figures)
 
 
 def _explanations(runs: Mapping[str, Run]) -> Section:
@@ -88,7 +81,7 @@ def _beyond(runs: Mapping[str, Run]) -> Section:
             stretch_section,
             reference_velocity_section,
             bandwidth_section,
-            markdown("turns"),
+            chapter(__file__, "turns"),
             whole_body_section,
             dynamics_cost_section,
         ),
