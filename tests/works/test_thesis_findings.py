@@ -15,6 +15,7 @@ from runner.reporting.findings import Finding, findings
 from runner.reporting.formulas import faulty
 from runner.reporting.measured import Measured
 from runner.store import Run
+from runner.works.chapters import chapter
 from runner.works.thesis import (
     bandwidth,
     base_axis,
@@ -26,14 +27,13 @@ from runner.works.thesis import (
     mass_ratio,
     physics,
     reference_velocity,
+    report,
     stage_sampling,
     stretch,
     vanishing_mass,
     whole_body,
 )
 from runner.works.thesis.plan import TRACKED
-from runner.works.chapters import chapter
-from runner.works.thesis import report
 from runner.works.thesis.studies import mini_dexterity
 
 Build = Callable[[Mapping[str, Run]], Finding]

@@ -15,7 +15,8 @@ from runner.reporting.checklist import load_checklist
 from runner.reporting.document import Document, Section, Table
 from runner.reporting.figures import torque_and_error
 from runner.store import Run
-from runner.works.thesis import dynamics_benchmark
+from runner.works.chapters import chapter
+from runner.works.thesis import dynamics_benchmark, report
 from runner.works.thesis.bandwidth import bandwidth_section
 from runner.works.thesis.coupling import coupling_section
 from runner.works.thesis.dynamics_cost import dynamics_cost_section
@@ -23,8 +24,6 @@ from runner.works.thesis.folding import folding_section
 from runner.works.thesis.mass_ratio import mass_ratio_section
 from runner.works.thesis.questions import questions_section
 from runner.works.thesis.reference_velocity import reference_velocity_section
-from runner.works.chapters import chapter
-from runner.works.thesis import report
 from runner.works.thesis.stage_sampling import stage_sampling_section
 from runner.works.thesis.stretch import stretch_section
 from runner.works.thesis.whole_body import whole_body_section
