@@ -6,47 +6,27 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from runner.audit.entry import Form, parts
-from runner.audit.sources import sources, truth_of
+from runner.audit.sources import Where, sources
 from runner.audit.verdict import SAMPLES, VERDICTS, Judge, Judged, Verdict
 from runner.texts import table_cell
 
-_COLUMNS = (
-    "source",
-    "id",
-    "number",
-    "place",
-    "title",
-    "verdict",
-    "largest_error",
-    "typical_error",
-    "largest_error_second_way",
-    "one_way",
-    "another_way",
-    "unit",
-    "tolerance",
-    "as_printed",
-    "repaired",
-    "why_repaired",
-    "corrected",
-    "finding",
-)
 
-
-def audit(source: str, samples: int = SAMPLES) -> list[Judged]:
+def audit(where: Where, samples: int = SAMPLES) -> list[Judged]:
     """Return the verdict on every equation of a source, in the order of the text.
 
     Args:
-        source: Name of the work.
+        where: Name of a work of ours, or a folder, as in audit(Path("my_paper")); see `sources.py`.
         samples: How many configurations each is tried at.
 
     Raises:
+        RunnerError: If there is no such source, a file does not fit its format, or what it names does not exist.
         AuditError: If an entry contradicts itself.
     """
-    return [judged for part in parts(source) for judged in map(Judge(part, samples).judge, part.entries)]
+    return [judged for part in parts(where) for judged in map(Judge(part, samples).judge, part.entries)]
 
 
 def audit_all(samples: int = SAMPLES) -> dict[str, list[Judged]]:
-    """Return the same for every source, by its name."""
+    """Return the same for every work of ours, by its name."""
     return {source: audit(source, samples) for source in sources()}
 
 
@@ -57,34 +37,35 @@ def counts(judged: Iterable[Judged]) -> dict[Verdict, int]:
 
 
 def as_csv(judged: Sequence[Judged]) -> str:
-    """Return the verdicts as comma-separated values with a header."""
-    stream = io.StringIO()
+    """Return the verdicts as comma-separated values with a header; at least one."""
+    stream, rows = io.StringIO(), [_row(each) for each in judged]
     table = csv.writer(stream, lineterminator="\n")
-    table.writerow(_COLUMNS)
-    for each in judged:
-        entry, measured, second = each.entry, each.measured, each.second
-        ways = truth_of(each.source, entry.truth).ways if entry.truth else ("", "")
-        cells = [
-            each.source,
-            entry.id,
-            entry.number,
-            entry.place,
-            entry.title,
-            each.verdict,
-            f"{measured.largest:.6g}" if measured else "",
-            f"{measured.typical:.6g}" if measured else "",
-            f"{second.largest:.6g}" if second else "",
-            *ways,
-            entry.unit,
-            f"{entry.tolerance:g}",
-            _plain(entry.printed),
-            _plain(entry.repair) if entry.repair else "",
-            entry.repair.why if entry.repair else "",
-            _plain(entry.corrected) if entry.corrected else "",
-            entry.finding,
-        ]
-        table.writerow(map(table_cell, cells))
+    table.writerows([list(rows[0]), *(map(table_cell, row.values()) for row in rows)])
     return stream.getvalue()
+
+
+def _row(judged: Judged) -> dict[str, str]:
+    entry, measured, second = judged.entry, judged.measured, judged.second
+    return {
+        "source": judged.source,
+        "id": entry.id,
+        "number": entry.number,
+        "place": entry.place,
+        "title": entry.title,
+        "verdict": judged.verdict,
+        "largest_error": f"{measured.largest:.6g}" if measured else "",
+        "typical_error": f"{measured.typical:.6g}" if measured else "",
+        "largest_error_second_way": f"{second.largest:.6g}" if second else "",
+        "one_way": judged.ways[0],
+        "another_way": judged.ways[1],
+        "unit": entry.unit,
+        "tolerance": f"{entry.tolerance:g}",
+        "as_printed": _plain(entry.printed),
+        "repaired": _plain(entry.repair) if entry.repair else "",
+        "why_repaired": entry.repair.why if entry.repair else "",
+        "corrected": _plain(entry.corrected) if entry.corrected else "",
+        "finding": entry.finding,
+    }
 
 
 def _plain(form: Form) -> str:

@@ -1,9 +1,11 @@
 """One printed equation as data: where it stands, how it is printed, what it claims to equal.
 
-Entries live in YAML files, one for each part of a source (`runner/works/<source>/equations/*.yaml`):
+Entries live in YAML files, one for each part of a source (`equations/*.yaml` of a work's folder):
 
-    source: xarm7                  # the work, by its folder
-    symbols: xarm7.symbols         # function of equations/truths that draws the sample, by name of the symbol
+    robot: macro                   # of conf/robot, or of the folder, or a URDF: what truths `model.*` are about
+    tip: q2                        # its frame that is meant, where that is not the config's
+    joints: [theta1, theta2]       # what the joint positions are called, where that is not q1, q2, ...
+    symbols: {l1: 0.5, s12: sin(theta1 + theta2)}  # what else is named; s1 = sin(theta1), c1 and so on are known
     entries:
       - id: xarm7-A13
         number: "A_13"             # as the source numbers or names it
@@ -17,24 +19,39 @@ Entries live in YAML files, one for each part of a source (`runner/works/<source
           elements: {A_13: ...}
         corrected:                 # only where it is wrong as printed
           elements: {A_13: ...}
-        truth: xarm7.transform     # what it claims to equal: a Truth of equations/truths, worked out twice
+        truth: model.jacobian      # what it claims to equal, worked out twice; see `model_truths.py`
+        tip: q3                    # frame of this one, where that is not the file's
         finding: ...               # what is wrong, in words
 
-Elements are expressions of `expressions.py`. An equation that is no arithmetic, such as a relation between matrices,
-stands as `math` (in Typst) with the name of the function that evaluates it (`code: xarm7.left_pseudo_inverse`). The
-verdict is never stored: `verdict.py` works it out.
+Where a model is not enough, `truth: xarm7.transform` names a Truth of the folder's `equations/truths/xarm7.py`, and
+`symbols: xarm7.symbols` a function there that draws the sample; then there is no robot to name.
+
+Elements are expressions as `runner/expressions/parser.py` has them. An equation that is no arithmetic, such as a
+relation between matrices, stands as `math` (in Typst) with the name of the function that evaluates it (`code:
+xarm7.left_inverse`). The verdict is never stored: `verdict.py` works it out.
 """
 
 from collections.abc import Iterator
 from functools import lru_cache
-from typing import Self
+from pathlib import Path
+from typing import Annotated, Self
 
-import yaml
-from pydantic import Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
-from runner.audit.sources import folder
-from runner.errors import RunnerError
+from runner.audit.sources import Source, Where, source_of
+from runner.data_file import read_data
 from runner.registry import StrictModel
+from runner.texts import quoted
+
+
+def _as_text(value: object) -> str:
+    if isinstance(value, bool) or not isinstance(value, str | int | float):
+        raise ValueError(f"is {quoted(value)}; allowed: an expression or a number")
+    return str(value)
+
+
+Written = Annotated[str, BeforeValidator(_as_text)]
+"""An expression, or a number, which needs no quotes."""
 
 
 class Form(StrictModel):
@@ -46,7 +63,7 @@ class Form(StrictModel):
         code: Function of equations/truths that returns its elements at the samples.
     """
 
-    elements: dict[str, str] = Field(default_factory=dict)
+    elements: dict[str, Written] = Field(default_factory=dict)
     math: str = ""
     code: str = ""
 
@@ -81,6 +98,7 @@ class Entry(StrictModel):
         repair: As it must have stood, where the text is damaged.
         corrected: The right form, where it is wrong as printed.
         truth: What it claims to equal; "" where it only names things, or is unreadable.
+        tip: Frame that a truth of the model is about, where it is another than the file's.
         unit: Unit of its error. Errors in "rad" are angles: they are taken the short way round.
         tolerance: Largest error, in its unit, that rounding may cause.
         finding: What is wrong and what it does, in words; Text of a report.
@@ -95,47 +113,67 @@ class Entry(StrictModel):
     repair: Repair | None = None
     corrected: Form | None = None
     truth: str = ""
+    tip: str = ""
     unit: str = "1"
     tolerance: float = Field(default=1e-9, gt=0)
     finding: str = ""
     rollout: str = ""
 
 
-class Part(StrictModel):
-    """One data file.
+class Content(StrictModel):
+    """What a data file says.
 
     Attributes:
-        source: The work.
-        symbols: Function of equations/truths that draws the sample.
+        robot: Name of the robot, or its URDF; "" where no truth is a model's.
+        tip: Its frame that is meant; "" is the config's tip.
+        joints: Names of its joint positions; none are q1 to qn.
+        symbols: Function of equations/truths that draws the sample; or what is named beside the robot's motion.
         entries: Its equations, in the order of the text.
     """
 
-    source: str
-    symbols: str
+    robot: str = ""
+    tip: str = ""
+    joints: tuple[str, ...] = Field(default=(), strict=False)
+    symbols: str | dict[str, Written] = Field(default_factory=dict)
     entries: list[Entry]
 
+    @model_validator(mode="after")
+    def _can_be_sampled(self) -> Self:
+        if not (self.robot or isinstance(self.symbols, str)):
+            raise ValueError("names no 'robot', so 'symbols' must name the function that draws the sample")
+        return self
 
-@lru_cache(maxsize=8)
-def parts(source: str) -> tuple[Part, ...]:
+
+class Part(Content):
+    """A data file of a source.
+
+    Attributes:
+        source: The work's folder.
+        path: The file.
+    """
+
+    source: Source
+    path: Path
+
+
+def parts(where: Where) -> tuple[Part, ...]:
     """Return the data files of a source, in the order of their names.
 
     Raises:
-        RunnerError: If a file does not fit the format; names the file and the keys.
+        RunnerError: If there is no such source, or a file does not fit the format; names file, entry and key.
     """
-    found = sorted(folder(source).glob("*.yaml"))
-    return tuple(_read(path.name, path.read_text(encoding="utf-8")) for path in found if path.name != "inventory.yaml")
+    source = source_of(where)
+    found = [path for path in sorted(source.equations.glob("*.yaml")) if path.name != "inventory.yaml"]
+    return tuple(_read(source, path, path.stat().st_mtime_ns) for path in found)
 
 
-def entries(source: str) -> Iterator[tuple[Part, Entry]]:
+def entries(where: Where) -> Iterator[tuple[Part, Entry]]:
     """Yield each equation of a source with the file it belongs to."""
-    for part in parts(source):
+    for part in parts(where):
         for entry in part.entries:
             yield part, entry
 
 
-def _read(name: str, text: str) -> Part:
-    try:
-        return Part.model_validate(yaml.safe_load(text))
-    except ValidationError as error:
-        lines = [f"{'.'.join(map(str, problem['loc']))}: {problem['msg']}" for problem in error.errors()]
-        raise RunnerError(f"{name}: " + "; ".join(lines)) from error
+@lru_cache(maxsize=64)
+def _read(source: Source, path: Path, _changed: int) -> Part:
+    return Part(source=source, path=path, **dict(read_data(path, Content)))

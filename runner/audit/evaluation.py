@@ -6,24 +6,12 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.audit.expressions import Call, Expression, ExpressionError, Name, Node, Number, Power, Product, names
-from runner.errors import nearest
+from runner.errors import RunnerError, nearest
+from runner.expressions.parser import Expression, ExpressionError, parse
+from runner.expressions.tree import Call, Name, Node, Number, Power, Product, names
 
 FloatArray = NDArray[np.float64]
 
-_UNARY = {
-    "sin": np.sin,
-    "cos": np.cos,
-    "tan": np.tan,
-    "asin": np.arcsin,
-    "acos": np.arccos,
-    "atan": np.arctan,
-    "arcsin": np.arcsin,
-    "arccos": np.arccos,
-    "arctan": np.arctan,
-    "sqrt": np.sqrt,
-    "abs": np.abs,
-}
 _LISTED = 40
 _SHOWN = 6
 
@@ -42,17 +30,31 @@ def evaluate(expression: Expression, symbols: Mapping[str, FloatArray]) -> Float
         ExpressionError: If a name is unknown, or if a division by zero, a root or an inverse sine or cosine outside
             its domain, or a number without bound turns up at a sample; the message names the position and the sample.
     """
-    for name in names(expression.root):
-        if name.name not in symbols:
-            known = ", ".join(list(symbols)[:_LISTED]) + (", ..." if len(symbols) > _LISTED else "")
-            raise ExpressionError(
-                expression.text,
-                name.index,
-                f"unknown name '{name.name}'{nearest(name.name, symbols)}; names: {known}",
-            )
     count = max((len(values) for values in symbols.values()), default=1)
     with np.errstate(all="ignore"):
         return np.broadcast_to(_Evaluation(expression, symbols).value(expression.root), (count,)).astype(float)
+
+
+def evaluate_all(texts: Mapping[str, str], symbols: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    """Return the values of expressions by name, shape (T,) each.
+
+    Raises:
+        RunnerError: If one cannot be read or evaluated; names it.
+    """
+    found = {}
+    for name, text in texts.items():
+        try:
+            found[name] = evaluate(parse(text), symbols)
+        except ExpressionError as error:
+            raise RunnerError(f"{name}, {error}") from error
+    return found
+
+
+def with_symbols(values: Mapping[str, FloatArray], texts: Mapping[str, str]) -> Mapping[str, FloatArray]:
+    """Return values by name with those of expressions beside; each may use the ones before it."""
+    for name, text in texts.items():
+        values = {**values, **evaluate_all({name: text}, values)}
+    return values
 
 
 class _Evaluation:
@@ -64,7 +66,7 @@ class _Evaluation:
             case Number():
                 return np.array([node.value])
             case Name():
-                return self._symbols[node.name]
+                return self._named(node)
             case Call():
                 return self._call(node)
             case Power():
@@ -77,6 +79,13 @@ class _Evaluation:
                 first, *rest = ((-1.0 if minus else 1.0) * self.value(term) for minus, term in node.terms)
                 return self._finite(sum(rest, first), node.index, "a sum that is not finite")
 
+    def _named(self, node: Name) -> FloatArray:
+        if node.name not in self._symbols:
+            known = ", ".join(list(self._symbols)[:_LISTED]) + (", ..." if len(self._symbols) > _LISTED else "")
+            told = f"unknown name '{node.name}'{nearest(node.name, self._symbols)}; names: {known}"
+            raise ExpressionError(self._expression.text, node.index, told)
+        return self._symbols[node.name]
+
     def _product(self, node: Product) -> FloatArray:
         total = np.ones(1)
         for over, factor in node.factors:
@@ -88,9 +97,7 @@ class _Evaluation:
 
     def _call(self, node: Call) -> FloatArray:
         arguments = [self.value(argument) for argument in node.arguments]
-        if node.function == "atan2":
-            return np.asarray(np.arctan2(*arguments), dtype=float)
-        result = np.asarray(_UNARY[node.function](*arguments), dtype=float)
+        result = np.asarray(getattr(np, node.function)(*arguments), dtype=float)  # the parser knows what may be called
         return self._finite(result, node.index, f"{node.function} of a number outside its domain")
 
     def _finite(self, values: FloatArray, index: int, reason: str) -> FloatArray:
@@ -101,7 +108,7 @@ class _Evaluation:
         if not np.any(bad):
             return
         sample = int(np.argmax(bad))
-        used = list(dict.fromkeys(name.name for name in names(self._expression.root)))[:_SHOWN]
-        values = ", ".join(f"{name} = {self._symbols[name][sample]:.6g}" for name in used)
+        used = list(dict.fromkeys(name.name for name in names(self._expression.root) if name.name in self._symbols))
+        values = ", ".join(f"{name} = {self._symbols[name][sample]:.6g}" for name in used[:_SHOWN])
         at = f" ({values})" if values else ""
         raise ExpressionError(self._expression.text, index, f"{reason} at sample {sample + 1}{at}")

@@ -3,7 +3,6 @@
 It is made from the source's text alone, in reading order, and not from the entries. It stands in
 `equations/inventory.yaml` of the work:
 
-    source: xarm7
     counted: one line for each equation with a sign of equality; ...
     places:
       - place: Inverse kinematics, page 8
@@ -12,13 +11,12 @@ It is made from the source's text alone, in reading order, and not from the entr
 """
 
 from collections import Counter
-from functools import lru_cache
 
-import yaml
 from pydantic import Field
 
 from runner.audit.entry import entries
-from runner.audit.sources import folder
+from runner.audit.sources import Where, source_of
+from runner.data_file import read_data
 from runner.registry import StrictModel
 
 
@@ -40,30 +38,26 @@ class Inventory(StrictModel):
     """All places of a source.
 
     Attributes:
-        source: The work.
         title: How it is cited.
         found: What is wrong with its equations, and why, in a few sentences; inline mathematics as in reports.
         counted: What counts as an equation, in a sentence.
         places: In order.
     """
 
-    source: str
     title: str
     found: str
     counted: str
     places: list[Place]
 
 
-@lru_cache(maxsize=8)
-def inventory(source: str) -> Inventory:
+def inventory(where: Where) -> Inventory:
     """Return the inventory of a source."""
-    text = (folder(source) / "inventory.yaml").read_text(encoding="utf-8")
-    return Inventory.model_validate(yaml.safe_load(text))
+    return read_data(source_of(where).equations / "inventory.yaml", Inventory)
 
 
-def differences(source: str) -> list[str]:
+def differences(where: Where) -> list[str]:
     """Return what stands in the inventory and not in the audit, and the other way round, in words; empty when equal."""
-    listed = Counter((place.place, number) for place in inventory(source).places for number in place.equations)
-    audited = Counter((entry.place, entry.number) for _, entry in entries(source))
+    listed = Counter((place.place, number) for place in inventory(where).places for number in place.equations)
+    audited = Counter((entry.place, entry.number) for _, entry in entries(where))
     missing = [f"{place}: {number} is not audited" for place, number in (listed - audited).elements()]
     return missing + [f"{place}: {number} is not in the inventory" for place, number in (audited - listed).elements()]

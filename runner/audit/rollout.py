@@ -1,23 +1,52 @@
-"""A wrong formula run beside the right one."""
+"""A wrong formula run beside the right one: a function of `equations/rollouts`, and what is told of it.
+
+The words stand beside the function's module, in a YAML file of the same name, under the function's:
+
+    line:
+      title: The line by the printed inverse
+      text: The tip misses the line by {max[as printed]:.1f} cm at worst, at the end by {last[as printed]:.1f} cm.
+      x_label: time (s)
+      y_label: distance (cm)
+
+Numbers are `max`, `min` and `last` of each curve, and those that the run gives besides.
+"""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from operator import itemgetter
 
-from runner.audit.sources import rollout_of
+import numpy as np
+
+from runner.audit.sources import Where, rollout_of, source_of
 from runner.audit.truth import FloatArray
+from runner.data_file import read_data
+from runner.errors import RunnerError
+from runner.registry import StrictModel
 
 
 @dataclass(frozen=True)
-class Rollout:
+class Run:
     """What a robot does that believes a formula.
+
+    Attributes:
+        x: Abscissae, shape (T,).
+        curves: Ordinates of each run by its name, shape (T,); NaN where it ended before.
+        numbers: What the words need besides.
+    """
+
+    x: FloatArray
+    curves: Mapping[str, FloatArray]
+    numbers: Mapping[str, float | str] = field(default_factory=dict)
+
+
+class Words(StrictModel):
+    """What is told of a run.
 
     Attributes:
         title: What is run.
         text: What happens, in a sentence or two, with numbers.
         x_label: What the abscissae are, with unit.
         y_label: What the curves show, with unit.
-        x: Abscissae, shape (T,).
-        curves: Ordinates of each run by its name, shape (T,); NaN where it ended before.
         logarithmic: Whether the ordinates need a logarithmic axis.
     """
 
@@ -25,12 +54,19 @@ class Rollout:
     text: str
     x_label: str
     y_label: str
-    x: FloatArray
-    curves: Mapping[str, FloatArray]
     logarithmic: bool = False
 
 
-def run_rollout(source: str, name: str) -> Rollout:
-    """Run the rollout of a work that "module.name" stands for."""
-    run: Callable[[], Rollout] = rollout_of(source, name)
-    return run()
+def run_rollout(where: Where, name: str) -> tuple[Words, Run]:
+    """Run the rollout of a work that "module.name" stands for, and put its numbers into its words."""
+    module, _, own = name.partition(".")
+    run: Run = rollout_of(where, name)()
+    path = source_of(where).equations / "rollouts" / f"{module}.yaml"
+    words = read_data(path, dict[str, Words])
+    ends: Mapping[str, Callable[[FloatArray], float]]
+    ends = {"max": np.nanmax, "min": np.nanmin, "last": itemgetter(-1)}
+    told = {end: {name: of(values) for name, values in run.curves.items()} for end, of in ends.items()}
+    try:
+        return words[own].model_copy(update={"text": words[own].text.format(**told, **run.numbers)}), run
+    except (KeyError, ValueError) as error:
+        raise RunnerError(f"{path}: {own}: no words, or no such number: {error}") from error

@@ -1,34 +1,105 @@
-"""Where the equations of a published work are: its entries, and the functions that its entries name."""
+"""Where printed equations are: the folder of a work, with its entries and the Python that they may name.
+
+A folder has `equations/*.yaml` and, where truths of its own are needed, `equations/truths/*.py` and
+`equations/rollouts/*.py`. Our works are folders of `runner/works/`, known by their names; any other folder is named by
+its path.
+"""
 
 import importlib
+import sys
+from dataclasses import dataclass
+from hashlib import sha256
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
-from runner.paths import works_dir
+from runner.errors import RunnerError, nearest, told
+from runner.paths import package_dir, works_dir
 
-_FOLDER = "equations"
+
+@dataclass(frozen=True)
+class Source:
+    """The folder of a work.
+
+    Attributes:
+        folder: The folder.
+        code: Whether Python of it may run; without it, its truths are those of a model.
+    """
+
+    folder: Path
+    code: bool = False
+
+    @property
+    def name(self) -> str:
+        """Name of the work, that of its folder."""
+        return self.folder.resolve().name
+
+    @property
+    def equations(self) -> Path:
+        """Where its entries are."""
+        return self.folder / "equations"
+
+
+Where = str | Path | Source
+"""A work of ours by name; a folder by its path, whose Python does not run; or a Source, which says whether it may."""
 
 
 def sources() -> tuple[str, ...]:
-    """Return the names of the works whose equations are audited."""
-    return tuple(sorted(path.parents[1].name for path in works_dir().glob(f"*/{_FOLDER}/inventory.yaml")))
+    """Return the names of our works whose equations are audited."""
+    return tuple(sorted(path.parents[1].name for path in works_dir().glob("*/equations/inventory.yaml")))
 
 
-def folder(source: str) -> Path:
-    """Return the folder of a work's entries."""
-    return works_dir() / source / _FOLDER
+def source_of(where: Where) -> Source:
+    """Return the folder that is meant.
+
+    Raises:
+        RunnerError: If no work has this name, or the folder has no equations.
+    """
+    if isinstance(where, str) and where not in sources():
+        raise RunnerError(f"no work '{where}'{nearest(where, sources())}; works: {', '.join(sources())}, or a folder")
+    given = Source(works_dir() / where, code=True) if isinstance(where, str) else where
+    source = given if isinstance(given, Source) else Source(given)
+    if not source.equations.is_dir():
+        raise RunnerError(f"{source.folder}: no folder 'equations' in it")
+    return source
 
 
-def truth_of(source: str, name: str) -> Any:
+def truth_of(where: Where, name: str) -> Any:
     """Return the function or Truth that "module.name" stands for, of a module of the work's `equations/truths`."""
-    return _resolve(source, "truths", name)
+    return _resolve(source_of(where), "truths", name)
 
 
-def rollout_of(source: str, name: str) -> Any:
+def rollout_of(where: Where, name: str) -> Any:
     """Return the function that "module.name" stands for, of a module of the work's `equations/rollouts`."""
-    return _resolve(source, "rollouts", name)
+    return _resolve(source_of(where), "rollouts", name)
 
 
-def _resolve(source: str, kind: str, name: str) -> Any:
-    module, attribute = name.split(".")
-    return getattr(importlib.import_module(f"runner.works.{source}.{_FOLDER}.{kind}.{module}"), attribute)
+def _resolve(source: Source, kind: str, name: str) -> Any:
+    if not source.code:
+        raise RunnerError(f"'{name}' is Python of {source.folder}, which may not run; allowed: a truth of a model")
+    stem, _, attribute = name.partition(".")
+    known = sorted(path.stem for path in (source.equations / kind).glob("[!_]*.py"))
+    if stem not in known:
+        raise RunnerError(f"'{name}': no module{nearest(stem, known)}; modules: {', '.join(known) or 'none'}")
+    module = _module(source.equations / kind / f"{stem}.py")
+    if not hasattr(module, attribute):
+        raise RunnerError(f"'{name}': {stem}.py has no '{attribute}'{nearest(attribute, vars(module))}")
+    return getattr(module, attribute)
+
+
+def _module(path: Path) -> ModuleType:
+    """Return the module of a file: a part of this package by its own name, another by one that its path makes."""
+    if path.is_relative_to(package_dir()):
+        inside = path.relative_to(package_dir().parent).with_suffix("")
+        return importlib.import_module(".".join(inside.parts))
+    name = f"{path.stem}_{sha256(str(path.resolve()).encode()).hexdigest()[:12]}"
+    spec = spec_from_file_location(name, path)
+    if name not in sys.modules and spec is not None and spec.loader is not None:
+        sys.modules[name] = module_from_spec(spec)
+        try:
+            spec.loader.exec_module(sys.modules[name])
+        except Exception as error:
+            del sys.modules[name]
+            raise RunnerError(f"{path} cannot be imported: {told(error)}") from error
+    return sys.modules[name]

@@ -1,7 +1,8 @@
-"""What an equation claims to equal, in two independent ways."""
+"""What an equation claims to equal, in two independent ways; and how its elements are named."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,3 +30,36 @@ class Truth:
     first: Way
     second: Way
     ways: tuple[str, str]
+
+
+def elements(name: str, array: FloatArray, start: int = 1) -> dict[str, FloatArray]:
+    """Return the elements of vectors (T, n) or matrices (T, m, n) by name: G_1, M_23; M_1_10 beyond nine.
+
+    Args:
+        name: Letter of the whole.
+        array: Its values at the samples.
+        start: Number of the first element.
+    """
+    apart, moved = "_" if max(array.shape[1:]) > 9 else "", np.moveaxis(array, 0, -1)
+    places = product(*(range(size) for size in array.shape[1:]))
+    return {f"{name}_{apart.join(str(i + start) for i in place)}": moved[place] for place in places}
+
+
+def whole_and_elements(name: str, array: FloatArray, start: int = 1) -> dict[str, FloatArray]:
+    """Return a vector or matrix under its name, and its elements under theirs."""
+    return {name: array} | elements(name, array, start)
+
+
+def coordinates(name: str, array: FloatArray, infix: str = "_") -> dict[str, FloatArray]:
+    """Return the coordinates of vectors (T, 3) under their names: P_x, P_y, P_z."""
+    return {f"{name}{infix}{axis}": array[:, place] for place, axis in enumerate("xyz")}
+
+
+def along(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Return each matrix times its vector, shapes (T, m, n) and (T, n) to (T, m)."""
+    return np.asarray(np.einsum("tij,tj->ti", matrices, vectors))
+
+
+def columns(values: Symbols, names: Sequence[str]) -> FloatArray:
+    """Return values by name as the columns of one array, shape (T, n)."""
+    return np.column_stack([values[name] for name in names])

@@ -3,29 +3,25 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Literal
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
 from runner.audit.entry import Entry, Form, Part
-from runner.audit.evaluation import evaluate
-from runner.audit.expressions import ExpressionError, parse
-from runner.audit.sources import truth_of
+from runner.audit.evaluation import evaluate_all, with_symbols
+from runner.audit.model_truths import AuditedArm, audited_arm, sample
+from runner.audit.sources import Source, truth_of
 from runner.audit.truth import Elements, FloatArray, Symbols, Truth
+from runner.errors import ConfigError, RunnerError
+from runner.expressions.parser import ExpressionError, parse
 
 SAMPLES = 1000
 Verdict = Literal["correct", "correct after repair", "wrong as printed", "unreadable", "definition"]
-VERDICTS: tuple[Verdict, ...] = (
-    "correct",
-    "correct after repair",
-    "wrong as printed",
-    "unreadable",
-    "definition",
-)
+VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 
-class AuditError(Exception):
-    """An entry that contradicts itself: a correction that is wrong, two truths that disagree. A fault of ours."""
+class AuditError(RunnerError):
+    """An entry that contradicts itself or names what does not exist: a fault of those who audit."""
 
 
 @dataclass(frozen=True)
@@ -48,12 +44,13 @@ class Judged:
     """An entry with its verdict.
 
     Attributes:
-        source: The work.
+        source: Name of the work.
         entry: The equation.
         verdict: What the samples say.
         measured: Error of the form as printed (after repair where there is one); None where it has none.
         second: The same against the second way to the truth.
         unread: Why the printed form cannot be read, or "".
+        ways: The two ways to what it claims to equal, in words; empty texts where it claims nothing.
     """
 
     source: str
@@ -62,6 +59,7 @@ class Judged:
     measured: Measured | None
     second: Measured | None
     unread: str
+    ways: tuple[str, str]
 
 
 class Judge:
@@ -74,78 +72,90 @@ class Judge:
 
     def __init__(self, part: Part, samples: int = SAMPLES) -> None:
         self._part, self._samples = part, samples
-        self._truths: dict[tuple[str, int], Elements] = {}
+        self._found: dict[tuple[str, str, int], Elements] = {}
 
     @cached_property
     def symbols(self) -> Symbols:
         """The sample: a value of each symbol at each configuration."""
-        return _draw(self._part.source, self._part.symbols, self._samples)
+        part = self._part
+        if isinstance(part.symbols, str):
+            return _draw(part.source, part.symbols, self._samples)
+        arm = self._arm
+        return with_symbols(sample(arm.model, arm.joints, self._samples, np.random.default_rng(0)), part.symbols)
+
+    @cached_property
+    def _arm(self) -> AuditedArm:
+        return audited_arm(self._part.robot, self._part.tip, self._part.joints, self._part.source.folder)
 
     def judge(self, entry: Entry) -> Judged:
         """Return the verdict on an entry.
 
         Raises:
-            AuditError: If the entry contradicts itself.
+            AuditError: If the entry contradicts itself, or names what does not exist; tells file and entry.
         """
+        try:
+            return self._judge(entry)
+        except RunnerError as error:
+            what = "; ".join(error.problems) if isinstance(error, ConfigError) else error
+            raise AuditError(f"{self._part.path}: {entry.id}: {what}") from error
+
+    def _judge(self, entry: Entry) -> Judged:
         unread = _unread(entry.printed)
-        if unread:
-            return self._after_repair(entry, unread)
-        if not entry.truth:
-            return self._judged(entry, "definition", None)
-        measured = self._measure(entry, entry.printed)
-        if entry.repair is not None:
-            if max(each.largest for each in measured) <= entry.tolerance:
-                raise AuditError(f"{entry.id}: is repaired, but holds as it stands")
-            return self._after_repair(entry, "")
-        if max(each.largest for each in measured) <= entry.tolerance:
-            return self._judged(entry, "correct", measured)
-        return self._wrong(entry, measured, "")
-
-    def _after_repair(self, entry: Entry, unread: str) -> Judged:
-        if entry.repair is None:
+        if unread and entry.repair is None:
             return self._judged(entry, "unreadable", None, unread)
-        measured = self._measure(entry, entry.repair)
-        if max(each.largest for each in measured) <= entry.tolerance:
-            return self._judged(entry, "correct after repair", measured, unread)
-        return self._wrong(entry, measured, unread)
-
-    def _wrong(self, entry: Entry, measured: tuple[Measured, Measured], unread: str) -> Judged:
-        if min(each.largest for each in measured) <= entry.tolerance:
-            raise AuditError(f"{entry.id}: the two ways to the truth disagree")
+        if not (unread or entry.truth):
+            return self._judged(entry, "definition", None, "")
+        if entry.repair and not unread and self._measure(entry, entry.printed).worst <= entry.tolerance:
+            raise AuditError("is repaired, but holds as it stands")
+        measured = self._measure(entry, entry.repair or entry.printed)
+        if measured.worst <= entry.tolerance:
+            return self._judged(entry, "correct after repair" if entry.repair else "correct", measured, unread)
+        if min(measured.first.largest, measured.second.largest) <= entry.tolerance:
+            raise AuditError("the two ways to the truth disagree")
         if entry.corrected is None:
-            raise AuditError(f"{entry.id}: is wrong by {measured[0].largest:.3g} {entry.unit} and has no correction")
+            raise AuditError(f"is wrong by {measured.first.largest:.3g} {entry.unit} and has no correction")
         right = self._measure(entry, entry.corrected)
-        if max(each.largest for each in right) > entry.tolerance:
-            raise AuditError(f"{entry.id}: the correction is wrong by {right[0].largest:.3g} {entry.unit}")
+        if right.worst > entry.tolerance:
+            raise AuditError(f"the correction is wrong by {right.first.largest:.3g} {entry.unit}")
         return self._judged(entry, "wrong as printed", measured, unread)
 
-    def _judged(
-        self, entry: Entry, verdict: Verdict, measured: tuple[Measured, Measured] | None, unread: str = ""
-    ) -> Judged:
+    def _judged(self, entry: Entry, verdict: Verdict, found: "_Both | None", unread: str) -> Judged:
         if entry.corrected is not None and verdict != "wrong as printed":
-            raise AuditError(f"{entry.id}: is corrected, but its verdict is '{verdict}'")
-        first, second = measured or (None, None)
-        return Judged(self._part.source, entry, verdict, first, second, unread)
+            raise AuditError(f"is corrected, but its verdict is '{verdict}'")
+        first, second = (found.first, found.second) if found else (None, None)
+        ways = self.truth(entry).ways if entry.truth else ("", "")
+        return Judged(self._part.source.name, entry, verdict, first, second, unread, ways)
 
-    def _measure(self, entry: Entry, form: Form) -> tuple[Measured, Measured]:
-        found = self._evaluate(form)
-        first, second = (_compare(entry, found, self._truth(entry.truth, way)) for way in (0, 1))
-        return first, second
+    def _measure(self, entry: Entry, form: Form) -> "_Both":
+        found, truth = self._evaluate(form), self.truth(entry)
+        for way, function in enumerate((truth.first, truth.second)):
+            if (entry.truth, entry.tip, way) not in self._found:
+                self._found[entry.truth, entry.tip, way] = function(self.symbols)
+        return _Both(*(_compare(entry, found, self._found[entry.truth, entry.tip, way]) for way in (0, 1)))
 
     def _evaluate(self, form: Form) -> Elements:
         if form.code:
             values: Elements = truth_of(self._part.source, form.code)(self.symbols)
             return values
-        try:
-            return {name: evaluate(parse(text), self.symbols) for name, text in form.elements.items()}
-        except ExpressionError as error:
-            raise AuditError(f"{self._part.source}: {error}") from error
+        return evaluate_all(form.elements, self.symbols)
 
-    def _truth(self, name: str, way: int) -> Elements:
-        if (name, way) not in self._truths:
-            truth: Truth = truth_of(self._part.source, name)
-            self._truths[name, way] = (truth.first, truth.second)[way](self.symbols)
-        return self._truths[name, way]
+    def truth(self, entry: Entry) -> Truth:
+        """Return what an entry claims to equal."""
+        if entry.truth.startswith("model."):
+            return self._arm.at(entry.tip).truth(entry.truth)
+        truth: Truth = truth_of(self._part.source, entry.truth)
+        return truth
+
+
+class _Both(NamedTuple):
+    """A form against both ways to the truth."""
+
+    first: Measured
+    second: Measured
+
+    @property
+    def worst(self) -> float:
+        return max(each.largest for each in self)
 
 
 def _unread(form: Form) -> str:
@@ -159,7 +169,7 @@ def _unread(form: Form) -> str:
 
 
 @lru_cache(maxsize=8)
-def _draw(source: str, name: str, samples: int) -> Symbols:
+def _draw(source: Source, name: str, samples: int) -> Symbols:
     symbols: Symbols = truth_of(source, name)(samples, np.random.default_rng(0))
     return symbols
 
@@ -167,12 +177,11 @@ def _draw(source: str, name: str, samples: int) -> Symbols:
 def _compare(entry: Entry, found: Elements, truth: Elements) -> Measured:
     missing = sorted(set(found) - set(truth))
     if missing:
-        raise AuditError(f"{entry.id}: no truth for {', '.join(missing)}; there is {', '.join(truth)}")
+        raise AuditError(f"no truth for {', '.join(missing)}; there is {', '.join(truth)}")
     sizes = {name: error(values, truth[name], entry.unit) for name, values in found.items()}
     worst = np.max(list(sizes.values()), axis=0)
-    return Measured(
-        float(worst.max()), float(np.median(worst)), {name: float(size.max()) for name, size in sizes.items()}
-    )
+    largest = {name: float(size.max()) for name, size in sizes.items()}
+    return Measured(float(worst.max()), float(np.median(worst)), largest)
 
 
 def error(found: FloatArray, truth: FloatArray, unit: str) -> FloatArray:
