@@ -1,207 +1,229 @@
-"""Gravity compensation (section 4 of the report), judged by the true tool and sensor."""
-
-from collections.abc import Mapping
+"""Gravity compensation (section 4 of the report), right and as it is printed, judged by the true tool and sensor."""
 
 import numpy as np
+import pinocchio as pin
 
 from runner.calibration import identify_gravity
-from runner.reporting.document import Curves, Formula, Section, Table, Text
-from runner.reporting.figures import columns, joint_columns, origin
-from runner.reporting.findings import Finding, finding
-from runner.reporting.measured import ROUNDING, Measured
-from runner.reporting.quantities import number, with_interval
-from runner.store import Calibration, Run
-from runner.works.meca500.calibration_plan import NOISES, SAMPLES, name_of
-from runner.works.meca500.calibration_studies import (
-    Calibrations,
-    consistency_finding,
-    consistency_values,
-    error_curves,
-    flange_of,
-    found_error,
-    predicted_error,
-)
-from runner.works.meca500.gravity_misprints import misprints_section
-from runner.works.meca500.gravity_orientations import orientations_section
-from runner.works.meca500.gravity_residual import residual_section
+from runner.calibration.orientations import check_orientations, force_matrix, moment_matrix
+from runner.calibration.procedures.gravity import even_postures
+from runner.quantities import number, quantity, with_interval
+from runner.reporting.document import FloatArray, Panel, Series, Table
+from runner.reporting.figures import joint_columns, origin
+from runner.reporting.measured import ROUNDING
+from runner.reporting.prose.patterns import Found, found
+from runner.reporting.prose.tables import Column
+from runner.robots import RobotModel
+from runner.store import Calibration
+from runner.works.meca500.figures import Calibrations, Runs, degrees, error, flange_of, predicted, refusal, wrenches
 
-_INTERVAL = 0.95
-_HALF = 1.959964  # standard deviations, of that interval
+_EXACT = "gravity/noise/0"
+_ORIENTATIONS = 300
+_INTERVAL, _HALF = 95.0, 1.959964  # per cent that an interval holds, and its half width in standard deviations
 _SCALED = {"kg": ("g", 1e3), "rad": ("mrad", 1e3), "m": ("mm", 1e3), "N": ("mN", 1e3), "N m": ("mN m", 1e3)}
+_CASES = ("nothing taken off", "biases alone", "identified tool and biases")
 
 
-def gravity_section(calibrations: Calibrations, runs: Mapping[str, Run]) -> Section:
-    """Return the identification, its orientations, what the compensation leaves, the misprints, and PyBullet's check.
+def identified(done: Calibration) -> dict[str, float]:
+    """Return the largest relative error in the first repetition, and in how many cases an interval holds the truth.
 
-    Args:
-        calibrations: The calibrations by name.
-        runs: The report's runs by name, of which "rest/..." weigh the tool in PyBullet.
+    The latter in per cent, as is what an interval is to hold.
     """
-    base, exact = calibrations["gravity/base"], calibrations[name_of("gravity/noise", 0.0)]
-    return Section(
-        "Gravity compensation",
-        sections=(
-            _identification(calibrations, base, exact),
-            orientations_section(calibrations),
-            residual_section(base),
-            misprints_section(exact),
-            _weighed_in_bullet([run for name, run in runs.items() if name.startswith("rest/")], base),
-        ),
-    )
+    relative = np.abs(done.values("errors")[0]) / np.abs(_truth(done))
+    return {"relative": float(relative.max()), "held": 100.0 * float(np.mean(_held(done))), "interval": _INTERVAL}
 
 
-def _identification(calibrations: Calibrations, base: Calibration, exact: Calibration) -> Section:
-    config = base.config["calibration"]
-    return Section(
-        "Tool and sensor identified",
-        (
-            Text(
-                "At rest the sensor reads its biases and the tool's weight. The moment step gives the centre of mass "
-                "$r$ and $k$, the force step the weight $G$, the mounting angle $theta$ and the force biases, and the "
-                "moment biases follow:"
-            ),
-            Formula(
-                "M = -[F]_times r + k, quad F = F_0 - vec(rho_x G_c + rho_y G_s, rho_y G_c - rho_x G_s, rho_z G), "
-                'quad theta = "atan2"(G_s, G_c), quad M_0 = k + r times F_0',
-                "M equals minus F cross r plus k; F equals F 0 minus the weight along the sensor's axes; theta is the "
-                "arc tangent of G s and G c; M 0 equals k plus r cross F 0",
-            ),
-            Text(
-                f"A Mini40 reads the tool in {config['orientations']} orientations, {config['samples']} readings "
-                "averaged in each; the joint positions err by the arm's repeatability. The covariance carries noise, "
-                "quantisation $q^2 slash 12$ and the orientations' errors through both steps; the noise of the forces "
-                "enters the moment step twice, in its matrix and its right side."
-            ),
-            _parameters(base, exact),
-            identification_finding(**identification_values(calibrations)),
-            _noise_curves(calibrations),
-            consistency_finding(**consistency_values(calibrations, "gravity")),
-        ),
-    )
-
-
-def identification_values(calibrations: Calibrations) -> dict[str, Measured]:
-    """Return what the finding on the identified tool and sensor is about."""
-    base, exact = calibrations["gravity/base"], calibrations[name_of("gravity/noise", 0.0)]
-    relative = np.abs(exact.values("errors")[0]) / np.abs(np.array(list(exact.truth.values())))
-    found = {"mass": ("mass", "g", 1e3), "theta": ("mounting angle", "mrad", 1e3), "r": ("centre of mass", "µm", 1e6)}
-    values = {"exact": Measured("largest relative error without noise", float(relative.max()))}
-    for key, (title, unit, factor) in found.items():
-        names = ("r_x", "r_y", "r_z") if key == "r" else (key,)
-        values[key] = Measured(f"error of the {title}", factor * found_error(base, *names), unit)
-        values[f"{key}_predicted"] = Measured(
-            f"predicted error of the {title}", factor * predicted_error(base, *names), unit
+def parameters(calibrations: Calibrations, name: str, caption: str) -> Table:
+    """Return the identified tool and sensor beside the truth."""
+    done, exact = calibrations[name], calibrations[_EXACT]
+    rows = []
+    for column, value in enumerate(done.truth):
+        unit, factor = _SCALED[done.summary("errors", value)["unit"]]
+        deviation = done.summary("deviations", value)["median"]
+        rows.append(
+            [
+                value.replace("_", " "),
+                unit,
+                number(factor * done.truth[value], 4),
+                *with_interval(factor * done.values("estimates", value)[0, 0], _HALF * factor * deviation),
+                *(number(factor * what(value)(done)) for what in (error, predicted)),
+                f"{100 * float(np.mean(_held(done)[:, column])):.0f} %",
+                number(abs(factor * exact.values("errors", value)[0, 0]), 2, rounding=ROUNDING),
+            ]
         )
-    return values | {
-        "interval": Measured("interval", 100.0 * _INTERVAL, "%"),
-        "held": Measured("intervals that hold the truth", 100.0 * float(np.mean(_held(base))), "%"),
+    header = ["value", "unit", "true", "found", "interval", "error", "predicted", "held", "without noise"]
+    return Table(caption, header, rows, (2, 3, 4, 5, 6, 7, 8), origin(done))
+
+
+def choice() -> Column:
+    """Return a column with how the orientations of gravity/CHOICE/LEVEL are chosen."""
+    words = {"best": "by conditioning", "first": "evenly over the joints"}
+
+    def text(_: Runs, row: Found) -> str:
+        kind, level = row.name.split("/")[1:]
+        return words.get(kind, f"within {degrees(float(level)):.0f}° of home" if kind == "spread" else "")
+
+    return Column("orientations", text)
+
+
+def refused(caption: str) -> Table:
+    """Return which sets of orientations are refused, and why."""
+    quarters = np.arange(4) * np.pi / 2
+    sets = {
+        "2 orientations": [np.zeros(3), np.array([1.0, 0.0, 0.0])],
+        "4 orientations turned about the vertical": [np.array([0.0, 0.0, turn]) for turn in quarters],
+        "4 orientations tilted by 10 deg all around": [
+            np.radians(10.0) * np.array([np.cos(turn), np.sin(turn), 0.0]) for turn in quarters
+        ],
+    }
+
+    def attempt(vectors: list[FloatArray]) -> str:
+        return refusal(lambda: check_orientations(np.array([pin.exp3(vector) for vector in vectors])))
+
+    return Table(caption, ["set", "reason given"], [[name, attempt(vectors)] for name, vectors in sets.items()])
+
+
+def residual(done: Calibration) -> dict[str, float]:
+    """Return the root mean square of what compensation leaves, and the noise of a reading, in mN and mN m."""
+    left = _left_over(done)[1][_CASES[2]]
+    noise = np.array(done.config["wrist_sensor"]["noise"])
+    return {
+        "orientations": _ORIENTATIONS,
+        "force": 1e3 * _rms(left[..., 0]),
+        "moment": 1e3 * _rms(left[..., 1]),
+        "force_noise": 1e3 * float(np.linalg.norm(noise[:3])),
+        "moment_noise": 1e3 * float(np.linalg.norm(noise[3:])),
     }
 
 
-def identification_finding(
-    exact: Measured,
-    mass: Measured,
-    mass_predicted: Measured,
-    theta: Measured,
-    theta_predicted: Measured,
-    r: Measured,
-    r_predicted: Measured,
-    interval: Measured,
-    held: Measured,
-) -> Finding:
-    """Return how well tool and sensor are found, and whether the covariance tells it."""
-    return finding(
-        "The covariance tells how far the estimates are off",
-        f"Without noise and quantisation every value is found to rounding: {exact.shown}, relative. With the Mini40's, "
-        f"the mass is found to {mass} (predicted: {mass_predicted}), the mounting angle to {theta} (predicted: "
-        f"{theta_predicted}) and the centre of mass to {r} (predicted: {r_predicted}). The {interval} intervals hold "
-        f"the truth in {held} of all cases.",
-        exact < ROUNDING,
-        mass.near(mass_predicted, 0.35),
-        theta.near(theta_predicted, 0.35),
-        r.near(r_predicted, 0.35),
-        held.near(interval, 0.04),
-    )
+def left_over(calibrations: Calibrations, name: str) -> list[list[str]]:
+    """Return force in N and moment in N m felt though nothing touches the tool, rms and largest, for each case."""
+    return [
+        [case, *(number(value) for part in (0, 1) for value in (_rms(left[..., part]), float(left[..., part].max())))]
+        for case, left in _left_over(calibrations[name])[1].items()
+    ]
+
+
+def left_over_panels(calibrations: Calibrations, name: str) -> list[Panel]:
+    """Return what compensation leaves over how far the flange's z axis is from straight down."""
+    orientations, left = _left_over(calibrations[name])
+    tilt = np.degrees(np.arccos(np.clip(-orientations[:, 2, 2], -1.0, 1.0)))
+    order = np.argsort(tilt)
+    panels = []
+    for part, (title, unit) in enumerate((("Force", "N"), ("Moment", "N m"))):
+        middle, high = np.percentile(left[_CASES[2]][:, order, part], [50, 95], axis=0)
+        series = [
+            Series("median of the repetitions", tilt[order], middle, "points"),
+            Series("95th percentile", tilt[order], high, "points"),
+        ]
+        panels.append(Panel(title, "flange's z axis from straight down (deg)", f"left over ({unit})", series))
+    return panels
+
+
+def weighed(runs: Runs, pattern: str, caption: str) -> Table:
+    """Return the identification from PyBullet's own reaction at the tool's joint, in place of the sensor's model."""
+    at_rest = [each.run for each in found(runs, pattern)]
+    first = at_rest[0]
+    flange = RobotModel(first.urdf, first.config["robot"]["tip"], first.config["gravity"])
+    orientations = np.array([flange.tip_pose(joint_columns(run.trace, "q")[-1])[:3, :3] for run in at_rest])
+    reactions = np.array([wrenches(run, "reaction")[-1] for run in at_rest])
+    no_errors = np.zeros((len(at_rest), 3, 3))
+    done = identify_gravity(reactions, orientations, float(first.config["gravity"]), np.zeros(6), no_errors)
+    tool = first.config["robot"]["tool"]
+    off = np.abs(done.values - np.array([tool["mass"], 0.0, *tool["centre_of_mass"], *np.zeros(6)]))
+    header = ["mass (kg)", "$theta$ (rad)", "centre of mass (m)", "force biases (N)", "moment biases (N m)"]
+    cells = [number(float(part.max()), 2, rounding=ROUNDING) for part in np.split(off, [1, 2, 5, 8])]
+    return Table(caption, header, [cells], tuple(range(5)), origin(first))
+
+
+def misprints(calibrations: Calibrations) -> dict[str, str]:
+    """Return what the equations as printed and right give of exact readings, as texts."""
+    exact = calibrations[_EXACT]
+    truth, R, gravity = _truth(exact), _orientations(exact), float(exact.config["gravity"])
+    readings = exact_readings(truth, R, gravity)
+    given = {
+        "mass": quantity(float(truth[0]), "kg"),
+        "theta": f"{truth[1]:g}",
+        "swapped": _in_mm(swapped_moment_step(readings[:, :3], readings[:, 3:])),
+        "centre": _in_mm(truth[2:5]),
+        "moment": quantity(float(np.abs(truth[8:] - truth[5:8]).max()), "N m"),
+        "counted": number(1.0 / abs(float(np.sin(truth[1]))), 2),
+    }
+    for key, orientations in (("columns", R.transpose(0, 2, 1)), ("rows", R)):
+        G_c, G_s, G, left = force_step(readings[:, :3], orientations)
+        of_forces = "0 N" if left < 1e-9 else quantity(left, "N")
+        theta = float(np.arctan2(G_s, G_c))
+        given[key] = f"{quantity(G / gravity, 'kg')}, $theta = {theta:.3g}$ rad, {of_forces} of the forces left over"
+    return given
+
+
+def angles(calibrations: Calibrations, angle: float) -> list[str]:
+    """Return a mounting angle, in rad, and what arc cosine, arc sine and the right formula make of it."""
+    exact = calibrations[_EXACT]
+    turned, R = _truth(exact), _orientations(exact)
+    turned[1] = angle
+    G_c, G_s, G, _ = force_step(exact_readings(turned, R, float(exact.config["gravity"]))[:, :3], R)
+    cosine, sine = np.clip([G_c / G, G_s / G], -1.0, 1.0)
+    found = (np.arccos(cosine), np.arcsin(sine), np.arctan2(G_s, G_c))
+    return [f"{angle:g}", *(f"{value:.3f}" for value in found)]
+
+
+def exact_readings(parameters: FloatArray, orientations: FloatArray, gravity: float) -> FloatArray:
+    """Return what a sensor without noise reads of a tool at rest, by what a calibration estimates, shape (N, 6)."""
+    mass, theta, (r, F_0, M_0) = parameters[0], parameters[1], np.split(parameters[2:], 3)
+    weight = mass * gravity * np.array([np.cos(theta), np.sin(theta), 1.0])
+    forces = (force_matrix(orientations) @ np.concatenate([weight, F_0])).reshape(-1, 3)
+    moments = moment_matrix(forces) @ np.concatenate([r, M_0 - np.cross(r, F_0)])
+    return np.hstack([forces, moments.reshape(-1, 3)])
+
+
+def force_step(forces: FloatArray, orientations: FloatArray) -> tuple[float, float, float, float]:
+    """Solve the force step with the third rows of the orientations; return G_c, G_s, G and the rms of what is left.
+
+    All in N. The report does not define r. With r the inverse rotation its r_02, r_12, r_22 are these rows; with
+    r = 0R6 they are the third columns: that is this function with each orientation, 0R6, transposed.
+    """
+    B = force_matrix(orientations)
+    solution = np.linalg.lstsq(B, forces.reshape(-1), rcond=None)[0]
+    G_c, G_s, G = solution[:3].tolist()
+    return G_c, G_s, G, _rms(forces.reshape(-1) - B @ solution)
+
+
+def swapped_moment_step(forces: FloatArray, moments: FloatArray) -> FloatArray:
+    """Return the centre of mass with G_y and G_z swapped, as in the section's first equations, shape (3,), in m."""
+    A = moment_matrix(forces[:, [0, 2, 1]])
+    return np.array(np.linalg.lstsq(A, moments.reshape(-1), rcond=None)[0][:3], dtype=float)
+
+
+def _truth(done: Calibration) -> FloatArray:
+    return np.array(list(done.truth.values()))
+
+
+def _orientations(done: Calibration) -> FloatArray:
+    """Return 0R6 of each posture, shape (N, 3, 3)."""
+    model = flange_of(done)
+    return np.array([model.tip_pose(q)[:3, :3] for q in done.postures])
 
 
 def _held(done: Calibration) -> np.ndarray:
     """Return whether each interval of each repetition holds the truth, shape (repetitions, 11)."""
-    held: np.ndarray = np.abs(done.values("errors")) < _HALF * done.values("deviations")
-    return held
+    return np.abs(done.values("errors")) < _HALF * done.values("deviations")
 
 
-def _parameters(base: Calibration, exact: Calibration) -> Table:
-    rows = []
-    for column, name in enumerate(base.truth):
-        unit, factor = _SCALED[base.summary("errors", name)["unit"]]
-        deviation = base.summary("deviations", name)["median"]
-        rows.append(
-            [
-                name.replace("_", " "),
-                unit,
-                number(factor * base.truth[name], 4),
-                *with_interval(factor * base.values("estimates", name)[0, 0], _HALF * factor * deviation),
-                number(factor * found_error(base, name)),
-                number(factor * predicted_error(base, name)),
-                f"{100 * float(np.mean(_held(base)[:, column])):.0f} %",
-                number(abs(factor * exact.values("errors", name)[0, 0]), 2, rounding=ROUNDING),
-            ]
-        )
-    return Table(
-        f"Identified tool and sensor: the first repetition with its {100 * _INTERVAL:g} % interval, the root mean "
-        f"square of all {base.record['repetitions']} errors beside the predicted one, how many intervals hold the "
-        "truth, and the error without noise.",
-        ["value", "unit", "true", "found", "interval", "error", "predicted", "held", "without noise"],
-        rows,
-        (2, 3, 4, 5, 6, 7, 8),
-        origin(base),
-    )
+def _left_over(done: Calibration) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Return orientations, shape (N, 3, 3), and by what is taken off the force and moment left, shape (..., N, 2)."""
+    model = flange_of(done)
+    orientations = np.array([model.tip_pose(q)[:3, :3] for q in even_postures(model, _ORIENTATIONS)])
+    truth, gravity = _truth(done), float(done.config["gravity"])
+    true = exact_readings(truth, orientations, gravity)
+    estimated = [exact_readings(own, orientations, gravity) for own in done.values("estimates")]
+    left: list[FloatArray] = [true[None], (true - truth[5:])[None], true - np.array(estimated)]
+    parts = (np.linalg.norm(values.reshape(*values.shape[:-1], 2, 3), axis=-1) for values in left)
+    return orientations, dict(zip(_CASES, parts, strict=True))
 
 
-def _noise_curves(calibrations: Calibrations) -> Curves:
-    return Curves(
-        "Errors over the sensor's noise (times the Mini40's) and over the number of readings averaged.",
-        (
-            error_curves(
-                calibrations, {"gravity/noise": NOISES}, "noise, times the Mini40's", "mass (g)", "mass", y_factor=1e3
-            ),
-            error_curves(
-                calibrations, {"gravity/samples": SAMPLES}, "readings averaged", "mass (g)", "mass", y_factor=1e3
-            ),
-            error_curves(
-                calibrations, {"gravity/samples": SAMPLES}, "readings averaged", "angle (mrad)", "theta", y_factor=1e3
-            ),
-        ),
-        3,
-        origin(calibrations["gravity/base"]),
-    )
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
 
 
-def _weighed_in_bullet(runs: list[Run], base: Calibration) -> Section:
-    """Return the identification from PyBullet's own reaction at the tool's joint, in place of the sensor's model."""
-    model, gravity = flange_of(base), float(base.config["gravity"])
-    orientations = np.array([model.tip_pose(joint_columns(run.trace, "q")[-1])[:3, :3] for run in runs])
-    reactions = np.array(
-        [np.concatenate([columns(run.trace, f"reaction_{part}")[-1] for part in ("force", "moment")]) for run in runs]
-    )
-    found = identify_gravity(reactions, orientations, gravity, np.zeros(6), np.zeros((len(runs), 3, 3)))
-    tool = base.config["robot"]["tool"]
-    truth = np.array([tool["mass"], 0.0, *tool["centre_of_mass"], *np.zeros(6)])
-    off = np.abs(found.values - truth)
-    return Section(
-        "Weighed in the simulated arm",
-        (
-            Text(
-                "The readings above are the tool's weight in the sensor's frame, exactly. As a check, the same "
-                f"identification from PyBullet's reaction at the tool's joint, the arm held at rest in {len(runs)} "
-                "random orientations:"
-            ),
-            Table(
-                "Identified from PyBullet's joint reaction, in the flange's frame, less the truth.",
-                ["mass (kg)", "$theta$ (rad)", "centre of mass (m)", "force biases (N)", "moment biases (N m)"],
-                [[number(float(part.max()), 2, rounding=ROUNDING) for part in np.split(off, [1, 2, 5, 8])]],
-                tuple(range(5)),
-                origin(runs[0]),
-            ),
-        ),
-    )
+def _in_mm(centre: FloatArray) -> str:
+    return f"centre of mass ({', '.join(f'{1e3 * value:.1f}' for value in centre)}) mm"

@@ -1,156 +1,116 @@
-"""Up to which wall a sampled admittance is stable: the predicted bound and what runs show."""
+"""Up to which wall a sampled admittance is stable: what its linear maps predict and what runs show."""
 
-from collections.abc import Mapping
+import json
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
+from runner.assembly import servo_contact
+from runner.config.validation import validate
 from runner.controllers.admittance_stability import stiffest_wall
-from runner.reporting.document import Curves, Formula, Panel, Section, Series, Table, Text
-from runner.reporting.figures import origin
-from runner.reporting.findings import Finding, finding
-from runner.reporting.measured import Measured
-from runner.reporting.quantities import number
+from runner.quantities import number
+from runner.reporting.document import Panel, Series
+from runner.reporting.figures import joint_columns
+from runner.reporting.prose.patterns import found
+from runner.servo_contact import ServoContact, contact_radius, stiffest_servo_wall
 from runner.store import Run
-from runner.works.meca500.bouncing import bounces
-from runner.works.meca500.plan import DAMPING, MAP_PERIODS, MAP_SHARES, MASS, STIFFNESS, law
-from runner.works.meca500.servo_walls import servo_wall_blocks, wall_of
+from runner.works.meca500.figures import Runs, bounces, law_of, once
+from runner.works.meca500.plan import law
 
 
-def stability_map_section(runs: Mapping[str, Run]) -> Section:
-    """Return the map over the wall's stiffness and the period, and what servos make of it."""
-    rows = []
-    for period in MAP_PERIODS:
-        found = [runs[f"map/kinematic/{period}/{share}"] for share in MAP_SHARES]
-        stable = [wall_of(run) for run in found if not bounces(run)]
-        unstable = [wall_of(run) for run in found if bounces(run)]
-        rows.append(
-            [
-                f"{1e3 * period:g}",
-                number(stiffest_wall(law(), period, 0, 0.0, 0)),
-                number(stiffest_wall(law(), period, 0, 0.0, 1)),
-                number(max(stable)) if stable else "none",
-                number(min(unstable)) if unstable else "none",
-            ]
-        )
-    first = runs[f"map/kinematic/{MAP_PERIODS[0]}/{MAP_SHARES[0]}"]
-    return Section(
-        "Stability at a wall over its stiffness and the sample time",
-        (
-            Text(
-                "In contact the sampled law and the wall close a loop: what the tip does in one period is felt in the "
-                "next, and a stiff wall answers more than it is asked. One period takes the state of velocity and "
-                "positions from one tick to the next by a matrix, and contact is stable where its eigenvalues lie "
-                "inside the unit circle. That holds for ideal joints, which go where they are told: they reach each "
-                "command by the next tick (delay 0), or a tick later (delay 1). The masses and servos of an arm are "
-                "not in it:"
-            ),
-            Formula(
-                "vec(dot(x)_(k+1), x_(k+1)) = Phi vec(dot(x)_k, x_k) - Gamma k_w x_(k-d), quad "
-                'max abs(lambda) < 1, quad d = 0 "or" 1',
-                "the next velocity and position are Phi times the last ones minus Gamma times k w times the position d "
-                "ticks before; stable where the largest modulus of an eigenvalue is below one; d is zero or one",
-            ),
-            Text(
-                f"The law has $M = {MASS:g}$ kg, $B = {DAMPING:g}$ N s/m, $K = {STIFFNESS:g}$ N/m; the wall has no "
-                "damping. The tip stands at the wall, and with ideal joints its goal goes 10 mm into it. A run counts "
-                "as unstable when in its last third the tip leaves the wall, or the force swings more widely than in "
-                "the third before."
-            ),
-            _map(runs),
-            Table(
-                "Stiffest wall, in N/m: predicted for ideal joints, and between which runs the observed bound lies.",
-                [
-                    "period (ms)",
-                    "predicted, delay 0",
-                    "predicted, delay 1",
-                    "stiffest stable",
-                    "softest unstable",
-                ],
-                rows,
-                tuple(range(5)),
-                origin(first),
-            ),
-            ideal_wall_finding(**ideal_wall_values(runs)),
-            *servo_wall_blocks(runs),
-        ),
-    )
+@once
+def contact(run: Run) -> dict[str, float]:
+    """Return what is predicted of a run at a wall and what it shows.
 
-
-def ideal_wall_values(runs: Mapping[str, Run]) -> dict[str, Measured]:
-    """Return what the finding on walls before ideal joints is about."""
-    right, count = agreement(runs)
-    shares, periods = MAP_SHARES, MAP_PERIODS
-    about = [stiffest_wall(law(), period, 0, 0.0, 0) * period / (2.0 * DAMPING) for period in periods]
+    Stiffnesses in N/m: wall, ideal and late, the bounds of ideal joints that act at once or a tick late, and bound,
+    that of the run's own joints. Ratios: over, wall to bound; rule, ideal to 2 B / h; behind, bound to ideal; off is
+    how far the wall is from the bound, in per cent. radius is the spectral radius of the loop behind servos, and
+    saturated the largest share of ticks that one of them is at its limit. The rest is true or not: that it
+    is beyond the bound, that it bounces, that the one says the other, and both.
+    """
+    own_law, wall = law_of(run), float(run.config["environment"]["stiffness"])
+    period = float(run.config["controller"]["period"])
+    ideal, late = (stiffest_wall(own_law, period, 0, 0.0, delay) for delay in (0, 1))
+    bound, radius = ideal, np.nan
+    if run.config["plant"]["kind"] == "bullet":
+        q = tuple(joint_columns(run.trace, "q")[0].tolist())
+        radius = contact_radius(_loop(run.config, q))
+        any_wall = {**run.config, "environment": {**run.config["environment"], "stiffness": 1.0}}
+        bound = _bound(json.dumps(any_wall, sort_keys=True), q)
+    beyond, bouncing = radius > 1.0 if np.isfinite(radius) else wall > bound, bounces(run)
+    shares = (own["values"][0] for name, own in run.metrics.items() if name.startswith("saturation_fraction_q"))
     return {
-        "right": Measured("runs stable or not as predicted", right),
-        "count": Measured("runs on the kinematic plant", count),
-        "nearest": Measured("least distance from the bound", 100.0 * min(abs(share - 1.0) for share in shares), "%"),
-        "least": Measured("least wall over the bound", min(shares)),
-        "most": Measured("largest wall over the bound", max(shares)),
-        "period": Measured("longest sample time", 1e3 * periods[-1], "ms"),
-        "bound": Measured("bound at the longest sample time", stiffest_wall(law(), periods[-1], 0, 0.0, 0), "N/m"),
-        "low": Measured("least ratio of the bound to 2 B / h", min(about)),
-        "high": Measured("largest ratio of the bound to 2 B / h", max(about)),
+        "wall": wall,
+        "ideal": ideal,
+        "late": late,
+        "bound": bound,
+        "over": wall / bound,
+        "rule": ideal * period / (2.0 * float(own_law.damping[0])),
+        "behind": bound / ideal,
+        "off": 100.0 * abs(wall / bound - 1.0),
+        "radius": radius,
+        "saturated": float(max(shares)),
+        "beyond": beyond,
+        "right": bouncing == beyond,
+        "both": bouncing and beyond,
+        "wrong": bouncing and not beyond,
+        "calm": not bouncing and not beyond,
     }
 
 
-def ideal_wall_finding(
-    right: Measured,
-    count: Measured,
-    nearest: Measured,
-    least: Measured,
-    most: Measured,
-    period: Measured,
-    bound: Measured,
-    low: Measured,
-    high: Measured,
-) -> Finding:
-    """Return how well the bound tells which walls an arm of ideal joints stands."""
-    return finding(
-        "For ideal joints the bound tells which wall the law stands",
-        f"On the kinematic plant, whose joints go where they are told, {right} of {count} runs, from {least} to {most} "
-        f"times the bound, are stable or not as predicted, the nearest {nearest} from it. Here filter and wall alone "
-        f"close the loop. The bound falls with the sample time: it is {low} to {high} times $2 B slash h$, and "
-        f"{bound} at {period} and this damping.",
-        right >= count,
-        count >= 20.0,
-        least < 0.9,
-        most > 1.1,
-        nearest < 20.0,
-        low > 0.9,
-        high < 1.25,
-    )
+def bound_at(delay: int) -> Callable[[float], float]:
+    """Return the stiffest wall of ideal joints that act so many ticks late over the sample time in ms, in N/m."""
+    return lambda period: stiffest_wall(law(), 1e-3 * period, 0, 0.0, delay)
 
 
-def agreement(runs: Mapping[str, Run]) -> tuple[int, int]:
-    """Return how many runs on the kinematic plant are stable or not as predicted, and of how many."""
-    agree = [
-        bounces(runs[f"map/kinematic/{period}/{share}"]) == (share > 1.0)
-        for period in MAP_PERIODS
-        for share in MAP_SHARES
-    ]
-    return sum(agree), len(agree)
+def stiffest_stable(*cases: Run) -> str:
+    """Return the stiffest wall of some runs that do not bounce."""
+    walls = [contact(run)["wall"] for run in cases if not bounces(run)]
+    return number(max(walls)) if walls else "none"
 
 
-def _map(runs: Mapping[str, Run]) -> Curves:
-    periods = np.geomspace(MAP_PERIODS[0], MAP_PERIODS[-1], 12)
-    bounds = {delay: np.array([stiffest_wall(law(), h, 0, 0.0, delay) for h in periods]) for delay in (0, 1)}
-    points: dict[bool, list[tuple[float, float]]] = {False: [], True: []}
-    for period in MAP_PERIODS:
-        for share in MAP_SHARES:
-            run = runs[f"map/kinematic/{period}/{share}"]
-            points[bounces(run)].append((1e3 * period, wall_of(run)))
-    series = [
-        Series(f"predicted, delay {delay}", 1e3 * periods, bound, "line" if delay == 0 else "dashed")
-        for delay, bound in bounds.items()
-    ]
-    for unstable, name in ((False, "stable"), (True, "unstable")):
-        if points[unstable]:
-            x, y = np.array(points[unstable]).T
-            series.append(Series(name, x, y, "points"))
-    return Curves(
-        "Stability of contact with ideal joints over sample time and stiffness of the wall.",
-        [Panel("kinematic", "sample time (ms)", "stiffness of the wall (N/m)", series, x_log=True, y_log=True)],
-        1,
-        origin(runs[f"map/kinematic/{MAP_PERIODS[0]}/{MAP_SHARES[0]}"]),
-    )
+def softest_unstable(*cases: Run) -> str:
+    """Return the softest wall of some runs that bounce."""
+    walls = [contact(run)["wall"] for run in cases if bounces(run)]
+    return number(min(walls)) if walls else "none"
+
+
+def as_predicted(*cases: Run) -> str:
+    """Return how many of some runs bounce or not as predicted."""
+    return f"{sum(contact(run)['right'] for run in cases):g} of {len(cases)}"
+
+
+def outcomes(runs: Runs, pattern: str, x: Callable[[Run], float], y: Callable[[Run], float]) -> list[Series]:
+    """Return the runs that a pattern stands for as points over two of their numbers, stable and unstable ones apart."""
+    series = []
+    for bouncing, name in ((False, "stable"), (True, "unstable")):
+        points = [(x(each.run), y(each.run)) for each in found(runs, pattern) if bounces(each.run) == bouncing]
+        if points:
+            over, value = np.array(points).T
+            series.append(Series(name, over, value, "points"))
+    return series
+
+
+def servo_panels(runs: Runs, pattern: str, x: Callable[[Run], float], y: Callable[[Run], float]) -> list[Panel]:
+    """Return the spectral radius over the wall's stiffness, for each case of servos."""
+    panels = []
+    for case in dict.fromkeys(each.levels["case"] for each in found(runs, pattern)):
+        own = pattern.replace("{case}", case)
+        walls = [x(each.run) for each in found(runs, own)]
+        level = Series("bound", np.array([min(walls), max(walls)]), np.ones(2), "line")
+        series = [level, *outcomes(runs, own, x, y)]
+        panels.append(Panel(f"{case} N m/rad", "stiffness of the wall (N/m)", "spectral radius", series))
+    return panels
+
+
+def _loop(config: Mapping[str, Any], q: tuple[float, ...]) -> ServoContact:
+    loop = servo_contact(validate(dict(config)), np.array(q))
+    assert loop is not None  # noqa: S101 - the plan's runs have servos, a law and a wall
+    return loop
+
+
+@lru_cache(maxsize=64)
+def _bound(config: str, q: tuple[float, ...]) -> float:
+    return stiffest_servo_wall(_loop(json.loads(config), q)) or np.nan

@@ -1,113 +1,176 @@
-"""What the thesis' chapters in Markdown call: figures, tables and sections from its runs."""
+"""What several chapters of the thesis call: the arms and laws that they draw, and numbers that more than one reads."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from runner.reporting.document import Block, Curves, Panel, Section, Series, Table
-from runner.reporting.figures import columns, origin
+from runner.claims import load_claims
+from runner.controllers.operational_space_graph import operational_space_graph
+from runner.drawing import block_diagram, frame_assignment
+from runner.quantities import above_rounding, spread
+from runner.reporting.document import Block, FloatArray, Picture, Table, Text
+from runner.reporting.figures import columns, joint_columns, model_of, origin, torque_and_error
+from runner.reporting.figures_staged import staged_torque_and_error
 from runner.reporting.job import PRESETS
-from runner.reporting.run_values import cell, clock
-from runner.reporting.words import in_words
+from runner.reporting.measured import Measured
+from runner.reporting.metric_titles import title
+from runner.reporting.plant_agreement import describe_agreement
+from runner.reporting.prose.patterns import found
+from runner.reporting.run_values import median
+from runner.reporting.words import PRESET, in_words
+from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.store import Run
-from runner.works.thesis import arm
-from runner.works.thesis.plan import SCHEDULES, TURN_DURATIONS
-from runner.works.thesis.studies import settled
+from runner.works.thesis.equations.truths.thesis_printed import compare
 
-_GOAL = ("settling_time", "steady_state_error", "overshoot", "peak_torque", "saturation_fraction")
-_TRACKING = (
-    "max_tracking_error",
-    "max_tracking_error_x",
-    "max_tracking_error_y",
-    "max_tracking_error_z",
-    "rms_tracking_error",
-    "steady_state_error",
-    "peak_torque",
-    "saturation_fraction_q1",
-)
-_SCHEDULE = {"both": "both at any time", "turns": "in turns"}
+_MEANINGS = {
+    "M": ("mass matrix, (3.17)", "kg m²"),
+    "V": ("centrifugal and Coriolis torque, (3.19)", "N m"),
+    "G": ("gravity torque, (3.24)", "N m"),
+    "J": ("basic Jacobian, (3.5)", "m"),
+    "T": ("tip transform, (3.1)", "m"),
+}
+_BROKEN = 10.0  # times the tip error of the thesis' own Mini
 
 
-def kinematics(runs: Mapping[str, Run], run: str, figure: str, table: str, first: int, tip: str) -> Section:
-    """Return frame assignment and D-H table of a run's arm; see arm.kinematics."""
-    return arm.kinematics(runs[run], figure, table, first, tip)
+def frames(
+    runs: Mapping[str, Run], run: str, caption: str, arm: str, width: float, number: str, first: int, tip: str
+) -> Picture:
+    """Return the joint axes and Denavit-Hartenberg frames of an arm at home, from its frame 0 by number to the tip."""
+    words = f"{arm} at home with its joint axes and Denavit-Hartenberg frames"
+    return Picture(caption, frame_assignment(model_of(runs[run]), first, tip), words, width, origin(runs[run], number))
 
 
-def dynamics(runs: Mapping[str, Run], run: str, length: float, mass: float) -> Section:
-    """Return how far the thesis' printed matrices and the model of a run's arm agree; see arm.dynamics."""
-    return arm.dynamics(runs[run], length, mass)
+def dh_table(runs: Mapping[str, Run], run: str, caption: str, number: str, first: int) -> Table:
+    """Return the Denavit-Hartenberg table of an arm whose frame 0 has a number, angles as multiples of pi."""
+    rows = []
+    for link, row in enumerate(denavit_hartenberg(model_of(runs[run])), start=first + 1):
+        turn = f"$q_{link}$" if row.theta == 0.0 else f"{_angle(row.theta)} + $q_{link}$"
+        rows.append([str(link), turn, f"{row.d:g}", f"{row.a:g}", _angle(row.alpha)])
+    header = ["link", "$theta_i$ (rad)", "$d_i$ (m)", "$a_i$ (m)", "$alpha_i$ (rad)"]
+    return Table(caption, header, rows, (), origin(runs[run], number))
 
 
-def control_law(runs: Mapping[str, Run], run: str, goal: bool, figure: str) -> list[Block]:
-    """Return equations and block diagram of the law that a run executed."""
-    return arm.control_law(runs[run], goal, figure)
+def _angle(value: float) -> str:
+    """Return an angle as a multiple of pi where it is one."""
+    if value == 0.0:
+        return "0"
+    twelfths = round(12.0 * value / math.pi)
+    if abs(12.0 * value / math.pi - twelfths) > 1e-9:
+        return f"{value:.6g}"
+    divisor = math.gcd(twelfths, 12)
+    top, bottom = twelfths // divisor, 12 // divisor
+    head = "$-pi" if top == -1 else "$pi" if top == 1 else f"${top} pi"
+    return f"{head}$" if bottom == 1 else f"{head} slash {bottom}$"
 
 
-def goal_position(runs: Mapping[str, Run], number: str, what: str, until: float | None = None) -> list[Block]:
-    """Return a figure of a goal move under both presets, with its numbers; see arm.reproduced."""
-    return arm.reproduced(runs, number, what, _GOAL, until)
-
-
-def tracking(runs: Mapping[str, Run], number: str, what: str) -> list[Block]:
-    """Return a figure of a tracked trajectory under both presets, with its numbers; see arm.reproduced."""
-    return arm.reproduced(runs, number, what, _TRACKING)
-
-
-def turns_table(runs: Mapping[str, Run]) -> Table:
-    """Return goal and tracking with both arms moving at any time, and with one arm moving at a time."""
-    tracked = ("max_tracking_error", "macro_max_tracking_error", "steady_state_error")
+def printed_matrices(runs: Mapping[str, Run], run: str, caption: str, mini: bool, samples: int) -> Table:
+    """Return how far the thesis' matrices, mended, and the model of an arm are apart at so many random states."""
+    differences = compare(model_of(runs[run]), mini, samples, np.random.default_rng(0))
     rows = [
-        [
-            in_words(preset),
-            _SCHEDULE[schedule],
-            settled(goal),
-            cell(goal, "steady_state_error"),
-            *(cell(track, metric) for metric in tracked),
-        ]
-        for preset in PRESETS
-        for schedule in SCHEDULES
-        for goal, track in [[runs[f"turns/{preset}/{motion}/{schedule}"] for motion in ("goal", "quintic")]]
+        [f"${symbol}$", meaning, above_rounding(differences[symbol], unit)]
+        for symbol, (meaning, unit) in _MEANINGS.items()
     ]
-    return Table(
-        "Both arms at any time against turns.",
-        [
-            "preset",
-            "schedule",
-            "goal: settles (s)",
-            "steady error (m)",
-            "tracking: largest error (m)",
-            "Macro's own (m)",
-            "steady error (m)",
-        ],
-        rows,
-        (2, 3, 4, 5, 6),
-        origin(runs["turns/sound/quintic/turns"]),
-    )
+    return Table(caption, ["symbol", "quantity", "largest difference"], rows, (2,), origin(runs[run]))
 
 
-def slower_turns(runs: Mapping[str, Run]) -> Table:
-    """Return the largest tracking error when more time is given."""
-    rows = [
-        [f"{t_f:g}", *(cell(runs[f"turns/{t_f}/{schedule}"], "max_tracking_error") for schedule in SCHEDULES)]
-        for t_f in TURN_DURATIONS
+def law(runs: Mapping[str, Run], run: str, caption: str, number: str) -> Picture:
+    """Return the block diagram of the law of one arm that a run executed."""
+    controller, limited = runs[run].config["controller"], runs[run].config["torque_limits"]["max"] is not None
+    goal = runs[run].config["trajectory"]["kind"] == "goal"
+    graph = operational_space_graph(controller["gravity_compensation"], controller["feedforward"], limited, goal)
+    words = "Block diagram of the controller, the arm and its encoders"
+    return Picture(caption, block_diagram(graph), words, 1.0, origin(runs[run], number))
+
+
+def reproduced(
+    runs: Mapping[str, Run], number: str, what: str, metrics: Sequence[str], until: float | None = None
+) -> list[Block]:
+    """Return one published figure, such as "3.5", under both presets, its numbers, and the plants' agreement on it."""
+    own = [runs[f"figure_{number.replace('.', '_')}/{preset}"] for preset in PRESETS]
+    named = list(zip(PRESET.values(), own, strict=True))
+    draw = staged_torque_and_error if len(own[0].provenance["stages"]) > 1 else torque_and_error
+    rows = [[title(metric), *(spread(run.metrics[metric]) for run in own)] for metric in metrics]
+    caption = f"Numbers of figure {number}: median (smallest to largest) of 40 repetitions."
+    return [
+        *(draw(run, f"{what}, {name}, repetition 0 of 40.", f"figure {number}", until) for name, run in named),
+        Table(caption, ["metric", *PRESET.values()], rows, (1, 2), origin(own[0])),
+        Text(" ".join(f"{name.capitalize()}: {describe_agreement(run)}" for name, run in named)),
     ]
-    return Table(
-        "Largest tracking error with the full equations when more time is given.",
-        ["$t_f$ (s)", *(f"{_SCHEDULE[schedule]} (m)" for schedule in SCHEDULES)],
-        rows,
-        (0, 1, 2),
-        origin(runs[f"turns/{TURN_DURATIONS[0]}/turns"]),
-    )
 
 
-def turns_curves(runs: Mapping[str, Run]) -> Curves:
-    """Return the errors of the tip and of the Macro's end point over time."""
-    panels = []
-    for title, signal in (("Tip", "error"), ("Macro's end point", "macro_error")):
-        series = []
-        for schedule in SCHEDULES:
-            run = runs[f"turns/sound/quintic/{schedule}"]
-            error = np.linalg.norm(columns(run.trace, signal), axis=1)
-            series.append(Series(_SCHEDULE[schedule], clock(run), np.where(error > 0.0, error, np.nan)))
-        panels.append(Panel(title, "time (s)", "error norm (m)", series, y_log=True, y_range=(1e-8, 1.0)))
-    return Curves("Tracking with the full equations.", panels, 2, origin(runs["turns/sound/quintic/turns"]))
+def printed(claim: int, end: int, words: str) -> Measured:
+    """Return an end of the range that the thesis prints for a claim: 0 is the lower, -1 the upper one."""
+    published = next(each for each in load_claims("thesis") if each.number == claim)
+    return Measured(words, published.printed[end], published.unit)
+
+
+def rest_of_way(run: Run) -> FloatArray:
+    """Return |x_d - x_E|, from the Macro's end point to the target, shape (T,), in m."""
+    return np.asarray(np.linalg.norm(columns(run.trace, "desired") - columns(run.trace, "macro_tip"), axis=1))
+
+
+def extension(run: Run) -> FloatArray:
+    """Return |p|, from the Macro's end point to the tip, shape (T,), in m."""
+    return np.asarray(np.linalg.norm(columns(run.trace, "tip") - columns(run.trace, "macro_tip"), axis=1))
+
+
+def moved_by_bias(run: Run) -> float | None:
+    """Return by how much the bias of the Macro's encoders puts the tip elsewhere at the last posture, in m.
+
+    The controllers bring the tip that they believe to the goal: all of the Macro's joints are off by the bias, the
+    Mini's are right. The largest axis of J_M b to first order, J_M the Macro's columns of the whole arm's tip Jacobian.
+    """
+    q = joint_columns(run.trace, "q")[-1]
+    if not np.isfinite(q).all():
+        return None
+    joints = sum(not joint.startswith("mini_") for joint in run.provenance["joints"])
+    moved = model_of(run).tip_jacobian(q)[:3, :joints] @ np.full(joints, run.config["noise"]["bias"]["macro"])
+    return float(np.abs(moved).max())
+
+
+def diverges_at(runs: Mapping[str, Run], run: str, words: str) -> Measured:
+    """Return when a run diverges; no value where it does not."""
+    return Measured(words, (runs[run].failure or {}).get("time"), "s")
+
+
+def mass_of(runs: Mapping[str, Run], name: str, words: str = "mass of the Mini") -> Measured:
+    """Return the mass of a run's Mini."""
+    masses = runs[name].config["robot"]["stages"]["mini"]["masses"]
+    return Measured(words, float(sum(masses.values())), "kg")
+
+
+def around_the_break(runs: Mapping[str, Run], payload: str) -> tuple[str, str]:
+    """Return the runs of the heaviest Mini with which one-way control works without noise, and of the next one.
+
+    It is broken where the tip errs more than ten times as much as that of the thesis' Mini. Where none works, or none
+    is broken, both are one.
+    """
+    names = [one.name for one in found(runs, f"mass/{{mass}}/{payload}")]
+    limit = median(runs[f"mass/0.2/{payload}"], "max_tracking_error")
+    errors = [median(runs[name], "max_tracking_error") for name in names]
+    broken = [error is None or limit is None or error > _BROKEN * limit for error in errors]
+    first = broken.index(True) if any(broken) else len(names)
+    return names[max(first - 1, 0)], names[min(first, len(names) - 1)]
+
+
+def fastest(runs: Mapping[str, Run], pattern: str) -> str:
+    """Return the name of the run that settles first among those of a pattern; the first one where none settles."""
+    times = {one.name: median(one.run, "settling_time") for one in found(runs, pattern)}
+    return min(times, key=lambda name: math.inf if times[name] is None else float(times[name] or 0.0))
+
+
+def level_in_words(name: str, place: int) -> str:
+    """Return a part of a run's name in words, counted from 0."""
+    return in_words(name.split("/")[place])
+
+
+def excess(simulated: Callable[[Run], float | None], predicted: Callable[[Run], float]) -> Callable[[Run], str]:
+    """Return what gives by how much a value of a run is larger than predicted, in per cent, for a table."""
+
+    def text(run: Run) -> str:
+        value, closed = simulated(run), predicted(run)
+        more = 100.0 * (value / closed - 1.0) if closed and value is not None else math.nan
+        return "below 0.01 %" if abs(more) < 0.01 else f"{more:+.2f} %"
+
+    return text

@@ -1,99 +1,61 @@
-"""The xArm7 report's own formulas, as they are printed and put right one at a time: its chain, P_e, q2 and q4."""
+"""The xArm7 report's own formulas as its audited equations have them: P_e, and q1, q2 and q4 of its inverse."""
 
-import math
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from functools import cache
 
 import numpy as np
 
+from runner.audit.entry import Entry, entries
+from runner.audit.evaluation import evaluate
+from runner.expressions.parser import parse
 from runner.robots.model import FloatArray, RobotModel
+from runner.works.xarm7.equations.truths.xarm7 import JOINTS, constants
 
-L1, L2, L3, L4, L5 = 0.267, 0.293, 0.0525, 0.3512, 0.1232  # m; the report prints them in cm
-THETA1, THETA2 = 0.2225, 0.6646  # rad
 CENTIMETRES = 100.0
-"""What one unit of length is divided into in the report's formulas."""
+"""What one metre is in the report's unit of length."""
+_TIP = ("P_ex", "P_ey", "P_ez")
+_INVERSE = ("q1", "p1", "p2", "M", "q4", "p3", "p4", "q2")  # in the order in which each takes those before it
+_LENGTHS = ("l1", "l2", "l3", "l4", "l5")
 
 
-def chain_tip(q: FloatArray) -> FloatArray:
-    """Return the tip's position by the entries A14, A24, A34 of the printed transform A07, shape (3,), in m.
+@cache
+def _entries() -> Mapping[str, Entry]:
+    return {entry.number: entry for _, entry in entries("xarm7")}
 
-    Args:
-        q: Joint positions, shape (7,), in rad.
+
+def _value(name: str, right: bool, values: Mapping[str, FloatArray]) -> FloatArray:
+    """Return a formula's value as printed, or put right where it is wrong."""
+    entry = _entries()[name]
+    form = (entry.corrected if right else None) or entry.repair or entry.printed
+    return evaluate(parse(form.elements[name]), values)
+
+
+def printed_tip(q: FloatArray, right: bool) -> FloatArray:
+    """Return P_e at rows of joint positions, shapes (N, 7) in rad to (N, 3) in m.
+
+    As printed q1, q5 and q2 stand where theta1 and theta2 do if it is put right, as in A14, A24 and A34.
     """
-    forearm = L4 * math.cos(THETA1), L4 * math.sin(THETA1)
-    return _tip(q, forearm, (L5 * math.cos(THETA2), L5 * math.sin(THETA2)))
+    values = constants(len(q)) | {f"q{joint + 1}": q[:, joint] for joint in range(JOINTS)}
+    return np.stack([_value(name, right, values) for name in _TIP], axis=1) / CENTIMETRES
 
 
-def printed_tip(q: FloatArray) -> FloatArray:
-    """Return P_e as printed, with q1 in place of theta1 and with q5 and q2 in place of theta2, shape (3,), in m."""
-    forearm = L4 * math.cos(q[0]), L4 * math.sin(q[0])
-    return _tip(q, forearm, (L5 * math.cos(q[4]), L5 * math.sin(q[1])))
+def printed_inverse(
+    tips: FloatArray, wrist: float, right: Collection[str] = (), unit: float = CENTIMETRES
+) -> FloatArray:
+    """Return q1, q2 and q4 for tips in m by the printed formulas, shape (N, 3), in rad ("inverse kinematic control").
 
-
-def _tip(q: FloatArray, forearm: tuple[float, float], hand: tuple[float, float]) -> FloatArray:
-    """Return the printed sums, with their parts as vectors: upper arm, l4 along and across it, l5.
-
-    Args:
-        q: Joint positions, shape (7,), in rad.
-        forearm: What stands for l4 cos theta1 and l4 sin theta1, in m.
-        hand: What stands for l5 cos theta2 and l5 sin theta2, in m.
+    q2 and q4 may be put `right`: the sign in q2's denominator, M^2 inside the root of q4. M^2 outside the root makes
+    the unit of length count: `unit` is what one metre is in it.
     """
-    s1, s2, s3, s4, s5, s6 = np.sin(q[:6])
-    c1, c2, c3, c4, c5, c6 = np.cos(q[:6])
-    u, v = s1 * s3 - c1 * c2 * c3, c1 * s3 + c2 * c3 * s1
-    w, n = c3 * s1 + c1 * c2 * s3, c1 * c3 - c2 * s1 * s3
-    upper = np.array([L2 * c1 * s2 - L3 * u, L2 * s1 * s2 + L3 * v, L1 + L2 * c2 - L3 * c3 * s2])
-    along = np.array([-(s4 * u + c1 * c4 * s2), s4 * v - c4 * s1 * s2, -(c2 * c4 + c3 * s2 * s4)])
-    across = np.array([-(c4 * u - c1 * s2 * s4), c4 * v + s1 * s2 * s4, c2 * s4 - c3 * c4 * s2])
-    turned = c5 * across + s5 * np.array([w, -n, -s2 * s3])
-    tip: FloatArray = (
-        upper
-        + forearm[0] * along
-        + forearm[1] * across
-        + hand[0] * (c6 * along - s6 * turned)
-        + hand[1] * (s6 * along + c6 * turned)
-    )
-    return tip
+    values = constants(len(tips)) | {"q6": np.full(len(tips), wrist)}
+    values |= {name: values[name] * unit / CENTIMETRES for name in _LENGTHS}
+    values |= dict(zip(_TIP, unit * tips.T, strict=True))
+    for name in _INVERSE:
+        values[name] = _value(name, name in right, values)
+    return np.stack([values[name] for name in ("q1", "q2", "q4")], axis=1)
 
 
-@dataclass(frozen=True)
-class Mended:
-    """Which misprints of the inverse kinematics are put right.
-
-    Attributes:
-        root: M^2 stands inside the root of q4.
-        sign: q2's denominator is p4 r + p3 z.
-        unit: What one metre is in the unit of length that is put in; M^2 outside the root makes it count.
-    """
-
-    root: bool
-    sign: bool
-    unit: float = CENTIMETRES
-
-
-def printed_inverse(tip: FloatArray, wrist: float, mended: Mended) -> FloatArray:
-    """Return q1, q2 and q4 by the printed formulas, shape (3,), in rad (section "inverse kinematic control").
-
-    Args:
-        tip: Tip position in the base frame, shape (3,), in m.
-        wrist: q6, in rad.
-        mended: What is put right in them.
-    """
-    x, y, z = mended.unit * tip
-    l1, l2, l3, l4, l5 = mended.unit * np.array([L1, L2, L3, L4, L5])
-    r, z = math.hypot(x, y), z - l1
-    A = l4 * math.cos(THETA1) + l5 * math.cos(wrist - THETA2)
-    B = l4 * math.sin(THETA1) - l5 * math.sin(wrist - THETA2)
-    p1, p2 = -l2 * A + l3 * B, l2 * B + l3 * A
-    M = 0.5 * (r * r + z * z - l2**2 - l3**2 - l4**2 - l5**2 - 2.0 * l4 * l5 * math.cos(wrist + THETA1 - THETA2))
-    root = math.sqrt(p1 * p1 + p2 * p2 - M * M) if mended.root else math.sqrt(p1 * p1 + p2 * p2) - M * M
-    q4 = math.atan(M / root) - math.atan(p1 / p2)
-    p3 = l2 - A * math.cos(q4) + B * math.sin(q4)
-    p4 = l3 + B * math.cos(q4) + A * math.sin(q4)
-    q2 = math.atan((p3 * r - p4 * z) / (p4 * r + (p3 if mended.sign else -p3) * z))
-    return np.array([math.atan2(y, x), q2, q4])
-
-
-def random_postures(model: RobotModel, count: int) -> FloatArray:
+def random_postures(model: RobotModel, count: int, seed: int = 0) -> FloatArray:
     """Return postures spread evenly over the joint limits, shape (count, nq), in rad; always the same ones."""
     low, high = model.position_limits
-    return np.random.default_rng(0).uniform(low, high, (count, model.nq))
+    return np.random.default_rng(seed).uniform(low, high, (count, model.nq))

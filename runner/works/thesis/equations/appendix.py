@@ -59,13 +59,7 @@ class Term:
 
 @dataclass(frozen=True)
 class Repair:
-    """A place at which the text is damaged so that it cannot be read as it stands.
-
-    Attributes:
-        torque: The row.
-        kind: What was done.
-        text: The place as it stands.
-    """
+    """A place in a torque's row where the text as it stands cannot be read, and what kind of mending was done."""
 
     torque: int
     kind: str
@@ -74,12 +68,7 @@ class Repair:
 
 @dataclass(frozen=True)
 class Appendix:
-    """The appendix as read.
-
-    Attributes:
-        terms: Its terms in order.
-        repairs: What was mended to read them.
-    """
+    """The appendix as read: its terms in order, and what was mended to read them."""
 
     terms: tuple[Term, ...]
     repairs: tuple[Repair, ...]
@@ -88,17 +77,7 @@ class Appendix:
 def evaluate(
     terms: Iterable[tuple[int, str, Harmonic, float]], q: FloatArray, dq: FloatArray, ddq: FloatArray
 ) -> FloatArray:
-    """Return the torques that terms add up to.
-
-    Args:
-        terms: Torque (1 to 6), factor of the group, harmonic and coefficient of each.
-        q: Joint positions, shape (T, 6), in rad.
-        dq: Joint velocities, shape (T, 6), in rad/s.
-        ddq: Joint accelerations, shape (T, 6), in rad/s^2.
-
-    Returns:
-        Torques, shape (T, 6), in N m.
-    """
+    """Return the torques, (T, 6) in N m, that terms add up to: torque (1 to 6), factor, harmonic, coefficient."""
     torques = np.zeros_like(q)
     for torque, factor, harmonic, coefficient in terms:
         phase = q @ np.array(harmonic.multiples, dtype=float)

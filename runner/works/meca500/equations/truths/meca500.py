@@ -1,52 +1,41 @@
 """The Meca500's kinematics: the maker's joints by Pinocchio, and the report's Denavit-Hartenberg table mended.
 
-The maker's description has all frames parallel at q = 0, with joint axes z, y, y, x, y, x. The report's frames stand
-otherwise; `_FRAMES` says how each lies in the maker's frame of the same joint. Its table is of the modified (Craig)
-convention. Lengths in mm, as the report has them.
+The maker's description, `report.urdf`, has all frames parallel at q = 0, with joint axes z, y, y, x, y, x. The report's
+frames stand otherwise; that file says how each lies in the maker's frame of the same joint. The report's table is of
+the modified (Craig) convention. Lengths in mm, as the report has them.
 """
 
 from collections.abc import Callable
-from functools import cache
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
-from runner.audit.chains import (
-    chain_model,
-    jacobian_by_differences,
-    placed,
-    product,
-    rotation,
-    translation,
-)
-from runner.audit.truth import Elements, FloatArray, Symbols, Truth
-from runner.robots.model import RobotModel
+from runner.audit.chains import jacobian_by_differences, product, rotation, translation
+from runner.audit.model_truths import audited_arm, by_model
+from runner.audit.truth import Elements, FloatArray, Symbols, Truth, Way, columns, whole_and_elements
+from runner.robots.denavit_hartenberg import ModifiedRow
 
 JOINTS = 6
+_Matrices = Callable[[FloatArray], FloatArray]
 _HALF = np.pi / 2
 
-TABLE = (  # alpha before the joint, a before the joint, offset of the angle, d: degrees turned into rad, mm
-    (0.0, 0.0, 0.0, 135.0),
-    (-_HALF, 0.0, -_HALF, 0.0),
-    (0.0, 135.0, 0.0, 0.0),
-    (-_HALF, 38.0, 0.0, 120.0),
-    (_HALF, 0.0, 0.0, 0.0),
-    (-_HALF, 0.0, np.pi, 70.0),
+TABLE = (
+    ModifiedRow(alpha=0.0, a=0.0, theta=0.0, d=135.0),
+    ModifiedRow(alpha=-_HALF, a=0.0, theta=-_HALF, d=0.0),
+    ModifiedRow(alpha=0.0, a=135.0, theta=0.0, d=0.0),
+    ModifiedRow(alpha=-_HALF, a=38.0, theta=0.0, d=120.0),
+    ModifiedRow(alpha=_HALF, a=0.0, theta=0.0, d=0.0),
+    ModifiedRow(alpha=-_HALF, a=0.0, theta=np.pi, d=70.0),
 )
-"""The report's table with the offsets that its own elements need: -90 degrees at joint 2, 180 degrees at joint 6."""
+"""The report's Table 1 with the turns that its text has lost and its own elements need: theta_2 stands for q_2 - 90 deg
+(without it the tip is 0.34 m off on average), theta_6 for q_6 + 180 deg. Frame 6 is the flange's, z outwards."""
 
-_ORIGINS = ((0, 0, 135), (0, 0, 0), (0, 0, 135), (0, 0, 38), (120, 0, 0), (70, 0, 0))
-_AXES = "zyyxyx"
-_FRAMES = tuple(  # columns: the report's x, y, z axes in the maker's frame; then its origin there
-    placed(origin, np.array([[*row, 0] for row in rows] + [[0, 0, 0, 1]], dtype=float))
-    for rows, origin in (
-        (((1, 0, 0), (0, 1, 0), (0, 0, 1)), (0, 0, 0)),
-        (((0, 1, 0), (0, 0, 1), (1, 0, 0)), (0, 0, 0)),
-        (((0, 1, 0), (0, 0, 1), (1, 0, 0)), (0, 0, 0)),
-        (((0, 0, 1), (0, -1, 0), (1, 0, 0)), (120, 0, 0)),
-        (((0, 1, 0), (0, 0, 1), (1, 0, 0)), (0, 0, 0)),
-        (((0, 0, 1), (0, 1, 0), (-1, 0, 0)), (0, 0, 0)),
-    )
-)
+ARM = audited_arm("report.urdf", "frame6", tuple(f"theta{i + 1}" for i in range(JOINTS)), Path(__file__).parents[2])
+"""The arm by the maker's joints, its lengths in mm; the tip is the report's frame 6."""
+
+BY_MODEL = by_model(ARM.model)
+"""Its kinematics by Pinocchio."""
 
 
 def symbols(count: int, generator: np.random.Generator) -> Symbols:
@@ -54,10 +43,6 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
 
     `theta1` to `theta6` are the joint positions in rad, `S1`, `C1` and so on their sines and cosines, `S23`, `C23` of
     the sum of the second and third.
-
-    Args:
-        count: How many configurations.
-        generator: Source of the draw.
     """
     q = generator.uniform(-np.pi, np.pi, (count, JOINTS))
     values = {f"theta{i + 1}": q[:, i] for i in range(JOINTS)}
@@ -68,13 +53,13 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
 
 def positions(values: Symbols) -> FloatArray:
     """Return the joint positions of a sample, shape (T, 6), in rad."""
-    return np.column_stack([values[f"theta{i + 1}"] for i in range(JOINTS)])
+    return columns(values, ARM.joints)
 
 
-def row_transform(row: tuple[float, float, float, float], angle: FloatArray) -> FloatArray:
+def row_transform(row: ModifiedRow, angle: FloatArray) -> FloatArray:
     """Return the transform of one row of a modified Denavit-Hartenberg table, shape (T, 4, 4), in mm."""
-    alpha, a, offset, d = row
-    return product([rotation("x", alpha), translation("x", a), rotation("z", angle + offset), translation("z", d)])
+    turn, shift = rotation("z", angle + row.theta), translation("z", row.d)
+    return product([rotation("x", row.alpha), translation("x", row.a), turn, shift])
 
 
 def frames(q: FloatArray) -> list[FloatArray]:
@@ -91,49 +76,16 @@ def pose(q: FloatArray) -> FloatArray:
     return frames(q)[-1]
 
 
-@cache
-def model() -> RobotModel:
-    """Return the arm from the maker's joints as a Pinocchio model, its lengths in mm, its tip the report's frame 6."""
-    to_axis = {"x": rotation("y", _HALF)[0], "y": rotation("x", -_HALF)[0], "z": np.eye(4)}
-    turned = [np.eye(4), *(to_axis[axis] for axis in _AXES)]
-    placements = [np.linalg.inv(turned[i]) @ placed(_ORIGINS[i], np.eye(4)) @ turned[i + 1] for i in range(JOINTS)]
-    return chain_model([*placements, np.linalg.inv(turned[-1]) @ _FRAMES[-1]])
-
-
-def _model_frames(q: FloatArray) -> FloatArray:
-    """Return the report's frames 1 to 6 by Pinocchio, shape (T, 6, 4, 4), in mm."""
-    names = tuple(f"link{i + 1}" for i in range(JOINTS))
-    to_axis = {"x": rotation("y", _HALF)[0], "y": rotation("x", -_HALF)[0], "z": np.eye(4)}
-    fixed = np.array([np.linalg.inv(to_axis[axis]) @ frame for axis, frame in zip(_AXES, _FRAMES, strict=True)])
-    return np.asarray(np.array([model().frame_poses(row, names) for row in q]) @ fixed)
-
-
-def model_poses(q: FloatArray) -> FloatArray:
-    """Return the transforms of frame 6 by Pinocchio, shape (T, 4, 4), in mm."""
-    return np.array([model().tip_pose(row) for row in q])
-
-
-def model_jacobians(q: FloatArray) -> FloatArray:
-    """Return the basic Jacobians by Pinocchio in the base frame, shape (T, 6, 6); linear rows first, in mm/rad."""
-    return np.array([model().tip_jacobian(row) for row in q])
-
-
 def in_frame_6(jacobians: FloatArray, poses: FloatArray) -> FloatArray:
     """Return Jacobians of the base frame seen from frame 6, shape (T, 6, 6)."""
     turned = poses[:, :3, :3].transpose(0, 2, 1)
     return np.concatenate([turned @ jacobians[:, :3], turned @ jacobians[:, 3:]], axis=1)
 
 
-def named(matrices: FloatArray, letter: str) -> Elements:
-    """Return the elements of matrices by the report's names, counted from 0, and the whole under its letter."""
-    rows, columns = matrices.shape[1:]
-    return {f"{letter}_{i}{j}": matrices[:, i, j] for i in range(rows) for j in range(columns)} | {letter: matrices}
-
-
 def _steps_by_model(values: Symbols) -> Elements:
-    each = _model_frames(positions(values))
-    before = np.concatenate([np.broadcast_to(np.eye(4), (len(each), 1, 4, 4)), each[:, :-1]], axis=1)
-    between = np.linalg.inv(before) @ each
+    names = ("link0", *(f"frame{i + 1}" for i in range(JOINTS)))
+    each = np.array([ARM.model.frame_poses(row, names) for row in positions(values)])
+    between = np.linalg.inv(each[:, :-1]) @ each[:, 1:]
     return {f"T_{i + 1}": between[:, i] for i in range(JOINTS)}
 
 
@@ -142,13 +94,9 @@ def _steps_by_table(values: Symbols) -> Elements:
     return {f"T_{i + 1}": row_transform(row, q[:, i]) for i, row in enumerate(TABLE)}
 
 
-def _row(place: int, mended: bool) -> Callable[[Symbols], Elements]:
-    def step(values: Symbols) -> Elements:
-        alpha, a, offset, d = TABLE[place]
-        row = (alpha, a, offset if mended else 0.0, d)
-        return {f"T_{place + 1}": row_transform(row, positions(values)[:, place])}
-
-    return step
+def _row(place: int, mended: bool) -> Way:
+    row = TABLE[place] if mended else replace(TABLE[place], theta=0.0)
+    return lambda values: {f"T_{place + 1}": row_transform(row, positions(values)[:, place])}
 
 
 printed_row_1, printed_row_2, printed_row_3, printed_row_4, printed_row_5, printed_row_6 = (
@@ -157,30 +105,35 @@ printed_row_1, printed_row_2, printed_row_3, printed_row_4, printed_row_5, print
 mended_row_2, mended_row_6 = _row(1, mended=True), _row(5, mended=True)
 
 steps = Truth(_steps_by_model, _steps_by_table, ("Pinocchio, the maker's joints", "the mended table"))
-transform = Truth(
-    lambda values: named(model_poses(positions(values)), "T"),
-    lambda values: named(pose(positions(values)), "T"),
-    ("Pinocchio, the maker's joints", "product of the mended table"),
+
+
+def _both(letter: str, by_model: _Matrices, by_table: _Matrices, table: str) -> Truth:
+    """Return the truth of a matrix whose elements the report counts from 0."""
+    return Truth(
+        lambda values: whole_and_elements(letter, by_model(positions(values)), 0),
+        lambda values: whole_and_elements(letter, by_table(positions(values)), 0),
+        ("Pinocchio, the maker's joints", table),
+    )
+
+
+def jacobian_by_table(q: FloatArray) -> FloatArray:
+    """Return the basic Jacobians in the base frame by differences of the mended table, shape (T, 6, 6), in mm/rad."""
+    return jacobian_by_differences(pose, q)
+
+
+transform = _both("T", BY_MODEL.pose, pose, "product of the mended table")
+jacobian = _both("J_g0", BY_MODEL.jacobian, jacobian_by_table, "differences of the mended table's product")
+jacobian_6 = _both(
+    "J_g6",
+    lambda q: in_frame_6(BY_MODEL.jacobian(q), BY_MODEL.pose(q)),
+    lambda q: in_frame_6(jacobian_by_table(q), pose(q)),
+    "differences of the mended table's product, turned",
 )
-jacobian = Truth(
-    lambda values: named(model_jacobians(positions(values)), "J_g0"),
-    lambda values: named(jacobian_by_differences(pose, positions(values)), "J_g0"),
-    ("Pinocchio, the maker's joints", "differences of the mended table's product"),
-)
-jacobian_6 = Truth(
-    lambda values: named(in_frame_6(model_jacobians(positions(values)), model_poses(positions(values))), "J_g6"),
-    lambda values: named(in_frame_6(jacobian_by_differences(pose, positions(values)), pose(positions(values))), "J_g6"),
-    ("Pinocchio, the maker's joints, turned into frame 6", "differences of the mended table's product, turned"),
-)
 
 
-def chained_as_printed(values: Symbols) -> Elements:
-    """Return the product with 5 over 5 for its last factor: frame 5 in itself, which is the identity."""
-    each = _steps_by_model(values)
-    return {"T": product([each[f"T_{i + 1}"] for i in range(JOINTS - 1)])}
+def _chained(count: int) -> Way:
+    return lambda values: {"T": product(list(_steps_by_model(values).values())[:count])}
 
 
-def chained(values: Symbols) -> Elements:
-    """Return the product of the six transforms, each from the maker's joints."""
-    each = _steps_by_model(values)
-    return {"T": product([each[f"T_{i + 1}"] for i in range(JOINTS)])}
+chained_as_printed, chained = _chained(JOINTS - 1), _chained(JOINTS)
+"""The product with 5 over 5 for its last factor, frame 5 in itself, which is the identity; and with all six."""

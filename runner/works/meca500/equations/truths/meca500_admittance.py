@@ -1,16 +1,18 @@
 """The Meca500's admittance: its response in time, finite rotations, Euler rates. Angles in rad."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pinocchio as pin
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
 from runner.audit.chains import derivative, jacobian_by_differences, rotation
-from runner.audit.truth import Elements, FloatArray, Symbols, Truth
+from runner.audit.truth import Elements, FloatArray, Symbols, Truth, along, columns, elements
 from runner.works.meca500.equations.truths import meca500
-from runner.works.meca500.equations.truths.meca500_tool import times
 
 _STEPS = 400
+_EULER = ("alpha", "beta", "gamma")
 
 
 def symbols(count: int, generator: np.random.Generator) -> Symbols:
@@ -20,21 +22,19 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
     Rx(alpha) Ry(beta) Rz(gamma), beta 0.2 rad or more from its singularity, with rates `dalpha`, `dbeta`, `dgamma`;
     `S_alpha` and so on their sines and cosines; `M`, `B`, `K` a mass [kg], damper [N s/m] and spring [N/m] under a
     force `f` [N] for a time `t` [s].
-
-    Args:
-        count: How many.
-        generator: Source of the draw.
     """
     values = dict(meca500.symbols(count, generator))
     values |= {f"rate{i + 1}": generator.uniform(-1, 1, count) for i in range(meca500.JOINTS)}
     values |= {name: generator.uniform(-np.pi, np.pi, count) for name in ("alpha", "gamma")}
     values["beta"] = generator.uniform(-np.pi / 2 + 0.2, np.pi / 2 - 0.2, count)
-    values |= {f"d{name}": generator.uniform(-1, 1, count) for name in ("alpha", "beta", "gamma")}
+    values |= {f"d{name}": generator.uniform(-1, 1, count) for name in _EULER}
     values |= {f"S_{name}": np.sin(values[name]) for name in ("alpha", "beta")}
     values |= {f"C_{name}": np.cos(values[name]) for name in ("alpha", "beta")}
-    values |= {"M": generator.uniform(0.5, 4, count), "B": generator.uniform(5, 60, count)}
-    values |= {"K": generator.uniform(50, 500, count), "f": generator.uniform(-10, 10, count)}
-    return values | {"t": generator.uniform(0.05, 1, count)}
+    ranges = {"M": (0.5, 4), "B": (5, 60), "K": (50, 500), "f": (-10, 10), "t": (0.05, 1)}
+    return values | {name: generator.uniform(low, high, count) for name, (low, high) in ranges.items()}
+
+
+# The filter in time.
 
 
 def step_response(values: Symbols) -> Elements:
@@ -47,10 +47,10 @@ def step_response(values: Symbols) -> Elements:
 
 
 def _by_exponential(values: Symbols) -> Elements:
-    motions = []
-    for M, B, K, f, t in zip(*(values[name] for name in "MBKft"), strict=True):
-        motions.append(expm(t * np.array([[0, 1, 0], [-K / M, -B / M, f / M], [0, 0, 0]]))[0, 2])
-    return {"x": np.array(motions)}
+    M, B, K, f, t = (values[name] for name in "MBKft")
+    rates = np.zeros((len(t), 3, 3))
+    rates[:, 0, 1], rates[:, 1, 0], rates[:, 1, 1], rates[:, 1, 2] = t, -t * K / M, -t * B / M, t * f / M
+    return {"x": expm(rates)[:, 0, 2]}
 
 
 def _by_steps(values: Symbols) -> Elements:
@@ -71,59 +71,63 @@ def _by_steps(values: Symbols) -> Elements:
 response = Truth(_by_exponential, _by_steps, ("matrix exponential", "Runge-Kutta steps"))
 
 
-def _home_turn(q: FloatArray) -> FloatArray:
-    """Return the flange's rotations from its attitude at q = 0, in the base frame, shape (T, 3, 3)."""
-    home = meca500.pose(np.zeros((1, meca500.JOINTS)))[:, :3, :3]
-    return np.asarray(meca500.pose(q)[:, :3, :3] @ home.transpose(0, 2, 1))
+# The flange's turn from home, and its twist.
+
+
+def summed(q: FloatArray) -> FloatArray:
+    """Return the sum of the joint angles along their axes, shapes (T, 6) to (T, 3)."""
+    return along(np.stack([frame[:, :3, 2] for frame in meca500.frames(q)], axis=2), q)
 
 
 def summed_axes(values: Symbols) -> Elements:
-    """Return the sum of the joint angles along their axes, as printed."""
-    q = meca500.positions(values)
-    axes = np.stack([frame[:, :3, 2] for frame in meca500.frames(q)], axis=2)
-    return {"Theta": times(axes, q)}
+    """Return the same for a sample, as printed."""
+    return {"Theta": summed(meca500.positions(values))}
+
+
+def _home_turn(pose: Callable[[FloatArray], FloatArray], values: Symbols) -> FloatArray:
+    """Return the flange's rotations from its attitude at q = 0, in the base frame, shape (T, 3, 3)."""
+    home = pose(np.zeros((1, meca500.JOINTS)))[:, :3, :3]
+    return np.asarray(pose(meca500.positions(values))[:, :3, :3] @ home.transpose(0, 2, 1))
+
+
+def _logarithm(rotations: FloatArray) -> Elements:
+    return {"Theta": np.array([pin.log3(R) for R in rotations])}
 
 
 def rotation_vector(values: Symbols) -> Elements:
     """Return the logarithm of the flange's rotation from home."""
-    return {"Theta": np.array([pin.log3(R) for R in _home_turn(meca500.positions(values))])}
-
-
-def _vector_by_quaternion(values: Symbols) -> Elements:
-    poses = meca500.model_poses(meca500.positions(values))[:, :3, :3]
-    home = meca500.model_poses(np.zeros((1, meca500.JOINTS)))[:, :3, :3]
-    return {"Theta": Rotation.from_matrix(poses @ home.transpose(0, 2, 1)).as_rotvec()}
+    return _logarithm(_home_turn(meca500.pose, values))
 
 
 turn = Truth(
-    rotation_vector, _vector_by_quaternion, ("logarithm, by the mended table", "quaternion, by Pinocchio's chain")
+    rotation_vector,
+    lambda values: {"Theta": Rotation.from_matrix(_home_turn(meca500.BY_MODEL.pose, values)).as_rotvec()},
+    ("logarithm, by the mended table", "quaternion, by Pinocchio's chain"),
 )
 
 
 def joint_twist(values: Symbols) -> Elements:
     """Return J_g times the joint rates, J_g with the joint axes as angular rows."""
-    q = meca500.positions(values)
-    return {"twist": times(meca500.model_jacobians(q), _rates(values))}
+    return {"twist": along(meca500.BY_MODEL.jacobian(meca500.positions(values)), _rates(values))}
 
 
 def _rates(values: Symbols) -> FloatArray:
-    return np.column_stack([values[f"rate{i + 1}"] for i in range(meca500.JOINTS)])
+    return columns(values, [f"rate{i + 1}" for i in range(meca500.JOINTS)])
+
+
+def _in_time(pose: Callable[[FloatArray], FloatArray], start: FloatArray, rates: FloatArray) -> FloatArray:
+    """Return the twist of a pose whose coordinates move from a start at constant rates, by differences in time."""
+    return jacobian_by_differences(lambda time: pose(start + time * rates), np.zeros((len(start), 1)))[:, :, 0]
 
 
 twist = Truth(
-    lambda values: {"twist": times(jacobian_by_differences(meca500.pose, meca500.positions(values)), _rates(values))},
-    lambda values: {"twist": _twist_in_time(values)},
+    lambda values: {"twist": along(meca500.jacobian_by_table(meca500.positions(values)), _rates(values))},
+    lambda values: {"twist": _in_time(meca500.pose, meca500.positions(values), _rates(values))},
     ("differences of the pose by each joint", "differences of the pose in time"),
 )
 
 
-def _twist_in_time(values: Symbols) -> FloatArray:
-    q, rates = meca500.positions(values), _rates(values)
-
-    def moving(time: FloatArray) -> FloatArray:
-        return meca500.pose(q + time * rates)
-
-    return jacobian_by_differences(moving, np.zeros((len(q), 1)))[:, :, 0]
+# Euler angles.
 
 
 def euler(angles: FloatArray) -> FloatArray:
@@ -132,19 +136,17 @@ def euler(angles: FloatArray) -> FloatArray:
 
 
 def _angles(values: Symbols) -> FloatArray:
-    return np.column_stack([values["alpha"], values["beta"], values["gamma"]])
+    return columns(values, _EULER)
+
+
+def _euler_speed(values: Symbols) -> FloatArray:
+    return columns(values, [f"d{name}" for name in _EULER])
 
 
 def _rate_matrix(values: Symbols) -> FloatArray:
     """Return the axes about which alpha, beta and gamma turn, as columns, shape (T, 3, 3)."""
-    angles = _angles(values)
-    x, y = rotation("x", angles[:, 0])[:, :3, :3], rotation("y", angles[:, 1])[:, :3, :3]
-    first = np.broadcast_to(np.eye(3)[0], (len(angles), 3))
-    return np.stack([first, x[:, :, 1], (x @ y)[:, :, 2]], axis=2)
-
-
-def _matrix(J_we: FloatArray) -> Elements:
-    return {f"J_we_{i + 1}{j + 1}": J_we[:, i, j] for i in range(3) for j in range(3)}
+    x, y = rotation("x", values["alpha"])[:, :3, :3], rotation("y", values["beta"])[:, :3, :3]
+    return np.stack([np.broadcast_to(np.eye(3)[0], (len(x), 3)), x[:, :, 1], (x @ y)[:, :, 2]], axis=2)
 
 
 def _rates_by_differences(values: Symbols) -> FloatArray:
@@ -152,45 +154,32 @@ def _rates_by_differences(values: Symbols) -> FloatArray:
 
 
 euler_rates = Truth(
-    lambda values: _matrix(_rates_by_differences(values)),
-    lambda values: _matrix(_rate_matrix(values)),
+    lambda values: elements("J_we", _rates_by_differences(values)),
+    lambda values: elements("J_we", _rate_matrix(values)),
     ("differences of Rx Ry Rz", "the axes themselves"),
 )
 
 
-def _euler_speed(values: Symbols) -> FloatArray:
-    return np.column_stack([values["dalpha"], values["dbeta"], values["dgamma"]])
-
-
 def euler_velocity(values: Symbols) -> Elements:
     """Return J_we times the rates of the Euler angles."""
-    return {"omega": times(_rate_matrix(values), _euler_speed(values))}
-
-
-def _velocity_in_time(values: Symbols) -> Elements:
-    angles, speed = _angles(values), _euler_speed(values)
-
-    def moving(time: FloatArray) -> FloatArray:
-        return euler(angles + time * speed)
-
-    return {"omega": jacobian_by_differences(moving, np.zeros((len(angles), 1)))[:, 3:, 0]}
+    return {"omega": along(_rate_matrix(values), _euler_speed(values))}
 
 
 velocity = Truth(
-    _velocity_in_time,
-    lambda values: {"omega": times(_rates_by_differences(values), _euler_speed(values))},
+    lambda values: {"omega": _in_time(euler, _angles(values), _euler_speed(values))[:, 3:]},
+    lambda values: {"omega": along(_rates_by_differences(values), _euler_speed(values))},
     ("differences of the rotation in time", "differences by each angle"),
 )
 
 
 def summed_euler(values: Symbols) -> Elements:
     """Return J_we times the Euler angles themselves, as printed."""
-    return {"Theta": times(_rate_matrix(values), _angles(values))}
+    return {"Theta": along(_rate_matrix(values), _angles(values))}
 
 
 def euler_vector(values: Symbols) -> Elements:
     """Return the logarithm of Rx(alpha) Ry(beta) Rz(gamma)."""
-    return {"Theta": np.array([pin.log3(R) for R in euler(_angles(values))[:, :3, :3]])}
+    return _logarithm(euler(_angles(values))[:, :3, :3])
 
 
 euler_turn = Truth(
@@ -207,7 +196,7 @@ def from_analytic(values: Symbols) -> Elements:
 
 def analytic_twist(values: Symbols) -> Elements:
     """Return diag(I, J_we) times the rates of position and Euler angles of frame 6."""
-    return {"twist": times(_lifted(meca500.positions(values)), _rates(values))}
+    return {"twist": along(_lifted(meca500.positions(values)), _rates(values))}
 
 
 def _lifted(q: FloatArray) -> FloatArray:
@@ -215,21 +204,20 @@ def _lifted(q: FloatArray) -> FloatArray:
     up, low = pose[:, 2, 2], -pose[:, 1, 2]  # cos beta cos alpha, cos beta sin alpha
     ahead, left = pose[:, 0, 0], -pose[:, 0, 1]  # cos beta cos gamma, cos beta sin gamma
     cosine_square = up**2 + low**2
-    columns = []
+    found = []
     for joint in range(meca500.JOINTS):
         change = derivative(meca500.pose, q, joint)
         alpha = (up * -change[:, 1, 2] - low * change[:, 2, 2]) / cosine_square
         beta = change[:, 0, 2] / np.sqrt(cosine_square)
         gamma = (ahead * -change[:, 0, 1] - left * change[:, 0, 0]) / cosine_square
-        columns.append(np.column_stack([change[:, :3, 3], alpha, beta, gamma]))
-    angles = {"alpha": np.arctan2(low, up), "beta": np.arcsin(pose[:, 0, 2]), "gamma": np.arctan2(left, ahead)}
+        found.append(np.column_stack([change[:, :3, 3], alpha, beta, gamma]))
     lifted = np.tile(np.eye(6), (len(q), 1, 1))
-    lifted[:, 3:, 3:] = _rate_matrix(angles)
-    return np.asarray(lifted @ np.stack(columns, axis=2))
+    lifted[:, 3:, 3:] = _rate_matrix({"alpha": np.arctan2(low, up), "beta": np.arcsin(pose[:, 0, 2])})
+    return np.asarray(lifted @ np.stack(found, axis=2))
 
 
 geometric = Truth(
-    lambda values: {"J_ge": meca500.model_jacobians(meca500.positions(values))},
-    lambda values: {"J_ge": jacobian_by_differences(meca500.pose, meca500.positions(values))},
+    lambda values: {"J_ge": meca500.BY_MODEL.jacobian(meca500.positions(values))},
+    lambda values: {"J_ge": meca500.jacobian_by_table(meca500.positions(values))},
     ("Pinocchio, the maker's joints", "differences of the mended table's product"),
 )

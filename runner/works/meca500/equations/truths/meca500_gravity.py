@@ -4,14 +4,15 @@ Forces in N, moments in N mm. The sensor is turned by theta about the flange's z
 weight G acts at (x, y, z) in the sensor frame; the readings have the offsets F_0 and M_0.
 """
 
-from collections.abc import Sequence
+from functools import reduce
+from operator import or_
 
 import numpy as np
 import pinocchio as pin
 
 from runner.audit.chains import rotation
-from runner.audit.truth import Elements, FloatArray, Symbols, Truth
-from runner.works.meca500.equations.truths.meca500 import JOINTS, model_poses
+from runner.audit.truth import Elements, FloatArray, Symbols, Truth, columns, coordinates
+from runner.works.meca500.equations.truths.meca500 import BY_MODEL, JOINTS
 
 
 def symbols(count: int, generator: np.random.Generator) -> Symbols:
@@ -21,10 +22,6 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
     what the report calls so; `G` the weight, `theta` the sensor's turn, `Gcos` and `Gsin` their products; `r00` to
     `r22` the elements of the inverse of the flange's rotation, 6R0, counted from 0, `r13` to `r33` those of its last
     column counted from 1. The report does not define r; with 6R0 its equations hold, with 0R6 they do not.
-
-    Args:
-        count: How many configurations.
-        generator: Source of the draw.
     """
     return _symbols(count, generator, contact=0.0)
 
@@ -35,7 +32,7 @@ def contact_symbols(count: int, generator: np.random.Generator) -> Symbols:
 
 
 def _symbols(count: int, generator: np.random.Generator, contact: float) -> Symbols:
-    R = model_poses(generator.uniform(-np.pi, np.pi, (count, JOINTS)))[:, :3, :3]
+    R = BY_MODEL.pose(generator.uniform(-np.pi, np.pi, (count, JOINTS)))[:, :3, :3]
     theta, G = generator.uniform(-np.pi, np.pi, count), generator.uniform(1, 8, count)
     r, F0 = generator.uniform(-60, 60, (count, 3)), generator.uniform(-10, 10, (count, 3))
     M0 = generator.uniform(-300, 300, (count, 3))
@@ -54,19 +51,13 @@ def _symbols(count: int, generator: np.random.Generator, contact: float) -> Symb
 
 
 def weight(R: FloatArray, theta: FloatArray, G: FloatArray) -> FloatArray:
-    """Return a weight in the sensor frame, shape (T, 3).
-
-    Args:
-        R: The flange's rotations, shape (T, 3, 3).
-        theta: The sensor's turn about the flange's z axis, shape (T,), in rad.
-        G: The weight, shape (T,), in N.
-    """
+    """Return a weight G in the sensor frame, turned by theta from a flange with rotation R, shape (T, 3)."""
     turned = R @ rotation("z", theta)[:, :3, :3]
     return -G[:, None] * turned[:, 2, :]
 
 
-def _vectors(values: Symbols, names: Sequence[str]) -> FloatArray:
-    return np.column_stack([values[name] for name in names])
+def _axes(values: Symbols, before: str = "", after: str = "") -> FloatArray:
+    return columns(values, [f"{before}{axis}{after}" for axis in "xyz"])
 
 
 def _flange(values: Symbols) -> FloatArray:
@@ -76,28 +67,22 @@ def _flange(values: Symbols) -> FloatArray:
 
 def _loads(values: Symbols, force: FloatArray, moment: FloatArray) -> Elements:
     """Return everything that the report names, from the weight's force and moment in the sensor frame."""
-    F0, M0 = _vectors(values, ["F_x0", "F_y0", "F_z0"]), _vectors(values, ["M_x0", "M_y0", "M_z0"])
-    Fe, Me = _vectors(values, ["Fe_x", "Fe_y", "Fe_z"]), _vectors(values, ["Me_x", "Me_y", "Me_z"])
-    r = _vectors(values, ["x", "y", "z"])
-    read, turned = F0 + force + Fe, M0 + moment + Me
-    k = M0 - np.cross(r, F0)
-    result: dict[str, FloatArray] = {}
-    for i, a in enumerate("xyz"):
-        result |= {f"G_{a}": force[:, i], f"M_g{a}": moment[:, i], f"F_{a}": read[:, i], f"M_{a}": turned[:, i]}
-        result |= {f"F_e{a}": Fe[:, i], f"M_e{a}": Me[:, i], f"k{i + 1}": k[:, i]}
-    return result
+    F0, M0, Fe, Me = (_axes(values, *names) for names in (("F_", "0"), ("M_", "0"), ("Fe_",), ("Me_",)))
+    k = M0 - np.cross(_axes(values), F0)
+    named = {"G_": force, "M_g": moment, "F_": F0 + force + Fe, "M_": M0 + moment + Me, "F_e": Fe, "M_e": Me}
+    found = [coordinates(name, vectors, "") for name, vectors in named.items()]
+    return reduce(or_, found, {f"k{i + 1}": k[:, i] for i in range(3)})
 
 
 def _by_vectors(values: Symbols) -> Elements:
     force = weight(_flange(values), values["theta"], values["G"])
-    return _loads(values, force, np.cross(_vectors(values, ["x", "y", "z"]), force))
+    return _loads(values, force, np.cross(_axes(values), force))
 
 
 def _by_wrenches(values: Symbols) -> Elements:
     """Return the same, the weight carried from a frame upright at the centre of gravity to the sensor by Pinocchio."""
     wrenches = []
-    centres = _vectors(values, ["x", "y", "z"])
-    for R, angle, G, r in zip(_flange(values), values["theta"], values["G"], centres, strict=True):
+    for R, angle, G, r in zip(_flange(values), values["theta"], values["G"], _axes(values), strict=True):
         sensor = R @ pin.rpy.rpyToMatrix(0.0, 0.0, float(angle))
         wrenches.append(pin.SE3(sensor.T, r).act(pin.Force(np.array([0, 0, -G]), np.zeros(3))).vector)
     both = np.array(wrenches)

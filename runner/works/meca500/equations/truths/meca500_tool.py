@@ -4,8 +4,8 @@ import numpy as np
 import pinocchio as pin
 
 from runner.audit.chains import rotation
-from runner.audit.truth import Elements, FloatArray, Symbols, Truth
-from runner.works.meca500.equations.truths.meca500 import JOINTS, model_poses
+from runner.audit.truth import Elements, FloatArray, Symbols, Truth, along
+from runner.works.meca500.equations.truths.meca500 import BY_MODEL, JOINTS
 
 POSES = 4
 
@@ -15,56 +15,45 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
 
     `R1` to `R4` are the flange's rotations and `P1` to `P4` its positions, shapes (T, 3, 3) and (T, 3); `p` is the tool
     tip in the flange and `X` the point in the base frame; `short` is a shorter tool in the same direction `t`.
-
-    Args:
-        count: How many tools.
-        generator: Source of the draw.
     """
     tool = generator.uniform([-40, -40, 60], [40, 40, 140], (count, 3))
     point = generator.uniform(-200, 200, (count, 3))
     values = {"p": tool, "X": point}
     for k in range(1, POSES + 1):
-        R = model_poses(generator.uniform(-np.pi, np.pi, (count, JOINTS)))[:, :3, :3]
-        values |= {f"R{k}": R, f"P{k}": point - times(R, tool)}
+        R = BY_MODEL.pose(generator.uniform(-np.pi, np.pi, (count, JOINTS)))[:, :3, :3]
+        values |= {f"R{k}": R, f"P{k}": point - along(R, tool)}
     direction = generator.normal(size=(count, 3))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
     return values | {"t": direction, "short": tool - 25 * direction}
-
-
-def times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
-    """Return the products of matrices, shape (T, m, n), and vectors, shape (T, n)."""
-    return np.asarray(np.einsum("tij,tj->ti", matrices, vectors))
 
 
 def chain(values: Symbols) -> Elements:
     """Return the tip by the product of homogeneous transforms: eq. 1."""
     flange = np.tile(np.eye(4), (len(values["p"]), 1, 1))
     flange[:, :3, :3], flange[:, :3, 3] = values["R1"], values["P1"]
-    tool = np.tile(np.eye(4), (len(values["p"]), 1, 1))
-    tool[:, :3, 3] = values["p"]
-    return {"P_H": (flange @ tool)[:, :3, 3]}
+    return {"P_H": along(flange, np.column_stack([values["p"], np.ones(len(flange))]))[:, :3]}
 
 
 def tip(values: Symbols) -> Elements:
     """Return the tip by rotation and shift: eq. 3."""
-    return {"P_H": times(values["R1"], values["p"]) + values["P1"]}
+    return {"P_H": four_tips(values)["P_H1"]}
 
 
 def four_tips(values: Symbols) -> Elements:
     """Return the tip from each of the four poses: eq. 4."""
-    return {f"P_H{k}": times(values[f"R{k}"], values["p"]) + values[f"P{k}"] for k in range(1, POSES + 1)}
+    return {f"P_H{k}": along(values[f"R{k}"], values["p"]) + values[f"P{k}"] for k in range(1, POSES + 1)}
 
 
 def differences(values: Symbols) -> Elements:
     """Return the left side of eq. 5, the differences of rotations times the tool vector, shape (T, 9)."""
-    return {"RP": times(_stacked(values), values["p"])}
+    return {"RP": along(_stacked(values), values["p"])}
 
 
 def least_squares(values: Symbols) -> Elements:
     """Return the tool vector (R' R)^-1 R' P of the equation after eq. 5."""
     R, P = _stacked(values), _shifts(values)
     transposed = R.transpose(0, 2, 1)
-    return {"p": np.asarray(np.linalg.solve(transposed @ R, times(transposed, P)[:, :, None])[:, :, 0], dtype=float)}
+    return {"p": np.asarray(np.linalg.solve(transposed @ R, along(transposed, P)[:, :, None])[:, :, 0], dtype=float)}
 
 
 def _stacked(values: Symbols) -> FloatArray:
@@ -109,20 +98,18 @@ def _frame_seen_from_tool(values: Symbols) -> Elements:
 
 
 def _by_pinocchio(values: Symbols) -> Elements:
-    alpha, beta = _angles(values)
-    rotations = [
-        pin.rpy.rpyToMatrix(a, 0.0, 0.0) @ pin.rpy.rpyToMatrix(0.0, b, 0.0) for a, b in zip(alpha, beta, strict=True)
+    turns = [
+        pin.rpy.rpyToMatrix(a, 0.0, 0.0) @ pin.rpy.rpyToMatrix(0.0, b, 0.0)
+        for a, b in zip(*_angles(values), strict=True)
     ]
-    return {"T6_R": np.array([pin.SE3(R, np.zeros(3)).inverse().rotation for R in rotations])}
+    return {"T6_R": np.array([pin.SE3(R, np.zeros(3)).inverse().rotation for R in turns])}
 
 
 def _points(values: Symbols) -> Elements:
-    acted = {
-        f"P_H{k}": np.array(
-            [pin.SE3(R, P).act(p) for R, P, p in zip(values[f"R{k}"], values[f"P{k}"], values["p"], strict=True)]
-        )
-        for k in range(1, POSES + 1)
-    }
+    acted = {}
+    for k in range(1, POSES + 1):
+        rows = zip(values[f"R{k}"], values[f"P{k}"], values["p"], strict=True)
+        acted[f"P_H{k}"] = np.array([pin.SE3(R, P).act(p) for R, P, p in rows])
     return acted | {"P_H": acted["P_H1"]}
 
 
@@ -132,8 +119,8 @@ def _fitted(values: Symbols) -> Elements:
 
 
 def _between_tips(values: Symbols) -> Elements:
-    tips = [times(values["R1"], values[name]) + values["P1"] for name in ("p", "short")]
-    return {"t": times(values["R1"].transpose(0, 2, 1), tips[0] - tips[1])}
+    tips = [along(values["R1"], values[name]) + values["P1"] for name in ("p", "short")]
+    return {"t": along(values["R1"].transpose(0, 2, 1), tips[0] - tips[1])}
 
 
 point = Truth(
@@ -143,9 +130,7 @@ point = Truth(
 )
 stack = Truth(
     lambda values: {"RP": _shifts(values)},
-    lambda values: {
-        "RP": np.concatenate([times(values["R1"] - values[f"R{k}"], values["p"]) for k in range(2, POSES + 1)], axis=1)
-    },
+    differences,
     ("differences of the flange's positions", "differences of the turned tool vector"),
 )
 tool = Truth(lambda values: {"p": values["p"]}, _fitted, ("the tool that was drawn", "least squares by LAPACK"))

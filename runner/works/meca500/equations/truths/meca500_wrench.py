@@ -3,9 +3,9 @@
 import numpy as np
 import pinocchio as pin
 
-from runner.audit.truth import Elements, FloatArray, Symbols, Truth
-from runner.works.meca500.equations.truths.meca500 import JOINTS, model_poses
-from runner.works.meca500.equations.truths.meca500_tool import times
+from runner.audit.truth import Elements, Symbols, Truth, along
+from runner.sensing.wrench import cross_matrix
+from runner.works.meca500.equations.truths.meca500 import BY_MODEL, JOINTS
 
 
 def symbols(count: int, generator: np.random.Generator) -> Symbols:
@@ -14,14 +14,10 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
     `F` and `M_p` are the force and the moment about S1's origin, p, in S1. `R` turns vectors of S1 into S2, `P` is S1's
     origin in S2; `qp` is the vector from S2's origin, q, to p, in S1; `r_p` is the lever of the force from p, `r_q`
     from q.
-
-    Args:
-        count: How many.
-        generator: Source of the draw.
     """
-    R = model_poses(generator.uniform(-np.pi, np.pi, (count, JOINTS)))[:, :3, :3]
+    R = BY_MODEL.pose(generator.uniform(-np.pi, np.pi, (count, JOINTS)))[:, :3, :3]
     P, F, lever = (generator.uniform(-size, size, (count, 3)) for size in (100, 20, 80))
-    qp = times(R.transpose(0, 2, 1), P)
+    qp = along(R.transpose(0, 2, 1), P)
     return {"R": R, "P": P, "F": F, "r_p": lever, "r_q": lever + qp, "qp": qp, "M_p": np.cross(lever, F)}
 
 
@@ -35,13 +31,8 @@ def by_shorter_lever(values: Symbols) -> Elements:
     return {"M_p": np.cross(values["r_p"], values["F"]) + np.cross(values["qp"], values["F"])}
 
 
-def by_shorter_lever_mended(values: Symbols) -> Elements:
-    """Return r_p x F + qp x F as the moment about q."""
-    return {"M_q": np.cross(values["r_p"], values["F"]) + np.cross(values["qp"], values["F"])}
-
-
 def by_shift(values: Symbols) -> Elements:
-    """Return M_p + qp x F."""
+    """Return M_p + qp x F, where M_p is r_p x F."""
     return {"M_q": values["M_p"] + np.cross(values["qp"], values["F"])}
 
 
@@ -49,13 +40,9 @@ def by_matrix(values: Symbols) -> Elements:
     """Return the product of the shift and the turn, both 6 by 6, and the wrench in S1."""
     count = len(values["F"])
     shift, turn = np.tile(np.eye(6), (count, 1, 1)), np.zeros((count, 6, 6))
-    x, y, z = values["P"].T
-    shift[:, 3, 4], shift[:, 3, 5], shift[:, 4, 3] = -z, y, z
-    shift[:, 4, 5], shift[:, 5, 3], shift[:, 5, 4] = -x, -y, x
-    shift[:, 3:, :3], shift[:, :3, 3:] = shift[:, 3:, 3:] - np.eye(3), 0
-    shift[:, 3:, 3:] = np.eye(3)
+    shift[:, 3:, :3] = [cross_matrix(P) for P in values["P"]]
     turn[:, :3, :3] = turn[:, 3:, 3:] = values["R"]
-    return {"wrench": times(shift @ turn, np.hstack([values["F"], values["M_p"]]))}
+    return {"wrench": along(shift @ turn, np.hstack([values["F"], values["M_p"]]))}
 
 
 def composed(values: Symbols) -> Elements:
@@ -67,18 +54,13 @@ def composed(values: Symbols) -> Elements:
 
 
 def inverted_origin(values: Symbols) -> Elements:
-    """Return -R times the origin of S2 in S1."""
-    return {"P": -times(values["R"], _origin(values))}
-
-
-def _origin(values: Symbols) -> FloatArray:
-    """Return S2's origin in S1, shape (T, 3), in mm."""
-    return -values["qp"]
+    """Return -R times the origin of S2 in S1, -qp."""
+    return {"P": -along(values["R"], -values["qp"])}
 
 
 def _by_vectors(values: Symbols) -> Elements:
     moment = np.cross(values["r_q"], values["F"])
-    turned = np.hstack([times(values["R"], values["F"]), times(values["R"], moment)])
+    turned = np.hstack([along(values["R"], values["F"]), along(values["R"], moment)])
     T = np.tile(np.eye(4), (len(moment), 1, 1))
     T[:, :3, :3], T[:, :3, 3] = values["R"], values["P"]
     return {"M_p": np.cross(values["r_p"], values["F"]), "M_q": moment, "wrench": turned, "T": T, "P": values["P"]}

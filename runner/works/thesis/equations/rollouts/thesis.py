@@ -4,12 +4,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from runner.audit.rollout import Rollout
-from runner.audit.truth import FloatArray
+from runner.audit.rollout import Run
+from runner.audit.truth import FloatArray, along
 from runner.trajectories.quintic import Quintic
 from runner.works.thesis.equations.truths import thesis_jacobians, thesis_measures
 from runner.works.thesis.equations.truths.thesis import symbols_at
-from runner.works.thesis.equations.truths.thesis_arms import COMBINED, MACRO, MINI, Arm, along
+from runner.works.thesis.equations.truths.thesis_arms import COMBINED, MACRO, MINI, Arm
 from runner.works.thesis.equations.truths.thesis_kinematics import tip_pose
 
 _GOAL = np.array([0.1679, -0.7571, 0.4255])  # of the Macro, section 3.3.1; the Mini's is a tenth of it
@@ -19,6 +19,8 @@ _GAIN = 30.0  # 1/s, of the position error: the Macro's natural frequency
 _FASTEST = 20.0  # rad/s, at which a joint's speed is cut
 _OFFSET = np.array([0.0, 0.1, 0.1])  # tip of the Mini at home, from its base
 _LEAN = np.array([0.0, -0.5, 0.7])  # rad, the Macro under the leaning Mini
+_FREQUENCY = 30.0  # rad/s, section 3.3.1
+_POSTURE = (0.0, -0.4)  # rad, joints 1 and 2 of the Macro held by its gravity term
 
 Jacobian = Callable[[FloatArray], FloatArray]
 
@@ -28,7 +30,7 @@ def _follow(arm: Arm, jacobian: Jacobian) -> tuple[FloatArray, FloatArray, Float
 
     The joints move at J^+ (dx_d + k (x_d - x)), J as believed and the tip's position as it is, from home.
     """
-    model = arm.model()
+    model = arm.model
     path = Quintic(model.tip_position(np.zeros(3)), _GOAL * arm.a[2], _DURATION)
     times = np.arange(0.0, _DURATION + _STEP / 2, _STEP)
     motion = path.sample(times)
@@ -44,10 +46,10 @@ def _follow(arm: Arm, jacobian: Jacobian) -> tuple[FloatArray, FloatArray, Float
 
 
 def _right(arm: Arm) -> Jacobian:
-    return lambda q: arm.model().tip_jacobian(q)[:3]
+    return lambda q: arm.model.tip_jacobian(q)[:3]
 
 
-def lever_arms() -> Rollout:
+def lever_arms() -> Run:
     """Return how the Macro follows its path by the columns of (3.6), and by the exchanged indices of J_ij."""
 
     def printed(q: FloatArray) -> FloatArray:
@@ -58,19 +60,11 @@ def lever_arms() -> Rollout:
 
     times, _, right = _follow(MACRO, _right(MACRO))
     by_levers, by_indices = (_follow(MACRO, jacobian)[2] for jacobian in (printed, exchanged))
-    return Rollout(
-        "The Macro on its path by the printed Jacobian formulas",
-        f"Led along the thesis' path by the columns of (3.6) the tip strays up to {by_levers.max():.2f} m from it, by "
-        f"J_ij with its indices exchanged {by_indices.max():.2f} m; by the right Jacobian {right.max() * 1e3:.1f} mm.",
-        "time (s)",
-        "distance of the tip from where it should be (m)",
-        times,
-        {"levers of (3.6)": by_levers, "indices of J_ij": by_indices, "corrected": right},
-        logarithmic=True,
-    )
+    curves = {"levers of (3.6)": by_levers, "indices of J_ij": by_indices, "corrected": right}
+    return Run(times, curves, {"right_mm": 1e3 * right.max()})
 
 
-def mini_jacobian() -> Rollout:
+def mini_jacobian() -> Run:
     """Return how the Mini follows its path by the printed J_v6."""
 
     def printed(q: FloatArray) -> FloatArray:
@@ -80,19 +74,11 @@ def mini_jacobian() -> Rollout:
 
     times, _, right = _follow(MINI, _right(MINI))
     wrong = _follow(MINI, printed)[2]
-    return Rollout(
-        "The Mini on its path by the printed J_v6",
-        f"With the factor 1/10 missing in one element the tip is up to {wrong.max() * 1e3:.1f} mm from where it "
-        f"should be, instead of {right.max() * 1e3:.2f} mm: joint 5 is believed to lift it far faster than it does.",
-        "time (s)",
-        "distance of the tip from where it should be (m)",
-        times,
-        {"as printed": wrong, "corrected": right},
-        logarithmic=True,
-    )
+    numbers = {"wrong_mm": 1e3 * wrong.max(), "right_mm": 1e3 * right.max()}
+    return Run(times, {"as printed": wrong, "corrected": right}, numbers)
 
 
-def chained_tables() -> Rollout:
+def chained_tables() -> Run:
     """Return where the two D-H tables, one behind the other, place the tip of the combined arm."""
     angle = np.linspace(0.0, 1.0, 101)
     values = symbols_at(angle[:, None] * np.ones(6))
@@ -101,41 +87,24 @@ def chained_tables() -> Rollout:
         np.linalg.norm(chain(values)["T"][:, :3, 3] - real, axis=1)
         for chain in (thesis_measures.tables_chained, thesis_measures.tables_chained_with_turn)
     )
-    return Rollout(
-        "Tables 3.1 and 4.1 one behind the other",
-        f"All joints turn together from home. The chained tables place the tip {said.min():.2f} to {said.max():.2f} m "
-        "from where it is; the Mini reaches 0.2 m.",
-        "angle of every joint (rad)",
-        "distance of the computed tip from the real one (m)",
-        angle,
-        {"as printed": said, "corrected": mended},
-    )
+    return Run(angle, {"as printed": said, "corrected": mended})
 
 
-def mini_reference() -> Rollout:
+def mini_reference() -> Run:
     """Return where the tip comes to be when the Mini follows the difference in frame 0, the Macro on its path."""
     times, q, _ = _follow(MACRO, _right(MACRO))
     turn = thesis_measures.base_of_mini(q)
     wanted = np.tile(_OFFSET, (len(times), 1))
     given = {"as printed": wanted, "corrected": along(turn.transpose(0, 2, 1), wanted)}
     missed = {name: np.linalg.norm(along(turn, r) - wanted, axis=1) for name, r in given.items()}
-    return Rollout(
-        "The Mini's reference taken from frame 0",
-        "The Macro follows its path and the Mini is to keep the tip (0, 0.1, 0.1) m away from the Macro's end. Given "
-        "that difference as it is, though its frame leans with link 3, the Mini puts the tip up to "
-        f"{missed['as printed'].max():.2f} m from where it should be.",
-        "time (s)",
-        "distance of the tip from where it should be (m)",
-        times,
-        missed,
-    )
+    return Run(times, missed)
 
 
-def leaning_mini() -> Rollout:
+def leaning_mini() -> Run:
     """Return what the Mini does under its weight's torques: by the printed G, and with gravity turned into frame 3."""
     g = along(thesis_measures.base_of_mini(_LEAN[None]).transpose(0, 2, 1), np.array([[0.0, 0.0, -9.81]]))
     times = np.arange(0.0, 0.3 + _STEP / 2, _STEP)
-    whole, mini = COMBINED.model(), MINI.model()
+    whole, mini = COMBINED.model, MINI.model
 
     def fallen(weight: Callable[[FloatArray], FloatArray]) -> FloatArray:
         q, dq = np.array([0.0, 0.3, 0.4]), np.zeros(3)
@@ -149,14 +118,27 @@ def leaning_mini() -> Rollout:
             q = q + _STEP * dq
         return np.array(distances)
 
-    printed = fallen(MINI.gravity_torque)
-    right = fallen(lambda q: MINI.gravity_torque(q, g))
-    return Rollout(
-        "The Mini held by its printed weight on a leaning Macro",
-        f"Link 3 of the Macro leans by 0.2 rad. Held by torques equal to the printed G, the Mini leaves its place by "
-        f"{printed.max() * 1e3:.0f} mm within 0.3 s; with gravity turned into its base it stays.",
-        "time (s)",
-        "distance of the tip from its start (m)",
-        times,
-        {"as printed": printed, "corrected": right},
-    )
+    printed = fallen(MINI.weight)
+    right = fallen(lambda q: MINI.weight(q, g))
+    return Run(times, {"as printed": printed, "corrected": right}, {"printed_mm": 1e3 * printed.max()})
+
+
+def gravity() -> Run:
+    """Return how far the Macro sags with s2 in the place of s23."""
+    degrees = np.linspace(-75, 75, 151)
+    q = np.column_stack([np.full(len(degrees), angle) for angle in _POSTURE] + [np.radians(degrees)])
+    c2, s2, s23 = np.cos(q[:, 1]), np.sin(q[:, 1]), np.sin(q[:, 1] + q[:, 2])
+    printed, right = (np.column_stack([0 * c2, 19.62 * c2 - 9.81 * s, -9.81 * s]) for s in (s2, s23))
+    sag = _sag(q, printed)
+    numbers = {"frequency": _FREQUENCY, "sag_cm": 100 * sag.max()}
+    return Run(degrees, {"as printed": sag, "corrected": _sag(q, right)}, numbers)
+
+
+def _sag(q: FloatArray, compensated: FloatArray) -> FloatArray:
+    """Return how far the tip rests from its goal: Lambda omega_n^2 error = J^-T (G - what is compensated)."""
+    model = MACRO.model
+    distances = []
+    for row, torque in zip(q, compensated, strict=True):
+        missing = np.linalg.solve(model.mass_matrix(row), model.gravity_torque(row) - torque)
+        distances.append(np.linalg.norm(model.tip_jacobian(row)[:3] @ missing) / _FREQUENCY**2)
+    return np.array(distances)

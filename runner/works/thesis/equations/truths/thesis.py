@@ -1,10 +1,8 @@
-"""What the names in the thesis' formulas stand for, and how their elements are named here."""
-
-from itertools import product
+"""What the names in the thesis' formulas stand for."""
 
 import numpy as np
 
-from runner.audit.truth import FloatArray, Symbols
+from runner.audit.truth import FloatArray
 
 JOINTS = 6
 _SUMS = ("1", "2", "3", "4", "5", "6", "12", "23", "123", "45", "56", "456", "1_2", "1_2_3", "4_5", "4_5_6")
@@ -17,10 +15,6 @@ def symbols(count: int, generator: np.random.Generator) -> dict[str, FloatArray]
     c12 is cos(q1 + q2); c1_2_3 is what the thesis prints as c(1-2-3), cos(q1 - q2 - q3). theta, alpha, a and d are
     the parameters of any one link, xi and omega_n those of any second-order loop, n any number of joints, c_0 to c_5
     the coefficients of the quintic from x_0 to x_t in t_f.
-
-    Args:
-        count: How many states.
-        generator: Source of the draw.
     """
     q = generator.uniform(-np.pi, np.pi, (count, JOINTS))
     return _named(q, generator)
@@ -63,36 +57,10 @@ def _named(q: FloatArray, generator: np.random.Generator) -> dict[str, FloatArra
 
 
 def _angle(digits: str, q: FloatArray) -> FloatArray:
-    if "_" in digits:
-        first, *rest = (int(digit) - 1 for digit in digits.split("_"))
-        difference: FloatArray = q[:, first] - q[:, rest].sum(axis=1)
-        return difference
-    total: FloatArray = q[:, [int(digit) - 1 for digit in digits]].sum(axis=1)
-    return total
+    first, *rest = (int(digit) - 1 for digit in digits.replace("_", ""))
+    return np.asarray(q[:, first] + (-1.0 if "_" in digits else 1.0) * q[:, rest].sum(axis=1))
 
 
 def symbols_at(q: FloatArray) -> dict[str, FloatArray]:
     """Return the names of sections 3.1 and 4.1 at joint positions (T, 6), or the Macro's (T, 3), the Mini home."""
     return abbreviations(np.column_stack([q, np.zeros((len(q), JOINTS - q.shape[1]))]))
-
-
-def vector_of(name: str, values: Symbols, joints: slice = slice(0, JOINTS)) -> FloatArray:
-    """Return the joint positions ("q"), velocities ("dq") or accelerations ("ddq") of a sample, shape (T, n)."""
-    return np.column_stack([values[f"{name}{joint + 1}"] for joint in range(JOINTS)[joints]])
-
-
-def elements(name: str, array: FloatArray) -> dict[str, FloatArray]:
-    """Return the elements of vectors (T, n) or matrices (T, m, n) under their names: P_1, or M_23."""
-    places = product(*(range(size) for size in array.shape[1:]))
-    moved = np.moveaxis(array, 0, -1)
-    return {f"{name}_{''.join(str(i + 1) for i in place)}": moved[place] for place in places}
-
-
-def whole_and_elements(name: str, array: FloatArray) -> dict[str, FloatArray]:
-    """Return a vector or matrix under its name, and its elements under theirs."""
-    return {name: array} | elements(name, array)
-
-
-def coordinates(name: str, array: FloatArray) -> dict[str, FloatArray]:
-    """Return the coordinates of vectors (T, 3) under their names: P_x, P_y, P_z."""
-    return {f"{name}_{axis}": array[:, place] for place, axis in enumerate("xyz")}

@@ -12,11 +12,10 @@ from itertools import combinations_with_replacement, product
 
 import numpy as np
 
-from runner.audit.truth import Elements, FloatArray, Symbols, Truth, Way
+from runner.audit.truth import Elements, FloatArray, Symbols, Way
 from runner.robots.model import RobotModel
 from runner.works.thesis.equations.appendix import JOINTS, Appendix, Harmonic, Term, evaluate, read_appendix
-from runner.works.thesis.equations.truths.thesis import elements
-from runner.works.thesis.equations.truths.thesis_arms import COMBINED, along
+from runner.works.thesis.equations.truths.thesis_arms import COMBINED
 
 _POINTS = 5  # along each joint position: a harmonic of at most twice the angle needs 2 * 2 + 1
 _TOLERANCE = 1e-9  # of a coefficient; the smallest that is not zero is 1/32000
@@ -29,15 +28,7 @@ Series = dict[tuple[int, str], dict[Harmonic, float]]
 
 @dataclass(frozen=True)
 class Damage:
-    """Where the appendix as read is not the true torque.
-
-    Attributes:
-        torque: The row, 1 to 6.
-        factor: What the group is multiplied with, or "gravity".
-        read: The term as read; None where a term is lost.
-        harmonic: The function that stands there in truth; None where nothing does.
-        true: Its true coefficient.
-    """
+    """A term of a torque's group as read, None where it is lost, and what stands there in truth, None for nothing."""
 
     torque: int
     factor: str
@@ -59,7 +50,7 @@ class Damage:
 @cache
 def true_series() -> Series:
     """Return the true coefficients of the torques; nothing depends on joint 1's position, as its axis is vertical."""
-    model = COMBINED.model()
+    model = COMBINED.model
     angles = 2.0 * np.pi * np.arange(_POINTS) / _POINTS
     grid = np.array([(0.0, *point) for point in product(angles, repeat=JOINTS - 1)])
     samples = np.array([_coefficients(model, q) for q in grid])  # (grid, factors, joints)
@@ -94,20 +85,6 @@ def _coefficients(model: RobotModel, q: FloatArray) -> FloatArray:
         for i, j in combinations_with_replacement(range(JOINTS), 2)
     ]
     return np.array([model.gravity_torque(q), *model.mass_matrix(q), *products])
-
-
-def _by_pinocchio(s: Symbols) -> FloatArray:
-    model, q, dq, ddq = COMBINED.model(), COMBINED.q(s), COMBINED.dq(s), COMBINED.ddq(s)
-    M = np.array([model.mass_matrix(row) for row in q])
-    V = np.array([model.coriolis_torque(*row) for row in zip(q, dq, strict=True)])
-    G = np.array([model.gravity_torque(row) for row in q])
-    return np.asarray(along(M, ddq) + V + G, dtype=float)
-
-
-def _by_masses(s: Symbols) -> FloatArray:
-    q = COMBINED.q(s)
-    M, V = COMBINED.mass_matrix(q), COMBINED.coriolis_torque(q, COMBINED.dq(s))
-    return along(M, COMBINED.ddq(s)) + V + COMBINED.gravity_torque(q)
 
 
 # Comparison.
@@ -162,12 +139,7 @@ def appendix_damages() -> tuple[Damage, ...]:
 
 def _as_read(torque: int) -> Way:
     """Return a torque by its terms as they have been read."""
-
-    def form(s: Symbols) -> Elements:
-        terms = [(t.torque, t.factor, t.harmonic, float(t.coefficient)) for t in read_appendix().terms]
-        return _torque(torque, terms, s)
-
-    return form
+    return lambda s: _torque(torque, list(map(_summand, read_appendix().terms)), s)
 
 
 def _mended(torque: int) -> Way:
@@ -175,24 +147,21 @@ def _mended(torque: int) -> Way:
 
     def form(s: Symbols) -> Elements:
         spoilt = {id(damage.read) for damage in appendix_damages()}
-        whole = [
-            (t.torque, t.factor, t.harmonic, float(t.coefficient)) for t in read_appendix().terms if id(t) not in spoilt
-        ]
+        whole = [_summand(term) for term in read_appendix().terms if id(term) not in spoilt]
         put_in = [(d.torque, d.factor, d.harmonic, float(d.true)) for d in appendix_damages() if d.harmonic]
         return _torque(torque, whole + put_in, s)
 
     return form
 
 
+def _summand(term: Term) -> tuple[int, str, Harmonic, float]:
+    return term.torque, term.factor, term.harmonic, float(term.coefficient)
+
+
 def _torque(torque: int, terms: list[tuple[int, str, Harmonic, float]], s: Symbols) -> Elements:
     row = [term for term in terms if term[0] == torque]
-    return {f"tau_{torque}": evaluate(row, COMBINED.q(s), COMBINED.dq(s), COMBINED.ddq(s))[:, torque - 1]}
+    return {f"tau_{torque}": evaluate(row, *COMBINED.audited.motion(s))[:, torque - 1]}
 
 
-torques = Truth(
-    lambda s: elements("tau", _by_pinocchio(s)),
-    lambda s: elements("tau", _by_masses(s)),
-    ("Pinocchio", "d'Alembert's principle on the chain's point masses, rates by differences"),
-)
 read_1, read_2, read_3, read_4, read_5, read_6 = (_as_read(torque) for torque in _TORQUES)
 mended_1, mended_2, mended_3, mended_4, mended_5, mended_6 = (_mended(torque) for torque in _TORQUES)

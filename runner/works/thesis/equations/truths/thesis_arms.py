@@ -1,18 +1,17 @@
-"""The thesis' arms, twice: by Pinocchio, and as chains of Denavit-Hartenberg transforms with point masses."""
+"""The thesis' arms: by their URDFs, and as chains of Denavit-Hartenberg transforms with point masses."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cached_property
 
 import numpy as np
 
 from runner.audit.chains import derivative, product, rotation, translation
-from runner.audit.truth import FloatArray, Symbols
-from runner.config.compose import compose
-from runner.config.validation import validate
+from runner.audit.model_truths import AuditedArm, Dynamics, audited_arm, by_model, by_urdf
+from runner.audit.truth import Elements, FloatArray, Symbols, Truth, along
+from runner.paths import works_dir
 from runner.robots.model import RobotModel
-from runner.robots.robot import Robot
-from runner.works.thesis.equations.truths.thesis import vector_of
+from runner.works.thesis.equations.truths.thesis import JOINTS
 
 GRAVITY = np.array([0.0, 0.0, -9.81])  # m/s^2; specified in section 3.2
 _HALF = np.pi / 2
@@ -23,34 +22,51 @@ class Arm:
     """An arm by the measures of the thesis, its joints among the six of a sample.
 
     Attributes:
+        robot: Name of its config; the tip there is frame n.
         joints: Its joints.
         theta: D-H angles at q = 0, in rad.
         d: D-H distances along the joint axes, in m.
         a: D-H link lengths, in m.
         alpha: D-H twists, in rad.
         masses: Point masses at the origins of frames 1 to n, in kg.
-        model: The same arm in Pinocchio, from its URDF; its tip is frame n.
     """
 
+    robot: str
     joints: slice
     theta: tuple[float, ...]
     d: tuple[float, ...]
     a: tuple[float, ...]
     alpha: tuple[float, ...]
     masses: tuple[float, ...]
-    model: Callable[[], RobotModel]
+
+    @cached_property
+    def audited(self) -> AuditedArm:
+        """The same arm by its URDF."""
+        joints = tuple(f"q{i + 1}" for i in range(JOINTS)[self.joints])
+        return audited_arm(self.robot, "", joints, works_dir() / "thesis")
+
+    @property
+    def model(self) -> RobotModel:
+        """The same in Pinocchio."""
+        return self.audited.model
+
+    def both(self, found: Callable[[Dynamics, Symbols], Elements]) -> Truth:
+        """Return the truth of what follows from the arm's dynamics, by Pinocchio and by the URDF's bodies."""
+        first, second = by_model(self.model), by_urdf(self.audited.urdf, self.model)
+        ways = ("Pinocchio", "the URDF's transforms and energies, and differences of them")
+        return Truth(lambda s: found(first, s), lambda s: found(second, s), ways)
 
     def q(self, values: Symbols) -> FloatArray:
         """Return its joint positions, shape (T, n), in rad."""
-        return vector_of("q", values, self.joints)
+        return self.audited.motion(values)[0]
 
     def dq(self, values: Symbols) -> FloatArray:
         """Return its joint velocities, shape (T, n), in rad/s."""
-        return vector_of("dq", values, self.joints)
+        return self.audited.motion(values)[1]
 
     def ddq(self, values: Symbols) -> FloatArray:
         """Return its joint accelerations, shape (T, n), in rad/s^2."""
-        return vector_of("ddq", values, self.joints)
+        return self.audited.motion(values)[2]
 
     def step(self, link: int, q: FloatArray) -> FloatArray:
         """Return the transform from frame i = link to frame i-1 at joint positions, shape (T, 4, 4)."""
@@ -78,24 +94,6 @@ class Arm:
             J[:, 3:, joint] = axis
         return J
 
-    def mass_matrix(self, q: FloatArray) -> FloatArray:
-        """Return the sum of m J_v' J_v over the point masses, shape (T, n, n), in kg m^2."""
-        Js = [np.sqrt(m) * self.end_jacobian(i, q)[:, :3] for i, m in enumerate(self.masses, start=1) if m]
-        M: FloatArray = np.sum([J.transpose(0, 2, 1) @ J for J in Js], axis=0)
-        return M
-
-    def coriolis_torque(self, q: FloatArray, dq: FloatArray) -> FloatArray:
-        """Return the torques of the masses' accelerations at ddq = 0 by d'Alembert's principle, shape (T, n), in N m.
-
-        They are the sum of m J_v' (dJ_v/dt) dq, with the rate of J_v by differences.
-        """
-        torque = np.zeros_like(q)
-        for link, mass in enumerate(self.masses, start=1):
-            if mass:
-                J = self.end_jacobian(link, q)[:, :3]
-                torque += mass * along(J.transpose(0, 2, 1), self.bias_acceleration(link, q, dq))
-        return torque
-
     def bias_acceleration(self, link: int, q: FloatArray, dq: FloatArray) -> FloatArray:
         """Return the acceleration of frame i's origin at ddq = 0, (dJ_v/dt) dq by differences, shape (T, 3)."""
 
@@ -104,63 +102,30 @@ class Arm:
 
         return derivative(velocity, np.zeros((len(q), 1)), 0)
 
-    def gravity_torque(self, q: FloatArray, gravity: FloatArray = GRAVITY) -> FloatArray:
-        """Return the derivative of the masses' potential energy by differences, shape (T, n), in N m.
-
-        Args:
-            q: Joint positions, shape (T, n), in rad.
-            gravity: Gravity in the base frame, shape (3,) or (T, 3), in m/s^2.
-        """
-
-        def energy(at: FloatArray) -> FloatArray:
-            ends = zip(self.masses, self.frames(at)[1:], strict=True)
-            total: FloatArray = sum(-m * (frame[:, :3, 3] * gravity).sum(axis=1) for m, frame in ends)
-            return total
-
-        return np.column_stack([derivative(energy, q, joint) for joint in range(q.shape[1])])
+    def weight(self, q: FloatArray, gravity: FloatArray = GRAVITY) -> FloatArray:
+        """Return minus the sum of m J_v' g over the point masses, (3.24), g in the base frame; shape (T, n), in N m."""
+        g = np.broadcast_to(gravity, (len(q), 3))
+        torque = np.zeros_like(q)
+        for link, mass in enumerate(self.masses, start=1):
+            torque -= mass * along(self.end_jacobian(link, q)[:, :3].transpose(0, 2, 1), g)
+        return torque
 
 
-def along(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
-    """Return each matrix times its vector, shapes (T, m, n) and (T, n) to (T, m)."""
-    result: FloatArray = np.einsum("tij,tj->ti", matrices, vectors)
-    return result
+_HOME, _TWISTS = (_HALF, 0.0, _HALF), (_HALF, 0.0, _HALF)
 
-
-@cache
-def combined_robot() -> Robot:
-    """Return the Mini on the Macro as robot=combined builds it; its stages are the two arms alone."""
-    return validate(compose(("robot=combined",)).resolved).arm
-
-
-MACRO = Arm(
-    slice(0, 3),
-    (_HALF, 0.0, _HALF),
-    (0.0, 0.0, 0.0),
-    (0.0, 1.0, 1.0),
-    (_HALF, 0.0, _HALF),
-    (0.0, 1.0, 1.0),
-    lambda: combined_robot().stages[0].model,
-)
+MACRO = Arm("macro", slice(0, 3), _HOME, (0.0, 0.0, 0.0), (0.0, 1.0, 1.0), _TWISTS, (0.0, 1.0, 1.0))
 """The Macro of Tables 2.1 and 3.1."""
 
-MINI = Arm(
-    slice(3, 6),
-    (_HALF, 0.0, _HALF),
-    (0.0, 0.0, 0.0),
-    (0.0, 0.1, 0.1),
-    (_HALF, 0.0, _HALF),
-    (0.0, 0.1, 0.1),
-    lambda: combined_robot().stages[1].model,
-)
+MINI = Arm("mini", slice(3, 6), _HOME, (0.0, 0.0, 0.0), (0.0, 0.1, 0.1), _TWISTS, (0.0, 0.1, 0.1))
 """The Mini of Tables 2.1 and 4.1, on a base of its own, frame 3."""
 
 COMBINED = Arm(
+    "combined",
     slice(0, 6),
     (_HALF, 0.0, np.pi, np.pi, 0.0, _HALF),
     (0.0, 0.0, 0.0, 1.0, 0.0, 0.0),
     (0.0, 1.0, 0.0, 0.0, 0.1, 0.1),
     (_HALF, 0.0, _HALF, _HALF, 0.0, _HALF),
     (0.0, 1.0, 0.0, 1.0, 0.1, 0.1),
-    lambda: combined_robot().model,
 )
 """The Mini on the Macro, joint 4 along link 3: the table that the appendix was derived with (Table 5.1 is lost)."""

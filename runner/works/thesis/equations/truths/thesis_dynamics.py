@@ -1,110 +1,20 @@
-"""Truths of the thesis' dynamics in joint space, and its general formulas carried out as printed.
-
-The first way is Pinocchio; the second the point masses on the chain of elementary turns and shifts, by d'Alembert's
-principle: what each mass's acceleration and weight ask of the joints.
-"""
+"""The thesis' general formulas of dynamics in joint space carried out as printed, on the Macro and the combined arm."""
 
 from collections.abc import Callable
 from itertools import combinations
 
 import numpy as np
 
-from runner.audit.chains import derivative, jacobian_by_differences
-from runner.audit.truth import Elements, FloatArray, Symbols, Truth
+from runner.audit.chains import derivative
+from runner.audit.model_truths import by_model
+from runner.audit.truth import Elements, FloatArray, Symbols, along
 from runner.works.thesis.equations.truths import thesis_printed as printed
-from runner.works.thesis.equations.truths.thesis import elements
-from runner.works.thesis.equations.truths.thesis_arms import MACRO, MINI, Arm, along
-from runner.works.thesis.equations.truths.thesis_jacobians import model_jacobian
-
-WAYS = ("Pinocchio", "d'Alembert's principle on the chain's point masses, rates by differences")
-Torque = Callable[[FloatArray], FloatArray]
+from runner.works.thesis.equations.truths.thesis_arms import COMBINED, GRAVITY, MACRO
 
 
-# Pinocchio over many samples.
-
-
-def model_mass_matrix(arm: Arm, q: FloatArray) -> FloatArray:
-    """Return M(q) by Pinocchio, shape (T, n, n)."""
-    model = arm.model()
-    return np.array([model.mass_matrix(row) for row in q])
-
-
-def model_coriolis(arm: Arm, q: FloatArray, dq: FloatArray) -> FloatArray:
-    """Return V(q, dq) by Pinocchio, shape (T, n)."""
-    model = arm.model()
-    return np.array([model.coriolis_torque(*row) for row in zip(q, dq, strict=True)])
-
-
-def model_gravity(arm: Arm, q: FloatArray) -> FloatArray:
-    """Return G(q) by Pinocchio, shape (T, n)."""
-    model = arm.model()
-    return np.array([model.gravity_torque(row) for row in q])
-
-
-# M, V, B, C, G and the torque.
-
-
-def kinetic_mass_matrix(arm: Arm, q: FloatArray) -> FloatArray:
-    """Return M(q) from the kinetic energy at unit velocities, the masses' velocities by differences, (T, n, n)."""
-    ends = [np.sqrt(m) * _end_by_differences(arm, i, q) for i, m in enumerate(arm.masses, start=1)]
-
-    def energy(dq: FloatArray) -> FloatArray:
-        total: FloatArray = sum(0.5 * ((J @ dq) ** 2).sum(axis=1) for J in ends)
-        return total
-
-    unit = np.eye(q.shape[1])
-    rows = [[energy(e_i + e_j) - energy(e_i) - energy(e_j) for e_j in unit] for e_i in unit]
-    return np.moveaxis(np.array(rows), -1, 0)
-
-
-def _end_by_differences(arm: Arm, link: int, q: FloatArray) -> FloatArray:
-    return jacobian_by_differences(lambda at: arm.frame(link, at), q)[:, :3]
-
-
-def _squares_and_products(V: Callable[[FloatArray], FloatArray], count: int) -> tuple[FloatArray, FloatArray]:
-    """Return C and B of V = C [dq^2] + B [dq dq] from V at unit velocities, shapes (T, n, n), (T, n, n(n-1)/2)."""
-    unit = np.eye(count)
-    squares = [V(e) for e in unit]
-    products = [V(unit[i] + unit[j]) - squares[i] - squares[j] for i, j in combinations(range(count), 2)]
-    return np.stack(squares, axis=2), np.stack(products, axis=2)
-
-
-def _motion(arm: Arm) -> Truth:
-    """Return M, C, B, G, V and tau of an arm, whole and element by element."""
-
-    def first(s: Symbols) -> Elements:
-        q, dq = arm.q(s), arm.dq(s)
-        C, B = _squares_and_products(lambda unit: model_coriolis(arm, q, np.tile(unit, (len(q), 1))), 3)
-        return _named(s, arm, model_mass_matrix(arm, q), C, B, model_coriolis(arm, q, dq), model_gravity(arm, q))
-
-    def second(s: Symbols) -> Elements:
-        q, dq = arm.q(s), arm.dq(s)
-        C, B = _squares_and_products(lambda unit: arm.coriolis_torque(q, np.tile(unit, (len(q), 1))), 3)
-        V, G = arm.coriolis_torque(q, dq), arm.gravity_torque(q)
-        return _named(s, arm, kinetic_mass_matrix(arm, q), C, B, V, G)
-
-    return Truth(first, second, WAYS)
-
-
-def _named(
-    s: Symbols, arm: Arm, M: FloatArray, C: FloatArray, B: FloatArray, V: FloatArray, G: FloatArray
-) -> dict[str, FloatArray]:
-    whole = {"M": M, "C": C, "B": B, "V": V, "G": G, "tau": along(M, arm.ddq(s)) + V + G}
-    return whole | {name: v for key in "MCBG" for name, v in elements(key, whole[key]).items()}
-
-
-macro_motion, mini_motion = _motion(MACRO), _motion(MINI)
-
-
-# The general formulas, on the Macro.
-
-
-def _rate(function: Torque, q: FloatArray, dq: FloatArray) -> FloatArray:
+def _rate(function: Callable[[FloatArray], FloatArray], q: FloatArray, dq: FloatArray) -> FloatArray:
     """Return a matrix function's rate along dq by differences."""
-    total: FloatArray = np.asarray(
-        sum(dq[:, k, None, None] * derivative(function, q, k) for k in range(q.shape[1])), dtype=float
-    )
-    return total
+    return np.asarray(np.sum([dq[:, k, None, None] * derivative(function, q, k) for k in range(q.shape[1])], axis=0))
 
 
 def velocity_terms(s: Symbols) -> Elements:
@@ -117,7 +27,7 @@ def velocity_terms(s: Symbols) -> Elements:
 def lagrange(s: Symbols) -> Elements:
     """Return tau by (3.9): d/dt dK/d(dq) - dK/dq + G, with K = dq' M dq / 2."""
     inertia = along(printed.mass_matrix(MACRO.q(s)), MACRO.ddq(s))
-    return {"tau": inertia + velocity_terms(s)["V"] + model_gravity(MACRO, MACRO.q(s))}
+    return {"tau": inertia + velocity_terms(s)["V"] + by_model(MACRO.model).gravity(MACRO.q(s))}
 
 
 def printed_motion(s: Symbols) -> Elements:
@@ -158,11 +68,38 @@ def squares_and_products(s: Symbols) -> Elements:
 
 def weights(s: Symbols) -> Elements:
     """Return G by (3.24): minus the sum of J_v' m g."""
-    q, g = MACRO.q(s), np.array([0.0, 0.0, -9.81])
-    ends = ((0.0, "q2"), (1.0, "q3"), (1.0, "tip"))
-    return {"G": -sum((model_jacobian(MACRO, q, end)[:, :3].transpose(0, 2, 1) @ (m * g) for m, end in ends), 0.0 * q)}
+    return {"G": MACRO.weight(MACRO.q(s))}
 
 
 def point_masses(s: Symbols) -> Elements:
     """Return M by (3.17): the sum of m J_v' J_v."""
-    return {"M": MACRO.mass_matrix(MACRO.q(s))}
+    Js = [MACRO.end_jacobian(link, MACRO.q(s))[:, :3] for link in (2, 3)]
+    return {"M": np.sum([J.transpose(0, 2, 1) @ J for J in Js], axis=0)}  # of 1 kg each
+
+
+# What the Macro's joints carry while the Mini holds still, section 5.3.1.
+
+
+def alone(s: Symbols) -> Elements:
+    """Return the torques of the Macro moving alone."""
+    return {"tau": by_model(MACRO.model).torque(MACRO.q(s), MACRO.dq(s), MACRO.ddq(s))}
+
+
+def with_masses(s: Symbols) -> Elements:
+    """Return the same with what the Mini's masses ask for, each at its place beyond the Macro's end."""
+    q, dq, ddq = COMBINED.q(s), _held(COMBINED.dq(s)), _held(COMBINED.ddq(s))
+    carried = np.zeros((len(q), 3))
+    for link in (5, 6):
+        J = COMBINED.end_jacobian(link, q)[:, :3]
+        acceleration = along(J, ddq) + COMBINED.bias_acceleration(link, q, dq) - GRAVITY
+        carried += COMBINED.masses[link - 1] * along(J.transpose(0, 2, 1), acceleration)[:, :3]
+    return {"tau": alone(s)["tau"] + carried}
+
+
+def _held(values: FloatArray) -> FloatArray:
+    return np.column_stack([values[:, :3], np.zeros((len(values), 3))])
+
+
+mini_held = COMBINED.both(
+    lambda d, s: {"tau": d.torque(COMBINED.q(s), _held(COMBINED.dq(s)), _held(COMBINED.ddq(s)))[:, :3]}
+)

@@ -11,9 +11,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from runner.audit.chains import product, rotation
-from runner.audit.truth import Elements, FloatArray, Symbols, Truth, Way
+from runner.audit.model_truths import by_model
+from runner.audit.truth import Elements, FloatArray, Symbols, Truth, Way, elements
 from runner.robots.denavit_hartenberg import DenavitHartenbergRow, denavit_hartenberg, frames, transform
-from runner.works.thesis.equations.truths.thesis import elements, whole_and_elements
 from runner.works.thesis.equations.truths.thesis_arms import MACRO, MINI, Arm
 
 WAYS = ("Denavit-Hartenberg frames placed on the model's joint axes", "product of elementary turns and shifts")
@@ -21,7 +21,7 @@ WAYS = ("Denavit-Hartenberg frames placed on the model's joint axes", "product o
 
 @lru_cache(maxsize=4)
 def _rows(arm: Arm) -> tuple[DenavitHartenbergRow, ...]:
-    return denavit_hartenberg(arm.model())
+    return denavit_hartenberg(arm.model)
 
 
 def model_step(arm: Arm, link: int, q: FloatArray) -> FloatArray:
@@ -36,41 +36,21 @@ def model_frame(arm: Arm, link: int, q: FloatArray) -> FloatArray:
 
 def tip_pose(arm: Arm, q: FloatArray) -> FloatArray:
     """Return the tip's transforms by Pinocchio, shape (T, 4, 4)."""
-    model = arm.model()
-    return np.array([model.tip_pose(row) for row in q])
+    return by_model(arm.model).pose(q)
 
 
 # Transforms.
 
 
-def _step(arm: Arm, link: int) -> Truth:
+def _truth(model: Callable[..., FloatArray], chain: Callable[..., FloatArray], arm: Arm, link: int) -> Truth:
     return Truth(
-        lambda s: elements("T", model_step(arm, link, arm.q(s))),
-        lambda s: elements("T", arm.step(link, arm.q(s))),
-        WAYS,
+        lambda s: elements("T", model(arm, link, arm.q(s))), lambda s: elements("T", chain(arm, link, arm.q(s))), WAYS
     )
 
 
-def _frame(arm: Arm, link: int) -> Truth:
-    return Truth(
-        lambda s: elements("T", model_frame(arm, link, arm.q(s))),
-        lambda s: elements("T", arm.frame(link, arm.q(s))),
-        WAYS,
-    )
-
-
-def _tip(arm: Arm) -> Truth:
-    return Truth(
-        lambda s: whole_and_elements("T", tip_pose(arm, arm.q(s))),
-        lambda s: whole_and_elements("T", arm.frame(3, arm.q(s))),
-        ("Pinocchio", WAYS[1]),
-    )
-
-
-macro_step_1, macro_step_2, macro_step_3 = (_step(MACRO, link) for link in (1, 2, 3))
-mini_step_1, mini_step_2, mini_step_3 = (_step(MINI, link) for link in (1, 2, 3))
-macro_frame_2, mini_frame_2 = _frame(MACRO, 2), _frame(MINI, 2)
-macro_tip, mini_tip = _tip(MACRO), _tip(MINI)
+macro_step_1, macro_step_2, macro_step_3 = (_truth(model_step, Arm.step, MACRO, link) for link in (1, 2, 3))
+mini_step_1, mini_step_2, mini_step_3 = (_truth(model_step, Arm.step, MINI, link) for link in (1, 2, 3))
+macro_frame_2, mini_frame_2 = (_truth(model_frame, Arm.frame, arm, 2) for arm in (MACRO, MINI))
 
 
 def _chained(arm: Arm) -> Way:
@@ -105,14 +85,6 @@ any_link = Truth(
 # Tables.
 
 
-def _angles(rows: Callable[[Symbols], Elements]) -> Way:
-    return lambda s: {name: values for name, values in rows(s).items() if name.startswith(("theta", "alpha"))}
-
-
-def _lengths(rows: Callable[[Symbols], Elements]) -> Way:
-    return lambda s: {name: values for name, values in rows(s).items() if name.startswith(("a_", "d_"))}
-
-
 def _table(arm: Arm) -> Way:
     def rows(s: Symbols) -> Elements:
         found: dict[str, FloatArray] = {}
@@ -133,7 +105,7 @@ def _table_by_axes(arm: Arm) -> Way:
     """
 
     def rows(s: Symbols) -> Elements:
-        q, model = arm.q(s), arm.model()
+        q, model = arm.q(s), arm.model
         axes = np.array([model.tip_jacobian(row)[3:].T for row in q])
         origins = np.array([model.frame_poses(row, model.joint_names)[:, :3, 3] for row in q])
         tip = tip_pose(arm, q)
@@ -159,12 +131,18 @@ def _numbers(arm: Arm) -> range:
 
 
 def _angle(start: FloatArray, end: FloatArray, axis: FloatArray) -> FloatArray:
-    angle: FloatArray = np.arctan2((np.cross(start, end) * axis).sum(axis=1), (start * end).sum(axis=1))
-    return angle
+    return np.asarray(np.arctan2((np.cross(start, end) * axis).sum(axis=1), (start * end).sum(axis=1)))
 
 
-_TABLE_WAYS = (WAYS[0], "angles and distances between the joint axes at each posture")
-macro_angles = Truth(_angles(_table(MACRO)), _angles(_table_by_axes(MACRO)), _TABLE_WAYS)
-macro_lengths = Truth(_lengths(_table(MACRO)), _lengths(_table_by_axes(MACRO)), _TABLE_WAYS)
-mini_angles = Truth(_angles(_table(MINI)), _angles(_table_by_axes(MINI)), _TABLE_WAYS)
-mini_lengths = Truth(_lengths(_table(MINI)), _lengths(_table_by_axes(MINI)), _TABLE_WAYS)
+def _entries(arm: Arm, letters: tuple[str, str]) -> Truth:
+    """Return the two columns of an arm's table whose names begin so."""
+
+    def only(rows: Way) -> Way:
+        return lambda s: {name: values for name, values in rows(s).items() if name.startswith(letters)}
+
+    ways = (WAYS[0], "angles and distances between the joint axes at each posture")
+    return Truth(only(_table(arm)), only(_table_by_axes(arm)), ways)
+
+
+macro_angles, mini_angles = (_entries(arm, ("theta", "alpha")) for arm in (MACRO, MINI))
+macro_lengths, mini_lengths = (_entries(arm, ("a_", "d_")) for arm in (MACRO, MINI))

@@ -4,11 +4,10 @@ from itertools import combinations
 
 import numpy as np
 
-from runner.audit.chains import rotation
-from runner.audit.truth import Elements, FloatArray, Symbols, Truth
-from runner.works.thesis.equations.truths.thesis import coordinates
-from runner.works.thesis.equations.truths.thesis_arms import COMBINED, MACRO, MINI, Arm, along
-from runner.works.thesis.equations.truths.thesis_kinematics import mini_angles, tip_pose
+from runner.audit.chains import product, rotation
+from runner.audit.truth import Elements, FloatArray, Symbols, Truth, along, coordinates
+from runner.works.thesis.equations.truths.thesis_arms import COMBINED, GRAVITY, MACRO, MINI, Arm
+from runner.works.thesis.equations.truths.thesis_kinematics import tip_pose
 
 _BASE_OF_MINI = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # 3_R_3', from the Mini's base
 
@@ -26,13 +25,13 @@ def _home(arm: Arm) -> FloatArray:
 
 def _lengths(arm: Arm) -> Truth:
     def by_origins(s: Symbols) -> Elements:
-        model = arm.model()
+        model = arm.model
         origins = model.frame_poses(_home(arm)[0], (*model.joint_names, model.tip_name))[:, :3, 3]
         lengths = np.linalg.norm(np.diff(origins, axis=0), axis=1)
         return _still({f"L_{arm.joints.start + i + 1}": length for i, length in enumerate(lengths)}, s)
 
     def by_tip(s: Symbols) -> Elements:
-        model = arm.model()
+        model = arm.model
         stretched = [model.tip_position(np.array([0.0, 0.0, angle])) for angle in (-np.pi / 2, np.pi / 2)]
         reach, fold = (float(np.linalg.norm(point)) for point in stretched)
         last = float(np.linalg.norm(model.tip_jacobian(np.zeros(3))[:3, 2]))
@@ -49,11 +48,11 @@ def _masses(arm: Arm) -> Truth:
     numbers = [arm.joints.start + i for i in (1, 2, 3)]
 
     def by_links(s: Symbols) -> Elements:
-        masses = [inertia.mass for inertia in list(arm.model().pin_model.inertias)[1:]]
+        masses = [inertia.mass for inertia in list(arm.model.pin_model.inertias)[1:]]
         return _still({f"m_{number}": mass for number, mass in zip(numbers, masses, strict=True)}, s)
 
     def by_torques(s: Symbols) -> Elements:
-        model, home = arm.model(), np.zeros(3)
+        model, home = arm.model, np.zeros(3)
         L2, L3 = arm.a[1:]
         m3 = model.mass_matrix(home)[2, 2] / L3**2
         m2 = model.gravity_torque(home)[1] / (9.81 * L2) - m3
@@ -76,23 +75,14 @@ def _reach(arm: Arm) -> Truth:
         return _still({"R": float(np.linalg.norm(tips, axis=1).max())}, s)
 
     return Truth(
-        lambda s: _still({"R": arm.model().reach}, s),
+        lambda s: _still({"R": arm.model.reach}, s),
         by_search,
         ("sum of the model's link lengths", "largest distance over all positions of joint 3"),
     )
 
 
 def _at_home(arm: Arm) -> Truth:
-    return Truth(
-        lambda s: {
-            n: np.repeat(v, len(s["q1"])) for n, v in coordinates("x", tip_pose(arm, _home(arm))[:, :3, 3]).items()
-        },
-        lambda s: {
-            n: np.repeat(v, len(s["q1"]))
-            for n, v in coordinates("x", arm.frame(len(arm.a), _home(arm))[:, :3, 3]).items()
-        },
-        ("Pinocchio", "product of elementary turns and shifts"),
-    )
+    return arm.both(lambda d, s: coordinates("x", np.tile(d.pose(_home(arm))[0, :3, 3], (len(s["q1"]), 1))))
 
 
 macro_reach, mini_reach = _reach(MACRO), _reach(MINI)
@@ -114,7 +104,7 @@ def _axes_of_frames(s: Symbols) -> Elements:
 
 
 axes_at_home = Truth(
-    lambda s: {"axes": np.tile(COMBINED.model().tip_jacobian(np.zeros(6))[3:].T, (len(s["q1"]), 1, 1))},
+    lambda s: {"axes": np.tile(COMBINED.model.tip_jacobian(np.zeros(6))[3:].T, (len(s["q1"]), 1, 1))},
     _axes_of_frames,
     ("angular Jacobian by Pinocchio", "z axes of the Denavit-Hartenberg frames"),
 )
@@ -143,8 +133,7 @@ def tables_chained_with_turn(s: Symbols) -> Elements:
 
 def base_of_mini(q: FloatArray) -> FloatArray:
     """Return how the Mini's base, frame 3, is turned at the Macro's joint positions (T, 3), shape (T, 3, 3)."""
-    rotation: FloatArray = tip_pose(MACRO, q)[:, :3, :3] @ _BASE_OF_MINI
-    return rotation
+    return np.asarray(tip_pose(MACRO, q)[:, :3, :3] @ _BASE_OF_MINI)
 
 
 def difference_in_base_frame(s: Symbols) -> Elements:
@@ -158,11 +147,7 @@ def difference_in_frame_3(s: Symbols) -> Elements:
     return {"r": along(base_of_mini(MACRO.q(s)).transpose(0, 2, 1), difference_in_base_frame(s)["r"])}
 
 
-mini_offset = Truth(
-    lambda s: {"r": tip_pose(MINI, MINI.q(s))[:, :3, 3]},
-    lambda s: {"r": MINI.frame(3, MINI.q(s))[:, :3, 3]},
-    ("Pinocchio, the Mini alone", "product of elementary turns and shifts"),
-)
+mini_offset = MINI.both(lambda d, s: {"r": d.pose(MINI.q(s))[:, :3, 3]})
 
 
 def path_of_macro(s: Symbols) -> Elements:
@@ -171,11 +156,7 @@ def path_of_macro(s: Symbols) -> Elements:
     return {"x": tip_pose(COMBINED, COMBINED.q(s))[:, :3, 3] - turned}
 
 
-macro_end_point = Truth(
-    lambda s: {"x": tip_pose(MACRO, MACRO.q(s))[:, :3, 3]},
-    lambda s: {"x": MACRO.frame(3, MACRO.q(s))[:, :3, 3]},
-    ("Pinocchio, the Macro alone", "product of elementary turns and shifts"),
-)
+macro_end_point = MACRO.both(lambda d, s: {"x": d.pose(MACRO.q(s))[:, :3, 3]})
 
 
 def upright_weight(s: Symbols) -> Elements:
@@ -186,59 +167,34 @@ def upright_weight(s: Symbols) -> Elements:
 
 def turned_weight(s: Symbols) -> Elements:
     """Return G with gravity turned into frame 3."""
-    g = base_of_mini(MACRO.q(s)).transpose(0, 2, 1) @ np.array([0.0, 0.0, -9.81])
-    return {"G": MINI.gravity_torque(MINI.q(s), g)}
+    g = base_of_mini(MACRO.q(s)).transpose(0, 2, 1) @ GRAVITY
+    return {"G": MINI.weight(MINI.q(s), g)}
 
 
-riding_weight = Truth(
-    lambda s: {"G": np.array([COMBINED.model().gravity_torque(q)[3:] for q in COMBINED.q(s)])},
-    lambda s: {"G": COMBINED.gravity_torque(COMBINED.q(s))[:, 3:]},
-    ("Pinocchio, the six-joint arm", "differences of the six-joint arm's potential energy"),
-)
+riding_weight = COMBINED.both(lambda d, s: {"G": d.gravity(COMBINED.q(s))[:, 3:]})
 
 
 # Names.
 
 
-def _sums(groups: tuple[str, ...]) -> Truth:
+def _sums(*groups: str) -> Truth:
+    def angles(name: str, s: Symbols) -> list[FloatArray]:
+        first, *rest = list(name.replace("_", ""))
+        return [s[f"q{first}"], *((-1.0 if "_" in name else 1.0) * s[f"q{digit}"] for digit in rest)]
+
     def by_turns(s: Symbols) -> Elements:
-        found: dict[str, FloatArray] = {}
-        for name in groups:
-            sign = -1.0 if "_" in name else 1.0
-            first, *rest = list(name.replace("_", ""))
-            turn = rotation("z", s[f"q{first}"])
-            for digit in rest:
-                turn = turn @ rotation("z", sign * s[f"q{digit}"])
-            found |= {f"c{name}": turn[:, 0, 0], f"s{name}": turn[:, 1, 0]}
-        return found
+        turns = {name: product([rotation("z", angle) for angle in angles(name, s)]) for name in groups}
+        return {f"{letter}{name}": T[:, row, 0] for row, letter in enumerate("cs") for name, T in turns.items()}
 
     def by_phases(s: Symbols) -> Elements:
-        found: dict[str, FloatArray] = {}
-        for name in groups:
-            first, *rest = list(name.replace("_", ""))
-            phase = np.exp(1j * s[f"q{first}"])
-            for digit in rest:
-                phase = phase * np.exp((-1j if "_" in name else 1j) * s[f"q{digit}"])
-            found |= {f"c{name}": phase.real, f"s{name}": phase.imag}
-        return found
+        phases = {name: np.prod(np.exp(1j * np.array(angles(name, s))), axis=0) for name in groups}
+        return {f"c{n}": z.real for n, z in phases.items()} | {f"s{n}": z.imag for n, z in phases.items()}
 
     return Truth(by_turns, by_phases, ("products of turns about one axis", "products of complex phases"))
 
 
-macro_names = _sums(("1", "2", "3", "12", "1_2", "123", "1_2_3"))
-mini_names = _sums(("4", "5", "6", "45", "4_5", "456", "4_5_6"))
-
-
-def _mini_thetas(s: Symbols) -> Elements:
-    return {name: values for name, values in mini_angles.first(s).items() if name.startswith("theta")}
-
-
-def _mini_turns(s: Symbols) -> Elements:
-    steps = [MINI.step(link, MINI.q(s)) for link in (1, 2, 3)]
-    return {f"theta_{i + 4}": np.arctan2(T[:, 1, 0], T[:, 0, 0]) for i, T in enumerate(steps)}
-
-
-mini_theta = Truth(_mini_thetas, _mini_turns, (mini_angles.ways[0], "x axes of the chain of turns and shifts"))
+macro_names = _sums("1", "2", "3", "12", "1_2", "123", "1_2_3")
+mini_names = _sums("4", "5", "6", "45", "4_5", "456", "4_5_6")
 
 
 # Sizes of the symbolic columns (3.22) and (3.23).

@@ -9,18 +9,12 @@ from collections.abc import Callable
 import numpy as np
 
 from runner.audit.chains import derivative
-from runner.audit.truth import Elements, FloatArray, Symbols, Truth, Way
+from runner.audit.model_truths import Dynamics, by_model, by_urdf
+from runner.audit.truth import Elements, FloatArray, Symbols, Truth, along, columns
 from runner.works.thesis.equations.truths import thesis_printed as printed
-from runner.works.thesis.equations.truths.thesis_arms import MACRO, along
-from runner.works.thesis.equations.truths.thesis_dynamics import (
-    kinetic_mass_matrix,
-    model_coriolis,
-    model_gravity,
-    model_mass_matrix,
-)
-from runner.works.thesis.equations.truths.thesis_jacobians import jacobian_by_chain, model_jacobian
+from runner.works.thesis.equations.truths.thesis_arms import MACRO
 
-_WAYS = ("Pinocchio", "d'Alembert's principle on the chain's point masses, rates by differences")
+_WAYS = ("Pinocchio", "energies of the URDF's bodies, rates by differences")
 _K_P, _K_V = 30.0**2, 2.0 * 30.0  # 1/s^2, 1/s: omega_n = 30 rad/s, xi = 1, section 3.3.1
 _GOAL = np.array([0.1679, -0.7571, 0.4255])  # m
 
@@ -69,10 +63,8 @@ def gravity_force(s: Symbols) -> Elements:
 
 
 def _force(s: Symbols, acceleration: FloatArray) -> FloatArray:
-    total: FloatArray = (
-        along(kinetic_energy_matrix(s)["Lambda"], acceleration) + centrifugal_force(s)["mu"] + gravity_force(s)["p"]
-    )
-    return total
+    inertia = along(kinetic_energy_matrix(s)["Lambda"], acceleration)
+    return np.asarray(inertia + centrifugal_force(s)["mu"] + gravity_force(s)["p"])
 
 
 def end_effector_force(s: Symbols) -> Elements:
@@ -85,55 +77,38 @@ def end_effector_force(s: Symbols) -> Elements:
 
 
 def _model_bias(s: Symbols) -> FloatArray:
-    model = MACRO.model()
-    return np.array([model.tip_bias_acceleration(*row) for row in zip(MACRO.q(s), MACRO.dq(s), strict=True)])
+    rows = zip(MACRO.q(s), MACRO.dq(s), strict=True)
+    return np.array([MACRO.model.tip_bias_acceleration(*row) for row in rows])
 
 
 def _chain_bias(s: Symbols) -> FloatArray:
     return MACRO.bias_acceleration(3, MACRO.q(s), MACRO.dq(s))
 
 
-def _model_terms(s: Symbols) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return M, V, G, the linear J and its rate times dq by Pinocchio."""
-    q, dq = MACRO.q(s), MACRO.dq(s)
-    M, V, G = model_mass_matrix(MACRO, q), model_coriolis(MACRO, q, dq), model_gravity(MACRO, q)
-    return M, V, G, model_jacobian(MACRO, q)[:, :3], _model_bias(s)
-
-
-def _chain_terms(s: Symbols) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return the same by the chain."""
-    q, dq = MACRO.q(s), MACRO.dq(s)
-    M, V, G = kinetic_mass_matrix(MACRO, q), MACRO.coriolis_torque(q, dq), MACRO.gravity_torque(q)
-    return M, V, G, jacobian_by_chain(MACRO, q)[:, :3], _chain_bias(s)
-
-
-def _truth(terms: Callable[[Symbols], tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]]) -> Way:
+def _truth(d: Dynamics, bias: FloatArray, s: Symbols) -> Elements:
     """Return what the tip's motion asks for, found in joint space: the joints that give it, then their torques."""
+    q, dq = MACRO.q(s), MACRO.dq(s)
+    M, V, G, J = d.mass_matrix(q), d.velocity_torque(q, dq[None])[0], d.gravity(q), d.jacobian(q)[:, :3]
 
-    def found(s: Symbols) -> Elements:
-        M, V, G, J, bias = terms(s)
+    def torque(acceleration: FloatArray) -> FloatArray:
+        return np.asarray(along(M, _solve(J, acceleration - bias)) + V)
 
-        def torque(acceleration: FloatArray) -> FloatArray:
-            return along(M, _solve(J, acceleration - bias)) + V
+    def force(tau: FloatArray) -> FloatArray:
+        return _solve(_transposed(J), tau)
 
-        def force(tau: FloatArray) -> FloatArray:
-            return _solve(_transposed(J), tau)
-
-        unit = np.eye(3)
-        still = np.zeros((len(J), 3))
-        return {
-            "h": bias,
-            "Lambda": np.stack([force(along(M, _solve(J, np.tile(e, (len(J), 1))))) for e in unit], axis=2),
-            "mu": force(torque(still)),
-            "p": force(G),
-            "F": force(along(M, MACRO.ddq(s)) + V + G),
-            "tau": torque(_input(s)) + G,
-        }
-
-    return found
+    columns = [force(along(M, _solve(J, np.tile(e, (len(J), 1))))) for e in np.eye(3)]
+    return {
+        "h": bias,
+        "Lambda": np.stack(columns, axis=2),
+        "mu": force(torque(0.0 * bias)),
+        "p": force(G),
+        "F": force(along(M, MACRO.ddq(s)) + V + G),
+        "tau": torque(_input(s)) + G,
+    }
 
 
-operational = Truth(_truth(_model_terms), _truth(_chain_terms), _WAYS)
+_PINOCCHIO, _URDF = by_model(MACRO.model), by_urdf(MACRO.audited.urdf, MACRO.model)
+operational = Truth(lambda s: _truth(_PINOCCHIO, _model_bias(s), s), lambda s: _truth(_URDF, _chain_bias(s), s), _WAYS)
 
 
 # Control: the tip's acceleration under the torques that a law gives.
@@ -141,12 +116,17 @@ operational = Truth(_truth(_model_terms), _truth(_chain_terms), _WAYS)
 
 def _input(s: Symbols) -> FloatArray:
     """Return any control input F*, shape (T, 3), in m/s^2."""
-    return np.column_stack([s["ddq4"], s["ddq5"], s["ddq6"]])
+    return columns(s, ("ddq4", "ddq5", "ddq6"))
+
+
+def _torque(s: Symbols, acceleration: FloatArray) -> FloatArray:
+    """Return J' F with F by (3.32) for an input F*."""
+    return along(_transposed(printed.linear_jacobian(MACRO.q(s))), _force(s, acceleration))
 
 
 def control_torque(s: Symbols) -> Elements:
     """Return J' F with F by (3.32)."""
-    return {"tau": along(_transposed(printed.linear_jacobian(MACRO.q(s))), _force(s, _input(s)))}
+    return {"tau": _torque(s, _input(s))}
 
 
 def chosen_input(s: Symbols) -> Elements:
@@ -161,68 +141,51 @@ def _state(s: Symbols) -> tuple[FloatArray, FloatArray]:
 
 def _desired(s: Symbols) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return any desired position, velocity and acceleration of the tip."""
-    return (
-        np.column_stack([s["x_0"], s["x_t"], s["a"]]),
-        np.column_stack([s["d"], s["dq4"], s["dq5"]]),
-        _input(s),
-    )
+    return columns(s, ("x_0", "x_t", "a")), columns(s, ("d", "dq4", "dq5")), _input(s)
 
 
-def goal_input(s: Symbols) -> FloatArray:
+def _goal_input(s: Symbols) -> FloatArray:
     """Return F* by (3.33)."""
     x, dx = _state(s)
-    acceleration: FloatArray = -_K_V * dx - _K_P * (x - _GOAL)
-    return acceleration
+    return np.asarray(-_K_V * dx - _K_P * (x - _GOAL))
 
 
-def tracking_input(s: Symbols) -> FloatArray:
+def _tracking_input(s: Symbols) -> FloatArray:
     """Return F* by (3.40)."""
     (x, dx), (x_d, dx_d, ddx_d) = _state(s), _desired(s)
-    acceleration: FloatArray = ddx_d - _K_V * (dx - dx_d) - _K_P * (x - x_d)
-    return acceleration
+    return np.asarray(ddx_d - _K_V * (dx - dx_d) - _K_P * (x - x_d))
 
 
 def goal_acceleration(s: Symbols) -> Elements:
-    """Return the tip's acceleration that the thesis derives for a goal: F* of (3.33)."""
-    return {"acceleration": goal_input(s)}
+    """Return the tip's acceleration that the thesis derives for a goal, F* of (3.33).
 
-
-def goal_loop(s: Symbols) -> Elements:
-    """Return the second derivative of the error by (3.34), with the gains of (3.37) and (3.38)."""
-    x, dx = _state(s)
-    return {"acceleration": -_K_V * dx - _K_P * (x - _GOAL)}
+    It is the second derivative of the error by (3.34), with the gains of (3.37) and (3.38).
+    """
+    return {"acceleration": _goal_input(s)}
 
 
 def tracking_loop(s: Symbols) -> Elements:
     """Return the same by (3.41)."""
-    (x, dx), (x_d, dx_d, _) = _state(s), _desired(s)
-    return {"acceleration": -_K_V * (dx - dx_d) - _K_P * (x - x_d)}
+    return {"acceleration": _tracking_input(s) - _desired(s)[2]}
 
 
-def _closed(law: Callable[[Symbols], FloatArray], offset: Callable[[Symbols], FloatArray]) -> Truth:
+def _closed(law: Callable[[Symbols], FloatArray], desired: Callable[[Symbols], FloatArray | float]) -> Truth:
     """Return the tip's acceleration, less the desired one, under the torques of (3.32) with a law's F*."""
 
-    def torque(s: Symbols) -> FloatArray:
-        return along(_transposed(printed.linear_jacobian(MACRO.q(s))), _force(s, law(s)))
+    def by_pinocchio(s: Symbols) -> Elements:
+        q, dq = MACRO.q(s), MACRO.dq(s)
+        rows = zip(q, dq, _torque(s, law(s)), strict=True)
+        ddq = np.array([MACRO.model.forward_dynamics(*row) for row in rows])
+        return {"acceleration": along(_PINOCCHIO.jacobian(q)[:, :3], ddq) + _model_bias(s) - desired(s)}
 
-    def by_model(s: Symbols) -> Elements:
-        model = MACRO.model()
-        rows = zip(MACRO.q(s), MACRO.dq(s), torque(s), strict=True)
-        ddq = np.array([model.forward_dynamics(*row) for row in rows])
-        J = model_jacobian(MACRO, MACRO.q(s))[:, :3]
-        return {"acceleration": along(J, ddq) + _model_bias(s) - offset(s)}
+    def by_energies(s: Symbols) -> Elements:
+        q, dq = MACRO.q(s), MACRO.dq(s)
+        free = _torque(s, law(s)) - _URDF.torque(q, dq, 0.0 * q)
+        motion = along(_URDF.jacobian(q)[:, :3], _solve(_URDF.mass_matrix(q), free))
+        return {"acceleration": motion + _chain_bias(s) - desired(s)}
 
-    def by_chain(s: Symbols) -> Elements:
-        M, V, G, J, bias = _chain_terms(s)
-        return {"acceleration": along(J, _solve(M, torque(s) - V - G)) + bias - offset(s)}
-
-    return Truth(by_model, by_chain, _WAYS)
+    return Truth(by_pinocchio, by_energies, _WAYS)
 
 
-def _none(s: Symbols) -> FloatArray:
-    return 0.0 * _input(s)
-
-
-any_closed = _closed(_input, _none)
-goal_closed = _closed(goal_input, _none)
-tracking_closed = _closed(tracking_input, lambda s: _desired(s)[2])
+any_closed, goal_closed = (_closed(law, lambda _: 0.0) for law in (_input, _goal_input))
+tracking_closed = _closed(_tracking_input, lambda s: _desired(s)[2])

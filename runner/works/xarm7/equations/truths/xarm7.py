@@ -1,42 +1,29 @@
 """The xArm7 by the report's own measures: transform, Jacobian and inverse kinematics. Lengths in cm, as it has them.
 
 The first way is Pinocchio on a URDF of these measures; the second multiplies the elementary transforms that the
-report gives and takes differences.
+report gives.
 """
 
-from functools import cache
+from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 
-from runner.audit.chains import (
-    chain_model,
-    jacobian_by_differences,
-    placed,
-    product,
-    rotation,
-    translation,
-)
-from runner.audit.truth import Elements, FloatArray, Symbols, Truth
-from runner.robots.model import RobotModel
+from runner.audit.chains import product, rotation, translation
+from runner.audit.model_truths import audited_arm, by_model
+from runner.audit.truth import Elements, FloatArray, Symbols, Truth, Way, columns, coordinates, whole_and_elements
 
 L1, L2, L3, L4, L5 = 26.7, 29.3, 5.25, 35.12, 12.32  # cm
 THETA1, THETA2 = 0.2225, 0.6646  # rad
 JOINTS = 7
 _HALF = np.pi / 2
+_FOLDER = Path(__file__).parents[2]
 
+ARM = audited_arm("report.urdf", "", (), _FOLDER)
+"""The arm of the report's measures, its lengths in cm."""
 
-def symbols(count: int, generator: np.random.Generator) -> dict[str, FloatArray]:
-    """Return what the report's names stand for at random configurations, each joint drawn from a full turn.
-
-    Args:
-        count: How many configurations.
-        generator: Source of the draw.
-    """
-    q = generator.uniform(-np.pi, np.pi, (count, JOINTS))
-    values = {f"q{i + 1}": q[:, i] for i in range(JOINTS)}
-    values |= {f"s{i + 1}": np.sin(q[:, i]) for i in range(JOINTS)}
-    values |= {f"c{i + 1}": np.cos(q[:, i]) for i in range(JOINTS)}
-    return values | constants(count)
+BY_MODEL = by_model(ARM.model)
+"""Its kinematics by Pinocchio."""
 
 
 def constants(count: int) -> dict[str, FloatArray]:
@@ -47,7 +34,7 @@ def constants(count: int) -> dict[str, FloatArray]:
 
 def positions(values: Symbols) -> FloatArray:
     """Return the joint positions of a sample, shape (T, 7), in rad."""
-    return np.column_stack([values[f"q{i + 1}"] for i in range(JOINTS)])
+    return columns(values, ARM.joints)
 
 
 def pose(q: FloatArray) -> FloatArray:
@@ -70,58 +57,59 @@ def steps(place: int, angle: FloatArray | float) -> list[FloatArray]:
     return chains[place]
 
 
-@cache
-def model() -> RobotModel:
-    """Return the arm with the report's measures as a Pinocchio model, its lengths in cm."""
-    rolls = (0, -_HALF, _HALF, _HALF, _HALF, _HALF, -_HALF, 0)
-    before = (  # where each joint stands in the frame before it: that joint's last translation, then its own first
-        (0, 0, 0),
-        (0, 0, L1),
-        (0, 0, 0),
-        (L3, 0, L2),
-        (L4 * np.sin(THETA1), 0, 0),
-        (0, 0, L4 * np.cos(THETA1)),
-        (L5 * np.sin(THETA2), 0, 0),
-        (0, 0, L5 * np.cos(THETA2)),
+def _by_chain(found: Callable[[FloatArray], Elements]) -> Truth:
+    """Return the truth of what follows from the transforms of frame 7."""
+    return Truth(
+        lambda values: found(BY_MODEL.pose(positions(values))),
+        lambda values: found(pose(positions(values))),
+        ("Pinocchio", "product of the elementary transforms"),
     )
-    return chain_model([placed(place, rotation("x", roll)[0]) for place, roll in zip(before, rolls, strict=True)])
 
 
-def model_poses(q: FloatArray) -> FloatArray:
-    """Return the transforms of frame 7 by Pinocchio, shape (T, 4, 4), in cm."""
-    return np.array([model().tip_pose(row) for row in q])
+transform = _by_chain(lambda poses: whole_and_elements("A", poses))
+tip = _by_chain(lambda poses: coordinates("P_e", poses[:, :3, 3], ""))
 
 
-def model_jacobians(q: FloatArray) -> FloatArray:
-    """Return the basic Jacobians by Pinocchio, shape (T, 6, 7); linear rows first, in cm/rad."""
-    return np.array([model().tip_jacobian(row) for row in q])
+# The maker's links, between which the report's transforms stand.
 
-
-def _named(matrices: FloatArray, letter: str) -> Elements:
-    rows, columns = matrices.shape[1:]
-    elements = {f"{letter}_{i + 1}{j + 1}": matrices[:, i, j] for i in range(rows) for j in range(columns)}
-    return elements | {letter: matrices}
-
-
-def _tip(poses: FloatArray) -> Elements:
-    return {f"P_e{axis}": poses[:, i, 3] for i, axis in enumerate("xyz")}
-
-
-transform = Truth(
-    lambda values: _named(model_poses(positions(values)), "A"),
-    lambda values: _named(pose(positions(values)), "A"),
-    ("Pinocchio", "product of the elementary transforms"),
+_ORIGINS = (  # of each joint in the link before it, in cm, and its roll in quarter turns: the maker's numbers
+    ((0, 0, 26.7), 0),
+    ((0, 0, 0), -1),
+    ((0, -29.3, 0), 1),
+    ((5.25, 0, 0), 1),
+    ((7.75, -34.25, 0), 1),
+    ((0, 0, 0), 1),
+    ((7.6, 9.7, 0), -1),
 )
-tip = Truth(
-    lambda values: _tip(model_poses(positions(values))),
-    lambda values: _tip(pose(positions(values))),
-    ("Pinocchio", "product of the elementary transforms"),
-)
-jacobian = Truth(
-    lambda values: _named(model_jacobians(positions(values)), "J"),
-    lambda values: _named(jacobian_by_differences(pose, positions(values)), "J"),
-    ("Pinocchio", "differences of the chain of transforms"),
-)
+
+
+def _by_model(values: Symbols) -> Elements:
+    names = ("link_base", *(f"link{i + 1}" for i in range(JOINTS)))
+    model = audited_arm("xarm7.urdf", "", (), _FOLDER).model
+    frames = np.array([model.frame_poses(q, names) for q in positions(values)])
+    frames[..., :3, 3] *= 100
+    return {f"A_{i + 1}": np.linalg.inv(frames[:, i]) @ frames[:, i + 1] for i in range(JOINTS)}
+
+
+def _by_origins(values: Symbols) -> Elements:
+    found = {}
+    for i, ((origin, quarters), angle) in enumerate(zip(_ORIGINS, positions(values).T, strict=True), start=1):
+        shifts = [translation(axis, length) for axis, length in zip("xyz", origin, strict=True)]
+        found[f"A_{i}"] = product([*shifts, rotation("x", quarters * _HALF), rotation("z", angle)])
+    return found
+
+
+link = Truth(_by_model, _by_origins, ("Pinocchio, robots/xarm7.urdf", "the maker's joint origins"))
+
+
+def _step(place: int) -> Way:
+    return lambda values: {f"A_{place + 1}": product(steps(place, positions(values)[:, place]))}
+
+
+step_1, step_2, step_3, step_4, step_5, step_6, step_7 = (_step(place) for place in range(JOINTS))
+
+
+# Jacobian and pseudo-inverse.
 
 
 def printed_column(values: Symbols) -> Elements:
@@ -155,7 +143,7 @@ def _columns(q: FloatArray, first: int) -> FloatArray:
 
 def _metres(values: Symbols) -> FloatArray:
     """Return the Jacobians by Pinocchio with linear rows in m/rad, so that both kinds of rows are of one size."""
-    return np.asarray(model_jacobians(positions(values)) / np.array([100.0, 100.0, 100.0, 1.0, 1.0, 1.0])[:, None])
+    return np.asarray(BY_MODEL.jacobian(positions(values)) / np.array([100.0, 100.0, 100.0, 1.0, 1.0, 1.0])[:, None])
 
 
 def left_inverse(values: Symbols) -> Elements:
@@ -165,7 +153,7 @@ def left_inverse(values: Symbols) -> Elements:
 
 def left_inverse_of(q: FloatArray) -> FloatArray:
     """Return the same at one configuration, shapes (7,) to (7, 6), for twists in cm/s and rad/s."""
-    return _left_inverse(model_jacobians(q[None])[0])
+    return _left_inverse(BY_MODEL.jacobian(q[None])[0])
 
 
 def _left_inverse(J: FloatArray) -> FloatArray:

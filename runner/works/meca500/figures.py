@@ -1,0 +1,200 @@
+"""What the chapters of the Meca500 report call: signals of runs that feel, their law, and errors of calibrations."""
+
+from collections.abc import Callable, Mapping
+from functools import wraps
+from itertools import product
+from typing import Any, TypeVar
+
+import numpy as np
+import pinocchio as pin
+
+from runner.controllers.admittance_filter import Admittance
+from runner.errors import ConfigError
+from runner.quantities import number, with_powers
+from runner.reporting.document import FloatArray
+from runner.reporting.figures import AXES, columns, joint_columns, model_of
+from runner.reporting.measured import ROUNDING, Measured
+from runner.reporting.prose.tables import Column
+from runner.robots import RobotModel
+from runner.store import Calibration, Run
+
+Calibrations = Mapping[str, Any]  # of Calibration
+Runs = Mapping[str, Run]
+T = TypeVar("T")
+_STILL = 1e-4  # N, below which a force that swings is rounding
+
+
+def once(function: Callable[[Run], T]) -> Callable[[Run], T]:
+    """Let a function of a run be worked out once for each stored run."""
+    kept: dict[str, T] = {}
+
+    @wraps(function)
+    def value(run: Run) -> T:
+        if run.hash not in kept:
+            kept[run.hash] = function(run)
+        return kept[run.hash]
+
+    return value
+
+
+def wrenches(run: Run, signal: str) -> FloatArray:
+    """Return a signal such as "felt" at each tick, force in N and moment in N m, shape (T, 6)."""
+    names = [f"{signal}_{kind}_{axis}" for kind, axis in product(("force", "moment"), AXES)]
+    return run.trace[names].to_numpy()
+
+
+@once
+def turns(run: Run) -> FloatArray:
+    """Return the rotation vector of the tip since the first row, along the base's axes, shape (T, 3), in rad."""
+    model, rows = model_of(run), joint_columns(run.trace, "q")
+    first = model.tip_pose(rows[0])[:3, :3]
+    return np.array([pin.log3(model.tip_pose(q)[:3, :3] @ first.T) for q in rows])
+
+
+def turned(run: Run) -> float:
+    """Return the largest rotation of the tool in a run, in rad."""
+    return float(np.linalg.norm(turns(run), axis=1).max())
+
+
+def displacement(run: Run) -> FloatArray:
+    """Return how far the tip has gone and turned since the first row, shape (T, 6), in m and rad."""
+    tip = columns(run.trace, "tip")
+    return np.hstack([tip - tip[0], turns(run)])
+
+
+def law_of(run: Run) -> Admittance:
+    """Return the law of a run's axes."""
+    controller = run.config["controller"]
+    return Admittance(*(np.array(controller[key]) for key in ("mass", "damping", "stiffness")))
+
+
+def loads_of(run: Run) -> FloatArray:
+    """Return force and moment that push a run's tip, shape (6,), in N and N m."""
+    return np.array([*run.config["environment"]["force"], *run.config["environment"]["moment"]], dtype=float)
+
+
+def added_inertia(run: Run, shorter: float = 1.0) -> FloatArray:
+    """Return h D + h^2 K of each servo, in kg m^2, with a period h so many times that of the run."""
+    servo = run.config["plant"]["servo"]
+    K, period = float(servo["stiffness"]), shorter * float(servo["period"])
+    inertia = np.diagonal(model_of(run).mass_matrix(np.array(run.config["robot"]["home"])))
+    return np.asarray(2.0 * period * float(servo["damping_ratio"]) * np.sqrt(K * inertia) + period**2 * K)
+
+
+def plant_step(run: Run) -> float:
+    """Return the step of a run's plant, in s."""
+    return float(run.provenance["plant_step"])
+
+
+def servo_compliance(run: Run) -> FloatArray:
+    r"""Return the tip's displacement at rest per unit of load, along and about the base's axes, shape (6, 6).
+
+    The servos evaluate spring and damper with the acceleration that they would bring an unloaded arm. A load that holds
+    the arm still stops that acceleration, and at the first posture of a run there is left
+
+    .. math:: K_e = M (M + h D + h^2 K)^{-1} K, \qquad C = J K_e^{-1} J^T
+    """
+    model, q = model_of(run), joint_columns(run.trace, "q")[0]
+    M, J = model.mass_matrix(q), model.tip_jacobian(q)
+    kept = M @ np.linalg.inv(M + np.diag(added_inertia(run))) * float(run.config["plant"]["servo"]["stiffness"])
+    return J @ np.linalg.solve(kept, J.T)
+
+
+def bounces(run: Run) -> bool:
+    """Tell whether contact is unstable as observed.
+
+    It is where in the last third of a run the tip leaves the wall, or the force swings more widely than in the third
+    before.
+    """
+    force = -wrenches(run, "external")[:, 0]
+    third = len(force) // 3
+    before, last = force[third : 2 * third], force[-third:]
+    return bool(last.min() <= 0.0 or np.ptp(last) > max(np.ptp(before), _STILL))
+
+
+def vanishing(what: Callable[..., float], digits: int = 3, factor: float = 1.0) -> Callable[..., str]:
+    """Return the text of so many times a number in which what is below ROUNDING counts as none."""
+    return lambda *runs: number(factor * what(*runs), digits, rounding=factor * ROUNDING)
+
+
+def percent(what: Callable[..., float], digits: int = 3) -> Callable[..., str]:
+    """Return the text of a share in per cent."""
+    return lambda *runs: f"{number(100.0 * what(*runs), digits)} %"
+
+
+def degrees(angle: float) -> float:
+    """Return an angle of so many rad in degrees."""
+    return float(np.degrees(angle))
+
+
+def fit(values: FloatArray, errors: FloatArray) -> float:
+    """Return the power of the values with which errors grow, by least squares of the logarithms."""
+    return float(np.polyfit(np.log(values), np.log(errors), 1)[0])
+
+
+def flange_of(calibration: Calibration) -> RobotModel:
+    """Return the arm that was calibrated, with its flange as tip."""
+    return RobotModel(calibration.urdf, calibration.provenance["flange"], calibration.config["gravity"])
+
+
+def error(*names: str) -> Callable[[Calibration], float]:
+    """Return the root mean square over the repetitions of the length of an error, of named components or of all."""
+    return lambda done: float(np.sqrt(np.mean(np.sum(done.values("errors", *names) ** 2, axis=1))))
+
+
+def predicted(*names: str) -> Callable[[Calibration], float]:
+    """Return what the covariances say of `error`."""
+    return lambda done: float(np.sqrt(np.mean(np.sum(done.values("deviations", *names) ** 2, axis=1))))
+
+
+def largest_error(done: Calibration) -> float:
+    """Return the largest error of all repetitions."""
+    return float(np.abs(done.values("errors")).max())
+
+
+def measure(name: str) -> Callable[[Calibration], float]:
+    """Return the median of a measure, such as a condition number."""
+    return lambda done: float(done.summary("measures", name)["median"])
+
+
+def nees_of(done: Calibration) -> dict[str, str]:
+    """Return the mean normalised error squared, its band, and whether it lies there; dashes without noise."""
+    found = done.consistency
+    if found is None:
+        return dict.fromkeys(("mean", "band", "inside"), "–")
+    band = f"{number(found['lower'])} to {number(found['upper'])}"
+    return {"mean": number(found["mean"]), "band": band, "inside": "yes" if found["holds"] else "no"}
+
+
+def varied(words: Mapping[str, str]) -> Column:
+    """Return a column with what is varied in KIND/VARIATION/LEVEL, in words."""
+    return Column("varied", lambda _, row: words[row.name.split("/")[1]])
+
+
+def amount(factors: Mapping[str, float]) -> Column:
+    """Return a column with the level in KIND/VARIATION/LEVEL, so many times by what is varied."""
+    return Column("value", lambda _, row: number(factors.get(row.name.split("/")[1], 1.0) * float(row.levels["level"])))
+
+
+def consistency(calibrations: Calibrations, kind: str) -> dict[str, Measured]:
+    """Return in how many calibrations of a kind the errors are as large as predicted."""
+    all_of_kind = {done.hash: done.consistency for name, done in calibrations.items() if name.startswith(f"{kind}/")}
+    found = [each for each in all_of_kind.values() if each is not None]
+    inside = sum(bool(each["holds"]) for each in found)
+    level = 100.0 * min(each["level"] for each in found)
+    return {
+        "inside": Measured("calibrations with NEES inside its band", inside),
+        "number": Measured("calibrations", len(found)),
+        "outside": Measured("calibrations with NEES outside its band", len(found) - inside),
+        "level": Measured("band", level, "%"),
+        "chance": Measured("what chance puts outside", 100.0 - level, "%"),
+    }
+
+
+def refusal(attempt: Callable[[], object]) -> str:
+    """Return why something is refused by a ConfigError, the config's key left out."""
+    try:
+        attempt()
+    except ConfigError as problem:
+        return with_powers(problem.problems[0].partition(": ")[2])
+    return "not refused"

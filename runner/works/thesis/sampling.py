@@ -1,0 +1,15 @@
+"""How much a deviation grows at a sample time."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from runner.reporting.figures import columns
+from runner.reporting.measured import Measured
+from runner.store import Run
+
+
+def growth(runs: Mapping[str, Run], name: str, words: str) -> Measured:
+    """Return the tip error at the end of a run, which may have diverged, over that at its start."""
+    error = np.linalg.norm(columns(runs[name].trace, "error"), axis=1)
+    return Measured(words, float(error[-1] / error[0]))

@@ -1,0 +1,174 @@
+"""What the chapters call: numbers of a run that are no metrics."""
+
+from collections.abc import Callable, Mapping, Sized
+from functools import partial
+from typing import TypeVar
+
+import numpy as np
+import pinocchio as pin
+
+from runner.quantities import number
+from runner.reporting.figures import columns, joint_columns, model_of
+from runner.reporting.prose.signals import limit_margin
+from runner.reporting.run_values import clock, median, values
+from runner.store import Run
+
+Told = TypeVar("Told")
+ROWS = {"position": 3, "pose": 6}  # of the Jacobian, by the tip's task
+SHOULDER = 1  # counted from 0: the joint that lifts the arm
+
+
+def how_many(values: Sized) -> int:
+    """Return how many values there are."""
+    return len(values)
+
+
+def told(runs: Mapping[str, Run], run: str, what: Callable[[Run], Told]) -> Told:
+    """Return what a function tells of a run, failed or not."""
+    return what(runs[run])
+
+
+def margin(run: Run) -> float:
+    """Return how close any joint comes to a limit of its, in rad; below zero is beyond it."""
+    return float(limit_margin(run).min())
+
+
+def smallest_margin(run: Run) -> str:
+    """Return the same with the joint that it is, as a cell of a table."""
+    joint = int(np.argmin(model_of(run).limit_margins(joint_columns(run.trace, "q")).min(axis=0)))
+    return f"{number(margin(run))} (q{joint + 1})"
+
+
+def lag(run: Run, rate: float | None = None) -> float:
+    """Return the largest lag of the line without feedforward, in m, at a run's rate of commands or another, in Hz.
+
+    A goal that moves at speed v runs ahead until K times the lag makes up for it; the midpoint rule meets the goal of
+    the tick with the tip of half a period later: lag = v / (K (1 - h K / 2)).
+    """
+    controller = run.config["controller"]
+    gain, period = float(controller["gain"]), float(controller["period"]) if rate is None else 1.0 / rate
+    return float(peak_speed(run) / (gain * (1.0 - 0.5 * gain * period)))
+
+
+def lag_at(runs: Mapping[str, Run], run: str) -> Callable[[float], float]:
+    """Return the closed form of a run's lag as a function of the rate of the commands, in Hz."""
+    return partial(lag, runs[run])
+
+
+def late_by(run: Run) -> float | None:
+    """Return the largest axis error of a run over the closed form of its lag."""
+    error = median(run, "max_tracking_error")
+    return None if error is None else error / lag(run)
+
+
+def power_of_the_rate(slow: Run, fast: Run) -> float | None:
+    """Return by which power of the commands' rate the largest axis error falls from one run to another."""
+    errors = values((slow, fast), "max_tracking_error")
+    periods = [run.config["controller"]["period"] for run in (slow, fast)]
+    return float(np.log(errors[0] / errors[1]) / np.log(periods[0] / periods[1])) if errors.all() else None
+
+
+def line_length(run: Run) -> float:
+    """Return the distance from A to B, in m."""
+    trajectory = run.config["trajectory"]
+    return float(np.linalg.norm(np.subtract(trajectory["goal"], trajectory["start"])))
+
+
+def peak_speed(run: Run) -> float:
+    """Return the largest speed of the desired tip on the way from A to B, in m/s."""
+    return float(np.pi * line_length(run) / float(run.config["trajectory"]["duration"]))
+
+
+def plant_step(run: Run) -> float:
+    """Return the step by which a run's plant was simulated, in s."""
+    return float(run.provenance["plant_step"])
+
+
+def largest_error_at(run: Run) -> float:
+    """Return when the largest axis error of the tip is the largest of the run, in s."""
+    error = np.abs(columns(run.trace, "error")).max(axis=1)
+    return float(run.trace["t"].to_numpy()[int(np.argmax(error))])
+
+
+def error_at_end(run: Run) -> float:
+    """Return the largest axis error of the tip at the end of a run, in m."""
+    return float(np.abs(columns(run.trace, "error")[-1]).max())
+
+
+def first_saturation(run: Run) -> tuple[int, float] | None:
+    """Return which joint is the first at its effort limit, counted from 0, and when, in s; None where none is."""
+    at_limit = _at_limits(run)
+    if not at_limit.any():
+        return None
+    row, joint = np.argwhere(at_limit)[0]
+    return int(joint), float(run.trace["t"].to_numpy()[row])
+
+
+def first_at_limit(run: Run) -> str:
+    """Return the same as a cell of a table."""
+    first = first_saturation(run)
+    return "none" if first is None else f"q{first[0] + 1}, at {first[1]:.3g} s"
+
+
+def ticks_at_a_limit(run: Run) -> str:
+    """Return at which share of the ticks some joint is at its effort limit, as a cell of a table."""
+    return f"{100.0 * float(run.metrics['saturation_fraction']['median']):.3g} %"
+
+
+def clipped_share(run: Run) -> float | None:
+    """Return at which share of the ticks the shoulder is at its effort limit, in per cent; None without a tick."""
+    shoulder = _at_limits(run)[:, SHOULDER]
+    return 100.0 * float(shoulder.mean()) if shoulder.size else None
+
+
+def clipped_ticks(run: Run) -> float:
+    """Return at how many ticks the shoulder is at its effort limit."""
+    return float(_at_limits(run)[:, SHOULDER].sum())
+
+
+def last_clipped(run: Run) -> float | None:
+    """Return the last time at which the shoulder is at its effort limit, in s; None where it never is."""
+    times = run.trace["t"].to_numpy()[:-1][_at_limits(run)[:, SHOULDER]]
+    return float(times[-1]) if times.size else None
+
+
+def _at_limits(run: Run) -> np.ndarray:
+    """Return at which ticks each joint is at its effort limit, shape (T, nq)."""
+    torques = np.abs(joint_columns(run.trace, "tau"))[:-1]
+    return np.asarray(torques >= model_of(run).effort_limits * (1.0 - 1e-9))
+
+
+def nearest_to_its_limit(run: Run) -> str:
+    """Return which joint comes closest to its effort limit, or is the first at it, and how close, as a cell."""
+    torques = np.abs(joint_columns(run.trace, "tau"))[:-1].max(axis=0, initial=0.0)
+    shares = torques / model_of(run).effort_limits
+    saturated = first_saturation(run)
+    joint = int(np.argmax(shares)) if saturated is None else saturated[0]
+    return f"q{joint + 1}, {100.0 * shares[joint]:.3g} %"
+
+
+def sag(run: Run) -> float:
+    """Return |J K^-1 G|, the tip's sag by the arm's weight, its largest axis over the postures of a run, in m."""
+    model = model_of(run)
+    stiffness = float(run.config["plant"]["servo"]["stiffness"])
+    rows = joint_columns(run.trace, "q")[::50]
+    return max(float(np.abs(model.tip_jacobian(q)[:3] @ model.gravity_torque(q)).max()) / stiffness for q in rows)
+
+
+def flange_turn(run: Run) -> float:
+    """Return the largest angle between the flange's orientation and the one it starts with, in rad."""
+    model, q = model_of(run), joint_columns(run.trace, "q")
+    first = model.tip_pose(q[0])[:3, :3]
+    return max(float(np.linalg.norm(pin.log3(first.T @ model.tip_pose(row)[:3, :3]))) for row in q[::10])
+
+
+def second_drift(run: Run) -> float:
+    """Return how far the joints are in the end from where they were after the first period, the largest, in rad."""
+    q = joint_columns(run.trace, "q")
+    after = int(np.searchsorted(clock(run), float(run.config["trajectory"]["duration"]) - 1e-9))
+    return float(np.abs(q[-1] - q[after]).max())
+
+
+def moving_mass(run: Run) -> float:
+    """Return the mass of a run's arm that moves, in kg."""
+    return model_of(run).mass
