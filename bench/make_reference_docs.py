@@ -8,7 +8,7 @@ import argparse
 import importlib
 import inspect
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -37,6 +37,8 @@ from runner.registry import Registry, StrictModel
 from runner.robots.mismatch import MismatchConfig
 from runner.sensing import ForceTorqueConfig
 from runner.trajectories import TRAJECTORIES
+from runner.works.chapters import SHARED
+from runner.works.code import public_functions
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "reference.md"
 _HEAD = """\
@@ -68,7 +70,17 @@ _PLAIN: Mapping[str, tuple[type[StrictModel], str]] = {
 
 def reference_text() -> str:
     """Return the page."""
-    sections = [_HEAD, "## Keys\n\n", *_keys(), "## Metrics\n\n", *_metrics(), "## Commands\n\n", *_commands()]
+    sections = [
+        _HEAD,
+        "## Keys\n\n",
+        *_keys(),
+        "## Metrics\n\n",
+        *_metrics(),
+        "## In chapters\n\n",
+        *_chapters(),
+        "## Commands\n\n",
+        *_commands(),
+    ]
     return "".join(sections).rstrip() + "\n"
 
 
@@ -89,7 +101,7 @@ def _keys() -> Iterator[str]:
     yield _table("robot.stages.NAME", StageConfig, {**defaults, "mount": None})
     for group, registry in _KINDS.items():
         yield f"### {group}\n\n" + _options(group)
-        for kind in (kind for kind in registry.names() if kind in registry._modules):
+        for kind in (kind for kind in registry.names() if registry.is_ours(kind)):
             yield f"#### {group}.kind: {kind}\n\n"
             yield _table(group, registry.config_model(kind), _of_kind(group, kind))
     for group, (model, option) in _PLAIN.items():
@@ -175,20 +187,44 @@ def _bullets(docstring: str) -> dict[str, str]:
     return {name.strip(): " ".join(text.split()) for names, text in entries for name in names.split(",")}
 
 
+def _chapters() -> Iterator[str]:
+    yield "What a chapter of a [work](paper.md) may call. `runs` is filled in.\n\n| Call | Gives |\n|---|---|\n"
+    for module in SHARED:
+        for name, function in public_functions(module).items():
+            call = f"{name}{_signature(function)}"
+            meaning = (inspect.getdoc(function) or "").partition("\n\n")[0].replace("\n", " ").removeprefix("Return ")
+            yield f"| `{_cell(call)}` | {_cell(meaning)} |\n"
+    yield "\n"
+
+
+def _signature(function: Callable[..., Any]) -> str:
+    """Return a function's arguments as a chapter gives them, without types."""
+    parameters = [each for name, each in inspect.signature(function).parameters.items() if name != "runs"]
+    shown = [each.replace(annotation=inspect.Parameter.empty) for each in parameters]
+    return str(inspect.Signature(shown))
+
+
 def _commands() -> Iterator[str]:
     yield "`runner OVERRIDES` makes one run, `runner -m OVERRIDES` a sweep; `runner --help` shows both.\n\n"
     for name in COMMANDS:
         parser = _parser(name)
         yield f"### runner {name}\n\n{inspect.cleandoc(parser.description or '')}\n\n"
         yield "| Argument | Meaning | Default |\n|---|---|---|\n"
-        for action in parser._actions:
-            if not isinstance(action, argparse._HelpAction):
-                words = ", ".join(action.option_strings) or str(action.metavar or action.dest)
-                value = f" {action.metavar}" if action.option_strings and action.metavar else ""
-                shown = action.default not in (None, False, [], argparse.SUPPRESS)
-                default = f"`{action.default}`" if shown else ""
-                yield f"| `{words}{value}` | {_cell(action.help or '')} | {default} |\n"
+        yield from _arguments(parser)
         yield "\n"
+
+
+def _arguments(parser: argparse.ArgumentParser, before: str = "") -> Iterator[str]:
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for name, own in action.choices.items():
+                yield from _arguments(own, f"{name} ")
+        elif not isinstance(action, argparse._HelpAction):
+            words = ", ".join(action.option_strings) or str(action.metavar or action.dest)
+            value = f" {action.metavar}" if action.option_strings and action.metavar else ""
+            shown = action.default not in (None, False, [], argparse.SUPPRESS)
+            default = f"`{action.default}`" if shown else ""
+            yield f"| `{before}{words}{value}` | {_cell(action.help or '')} | {default} |\n"
 
 
 class _MadeError(Exception):

@@ -22,21 +22,22 @@ runner: config-driven experiments for robot-arm control, with reports
                                                  a sweep over every combination; again, it makes what is missing
   runner status DIR                              how far a sweep is
   runner tune OVERRIDES --minimize METRIC        choose numbers, as in controller.period="interval(0.005,0.05)"
-  runner reproduce [thesis|xarm7|meca500|audit|all]
+  runner reproduce [thesis|xarm7|meca500|audit|all|FOLDER]
                                                  run what is missing and write the report of a published work
   runner report DIR... [--html] [--pdf]          a report from stored runs or sweeps
   runner table DIR                               a sweep as one table, Parquet and CSV
   runner verify [DIR]                            is all in an outputs folder as it was written?
   runner check DIR [--reference FILE]            is every metric inside its reference band? --learn a sweep's
   runner diff A B                                two runs side by side: config and metrics
-  runner work diff OLD NEW                       what changed between two makings of a published work
+  runner work new FOLDER                         write a first work of your own, to reproduce another paper;
+                                                 check FOLDER looks through it, diff OLD NEW compares two makings
   runner calibrate [OVERRIDES]                   calibrate tool or sensor against the truth: calibration=gravity
   runner audit URDF --tip FRAME --jacobian FILE  your own formulas against a robot; also --position, --mass-matrix,
                                                  --gravity
   runner doctor ROBOT.urdf [--tip FRAME] [--write DIR] [--html DIR]
                                                  does a robot of yours fit, what to mend, and a config to start from
   runner list [robots|controllers|trajectories|experiments|plants|environments|wrist_sensors|mismatch|noise|presets|
-               torque_limits|calibrations|metrics|claims|references]
+               torque_limits|calibrations|metrics|claims|references|works]
 
   runner --cfg job [OVERRIDES]                   show the composed config without running it
   runner --config-dir DIR OVERRIDES              take YAML and URDFs from your own folder, too

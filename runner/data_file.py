@@ -1,11 +1,11 @@
-"""Data files of this package in YAML, each checked against its model."""
+"""Data files in YAML, each checked against its model; one may be a stranger's."""
 
 from pathlib import Path
 from typing import Any, TypeVar
 
-import yaml
 from pydantic import TypeAdapter, ValidationError
 
+from runner.config.bounded_yaml import YamlError, read_yaml
 from runner.errors import RunnerError
 
 T = TypeVar("T")
@@ -22,8 +22,8 @@ def read_data(path: Path, model: type[T]) -> T:
         RunnerError: if the file cannot be read or does not fit; names the file, and the entries and keys.
     """
     try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, yaml.YAMLError) as error:
+        content = read_yaml(path.read_text(encoding="utf-8"), path.name)
+    except (OSError, ValueError, YamlError) as error:
         raise RunnerError(f"cannot read {path}: {error}") from error
     try:
         return TypeAdapter(model).validate_python(content)

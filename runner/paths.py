@@ -32,6 +32,11 @@ def works_dir() -> Path:
     return _PACKAGE / "works"
 
 
+def example_work_dir() -> Path:
+    """Return the folder of the work that `runner work new` starts from."""
+    return _root() / "examples" / "own_paper"
+
+
 def templates_dir() -> Path:
     """Return the folder of the report templates."""
     return _root() / "reports" / "templates"

@@ -90,8 +90,11 @@ def load(group: str, name: str, module: str) -> ModuleType:
 
 
 def source_files(module: str) -> list[Path]:
-    """Return the source that a part is made of: its module's file, or all of the package that this lies in."""
-    package, _, rest = module.partition(".")
+    """Return the source that a part is made of: its module's file, or all of the package that this lies in.
+
+    Of a part of our works it is the folder `parts` of the work.
+    """
+    package, _, rest = module.rpartition(".") if module.startswith("runner.") else module.partition(".")
     spec = find_spec(package if rest else module)
     if spec is None:
         return []

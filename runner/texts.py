@@ -1,11 +1,16 @@
 """Text from outside (values, names, file contents) made safe to show: one line, no control characters, not too long."""
 
+import re
+import unicodedata
+
 VALUE = 200
 """Longest text quoted of a value, in characters."""
 LINE = 2000
 """Longest line of a message, in characters."""
 LINES = 50
 """Most lines of a message."""
+_OVERRIDES = ("LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")
+_SPACE = re.compile(r"\s+")
 
 
 def escaped(text: str) -> str:
@@ -47,3 +52,20 @@ def table_cell(text: str) -> str:
     except ValueError:
         return f"'{escaped(text)}" if text.startswith(("=", "+", "-", "@", "\t", "\r", "\n")) else escaped(text)
     return text
+
+
+def plain(text: str) -> str:
+    """Return the text on one line, without the characters that no XML, PDF or UTF-8 file can hold.
+
+    Control characters, lone surrogates, noncharacters and direction overrides become U+FFFD: they could hide or
+    reorder what stands beside them.
+    """
+    if text.isprintable() and "  " not in text:
+        return text
+    return "".join(map(_visible, _SPACE.sub(" ", text)))
+
+
+def _visible(character: str) -> str:
+    code = ord(character)
+    control = unicodedata.category(character) in ("Cc", "Cs") or unicodedata.bidirectional(character) in _OVERRIDES
+    return "\ufffd" if control or code & 0xFFFE == 0xFFFE or 0xFDD0 <= code <= 0xFDEF else character

@@ -1,10 +1,12 @@
 """Published numbers, and whether our runs bear them out."""
 
+from runner.claims.claim import FILE as CLAIMS
 from runner.claims.claim import Bound, Extent, PublishedClaim, claimed, load_claims
-from runner.claims.statement import PublishedStatement, load_statements
+from runner.claims.statement import PublishedStatement, load_statements, stated
 from runner.claims.verdict import CONTRADICTION, FACTOR, Verdict, judge, judge_motion
 
 __all__ = [
+    "CLAIMS",
     "CONTRADICTION",
     "FACTOR",
     "Bound",
@@ -17,4 +19,5 @@ __all__ = [
     "judge_motion",
     "load_claims",
     "load_statements",
+    "stated",
 ]

@@ -1,5 +1,6 @@
 """The published numbers as data."""
 
+from pathlib import Path
 from typing import Annotated, Literal, Self
 
 import numpy as np
@@ -11,7 +12,7 @@ from runner.errors import RunnerError
 from runner.paths import works_dir
 from runner.registry import StrictModel
 
-_FILE = "claims.yaml"
+FILE = "claims.yaml"
 
 
 class Bound(StrictModel):
@@ -34,7 +35,7 @@ class Likeness(StrictModel):
     """What a claim without a number is compared with: another run.
 
     Attributes:
-        experiment: The other experiment.
+        experiment: The other experiment, or the begin of its run's name.
         metric: The metric there.
     """
 
@@ -75,7 +76,8 @@ class PublishedClaim(StrictModel):
         place: Where.
         printed: The printed value, or the two ends of the printed range; empty where the source compares in words.
         unit: Its unit.
-        experiment: The experiment that makes it.
+        experiment: The experiment that makes it: of "work/name" the run of the work is name/PRESET.
+        run: Where no experiment makes it: begin of the run's name, name for name/PRESET.
         metric: The metric that it is compared with; a range is compared by its upper end, the worst axis.
         extents: Where it says how the tip moves, in place of a metric.
         fails: Whether it says that this motion is not met.
@@ -89,7 +91,8 @@ class PublishedClaim(StrictModel):
     place: str
     printed: Annotated[list[NonNegativeFloat], Field(max_length=2)]
     unit: str
-    experiment: str
+    experiment: str = ""
+    run: str = ""
     metric: str = ""
     extents: list[Extent] = Field(default_factory=list)
     fails: bool = False
@@ -101,6 +104,8 @@ class PublishedClaim(StrictModel):
     def _check_comparison(self) -> Self:
         if bool(self.metric) == bool(self.extents):
             raise ValueError("is compared by metric or by extents, one of the two")
+        if bool(self.experiment) == bool(self.run):
+            raise ValueError("names an experiment or a run, one of the two")
         return self
 
     @property
@@ -111,16 +116,19 @@ class PublishedClaim(StrictModel):
 
 def claimed() -> list[str]:
     """Return the names of the works that have claims, sorted."""
-    return sorted(path.parent.name for path in works_dir().glob(f"*/{_FILE}"))
+    return sorted(path.parent.name for path in works_dir().glob(f"*/{FILE}"))
 
 
-def load_claims(work: str) -> list[PublishedClaim]:
-    """Return the published numbers of a work, such as "thesis", in order.
+def load_claims(work: str | Path) -> list[PublishedClaim]:
+    """Return the published numbers of a work in order.
+
+    Args:
+        work: One of ours by its name, such as "thesis", or the whole path of a work's folder.
 
     Raises:
         RunnerError: if its file does not fit, or a bound names no claim of it; names the file, the entries and keys.
     """
-    path = works_dir() / work / _FILE
+    path = works_dir() / work / FILE
     claims = read_data(path, list[PublishedClaim])
     numbers = [claim.number for claim in claims]
     for claim in claims:

@@ -1,5 +1,7 @@
 """What a source states in words and no number or path can judge, as data."""
 
+from pathlib import Path
+
 from runner.data_file import read_data
 from runner.paths import works_dir
 from runner.registry import StrictModel
@@ -23,8 +25,16 @@ class PublishedStatement(StrictModel):
     reason: str = ""
 
 
-def load_statements(work: str) -> list[PublishedStatement]:
-    """Return the statements of a work, such as "meca500", in order.
+def stated() -> list[str]:
+    """Return the names of the works that have statements, sorted."""
+    return sorted(path.parent.name for path in works_dir().glob(f"*/{_FILE}"))
+
+
+def load_statements(work: str | Path) -> list[PublishedStatement]:
+    """Return the statements of a work in order.
+
+    Args:
+        work: One of ours by its name, such as "meca500", or the whole path of a work's folder.
 
     Raises:
         RunnerError: if its file does not fit; names the file, the entries and keys.

@@ -16,7 +16,6 @@ from runner.errors import RunnerError
 
 if TYPE_CHECKING:
     from runner.audit.own_formulas import Difference
-    from runner.robots.model import RobotModel
 
 _MOST = 100_000
 
@@ -24,7 +23,9 @@ _MOST = 100_000
 def main(arguments: Sequence[str]) -> int:
     """Compare the formulas of the files given; return 1 when one of them differs."""
     parser = Parser("audit", __doc__)
-    parser.add_argument("urdf", metavar="URDF", help="a file, or the name of one of our robots' such as xarm7.urdf")
+    parser.add_argument(
+        "urdf", metavar="URDF", help="a file, one of our URDFs such as xarm7.urdf, or a robot such as xarm7"
+    )
     parser.add_argument("--tip", required=True, metavar="FRAME", help="link whose origin is the tip")
     for name, words in (
         ("position", "the tip's position [m]"),
@@ -36,6 +37,7 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--samples", type=int, default=1000, help="how many random configurations (1000)")
     parser.add_argument("--tolerance", type=float, default=1e-6, help="largest error that is none, in SI units (1e-6)")
     options = parser.parse_args(arguments)
+    from runner.audit.model_truths import audited_arm
     from runner.audit.own_formulas import QUANTITIES, compare
 
     files = {name: getattr(options, name.replace("-", "_")) for name in QUANTITIES}
@@ -46,23 +48,12 @@ def main(arguments: Sequence[str]) -> int:
         raise RunnerError(f"--samples is {options.samples}; allowed: 1 to {_MOST}")
     if not 0 < options.tolerance < math.inf:
         raise RunnerError(f"--tolerance is {options.tolerance:g}; allowed: above 0")
-    model = _model(options.urdf, options.tip)
+    urdf = str(Path(options.urdf).resolve()) if Path(options.urdf).is_file() else options.urdf
+    model = audited_arm(urdf, options.tip, (), Path()).model
     differ = 0
     for name, path in given.items():
         differ += _report(name, compare(model, name, path, options.samples), options.tolerance)
     return 1 if differ else 0
-
-
-def _model(urdf: str, tip: str) -> "RobotModel":
-    from runner.robots.description import find_urdf
-    from runner.robots.model import RobotModel
-
-    path = Path(urdf) if Path(urdf).is_file() else find_urdf(urdf)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise RunnerError(f"{path}: cannot be read: {error}") from error
-    return RobotModel(text, tip)
 
 
 def _report(quantity: str, differences: "list[Difference]", tolerance: float) -> int:

@@ -76,13 +76,19 @@ def _read_bullets(docstring: str) -> dict[str, str]:
 
 
 def _list_claims(_: Sequence[Path]) -> dict[str, str]:
-    from runner.claims import claimed, load_claims
+    from runner.claims import claimed, load_claims, load_statements, stated
 
-    return {
+    claims = {
         f"{source} {claim.number}": f"{claim.statement}{_printed(claim)} ({claim.place})"
         for source in claimed()
         for claim in load_claims(source)
     }
+    statements = {
+        f"{source} {number}": f"{each.statement} ({each.place})"
+        for source in stated()
+        for number, each in enumerate(load_statements(source), start=1)
+    }
+    return claims | statements
 
 
 def _printed(claim: "PublishedClaim") -> str:
@@ -97,11 +103,11 @@ def _list_references(_: Sequence[Path]) -> dict[str, str]:
 
 
 def _list_works(_: Sequence[Path]) -> dict[str, str]:
-    from importlib import import_module
+    from runner.works.about import read_about
+    from runner.works.names import find_work, work_names
 
-    from runner.works.names import work_names
-
-    return {name: (import_module(f"runner.works.{name}").__doc__ or "").strip() for name in work_names()}
+    found = {name: read_about(find_work(name).folder) for name in work_names()}
+    return {name: f"{about.title}. {about.source}" for name, about in found.items()}
 
 
 TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {

@@ -1,7 +1,8 @@
-"""`runner reproduce [NAME] [OVERRIDES]`: run what is missing for a published work, and write its report.
+"""`runner reproduce [NAME|FOLDER] [OVERRIDES]`: run what is missing for a published work, and write its report.
 
-OVERRIDES say how the runs are made: hydra.sweeper.workers and .address, sweep.time_limit, .attempts, .retry and
-.on_failure, limits.cpu_hours and .memory; caveats.RULE.KEY, what is told of them. What is simulated is the work's own.
+FOLDER is a work of your own: `runner work new FOLDER` writes a first one. OVERRIDES say how the runs are made:
+hydra.sweeper.workers and .address, sweep.time_limit, .attempts, .retry and .on_failure, limits.cpu_hours and .memory;
+caveats.RULE.KEY, what is told of them. What is simulated is the work's own.
 """
 
 import json
@@ -14,14 +15,15 @@ from typing import TYPE_CHECKING
 
 from runner.commands.arguments import Parser
 from runner.config.compose import quiet_environment
-from runner.errors import RunnerError, nearest
-from runner.works.changes import FILE
+from runner.errors import RunnerError
+from runner.reporting.changes import FILE
 from runner.works.names import work_names
 
 if TYPE_CHECKING:
     from runner.reporting.document import Document
     from runner.reporting.expected_caveats import ExpectedCaveat
     from runner.store import Calibration, Run
+    from runner.works.work import Work
 
 AUDIT = "audit"
 _FREE = ("hydra.sweeper.", "sweep.", "limits.", "caveats.")
@@ -29,11 +31,13 @@ _FREE = ("hydra.sweeper.", "sweep.", "limits.", "caveats.")
 
 @dataclass(frozen=True)
 class _Way:
-    """How a work is made: folder of runs and reports, overrides of the engine, and the command as typed."""
+    """How a work is made: folder of runs and reports, overrides of the engine, the command as typed, profile, code."""
 
     outputs: Path
     overrides: Sequence[str]
     command: str
+    profile: str = ""
+    code: bool = False
 
 
 @dataclass(frozen=True)
@@ -51,51 +55,60 @@ def main(arguments: Sequence[str]) -> int:
     """Reproduce one work or all; print the report's folder as the last line."""
     works = (*work_names(), AUDIT)
     parser = Parser("reproduce", __doc__)
-    parser.add_argument("work", nargs="?", default="all", metavar="NAME", help=f"{', '.join(works)} or all")
+    parser.add_argument("work", nargs="?", default="all", metavar="NAME", help=f"{', '.join(works)}, all or a folder")
     parser.add_argument("overrides", nargs="*", metavar="OVERRIDE", help="such as hydra.sweeper.workers=1")
     parser.add_argument("--outputs", type=Path, default=Path("outputs"), help="folder of runs and reports")
     parser.add_argument("--check", action="store_true", help="exit 1 where a finding fell or a caveat is unexpected")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write verdicts, findings, caveats, numbers")
+    parser.add_argument("--profile", default="", metavar="P", help="a smaller or larger making that work.yaml names")
+    parser.add_argument("--code", action="store_true", help="run the Python of FOLDER")
     options = parser.parse_intermixed_args(arguments)
-    if options.work not in (*works, "all"):
-        raise RunnerError(
-            f"no work '{options.work}'{nearest(options.work, (*works, 'all'))}; works: {', '.join(works)}, all"
-        )
     others = [text for text in options.overrides if not text.startswith(_FREE) or text.startswith("sweep.trace")]
     if others:
         raise RunnerError(f"reproduce: {others[0]}: what is simulated is the work's own; free are {', '.join(_FREE)}")
     quiet_environment()
-    way = _Way(options.outputs, options.overrides, shlex.join(["runner", "reproduce", *arguments]))
-    made = {}
-    for work in _shortest_first(works) if options.work == "all" else (options.work,):
-        made[work] = _reproduce(work, way)
+    command = shlex.join(["runner", "reproduce", *arguments])
+    way = _Way(options.outputs, options.overrides, command, options.profile, options.code)
+    made = dict(_reproduce(work, way) for work in _chosen(options.work, way))
     if options.json is not None:
         _write_conclusions(made, options.json)
     fallen = _tell_fallen(made) if options.check else False
     return 1 if fallen or any(each.missing for each in made.values()) else 0
 
 
-def _shortest_first(works: Sequence[str]) -> list[str]:
-    """Return works in the order of the number of their runs, so that there is something to read soon."""
+def _chosen(text: str, way: _Way) -> "list[Work | None]":
+    """Return the work that is meant, or all in the order of the number of their runs; None stands for the audit.
+
+    So there is something to read soon.
+
+    Raises:
+        RunnerError: if there is no such work; names what there is.
+    """
     from runner.works.work import load_work
 
-    return sorted(works, key=lambda name: 0 if name == AUDIT else len(load_work(name).jobs()))
+    if text == AUDIT:
+        return [None]
+    if text != "all":
+        return [load_work(text, way.code, way.profile, (AUDIT, "all"))]
+    works = [work for name in work_names() if (work := load_work(name, way.code, way.profile)).about.in_all]
+    return [None, *sorted(works, key=lambda work: len(work.jobs()))]
 
 
-def _reproduce(work: str, way: _Way) -> _Reproduced:
+def _reproduce(work: "Work | None", way: _Way) -> "tuple[str, _Reproduced]":
     from runner import store
     from runner.reporting.render import write_report
 
-    folder = way.outputs / "reports" / work
+    name = AUDIT if work is None else work.name
+    folder = way.outputs / "reports" / name
     store.prepare(way.outputs)
-    made = (_audit if work == AUDIT else _reproduce_work)(work, way, folder)
+    made = _audit(folder) if work is None else _reproduce_work(work, way)
     print("writing the report ...", file=sys.stderr)
     write_report(made.document, folder)
-    _write_conclusions({work: made}, folder / FILE)
-    for name, why in made.missing.items():
-        print(f"runner: {work}: {name} is missing in the report: {why}", file=sys.stderr)
+    _write_conclusions({name: made}, folder / FILE)
+    for run, why in made.missing.items():
+        print(f"runner: {name}: {run} is missing in the report: {why}", file=sys.stderr)
     print(folder)
-    return made
+    return name, made
 
 
 def _tell_fallen(made: Mapping[str, _Reproduced]) -> bool:
@@ -123,19 +136,22 @@ def _write_conclusions(made: Mapping[str, _Reproduced], path: Path) -> None:
     write_atomically(path, (json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())
 
 
-def _reproduce_work(name: str, way: _Way, folder: Path) -> _Reproduced:
+def _reproduce_work(work: "Work", way: _Way) -> _Reproduced:
     """Make what a work needs, and its document."""
+    from runner.works.check import formulas_at
     from runner.works.making import make_all
-    from runner.works.work import load_work
 
-    work = load_work(name)
     work.measure(way.outputs)
-    runs, calibrations = make_all(work.jobs(), work.calibrations(), way.outputs, way.overrides, way.command)
+    runs, calibrations = make_all(work, way.outputs, way.overrides, way.command)
     missing = runs.missing | calibrations.missing
-    return _Reproduced(work.document(runs, calibrations), runs, missing, work.expected, calibrations)
+    document = work.document(runs, calibrations)
+    for line in formulas_at(work, document):
+        print(f"runner: {line}", file=sys.stderr)
+    return _Reproduced(document, runs, missing, work.expected, calibrations)
 
 
-def _audit(work: str, way: _Way, folder: Path) -> _Reproduced:
+def _audit(folder: Path) -> _Reproduced:
+    """Judge the equations of all works; write their table, and return the report."""
     from runner.audit.audit import as_csv, audit_all
     from runner.reporting.audit.report import audit_document
     from runner.store.atomic import write_atomically

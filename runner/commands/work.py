@@ -1,30 +1,81 @@
-"""`runner work diff OLD NEW`: what changed between two makings of published works.
+"""`runner work new DIR`, `check DIR`, `diff OLD NEW`: write, check and compare published works.
 
-OLD and NEW are files that `runner reproduce --json` wrote, or folders of the works' reports.
+new writes a first work into a folder: it runs at once, and you change it. check makes what is missing and looks through
+the work: every expression, every condition tried both ways, numbers typed in findings, caveats that nobody expects.
+diff tells what changed between two makings; OLD and NEW are files that `runner reproduce --json` wrote, or folders of
+the works' reports.
 """
 
 import json
+import shlex
+import sys
+from argparse import Namespace
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
 from runner.commands.arguments import Parser
+from runner.config.compose import quiet_environment
+from runner.reporting.changes import KINDS, Change, Value, changes, read_conclusions
 from runner.texts import one_line
-from runner.works.changes import KINDS, Change, Value, changes, read_conclusions
 
 _TOLD = 20  # changes of a kind that are printed without --all
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Print what moved, a line each, those that matter most first."""
+    """Do one of them."""
     parser = Parser("work", __doc__)
-    parser.add_argument("action", choices=("diff",), help="what to do")
-    parser.add_argument("old", type=Path, metavar="OLD", help="file or folder of the earlier making")
-    parser.add_argument("new", type=Path, metavar="NEW", help="file or folder of the later one")
-    parser.add_argument("--all", action="store_true", help=f"print all changes, not {_TOLD} of a kind")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write them to a file, too")
+    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=_Action)
+    new = actions.add_parser("new", help="write a first work into a folder")
+    new.add_argument("folder", type=Path, metavar="DIR", help="a folder that is not there yet, or empty")
+    check = actions.add_parser("check", help="look through a work")
+    check.add_argument("work", metavar="DIR", help="the work's folder, or the name of an installed one")
+    check.add_argument("--outputs", type=Path, default=Path("outputs"), help="folder of runs")
+    check.add_argument("--code", action="store_true", help="run the Python of DIR")
+    diff = actions.add_parser("diff", help="what changed between two makings")
+    diff.add_argument("old", type=Path, metavar="OLD", help="file or folder of the earlier making")
+    diff.add_argument("new", type=Path, metavar="NEW", help="file or folder of the later one")
+    diff.add_argument("--all", action="store_true", help=f"print all changes, not {_TOLD} of a kind")
+    diff.add_argument("--json", type=Path, metavar="FILE", help="write them to a file, too")
     options = parser.parse_args(arguments)
+    return {"new": _new, "check": _check, "diff": _diff}[options.action](options)
+
+
+class _Action(Parser):
+    """The parser of one action."""
+
+    def __init__(self, prog: str, help: str = "", **_: object) -> None:
+        super().__init__(prog.removeprefix("runner "), help)
+
+
+def _new(options: Namespace) -> int:
+    from runner.works.new import write_new
+
+    for path in write_new(options.folder):
+        print(path)
+    print(f"runner: `runner reproduce {shlex.quote(str(options.folder))}` makes its report", file=sys.stderr)
+    return 0
+
+
+def _check(options: Namespace) -> int:
+    """Print what is wrong with a work, a line each; exit 1 where something is."""
+    quiet_environment()
+    from runner.works.check import problems
+    from runner.works.making import make_all
+    from runner.works.work import load_work
+
+    work = load_work(options.work, options.code)
+    runs, calibrations = make_all(work, options.outputs)
+    found = [*problems(work, runs, calibrations)]
+    for line in found:
+        print(one_line(line))
+    print("nothing is wrong" if not found else f"{len(found)} problem{'s' if len(found) > 1 else ''}")
+    return 1 if found else 0
+
+
+def _diff(options: Namespace) -> int:
+    """Print what moved, a line each, those that matter most first."""
     found = changes(read_conclusions(options.old), read_conclusions(options.new))
     counts = Counter(change.kind for change in found)
     for kind in KINDS:

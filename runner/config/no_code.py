@@ -18,6 +18,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from runner.config.bounded_yaml import CONFIG, YamlError, check_yaml
 from runner.config.interpolation import check_references, refuse_functions
+from runner.config.work_folder import place_in
 from runner.errors import ConfigError
 from runner.paths import conf_dir
 from runner.texts import quoted
@@ -30,10 +31,14 @@ _NAMED_BY_CONFIGS = ("hydra.searchpath", "main", "command-line")  # others are H
 
 @contextlib.contextmanager
 def code_refused() -> Iterator[None]:
-    """Let Hydra go on only with configs that name no code, whichever file, package or override they come from."""
+    """Let Hydra go on only with configs that name no code, whichever file, package or override they come from.
+
+    In a config folder that is a work's, experiments are found under its name; see work_folder.
+    """
     Plugins.instance()  # registers what reads files, as a class of Hydra's own making
     files = SourcesRegistry.instance().resolve("file")
-    load, search, read = ConfigLoaderImpl.load_configuration, ConfigRepository.initialize_sources, files.load_config
+    load, search = ConfigLoaderImpl.load_configuration, ConfigRepository.initialize_sources
+    read, is_config, is_group = files.load_config, files.is_config, files.is_group
 
     def checked_load(self: ConfigLoaderImpl, *args: Any, **options: Any) -> DictConfig:
         try:
@@ -51,13 +56,18 @@ def code_refused() -> Iterator[None]:
         search(self, config_search_path)
 
     def checked_read(self: ConfigSource, config_path: str) -> ConfigResult:
-        check_file(Path(self.path) / self._normalize_file_name(config_path))
-        return read(self, config_path)
+        place = place_in(Path(self.path), config_path)
+        check_file(Path(self.path) / self._normalize_file_name(place))
+        return read(self, place)
 
     with (
         _replaced(ConfigLoaderImpl, checked_load, "load_configuration"),
         _replaced(ConfigRepository, checked_search, "initialize_sources"),
         _replaced(files, checked_read, "load_config"),
+        _replaced(
+            files, lambda self, config_path: is_config(self, place_in(Path(self.path), config_path)), "is_config"
+        ),
+        _replaced(files, lambda self, config_path: is_group(self, place_in(Path(self.path), config_path)), "is_group"),
     ):
         yield
 

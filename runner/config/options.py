@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from runner.config.work_folder import option_in
 from runner.paths import conf_dir
 
 
@@ -30,7 +31,8 @@ def group_options(group: str, config_dirs: Sequence[Path] = ()) -> dict[str, str
     """
     found: dict[str, str] = {}
     for folder in (conf_dir(), *config_dirs):
-        found |= described_files(folder / group)
+        files = described_files(folder / group)
+        found |= {option_in(folder, group, name): description for name, description in files.items()}
     return dict(sorted(found.items()))
 
 

@@ -10,9 +10,7 @@ CONTROLLERS = Controllers(
         "differential_inverse_kinematics": "runner.controllers.differential_inverse_kinematics",
         "macro_mini": "runner.controllers.macro_mini",
         "operational_space": "runner.controllers.operational_space",
-        "three_joint": "runner.controllers.three_joint",
         "whole_body": "runner.controllers.whole_body",
-        "xarm7_as_printed": "runner.controllers.xarm7_as_printed",
     }
 )
 

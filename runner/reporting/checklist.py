@@ -1,6 +1,7 @@
 """What of a published work stands where in its report: a list in `checklist.yaml` of the work's folder."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from string import Formatter
 from typing import Annotated, Self
 
@@ -98,13 +99,17 @@ def _in_braces(key: str, text: str) -> list[str]:
         raise ValueError(f"{key}: {error}") from None
 
 
-def load_checklist(work: str) -> Checklist:
-    """Return the checklist of a work, such as "thesis".
+def load_checklist(work: str | Path) -> Checklist | None:
+    """Return the checklist of a work; None where it has none.
+
+    Args:
+        work: One of ours by its name, such as "thesis", or the whole path of a work's folder.
 
     Raises:
         RunnerError: if its file cannot be read or does not fit; names the file, and the items and keys.
     """
-    return read_data(works_dir() / work / _FILE, Checklist)
+    path = works_dir() / work / _FILE
+    return read_data(path, Checklist) if path.is_file() else None
 
 
 def _row(item: Item, place: str | None) -> list[str]:

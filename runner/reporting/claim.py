@@ -19,11 +19,13 @@ class ClaimResult:
         preset: Name of the preset; empty where there is one way to take the claim.
         measured: Median and spread over the seeds, formatted with unit, such as "1.41 s (1.12 to 1.77)".
         verdict: Whether the printed value holds.
+        words: What the preset is called.
     """
 
     preset: str
     measured: str
     verdict: Verdict | StatementVerdict | EquationVerdict
+    words: str = ""
 
 
 @dataclass(frozen=True)

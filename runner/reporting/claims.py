@@ -2,30 +2,40 @@
 
 from collections.abc import Mapping, Sequence
 
-from runner.claims import Bound, PublishedClaim, PublishedStatement, Verdict, judge, judge_motion
+from runner.claims import FACTOR, Bound, PublishedClaim, PublishedStatement, Verdict, judge, judge_motion
+from runner.quantities import quantity, ranged, spread
 from runner.reporting.claim import Claim, ClaimResult, EquationVerdict, StatementVerdict
 from runner.reporting.document import Table
 from runner.reporting.figures import columns
-from runner.reporting.job import PRESETS, MissingError
-from runner.reporting.quantities import quantity, ranged, spread
+from runner.reporting.job import MissingError
 from runner.reporting.run_values import median
 from runner.reporting.words import PRESET
 from runner.store import Run
 
+RULE = (
+    f"A printed number holds when the simulated median lies within a factor of {FACTOR:g} of it; the simulation is "
+    "better below that, and worse above it or without a value. The source contradicts itself where another of its "
+    "numbers, widened by that factor, stays below the printed one, or where the path that it prescribes is another "
+    "motion than the stated one."
+)
+"""What the words of a verdict mean."""
 _DIGITS = 4  # at least as many as a source prints
 
 
-def claim_blocks(claims: Sequence[PublishedClaim], runs: Mapping[str, Run]) -> list[Claim]:
+def claim_blocks(
+    claims: Sequence[PublishedClaim], runs: Mapping[str, Run], presets: Mapping[str, str] = PRESET
+) -> list[Claim]:
     """Return each claim with what the runs say of it, under each preset.
 
     Args:
         claims: All claims of a work: a bound of one names another.
         runs: The stored runs of the work, by names such as "figure_3_5/sound"; see `run_name`.
+        presets: Names of the presets under which they are judged, with their words; where there are none, once.
 
     Raises:
         MissingError: if a claim's run was not made, or one that it is compared with gave no value.
     """
-    return [_Claimed(claim, claims, runs).block() for claim in claims]
+    return [_Claimed(claim, claims, runs, presets).block() for claim in claims]
 
 
 def statement_blocks(
@@ -49,15 +59,16 @@ def statement_blocks(
     ]
 
 
-def verdict_table(caption: str, blocks: Sequence[Claim]) -> Table:
+def verdict_table(caption: str, blocks: Sequence[Claim], presets: Mapping[str, str] = PRESET) -> Table:
     """Return the claims as a table: a row for each, a column for each preset."""
     rows = [[c.number, c.statement, c.printed, *(f"{f.measured}: {f.verdict}" for f in c.findings)] for c in blocks]
-    return Table(caption, ["claim", "statement", "printed", *PRESET.values()], rows)
+    return Table(caption, ["claim", "statement", "printed", *(presets.values() or ("simulated",))], rows)
 
 
 def run_name(experiment: str, preset: str) -> str:
     """Return the name that the run of an experiment has among the runs of a work: "sources/name" is "name/preset"."""
-    return f"{experiment.rpartition('/')[2]}/{preset}"
+    name = experiment.rpartition("/")[2]
+    return f"{name}/{preset}" if preset else name
 
 
 class _Claimed:
@@ -67,29 +78,42 @@ class _Claimed:
         claim: The claim.
         claims: All claims of its work.
         runs: The stored runs of its work, by name.
+        presets: Names of the presets with their words.
     """
 
-    def __init__(self, claim: PublishedClaim, claims: Sequence[PublishedClaim], runs: Mapping[str, Run]) -> None:
-        self._claim = claim
-        self._claims = claims
-        self._runs = runs
+    def __init__(
+        self,
+        claim: PublishedClaim,
+        claims: Sequence[PublishedClaim],
+        runs: Mapping[str, Run],
+        presets: Mapping[str, str],
+    ) -> None:
+        self._claim, self._claims, self._runs = claim, claims, runs
+        self._presets = presets or {"": ""}
 
     def block(self) -> Claim:
         """Return it with its verdicts."""
         claim = self._claim
-        command = f"runner experiment={claim.experiment} preset={PRESETS[0]}"
-        findings = [self._finding(preset) for preset in PRESETS]
+        first = self._run(_named(claim), next(iter(self._presets)))
+        findings = [self._finding(preset) for preset in self._presets]
         return Claim(
-            str(claim.number), claim.statement, claim.place, _printed(claim), findings, self._reason(), command
+            str(claim.number),
+            claim.statement,
+            claim.place,
+            _printed(claim),
+            findings,
+            self._reason(),
+            str(first.provenance["command"]),
         )
 
     def _finding(self, preset: str) -> ClaimResult:
-        claim, run = self._claim, self._run(self._claim.experiment, preset)
+        claim, run = self._claim, self._run(_named(self._claim), preset)
         verdict = self._of_motion(run) if claim.extents else self._of_number(run, preset)
+        words = self._presets[preset]
         if run.status == "failed":
-            return ClaimResult(preset, run.failure_text, verdict)
+            return ClaimResult(preset, run.failure_text, verdict, words)
         shown = self._moved(run) if claim.extents else spread(run.metrics[claim.metric], claim.value)
-        return ClaimResult(preset, shown, verdict)
+        return ClaimResult(preset, shown, verdict, words)
 
     def _of_motion(self, run: Run) -> Verdict:
         tip, desired = columns(run.trace, "tip"), columns(run.trace, "desired")
@@ -123,7 +147,7 @@ class _Claimed:
 
     def _scaled(self, bound: Bound, preset: str) -> float | None:
         other = self._other(bound)
-        simulated = median(self._run(other.experiment, preset), other.metric)
+        simulated = median(self._run(_named(other), preset), other.metric)
         return None if simulated is None else simulated * bound.scale
 
     def _other(self, bound: Bound) -> PublishedClaim:
@@ -132,26 +156,33 @@ class _Claimed:
     def _reason(self) -> str:
         claim, told = self._claim, [self._claim.reason]
         if claim.bound is not None:
-            scaled = {preset: quantity(self._scaled(claim.bound, preset), claim.unit) for preset in PRESETS}
-            times = " and ".join(f"{text} ({PRESET[preset]})" for preset, text in scaled.items())
+            scaled = {preset: quantity(self._scaled(claim.bound, preset), claim.unit) for preset in self._presets}
+            times = " and ".join(f"{text}{self._under(preset)}" for preset, text in scaled.items())
             told = [f"{claim.bound.reason} {claim.bound.name} is {times}."]
         if claim.metric == "steady_state_error":
-            told += [self._late(preset) for preset in PRESETS]
+            told += [self._late(preset) for preset in self._presets]
         return " ".join(text for text in told if text)
 
     def _late(self, preset: str) -> str:
         """Return how many repetitions have not settled when the error at rest is taken; nothing where all have."""
-        run = self._run(self._claim.experiment, preset)
+        run = self._run(_named(self._claim), preset)
         band = float(run.config["robot"]["settling_band"])
         errors = run.metrics.get("steady_state_error", {"values": ()})["values"]
         late = sum(1 for error in errors if error is not None and error > band)
         if not late:
             return ""
-        told = f"{late} of {len(errors)} repetitions ({PRESET[preset]})"
+        told = f"{late} of {len(errors)} repetitions{self._under(preset)}"
         return f"{told} are beyond {quantity(band, 'm')} in the last half second."
+
+    def _under(self, preset: str) -> str:
+        return f" ({self._presets[preset]})" if preset else ""
 
     def _run(self, experiment: str, preset: str) -> Run:
         return self._runs[run_name(experiment, preset)]
+
+
+def _named(claim: PublishedClaim) -> str:
+    return claim.experiment or claim.run
 
 
 def _printed(claim: PublishedClaim) -> str:

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from runner.quantities import Shown, fewest_powers, fitting, number, smaller_units
 from runner.reporting.document import Block, Document, Section, Table
-from runner.reporting.quantities import Shown, fewest_powers, fitting, number, smaller_units
 
 _UNITS = ("m", "s")
 _PLAIN = 1e-4  # in a smaller unit a column shows plain decimals down to this: 10.5, 0.0262, 0.0011

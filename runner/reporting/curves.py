@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from runner.reporting import palette
+from runner.drawing import palette
+from runner.drawing.thinning import band, thin, usable
 from runner.reporting.document import Curves, FloatArray, Panel, Series
-from runner.reporting.markup import plain
-from runner.reporting.thinning import band, thin, usable
+from runner.texts import plain
 
 Json = dict[str, Any]
 

@@ -3,11 +3,12 @@
 import numpy as np
 
 from runner.doctor.examination import Examination
+from runner.drawing import arm_motion
 from runner.provenance import versions
+from runner.quantities import number
 from runner.reporting.bodies import playback_bodies
 from runner.reporting.document import Document, Notice, Playback, Provenance, Section, Table
-from runner.reporting.drawings import arm_motion
-from runner.reporting.quantities import number
+from runner.reporting.markup import literal, literals
 from runner.robots.model import FloatArray, RobotModel
 
 _SWING = 0.3  # rad, or share of the travel, by which each joint is shown
@@ -37,10 +38,7 @@ def doctor_document(found: Examination) -> Document:
 
 
 def _findings(found: Examination) -> Table:
-    rows = [
-        [each.grade, *(text.replace("$", "$$") for text in (each.place, each.text, each.mend)), _yes(each.mended)]
-        for each in found.findings
-    ]
+    rows = [[each.grade, *literals((each.place, each.text, each.mend)), _yes(each.mended)] for each in found.findings]
     return Table("What was found, with the mend.", ["", "where", "what", "mend", "--write does it"], rows)
 
 
@@ -69,6 +67,6 @@ def _joints(model: RobotModel) -> Table:
     rows = []
     for name, unit, values in zip(model.joint_names, model.joint_units, limits, strict=True):
         cells = [number(value) if np.isfinite(value) else "none" for value in values]
-        rows.append([name.replace("$", "$$"), "slides" if unit == "m" else "turns", *cells])
+        rows.append([literal(name), "slides" if unit == "m" else "turns", *cells])
     header = ["joint", "", "lower (rad, m)", "upper (rad, m)", "speed (rad/s, m/s)", "effort (N m, N)"]
     return Table("Joints and their limits.", header, rows, (2, 3, 4, 5))

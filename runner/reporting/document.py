@@ -12,10 +12,12 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.audit.expressions import Node
+from runner.drawing.figure import FloatArray as FloatArray
+from runner.drawing.figure import Map as Map
+from runner.drawing.figure import Panel as Panel
+from runner.drawing.figure import Series as Series
+from runner.expressions.tree import Node
 from runner.reporting.claim import Claim, EquationVerdict
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -70,51 +72,6 @@ class Origin:
 
 
 @dataclass(frozen=True)
-class Series:
-    """One curve.
-
-    Attributes:
-        name: Its legend entry; with an empty name it stands in no legend.
-        x: Abscissae, shape (T,).
-        y: Ordinates, shape (T,); NaN breaks the line.
-        style: Line, dashed line, dotted line, single points, or points joined by a line.
-        low: Lower edge of a shaded band around the curve, shape (T,), or None.
-        high: Upper edge of the band, shape (T,), or None.
-        color: Index into the palette; None takes the next one. Curves that belong together share it.
-        hints: What the reader is told of each point when pointing at it, one for each, or none.
-        runs: Hash of the run behind each point, one for each, or none; in HTML a click leads to it in the run list.
-    """
-
-    name: str
-    x: FloatArray
-    y: FloatArray
-    style: Literal["line", "dashed", "dotted", "points", "points_line"] = "line"
-    low: FloatArray | None = None
-    high: FloatArray | None = None
-    color: int | None = None
-    hints: Sequence[str] = ()
-    runs: Sequence[str] = ()
-
-
-@dataclass(frozen=True)
-class Panel:
-    """One pair of axes with its curves; labels carry the unit, as in "tip error (m)".
-
-    With `x_names` the abscissae are places 0, 1, ... with these names below them.
-    """
-
-    title: str
-    x_label: str
-    y_label: str
-    series: Sequence[Series]
-    x_log: bool = False
-    y_log: bool = False
-    x_range: tuple[float, float] | None = None
-    y_range: tuple[float, float] | None = None
-    x_names: Sequence[str] = ()
-
-
-@dataclass(frozen=True)
 class Curves:
     """A figure of curves: interactive in HTML (zoom, hover, legend toggles), a still in the PDF.
 
@@ -130,37 +87,6 @@ class Curves:
     panels: Sequence[Panel]
     columns: int = 2
     origin: Origin = field(default_factory=Origin)
-
-
-@dataclass(frozen=True)
-class Map:
-    """One grid of coloured cells: rows from below, columns from the left.
-
-    Attributes:
-        title: What stands above it.
-        x_label: Name of the horizontal axis.
-        y_label: Name of the vertical axis.
-        x_names: Name of each column.
-        y_names: Name of each row.
-        values: Value of each cell, shape (rows, columns); NaN leaves it empty.
-        failed: Whether a cell is marked as failed, shape (rows, columns).
-        lines: Curves over the grid, abscissae counted in columns and ordinates in rows, both from 0.
-        contours: Whether it shows lines of equal value in place of cells.
-        hints: What the reader is told of each cell, row by row, or none.
-        runs: Hash of the run behind each cell, row by row, or none.
-    """
-
-    title: str
-    x_label: str
-    y_label: str
-    x_names: Sequence[str]
-    y_names: Sequence[str]
-    values: FloatArray
-    failed: NDArray[np.bool_]
-    lines: Sequence[Series] = ()
-    contours: bool = False
-    hints: Sequence[str] = ()
-    runs: Sequence[str] = ()
 
 
 @dataclass(frozen=True)

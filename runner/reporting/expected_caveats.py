@@ -6,7 +6,7 @@ from fnmatch import fnmatchcase
 from typing import Any
 
 from runner.reporting.document import Block, Notice, Section, Table, Text
-from runner.reporting.run_report import literal
+from runner.reporting.markup import literal
 from runner.store import Run
 
 _TOLD = 20  # unexpected caveats that the report names one by one

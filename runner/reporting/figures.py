@@ -3,9 +3,10 @@
 import numpy as np
 import pandas as pd
 
+from runner.drawing import arm_motion
+from runner.drawing.thinning import spaced
 from runner.reporting.bodies import playback_bodies
 from runner.reporting.document import Curves, Origin, Panel, Playback, Series
-from runner.reporting.drawings import arm_motion
 from runner.robots import RobotModel
 from runner.store import Calibration, Run
 
@@ -22,6 +23,12 @@ def origin(job: Run | Calibration, number: str = "") -> Origin:
 def model_of(run: Run) -> RobotModel:
     """Return the rigid-body model of the robot that a run simulated, from the URDF stored with it."""
     return RobotModel(run.urdf, run.provenance["tip_frame"], run.config["gravity"])
+
+
+def until_time(run: Run, end: float | None) -> pd.DataFrame:
+    """Return the trace of a run up to a time, in s; None returns it all."""
+    trace = run.trace
+    return trace if end is None else trace[trace["t"] <= end + 1e-9]
 
 
 def columns(trace: pd.DataFrame, stem: str) -> np.ndarray:
@@ -44,9 +51,7 @@ def torque_and_error(run: Run, caption: str, number: str = "", until: float | No
         number: Number of the figure in the source.
         until: End of the time axis, in s; None shows the whole run.
     """
-    trace = run.trace
-    if until is not None:
-        trace = trace[trace["t"] <= until + 1e-9]
+    trace = until_time(run, until)
     t = trace["t"].to_numpy()
     torques = joint_columns(trace, "tau")
     error = columns(trace, "error")
@@ -68,8 +73,7 @@ def torque_and_error(run: Run, caption: str, number: str = "", until: float | No
 
 def desired_motion(run: Run, caption: str, number: str = "", axes: tuple[str, ...] = AXES) -> Curves:
     """Return desired position, velocity and acceleration of the tip over the motion's time."""
-    trace = run.trace
-    trace = trace[trace["t"] <= run.config["trajectory"]["duration"] + 1e-9]
+    trace = until_time(run, run.config["trajectory"]["duration"])
     t = trace["t"].to_numpy()
     panels = [
         Panel(
@@ -96,14 +100,12 @@ def playback(run: Run, caption: str, until: float | None = None, frames: int = 1
         until: End of the part shown, in s; None shows it all.
         frames: Largest number of instants.
     """
-    trace = run.trace
+    trace = until_time(run, until)
     trace = trace[np.isfinite(joint_columns(trace, "q")).all(axis=1)]
-    if until is not None:
-        trace = trace[trace["t"] <= until + 1e-9]
     model = model_of(run)
     q, t, tip = joint_columns(trace, "q"), trace["t"].to_numpy(), columns(trace, "tip")
-    shown = np.unique(np.linspace(0, len(t) - 1, min(frames, len(t))).round().astype(int))
-    stills = np.unique(np.linspace(0, len(t) - 1, min(_STILLS, len(t))).round().astype(int))
+    shown = spaced(len(t), frames)
+    stills = spaced(len(t), _STILLS)
     desired = columns(trace, "desired")
     moving = bool(np.ptp(desired, axis=0).any())
     path = desired if moving else np.vstack([tip[0], desired[0]])

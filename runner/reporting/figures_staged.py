@@ -1,9 +1,7 @@
 """Figures of a stored run of arms riding on each other, laid out as the thesis does (figures 5.3 and 5.8 to 5.13)."""
 
-import pandas as pd
-
 from runner.reporting.document import Curves, Panel, Series
-from runner.reporting.figures import AXES, columns, joint_columns, origin
+from runner.reporting.figures import AXES, columns, joint_columns, origin, until_time
 from runner.store import Run
 
 
@@ -19,7 +17,7 @@ def staged_torque_and_error(run: Run, caption: str, number: str = "", until: flo
         number: Number of the figure in the source.
         until: End of the time axis, in s; None shows the whole run.
     """
-    trace = _shown(run, until)
+    trace = until_time(run, until)
     t, torques = trace["t"].to_numpy(), joint_columns(trace, "tau")
     names = _stages(run)
     torque_panels, error_panels = [], []
@@ -58,7 +56,7 @@ def macro_mini_targets(
         until: End of the time axis, in s; None shows the whole run.
         axis: The axis of the base frame: x, y or z.
     """
-    trace = _shown(run, until)
+    trace = until_time(run, until)
     carrier, rider = list(_stages(run))[:2]
     t = trace["t"].to_numpy()
     desired, tip, end_point = (trace[f"{stem}_{axis}"].to_numpy() for stem in ("desired", "tip", f"{carrier}_tip"))
@@ -78,11 +76,6 @@ def macro_mini_targets(
     )
     caption = caption or f"How {big} and {small} share the way to the desired tip, in {axis} direction."
     return Curves(caption, panels, origin=origin(run, number))
-
-
-def _shown(run: Run, until: float | None) -> pd.DataFrame:
-    trace = run.trace
-    return trace if until is None else trace[trace["t"] <= until + 1e-9]
 
 
 def _stages(run: Run) -> dict[str, list[int]]:

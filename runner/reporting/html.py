@@ -6,8 +6,9 @@ from functools import cache, lru_cache
 from importlib import resources
 from urllib.parse import quote
 
+from runner.drawing import palette
 from runner.paths import templates_dir
-from runner.reporting import formulas, outline, palette, playback
+from runner.reporting import formulas, outline, playback
 from runner.reporting.curves import plotly_spec
 from runner.reporting.document import Curves, Document, Maps, Playback, RunList
 from runner.reporting.maps import maps_spec

@@ -5,13 +5,13 @@ there, and a reader of files refuses them in what it is given.
 """
 
 import re
-import unicodedata
+from collections.abc import Iterable
 from dataclasses import dataclass
 
-_OVERRIDES = ("LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")
+from runner.texts import plain
+
 _SPAN = re.compile(r"\$\$|\$((?:[^$])+)\$|\$|[^$]+")
 _LINK = re.compile(r"§(\d+(?:\.\d+)*)")
-_SPACE = re.compile(r"\s+")
 MARKS = {"emphasis": ("\ue000", "\ue001"), "code": ("\ue002", "\ue003")}
 """First and last character around each kind of marked text."""
 _ADDRESS_MARKS = ("\ue004", "\ue005", "\ue006")  # before the text, between text and address, behind the address
@@ -89,15 +89,14 @@ def linked(text: str, address: str) -> str:
     return f"{before}{text}{between}{address}{behind}"
 
 
-def plain(text: str) -> str:
-    """Return the text on one line, without the characters that no XML, PDF or UTF-8 file can hold.
+def literal(text: str) -> str:
+    """Return text in which a dollar sign is one, not the begin of mathematics."""
+    return text.replace("$", "$$")
 
-    Control characters, lone surrogates, noncharacters and direction overrides become U+FFFD: they could hide or
-    reorder what stands beside them.
-    """
-    if text.isprintable() and "  " not in text:
-        return text
-    return "".join(map(_visible, _SPACE.sub(" ", text)))
+
+def literals(cells: Iterable[str]) -> list[str]:
+    """Return texts, such as the cells of a row, in which a dollar sign is one."""
+    return [literal(cell) for cell in cells]
 
 
 def spans(text: str) -> list[Span]:
@@ -117,10 +116,10 @@ def spans(text: str) -> list[Span]:
         if match[1] is not None and match[1].strip():
             result.append(Math(match[1].strip()))
             continue
-        literal = "$" if match[0] == "$$" else match[0]
+        shown = "$" if match[0] == "$$" else match[0]
         if result and isinstance(result[-1], Literal):
-            literal = result.pop().text + literal
-        result.append(Literal(literal))
+            shown = result.pop().text + shown
+        result.append(Literal(shown))
     return [part for span in result for part in (_marks(span.text) if isinstance(span, Literal) else [span])]
 
 
@@ -147,9 +146,3 @@ def _links(text: str) -> list[Span]:
     parts = _LINK.split(text)  # literals at even places, section numbers at odd ones
     found: list[Span] = [Link(part) if index % 2 else Literal(part) for index, part in enumerate(parts)]
     return [span for span in found if span.text]
-
-
-def _visible(character: str) -> str:
-    code = ord(character)
-    control = unicodedata.category(character) in ("Cc", "Cs") or unicodedata.bidirectional(character) in _OVERRIDES
-    return "\ufffd" if control or code & 0xFFFE == 0xFFFE or 0xFDD0 <= code <= 0xFDEF else character

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 
 from runner.metrics.summary import families, units
-from runner.reporting.quantities import labelled
+from runner.quantities import labelled
 
 TITLES = {
     "settling_time": "settling time",

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import typst
 
-from runner.reporting import formulas, map_stills, outline, stills
+from runner.drawing import map_stills, stills
+from runner.reporting import formulas, outline
 from runner.reporting.document import Curves, Document, Maps
 from runner.reporting.run_list import table_header, table_rows
 from runner.reporting.templating import typst_environment

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.quantities import above_rounding, quantity
 from runner.reporting.figures import columns
-from runner.reporting.quantities import above_rounding, quantity
 from runner.reporting.words import PLANT
 from runner.store import Run, find_run, run_hash
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from viser import FrameHandle
 
-from runner.reporting import palette
+from runner.drawing import palette
 from runner.reporting.document import Body, FloatArray, Playback
 from runner.reporting.recorder import Recorder, recorder
 

@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from runner.quantities import labelled, number, unit_text
 from runner.reporting.document import RunList
-from runner.reporting.markup import plain
-from runner.reporting.quantities import labelled, number, unit_text
+from runner.reporting.markup import literals
+from runner.texts import plain
 
 Json = dict[str, Any]
 
@@ -36,7 +37,7 @@ def table_header(block: RunList) -> list[str]:
     """Return the titles of the table's columns."""
     axes = [name for name, _ in block.axes]
     metrics = [labelled(name, unit) for name, unit in block.metrics[:SHOWN]]
-    return [text.replace("$", "$$") for text in ("run", *axes, "status", *metrics)]
+    return literals(("run", *axes, "status", *metrics))
 
 
 def table_rows(block: RunList) -> list[list[str]]:
@@ -47,7 +48,7 @@ def table_rows(block: RunList) -> list[list[str]]:
         values = (None if np.isnan(value) else float(value) for value in block.values[run, :SHOWN])
         cells = [block.hashes[run][:8], *(names[level] for (_, names), level in levels)]
         cells += ["failed" if block.failures[run] else "ok", *map(number, values)]
-        rows.append([cell.replace("$", "$$") for cell in cells])
+        rows.append(literals(cells))
     return rows
 
 

@@ -5,11 +5,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from runner.caveats import changes_since
+from runner.quantities import above_rounding, number, with_powers
 from runner.reporting.document import Block, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import desired_motion, playback, torque_and_error
+from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
 from runner.reporting.plant_agreement import describe_agreement
-from runner.reporting.quantities import above_rounding, number, with_powers
 from runner.store import Run
 
 _HEADLINE = ("settling_time", "steady_state_error", "max_tracking_error", "peak_torque", "saturation_fraction")
@@ -98,14 +99,14 @@ def _metrics(run: Run) -> Table:
     return Table(
         "Metrics of one repetition." if count == 1 else f"Metrics over {count} repetitions.",
         ["metric", "name on the command line", "median", "smallest", "largest"],
-        [[literal(cell) for cell in row] for row in rows],
+        [literals(row) for row in rows],
         (2, 3, 4),
         code=(1,),
     )
 
 
 def _config(run: Run) -> Table:
-    rows = [[literal(key), literal(_yaml(value))] for key, value in _flatten(run.config).items() if key != "outputs"]
+    rows = [literals([key, _yaml(value)]) for key, value in _flatten(run.config).items() if key != "outputs"]
     return Table("Config, all values.", ["key", "value"], rows, code=(0, 1))
 
 
@@ -158,8 +159,3 @@ def _flatten(value: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 def _yaml(value: Any) -> str:
     """Return a value as it is given in YAML or on the command line."""
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
-
-
-def literal(text: str) -> str:
-    """Return text in which a dollar sign is one, not the begin of mathematics."""
-    return text.replace("$", "$$")

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from runner.errors import RunnerError, nearest
+from runner.quantities import above_rounding, with_powers
 from runner.reporting.document import Block, FloatArray, Notice
 from runner.reporting.figures import columns
 from runner.reporting.measured import Measured
-from runner.reporting.quantities import above_rounding, with_powers
 from runner.reporting.words import in_words
 from runner.store import Run
 
@@ -58,16 +58,14 @@ def values(runs: Iterable[Run], metric: str) -> FloatArray:
 
 def clock(run: Run) -> FloatArray:
     """Return the times of a trace's rows, in s."""
-    times: FloatArray = run.trace["t"].to_numpy()
-    return times
+    return np.asarray(run.trace["t"].to_numpy())
 
 
 def apart(first: Run, second: Run, signal: str) -> FloatArray:
     """Return the distance between a tip signal of two runs at their common ticks, shape (T,), in m."""
     rows = min(len(first.trace), len(second.trace))
     difference = columns(first.trace[:rows], signal) - columns(second.trace[:rows], signal)
-    distance: FloatArray = np.linalg.norm(difference, axis=1)
-    return distance
+    return np.asarray(np.linalg.norm(difference, axis=1))
 
 
 def failures(runs: Mapping[str, Run]) -> list[Block]:

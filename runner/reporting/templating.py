@@ -5,12 +5,12 @@ from functools import cache
 
 import jinja2
 
-from runner.audit.typesetting import symbol, typeset
 from runner.claims import CONTRADICTION
+from runner.expressions.typesetting import symbol, typeset
 from runner.paths import templates_dir
-from runner.reporting import words
 from runner.reporting.document import Origin
-from runner.reporting.markup import plain, spans
+from runner.reporting.markup import spans
+from runner.texts import plain
 
 VERDICT_SIGNS = {
     "holds": "✓",
@@ -123,7 +123,6 @@ def _equip(environment: jinja2.Environment) -> jinja2.Environment:
         "spans": spans,
         "origin_label": origin_label,
         "short_commit": short_commit,
-        "in_words": words.in_words,
         "kind": lambda node: type(node).__name__,
         "symbol": symbol,
         "typeset": typeset,

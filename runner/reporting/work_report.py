@@ -1,12 +1,14 @@
 """What the reports of all works end with: where they come from, and what of the work they hold."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from runner.reporting.document import Document, Notice, Section, Table, Text
+from runner.reporting.checklist import Checklist
+from runner.reporting.document import Block, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.expected_caveats import ExpectedCaveat, caveats_section
-from runner.reporting.job import Made, MissingError, Thing
-from runner.reporting.run_report import literal, provenance
-from runner.store import Run
+from runner.reporting.job import Made, MissingError
+from runner.reporting.markup import literal, literals
+from runner.reporting.run_report import provenance
+from runner.store import Calibration, Run
 
 
 def work_document(
@@ -14,10 +16,11 @@ def work_document(
     subtitle: str,
     abstract: str,
     chapters: Sequence[Section],
-    behind: str,
     runs: Mapping[str, Run],
+    calibrations: Mapping[str, Calibration],
     expected: Sequence[ExpectedCaveat],
-    checklist: Callable[[Sequence[Section]], Section],
+    checklist: Checklist | None,
+    code: str,
 ) -> Document:
     """Return the report on a published work.
 
@@ -26,37 +29,51 @@ def work_document(
         subtitle: Whose it is.
         abstract: What comes out; inline mathematics as in Text.
         chapters: The report's own chapters.
-        behind: What lies behind it, for the chapter on provenance.
         runs: The stored runs of the work's plan, by name.
+        calibrations: The stored calibrations of the work, by name.
         expected: The caveats that the work expects of them.
-        checklist: Makes the last chapter from those before it.
+        checklist: What of the work is to stand where, for the last chapter; None where the work has no list.
+        code: What is to be said of the work's own code; nothing where it has none.
     """
     missing = [_missing(runs.missing)] if isinstance(runs, Made) and runs.missing else []
-    where_from = Section("Provenance", (Text(behind), provenance(list(runs.values()))))
-    sections = (*missing, *chapters, caveats_section(runs, expected), where_from)
-    date = max(str(run.provenance["date"]) for run in runs.values())
-    return Document(title, subtitle, abstract, (*sections, checklist(sections)), date)
+    sections = [*missing, *chapters, caveats_section(runs, expected), _where_from(runs, calibrations, code)]
+    date = max((str(run.provenance["date"]) for run in runs.values()), default="")
+    return Document(title, subtitle, abstract, [*sections, *([checklist.section(sections)] if checklist else [])], date)
 
 
-def parts(made: Mapping[str, Thing], *makers: Callable[[Mapping[str, Thing]], Section]) -> list[Section]:
+def _where_from(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration], code: str) -> Section:
+    count = len({run.hash for run in runs.values()})
+    more, folders = (
+        (f" and {len(calibrations)} calibrations", " and outputs/calibrations") if calibrations else ("", "")
+    )
+    text = (
+        f"{count} runs{more} lie behind this report, each stored with its config, trace and metrics under "
+        f"outputs/runs{folders}. Figures show repetition 0; numbers are medians over the repetitions."
+    )
+    blocks: list[Block] = [Text(text)]
+    if runs:
+        rows = provenance(list(runs.values())).rows
+        blocks.append(Provenance([*rows, *([("code of the work", code)] if code else [])]))
+    return Section("Provenance", blocks)
+
+
+def parts(makers: Iterable[tuple[str, Callable[[], Section]]]) -> list[Section]:
     """Return chapters or sections, made one by one; one that needs what was not made says so instead.
 
     Args:
-        made: Runs or calibrations by name.
-        makers: Functions that make each of them; their names are told where one is left out.
+        makers: What each of them is called where it is left out, such as its file, and what makes it.
     """
     found = []
-    for make in makers:
+    for name, make in makers:
         try:
-            found.append(make(made))
+            found.append(make())
         except MissingError as error:
-            name = getattr(make, "func", make).__name__.removesuffix("_section").strip("_").replace("_", " ")
             notice = Notice("failure", "Left out", f"This part needs what was not made: {literal(str(error))}.")
-            found.append(Section(f"Left out: {name}", (notice,)))
+            found.append(Section(f"Left out: {literal(name)}", (notice,)))
     return found
 
 
 def _missing(missing: Mapping[str, str]) -> Section:
-    rows = [[literal(name), literal(why)] for name, why in missing.items()]
+    rows = [literals(item) for item in missing.items()]
     table = Table("Not made, and so missing in this report; the same command makes them.", ["name", "why"], rows)
     return Section("What is missing", (table,))

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
 from importlib.metadata import version
 from typing import Any
@@ -24,14 +24,14 @@ def run_hash(resolved: Mapping[str, Any], urdf: str) -> str:
     """Return the name of a run's folder: SHA-256 over all that its result follows from.
 
     That is the resolved config (without outputs, sweep, limits, caveats, and preset, whose values the groups have
-    taken), the URDF's text, the source of the physics and of the user's parts, and the versions of PyBullet and
-    Pinocchio.
+    taken), the URDF's text, the source of the physics and of the user's parts that it uses, and the versions of
+    PyBullet and Pinocchio.
     """
     content = {
         "config": simulated_part(resolved),
         "urdf": urdf,
         "source": source_digest(),
-        "parts": _parts_digest(tuple(sorted({point.value for group in GROUPS for point in added(group)}))),
+        "parts": _parts_digest(tuple(sorted(_parts(resolved)))),
         "engines": _engines(),
     }
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:24]
@@ -40,6 +40,19 @@ def run_hash(resolved: Mapping[str, Any], urdf: str) -> str:
 def simulated_part(resolved: Mapping[str, Any]) -> dict[str, Any]:
     """Return the keys of a config that decide about the result."""
     return {key: value for key, value in resolved.items() if key not in _LEFT_OUT}
+
+
+def _parts(resolved: Mapping[str, Any]) -> set[str]:
+    """Return the modules of the user's parts that a run uses: those whose kinds its config names, and all metrics."""
+    kinds = set(_kinds(resolved))
+    return {point.value for group in GROUPS for point in added(group) if group == "metric" or point.name in kinds}
+
+
+def _kinds(value: object) -> Iterator[str]:
+    """Yield every `kind` that a config names, at whatever depth."""
+    if isinstance(value, Mapping):
+        for key, inner in value.items():
+            yield from [str(inner)] if key == "kind" else _kinds(inner)
 
 
 @cache

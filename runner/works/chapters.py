@@ -1,62 +1,152 @@
-"""A chapter of a work written as Markdown, with the functions of the work beside those that every chapter has."""
+"""The chapters of a work from its files: Markdown with the work's own functions, or Python where much is computed."""
 
-from collections.abc import Callable, Mapping
+import shlex
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from importlib import import_module
-from inspect import getmembers, isfunction, signature
+from inspect import signature
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
-from runner.reporting.document import Section
+from runner.audit.audit import audit
+from runner.audit.sources import Source
+from runner.claims import FACTOR, Verdict, load_claims
+from runner.errors import RunnerError
+from runner.reporting.audit.report import row
+from runner.reporting.claim import Claim
+from runner.reporting.claims import RULE, claim_blocks, verdict_table
+from runner.reporting.document import Equations, Origin, Section
+from runner.reporting.findings import Finding
+from runner.reporting.job import Made
+from runner.reporting.measured import Measured
+from runner.reporting.outline import numbered
 from runner.reporting.prose import blocks, plots, read_chapter, signals, tables
+from runner.reporting.prose.reader import read_with_conditions
+from runner.reporting.work_report import parts
 from runner.store import Calibration, Run
+from runner.works.about import About, Part
+from runner.works.code import Code, public_functions
 from runner.works.grids import Grids
 
-Runs = Mapping[str, Run]
-Calibrations = Mapping[str, Calibration]
+SHARED = (blocks, signals, tables, plots)
+"""The modules whose functions every chapter may call."""
 _FIGURES = "figures"  # the module whose functions all chapters of a work may call
+_SECTION = "section"  # the function of a chapter that is Python
+
+Concluded = Callable[[str], tuple[list[Finding], Mapping[str, Any]]]
+"""Gives the findings of a chapter in Markdown, and the values to which it gives a name, by that."""
 
 
-def chapter(file: str, name: str) -> Callable[..., Section]:
-    """Return what makes a chapter from a work's stored runs, and from its calibrations where it has some.
-
-    It may call the functions of `figures.py` of the work and of the module that bears the chapter's name.
+class Chapters:
+    """The chapters of a work, made from its stored runs and calibrations.
 
     Args:
-        file: The `__file__` of a module of the work.
-        name: Name of the chapter's file without `.md`.
+        folder: The work's folder.
+        about: What work.yaml says.
+        code: Its Python.
+        grids: Its runs.yaml.
+        command: What `runner reproduce` takes for it: its name or its folder.
+        runs: The runs by name.
+        calibrations: The calibrations by name.
     """
-    path = Path(file).with_name(f"{name}.md")
 
-    def make(runs: Runs, calibrations: Calibrations | None = None) -> Section:
-        names = names_for(path, runs, calibrations or {})
-        return read_chapter(f"{path.parent.name}/{path.name}", path.read_text(encoding="utf-8"), names)
+    def __init__(
+        self,
+        folder: Path,
+        about: About,
+        code: Code,
+        grids: Grids,
+        command: str,
+        runs: Mapping[str, Run],
+        calibrations: Mapping[str, Calibration],
+    ) -> None:
+        self._folder, self._about, self._code, self._grids = folder, about, code, grids
+        self._command = shlex.join(["runner", "reproduce", command])
+        self._runs, self._calibrations = runs, calibrations
 
-    make.__name__ = name
-    return make
+    def sections(self) -> list[Section]:
+        """Return all chapters; one that needs what was not made says so in its place."""
+        return self._each(self._about.chapters)
+
+    def concluded(self, name: str) -> tuple[list[Finding], Mapping[str, Any]]:
+        """Return the findings of a chapter in Markdown, and the values to which it gives a name, by that."""
+        section, values, _ = read_with_conditions(f"{name}.md", self._text(f"{name}.md"), self.names(name))
+        everything = [block for each in numbered([section]) for block in each.section.blocks]
+        return [block for block in everything if isinstance(block, Finding)], values.named
+
+    def names(self, stem: str) -> dict[str, Any]:
+        """Return what a chapter in Markdown may call and read, by name.
+
+        These are the shared blocks, which find calibrations among the runs; the public functions of `figures.py` and of
+        the module that bears the chapter's name; and what work.yaml, runs.yaml and claims.yaml hold. A function whose
+        first argument is `runs`, `calibrations` or `concluded` gets the runs, the calibrations, or the method above.
+        """
+        presets = self._about.presets
+        found: dict[str, Any] = {
+            "level_of": self._grids.level,
+            "value": self._grids.value,
+            "presets": presets,
+            "claims": self._claims,
+            "claims_that": self._claims_that,
+            "verdicts": lambda caption: verdict_table(caption, self._claims(), presets),
+            "verdict_rule": RULE,
+            "verdict_factor": FACTOR,
+            "equations": self._equations,
+        }
+        for module in SHARED:
+            found |= _filled(public_functions(module), {"runs": self._stored()})
+        own = {"runs": self._runs, "calibrations": self._calibrations, "concluded": self.concluded}
+        for name in (_FIGURES, stem):
+            found |= _filled(self._code.functions(name), own)
+        return found
+
+    def _stored(self) -> Made[Run | Calibration]:
+        """Return runs and calibrations in one."""
+        missing: dict[str, str] = {}
+        for each in (self._runs, self._calibrations):
+            missing |= each.missing if isinstance(each, Made) else {}
+        return Made({**self._runs, **self._calibrations}, missing)
+
+    def _claims(self) -> list[Claim]:
+        return claim_blocks(load_claims(self._folder), self._runs, self._about.presets)
+
+    def _claims_that(self, verdict: Verdict, words: str) -> Measured:
+        """Return of how many claims this is the verdict under every preset; conditions call it by the words."""
+        given = [{each.verdict for each in claim.findings} for claim in self._claims()]
+        return Measured(words, float(given.count({verdict})))
+
+    def _equations(self, caption: str) -> Equations:
+        """Return the printed equations of the work with their verdicts."""
+        judged = audit(Source(self._folder, self._code.runs))
+        return Equations(caption, [row(each) for each in judged], Origin(command=self._command))
+
+    def _each(self, chapters: Sequence[str | Part]) -> list[Section]:
+        return parts((_file(each), partial(self.section, each)) for each in chapters)
+
+    def section(self, chapter: str | Part) -> Section:
+        """Return the chapter of a file, such as "turns.md", or of several."""
+        if isinstance(chapter, Part):
+            return Section(chapter.title, sections=self._each(chapter.sections))
+        stem, _, suffix = chapter.rpartition(".")
+        if suffix == "md":
+            return read_chapter(f"{self._folder.name}/{chapter}", self._text(chapter), self.names(stem))
+        make = self._code.functions(stem).get(_SECTION)
+        if make is None:
+            raise RunnerError(f"{self._folder / chapter}: must have a function {_SECTION}(runs)")
+        section: Section = make(self._runs)
+        return section
+
+    def _text(self, file: str) -> str:
+        return (self._folder / file).read_text(encoding="utf-8")
 
 
-def names_for(path: Path, runs: Runs, calibrations: Calibrations) -> dict[str, Any]:
-    """Return what a chapter's file may call and read, by name."""
-    grids = Grids(path.with_name("runs.yaml"))
-    names: dict[str, Any] = {"level_of": grids.level, "value": grids.value}
-    own = [stem for stem in (_FIGURES, path.stem) if path.with_name(f"{stem}.py").exists()]
-    package = f"runner.works.{path.parent.name}"
-    for module in (blocks, signals, tables, plots, *(import_module(f"{package}.{stem}") for stem in own)):
-        names |= names_of(module, runs, calibrations)
-    return names
+def _file(chapter: str | Part) -> str:
+    return chapter if isinstance(chapter, str) else chapter.title
 
 
-def names_of(module: ModuleType, runs: Runs, calibrations: Calibrations) -> dict[str, Any]:
-    """Return the public functions that a module defines, by name.
-
-    To those that begin with `runs` the work's runs are given, to those that begin with `calibrations` these.
-    """
-    given = {"runs": runs, "calibrations": calibrations}
-    found = {}
-    for name, function in getmembers(module, isfunction):
-        if function.__module__ == module.__name__ and not name.startswith("_"):
-            first = next(iter(signature(function).parameters), "")
-            found[name] = partial(function, given[first]) if first in given else function
-    return found
+def _filled(functions: Mapping[str, Callable[..., Any]], given: Mapping[str, Any]) -> dict[str, Callable[..., Any]]:
+    """Return functions with their first argument where that is given."""
+    firsts = {name: next(iter(signature(function).parameters), "") for name, function in functions.items()}
+    return {
+        name: partial(function, given[firsts[name]]) if firsts[name] in given else function
+        for name, function in functions.items()
+    }

@@ -32,6 +32,7 @@ from runner.registry import StrictModel
 from runner.reporting.job import Job, Jobs
 from runner.works.arithmetic import Level
 from runner.works.grid import Grid, Overrides
+from runner.works.profiles import Profile
 
 FILE = "runs.yaml"
 L = TypeVar("L", str, int, float)
@@ -46,6 +47,7 @@ class Grids:
 
     Args:
         path: Its runs.yaml.
+        profile: Levels and repetitions in place of those in the file.
 
     Attributes:
         runs: Overrides of every run by name.
@@ -55,7 +57,7 @@ class Grids:
         RunnerError: with file, grid and every problem found.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, profile: Profile | None = None) -> None:
         self._path = path
         try:
             text = path.read_text(encoding="utf-8")
@@ -64,6 +66,11 @@ class Grids:
         content = read_yaml(text, path)
         problems = [*_twice(yaml.compose(text, yaml.CSafeLoader))]
         roots = {root: _parse(root, content, problems) for root in ("grids", "calibrations")}
+        if profile is not None:
+            problems += profile.problems({**roots["grids"], **roots["calibrations"]})
+            roots = {
+                root: {key: profile.applied(key, grid) for key, grid in own.items()} for root, own in roots.items()
+            }
         shared = content.get("values", {}) if isinstance(content, dict) else {}
         try:
             self._values = _Values(values=shared).values
@@ -76,6 +83,11 @@ class Grids:
                 problems.append(f"{key}: unknown key{nearest(key, keys)}; keys: {', '.join(keys)}")
         self._grids = {**roots["grids"], **roots["calibrations"]}
         self.runs, self.calibrations = (_expanded(roots[root], self._values, root, problems) for root in roots)
+        if profile is not None:
+            self.runs, self.calibrations = (
+                {name: profile.repeated(overrides) for name, overrides in own.items()}
+                for own in (self.runs, self.calibrations)
+            )
         if problems:
             raise RunnerError("\n".join(f"{path}: {problem}" for problem in problems))
 
@@ -118,10 +130,6 @@ class Grids:
         if axis not in over:
             raise RunnerError(f"{self._path}: grid '{key}': there is no axis '{axis}'{nearest(axis, over)}")
         return over[axis]
-
-    def labels(self, key: str, axis: str) -> dict[str, Overrides]:
-        """Return what each label of an axis stands for, expressions as they are written."""
-        return {label: self.grid(key).over[axis][label] or () for label in self.levels(key, axis, str)}
 
     def value(self, key: str, name: str) -> float:
         """Return one of the `values` of a grid, or of all."""
@@ -167,8 +175,3 @@ def _twice(node: yaml.Node | None) -> Iterator[str]:
     if isinstance(node, yaml.MappingNode):
         keys = [key.value for key, _ in node.value]
         yield from (f"the key '{key}' stands twice in one group" for key in dict.fromkeys(keys) if keys.count(key) > 1)
-
-
-def grids_of(package_file: str) -> Grids:
-    """Return the grids beside a module of a work, given its `__file__`."""
-    return Grids(Path(package_file).with_name(FILE))

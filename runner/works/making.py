@@ -1,30 +1,27 @@
 """The runs and calibrations of a work, made by the engine of sweeps where they are not stored yet."""
 
+import os
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from runner import store
 from runner.calibration_job import CALIBRATION
-from runner.reporting.job import Job, Made
+from runner.reporting.job import Made
 from runner.store import Calibration, Run
 from runner.sweeps.listed import Item, Listed
 from runner.sweeps.loading import Loader
 from runner.sweeps.run import Engine, run_sweep
+from runner.works.work import Work
 
 
 def make_all(
-    jobs: Mapping[str, Job],
-    calibrations: Mapping[str, tuple[str, ...]],
-    outputs: Path,
-    overrides: Sequence[str] = (),
-    command: str = "runner reproduce",
+    work: Work, outputs: Path, overrides: Sequence[str] = (), command: str = "runner reproduce"
 ) -> tuple[Made[Run], Made[Calibration]]:
     """Make the runs and calibrations of a work that are not stored yet; return all by name.
 
     Args:
-        jobs: The runs by name.
-        calibrations: Overrides of the calibrations by name.
+        work: The work.
         outputs: Folder in which they are stored.
         overrides: How they are made: keys of hydra.sweeper, sweep and limits.
         command: The command that makes them and goes on with it.
@@ -34,10 +31,11 @@ def make_all(
         StoreError: if the disk does not take them.
         RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
     """
+    jobs, calibrations = work.jobs(), work.calibrations()
     items = {name: Item(job.overrides) for name, job in jobs.items()}
     items |= {name: Item(own, CALIBRATION) for name, own in calibrations.items()}
     shared = [text for text in overrides if not text.startswith("hydra.")]
-    loader = Loader()
+    loader = Loader(work.config_dirs)
     sweeper = loader.sweeper([text for text in overrides if text.startswith("hydra.")])
     plan = Listed(items, [*shared, "sweep.trace=all", f"outputs={outputs}"], loader)
     ended = run_sweep(plan, Engine(sweeper.workers, sweeper.address), command, accept_cut_short=False)
@@ -45,7 +43,8 @@ def make_all(
     ends = {name: ended.ends.get(place) for name, place in places.items()}
     missing = {name: "not begun" for name, end in ends.items() if end is None}
     missing |= {name: end.failure for name, end in ends.items() if end is not None and end.cut_short}
-    commands = {name: shlex.join(["runner", *job.overrides]) for name, job in jobs.items()}
+    own = [word for folder in work.config_dirs for word in ("--config-dir", os.path.relpath(folder))]
+    commands = {name: shlex.join(["runner", *own, *job.overrides]) for name, job in jobs.items()}
     runs = {
         name: store.open_run(outputs / "runs" / places[name]).made_by(commands[name])
         for name in jobs

@@ -1,8 +1,75 @@
-"""Which works there are, told without importing one."""
+"""Which works there are, told without importing one, and where each of them is."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.metadata import EntryPoint, entry_points
+from importlib.util import find_spec
+from pathlib import Path
+
+from runner.errors import RunnerError, nearest
 from runner.paths import works_dir
+from runner.works.about import FILE
+
+GROUP = "runner.works"
+"""The group of entry points by which an installed package says that it is a work."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a work is.
+
+    Attributes:
+        name: What it is called.
+        folder: Its folder.
+        package: The installed package that the folder is; None for a folder that is none.
+    """
+
+    name: str
+    folder: Path
+    package: str | None = None
 
 
 def work_names() -> tuple[str, ...]:
-    """Return the names of the works' folders, sorted."""
-    return tuple(sorted(path.parent.name for path in works_dir().glob("*/work.py")))
+    """Return the names of the installed works, sorted."""
+    return tuple(sorted({path.parent.name for path in works_dir().glob(f"*/{FILE}")} | {e.name for e in _installed()}))
+
+
+def find_work(text: str, others: Sequence[str] = ()) -> Place:
+    """Return where a work is, by its name or its folder.
+
+    Args:
+        text: The name of an installed work, or a path to the folder of another.
+        others: What else the command takes in its place, for the message.
+
+    Raises:
+        RunnerError: if there is none.
+    """
+    if (works_dir() / text / FILE).is_file() and "/" not in text:
+        return Place(text, works_dir() / text, f"runner.works.{text}")
+    for point in _installed():
+        if point.name == text:
+            return Place(text, _folder_of(point), point.value)
+    folder = Path(text).resolve()
+    if (folder / FILE).is_file():
+        if folder.name in work_names():
+            raise RunnerError(f"{text}: {folder.name} is the name of an installed work; rename the folder")
+        return Place(folder.name, folder)
+    if folder.is_dir() or "/" in text:
+        raise RunnerError(f"{text}: no work: there is no {FILE} in it; `runner work new {text}` writes a first one")
+    names = (*work_names(), *others)
+    raise RunnerError(f"no work '{text}'{nearest(text, names)}; works: {', '.join(names)}, or a folder with a {FILE}")
+
+
+def _installed() -> tuple[EntryPoint, ...]:
+    return tuple(entry_points(group=GROUP))
+
+
+def _folder_of(point: EntryPoint) -> Path:
+    try:
+        spec = find_spec(point.value)
+    except ImportError as error:
+        raise RunnerError(f"work {point.name}: package {point.value} cannot be found: {error}") from error
+    folders = list(spec.submodule_search_locations or ()) if spec is not None else []
+    if not folders or not (Path(folders[0]) / FILE).is_file():
+        raise RunnerError(f"work {point.name}: package {point.value} has no {FILE}")
+    return Path(folders[0])

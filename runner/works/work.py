@@ -1,39 +1,135 @@
 """A published work: which runs it needs, what is expected of them, and the report that is made of them."""
 
+import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from importlib import import_module
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
-from runner.reporting.document import Document
+from runner.claims import CLAIMS, load_claims
+from runner.errors import RunnerError, nearest
+from runner.plugins import use_plugins
+from runner.reporting.checklist import load_checklist
+from runner.reporting.document import Document, Notice, Section
 from runner.reporting.expected_caveats import ExpectedCaveat
-from runner.reporting.job import Jobs
+from runner.reporting.job import Job, Jobs
+from runner.reporting.work_report import work_document
 from runner.store import Calibration, Run
+from runner.works.about import read_about
+from runner.works.caveats import read_expected
+from runner.works.chapters import Chapters
+from runner.works.code import Code
+from runner.works.grids import FILE as RUNS
+from runner.works.grids import Grids
+from runner.works.names import Place, find_work
+from runner.works.profiles import Profile
 
 Calibrations = Mapping[str, tuple[str, ...]]
 """Overrides of each calibration by its name."""
+_PLAN = "plan"  # module whose computed_runs() and calibrations(given) add to runs.yaml
+_MEASURE = "measure"  # module and function that measures what no run does
 
 
-@dataclass(frozen=True)
 class Work:
-    """A published work, as the module `work.py` of its folder has it.
+    """A published work, read from its folder; docs/paper.md tells what stands in it.
+
+    Args:
+        place: Where it is.
+        allow_code: Whether Python of a folder that is no installed package may run.
+        profile: Name of the profile by which it is made; empty for the whole work.
 
     Attributes:
-        jobs: Gives the runs that it needs, by name.
-        document: Makes its report from the runs and calibrations, by name.
+        name: What it is called.
+        folder: Its folder.
+        about: What work.yaml says.
+        installed: Whether it is an installed package.
+        profile: As given.
         expected: The caveats that its runs are to have.
-        calibrations: Gives the calibrations that it needs, by name.
-        measure: Measures what no run does, such as computing times, into an outputs folder.
+
+    Raises:
+        RunnerError: with file and place of every problem in its data.
     """
 
-    jobs: Callable[[], Jobs]
-    document: Callable[[Mapping[str, Run], Mapping[str, Calibration]], Document]
-    expected: Sequence[ExpectedCaveat] = ()
-    calibrations: Callable[[], Calibrations] = dict
-    measure: Callable[[Path], None] = lambda outputs: None
+    def __init__(self, place: Place, allow_code: bool = False, profile: str = "") -> None:
+        self.name, self.folder = place.name, place.folder
+        self.about = read_about(place.folder)
+        self.installed = place.package is not None
+        self.profile = profile
+        self._profile = self._chosen(profile)
+        self._code = Code(place.folder, place.package, allow_code)
+        self._grids = Grids(place.folder / RUNS, self._profile)
+        self.expected: tuple[ExpectedCaveat, ...] = read_expected(place.folder)
+        if (place.folder / CLAIMS).is_file():
+            load_claims(place.folder)  # told before anything is simulated
+        if self.about.plugins and (self.installed or allow_code):
+            named = (text.partition("=") for text in self.about.plugins)
+            use_plugins([f"{group}={place.folder / file}" for group, _, file in named])
+
+    @property
+    def config_dirs(self) -> tuple[Path, ...]:
+        """Folders in which configs of the work's own are looked for: its own, unless it is one of ours."""
+        return () if self.installed and self.folder.parent.name == "works" else (self.folder,)
+
+    def jobs(self) -> Jobs:
+        """Return the runs that it needs, by name: those of runs.yaml, and those that `plan.py` works out."""
+        more: Jobs = self._planned("computed_runs", dict)
+        if self._profile is not None:
+            more = {name: Job(self._profile.repeated(job.overrides)) for name, job in more.items()}
+        return {**self._grids.jobs(), **more}
+
+    def calibrations(self) -> Calibrations:
+        """Return the calibrations that it needs, by name, as `plan.py` changes those of runs.yaml."""
+        changed: Calibrations = self._planned("calibrations", lambda given: given, self._grids.calibrations)
+        return changed
+
+    def chapters(self, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -> Chapters:
+        """Return what makes its chapters from its stored runs and calibrations, by name."""
+        command = self.name if self.installed else os.path.relpath(self.folder)
+        return Chapters(self.folder, self.about, self._code, self._grids, command, runs, calibrations)
+
+    def measure(self, outputs: Path) -> None:
+        """Measure what no run does, such as computing times, into an outputs folder, where the work does so."""
+        function = self._code.functions(_MEASURE).get(_MEASURE)
+        if function is not None:
+            function(outputs)
+
+    def document(self, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -> Document:
+        """Return its report from its stored runs and calibrations, by name."""
+        made = work_document(
+            title=self.about.title,
+            subtitle=self.about.source,
+            abstract=self.about.abstract,
+            chapters=self.chapters(runs, calibrations).sections(),
+            runs=runs,
+            calibrations=calibrations,
+            expected=self.expected,
+            checklist=load_checklist(self.folder),
+            code=self._code.about(),
+        )
+        return made if not self.profile else replace(made, sections=[_smaller(self.profile), *made.sections])
+
+    def _planned(self, name: str, otherwise: Callable[..., Any], *given: Any) -> Any:
+        return self._code.functions(_PLAN).get(name, otherwise)(*given)
+
+    def _chosen(self, profile: str) -> Profile | None:
+        profiles = self.about.profiles
+        if profile and profile not in profiles:
+            there = f"; profiles: {', '.join(profiles)}" if profiles else "; it has none"
+            raise RunnerError(f"{self.name}: no profile '{profile}'{nearest(profile, profiles)}{there}")
+        return profiles[profile] if profile else None
 
 
-def load_work(name: str) -> Work:
-    """Return a work by the name of its folder."""
-    work: Work = import_module(f"runner.works.{name}.work").WORK
-    return work
+def load_work(name: str, allow_code: bool = False, profile: str = "", others: Sequence[str] = ()) -> Work:
+    """Return a work by its name, or by its folder; see Work and find_work.
+
+    Raises:
+        RunnerError: if there is none, or its data do not fit.
+    """
+    return Work(find_work(name, others), allow_code, profile)
+
+
+def _smaller(profile: str) -> Section:
+    text = (
+        f"This report was made with the profile {profile}: its runs differ from the whole work's in levels or number."
+    )
+    return Section("Not the whole work", (Notice("warning", f"Profile {profile}", text),))

@@ -1,19 +1,23 @@
 """The audit as a report: counts, and one table of equations for each source with the runs of its wrong formulas."""
 
+import math
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 
 from runner import provenance
 from runner.audit.audit import counts
+from runner.audit.entry import Form
 from runner.audit.inventory import inventory
-from runner.audit.rollout import Rollout, run_rollout
-from runner.audit.sources import truth_of
+from runner.audit.rollout import run_rollout
 from runner.audit.verdict import SAMPLES, VERDICTS, Judged
-from runner.reporting.audit.equations import rolled_out, row
+from runner.expressions.parser import ExpressionError, parse
+from runner.quantities import quantity
 from runner.reporting.document import (
     Block,
     Curves,
     Document,
+    Equation,
+    EquationForm,
     Equations,
     Notice,
     Origin,
@@ -24,6 +28,7 @@ from runner.reporting.document import (
     Table,
     Text,
 )
+from runner.reporting.markup import literals
 
 COMMAND = "runner reproduce audit"
 
@@ -93,19 +98,20 @@ def _inventory(judged: Mapping[str, Sequence[Judged]]) -> Table:
         "Equations printed in each place of the text, and equations audited there; the last column names those that "
         "must have stood there and are missing from the text.",
         ["source", "place", "printed", "audited", "lost in the text"],
-        [[cell.replace("$", "$$") for cell in line] for line in rows],
+        [literals(line) for line in rows],
         (2, 3),
     )
 
 
 def _source(source: str, judged: Sequence[Judged]) -> Section:
-    ways = sorted({truth_of(source, each.entry.truth).ways for each in judged if each.entry.truth})
+    ways = sorted({each.ways for each in judged if each.entry.truth})
     blocks: list[Block] = [
         Notice("finding", "What is wrong, and why", inventory(source).found),
         Equations(f"Equations of the {source} source.", [row(each) for each in judged], Origin(command=COMMAND)),
         Table("Ways to what the equations claim to equal.", ["one way", "another"], ways),
     ]
-    runs = tuple(_run(run_rollout(source, name)) for name in rolled_out(list(judged)))
+    names = dict.fromkeys(each.entry.rollout for each in judged if each.entry.rollout)
+    runs = tuple(_run(source, name) for name in names)
     return Section(
         inventory(source).title,
         blocks,
@@ -113,16 +119,45 @@ def _source(source: str, judged: Sequence[Judged]) -> Section:
     )
 
 
-def _run(rollout: Rollout) -> Section:
-    series = [Series(name, rollout.x, values) for name, values in rollout.curves.items()]
-    panel = Panel("", rollout.x_label, rollout.y_label, series, y_log=rollout.logarithmic)
-    figure = Curves(
-        f"{rollout.title}: {rollout.y_label} over {rollout.x_label}.",
-        [panel],
-        columns=1,
-        origin=Origin(command=COMMAND),
-    )
-    return Section(rollout.title, (Text(rollout.text), figure))
+def row(judged: Judged) -> Equation:
+    """Return the row of one equation in a table of them."""
+    entry = judged.entry
+    forms = [_form("as printed", entry.printed)]
+    if entry.repair is not None:
+        forms.append(_form("repaired", entry.repair, entry.repair.why))
+    if entry.corrected is not None:
+        forms.append(_form("corrected", entry.corrected))
+    return Equation(entry.number, entry.title, entry.place, judged.verdict, _error(judged), forms, entry.finding)
+
+
+def _error(judged: Judged) -> str:
+    measured, entry = judged.measured, judged.entry
+    if measured is None:
+        return ""
+    if judged.verdict != "wrong as printed":
+        return f"within {quantity(entry.tolerance, entry.unit, 2)}"
+    if math.isinf(measured.largest):
+        return f"without bound, typically {quantity(measured.typical, entry.unit)}"
+    return f"up to {quantity(measured.largest, entry.unit)}, typically {quantity(measured.typical, entry.unit)}"
+
+
+def _form(label: str, form: Form, note: str = "") -> EquationForm:
+    if form.math:
+        return EquationForm(label, math=form.math, note=note)
+    try:
+        expressions = [(parse(name).root, parse(text).root) for name, text in form.elements.items()]
+    except ExpressionError:
+        raw = "; ".join(f"{name} = {text}" for name, text in form.elements.items())
+        return EquationForm(f"{label}, as the text has it", raw=raw, note=note)
+    return EquationForm(label, expressions=expressions, note=note)
+
+
+def _run(source: str, name: str) -> Section:
+    words, run = run_rollout(source, name)
+    series = [Series(name, run.x, values) for name, values in run.curves.items()]
+    panel = Panel("", words.x_label, words.y_label, series, y_log=words.logarithmic)
+    caption = f"{words.title}: {words.y_label} over {words.x_label}."
+    return Section(words.title, (Text(words.text), Curves(caption, [panel], columns=1, origin=Origin(command=COMMAND))))
 
 
 def _provenance() -> Provenance:

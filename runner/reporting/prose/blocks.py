@@ -5,32 +5,41 @@ A function whose first argument is `runs` gets the work's runs filled in; see na
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
-from runner.errors import RunnerError, nearest
+from runner.quantities import number, quantity
 from runner.reporting import figures, run_values
 from runner.reporting.document import Block, Curves, Formula, Notice, Playback
 from runner.reporting.measured import Measured
+from runner.reporting.plant_agreement import describe_agreement
+from runner.reporting.prose.patterns import axes_of, called, found
+from runner.reporting.prose.reading import Signal, config_value, number_of
 from runner.store import Run
 
 
-def metric(runs: Mapping[str, Run], run: str, name: str, words: str = "") -> Measured:
-    """Return the median of a metric of a run, with its unit; conditions call it by the words, or by run and name."""
-    return run_values.measured(runs[run], name, words or f"{name} of {run}")
+def metric(runs: Mapping[str, Run], run: str, name: str, words: str = "", end: str = "median") -> Measured:
+    """Return a metric of a run, with its unit: the median, or the "min" or "max" of its repetitions.
+
+    Conditions call it by the words, or by run and name.
+    """
+    found = run_values.measured(runs[run], name, words or f"{name} of {run}")
+    return replace(found, value=runs[run].metrics[name][end]) if name in runs[run].metrics else found
+
+
+def percent(share: Measured) -> Measured:
+    """Return a share in per cent."""
+    return Measured(share.name, None if share.value is None else 100.0 * share.value, "%")
+
+
+def to_digits(value: Measured | float, digits: int) -> str:
+    """Return a number, of a measured value with its unit, to so many digits."""
+    return quantity(value.value, value.unit, digits) if isinstance(value, Measured) else number(value, digits)
 
 
 def config(runs: Mapping[str, Run], run: str, key: str) -> Any:
-    """Return a value of a run's config by its dotted key.
-
-    Raises:
-        RunnerError: if there is no such key.
-    """
-    value: Any = runs[run].config
-    for part in key.split("."):
-        if not isinstance(value, Mapping) or part not in value:
-            raise RunnerError(f"{run}: no key {key}{nearest(part, value if isinstance(value, Mapping) else ())}")
-        value = value[part]
-    return value
+    """Return a value of a run's config by its dotted key."""
+    return config_value(runs[run], key)
 
 
 def playback(runs: Mapping[str, Run], run: str, caption: str, end: float) -> Playback:
@@ -48,6 +57,11 @@ def desired_motion(
 def failures(runs: Mapping[str, Run], prefix: str) -> list[Block]:
     """Return a notice that names the failed runs of those whose names begin so; nothing where none failed."""
     return run_values.failures({name: run for name, run in runs.items() if name.startswith(prefix)})
+
+
+def agreement(runs: Mapping[str, Run], run: str) -> str:
+    """Return a sentence on a run's plant and how far the other one is from it."""
+    return describe_agreement(runs[run])
 
 
 def formula(typst: str, spoken: str, number: str = "") -> Formula:
@@ -75,6 +89,42 @@ def of_run(runs: Mapping[str, Run], words: str, what: Callable[..., float | None
     chosen = [runs[name] for name in names]
     failed = any(run.status == "failed" for run in chosen)
     return Measured(words, None if failed else what(*chosen), unit)
+
+
+def named(words: str, value: float | None, unit: str = "1") -> Measured:
+    """Return a number as a measured value, which conditions call by the words."""
+    return Measured(words, value, unit)
+
+
+def each(
+    runs: Mapping[str, Run],
+    words: str,
+    what: Signal,
+    unit: str,
+    *patterns: str,
+    only: Callable[[Run], bool] | None = None,
+) -> list[Measured]:
+    """Return a metric, or what a function gives, of each run that patterns stand for; see of_run and largest.
+
+    The words have axes in braces; without any, the name of the run follows them. With `only` it is of the runs of
+    which this function is true alone.
+    """
+    return [
+        Measured(
+            called(words, one.levels, {}) if axes_of(words) else f"{words} of {one.name}",
+            None if one.run.status == "failed" else number_of(what, one.run),
+            unit,
+        )
+        for pattern in patterns
+        for one in found(runs, pattern)
+        if only is None or only(one.run)
+    ]
+
+
+def count(runs: Mapping[str, Run], words: str, what: Callable[..., bool] | None, *patterns: str) -> Measured:
+    """Return of how many runs that patterns stand for a function is true, or with none how many there are."""
+    chosen = [one.run for pattern in patterns for one in found(runs, pattern)]
+    return Measured(words, sum(bool(what(run)) if what else True for run in chosen))
 
 
 def _extreme(chosen: Callable[[list[float]], float], name: str, values: Sequence[Measured]) -> Measured:

@@ -15,6 +15,7 @@ from jinja2.exceptions import SecurityError
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from runner.errors import RunnerError, nearest
+from runner.reporting.job import MissingError
 from runner.reporting.prose.problem import ProseError
 
 OPEN, CLOSE = "\uf000", "\uf001"
@@ -85,8 +86,8 @@ class Values:
         """Give names to the values of `{% set name = EXPRESSION %}`; return the text with these left empty."""
         for found in _SET.finditer(text):
             line = text.count("\n", 0, found.start()) + 1
-            if found[1] in self._names:
-                raise ProseError(self._file, line, f"set {found[1]}: the name is taken; choose another")
+            if found[1] in self._set:
+                raise ProseError(self._file, line, f"set {found[1]}: the name is taken above; choose another")
             self._names[found[1]] = self.value(found[2], line)
             self._set.append(found[1])
         return _SET.sub(lambda found: "\n" * found[0].count("\n"), text)
@@ -135,7 +136,7 @@ class Values:
             if isinstance(value, jinja2.Undefined):
                 str(value)  # raises, and says what is not there
             return value
-        except ProseError:
+        except (ProseError, MissingError):  # what a run that was not made is needed for is left out of the report
             raise
         except RunnerError as error:
             raise ProseError(self._file, line, f"{source}: {error}") from error

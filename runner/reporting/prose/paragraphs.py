@@ -10,7 +10,7 @@ from markdown_it.token import Token
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 from runner.reporting.document import Block, Items, Section, Text
-from runner.reporting.markup import linked, marked
+from runner.reporting.markup import linked, literal, marked
 from runner.reporting.prose.expressions import PLACEHOLDER, Values
 from runner.reporting.prose.problem import ProseError
 from runner.reporting.prose.shown import filled
@@ -104,11 +104,11 @@ class Paragraphs:
         children = iter(inline.children or ())
         for child in children:
             if child.type == "text":
-                parts.append(filled(child.content.replace("$", "$$"), self._values, self._file))
+                parts.append(filled(literal(child.content), self._values, self._file))
             elif child.type == "softbreak":
                 parts.append(" ")
             elif child.type == "code_inline":
-                parts.append(marked(filled(child.content.replace("$", "$$"), self._values, self._file), "code"))
+                parts.append(marked(filled(literal(child.content), self._values, self._file), "code"))
             elif child.type == "math_inline":
                 parts.append(f"${filled(child.content, self._values, self._file, mathematics=True)}$")
             elif child.type in ("em_open", "link_open"):
@@ -124,7 +124,7 @@ class Paragraphs:
                 break
             if child.type not in ("text", "softbreak"):
                 raise ProseError(self._file, line, "emphasis and links hold plain words only")
-            words.append(filled(child.content.replace("$", "$$"), self._values, self._file) or " ")
+            words.append(filled(literal(child.content), self._values, self._file) or " ")
         text = "".join(words)
         return marked(text, "emphasis") if opening.type == "em_open" else linked(text, str(opening.attrs["href"]))
 

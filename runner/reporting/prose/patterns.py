@@ -1,4 +1,7 @@
-"""Patterns of run names, such as "turns/{preset}/goal": which runs they stand for, and which levels each has."""
+"""Patterns of run names, such as "turns/{preset}/goal": which runs they stand for, and which levels each has.
+
+`{axis=a|b}` stands for these levels alone, in this order.
+"""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -9,7 +12,8 @@ from runner.reporting.job import Made
 from runner.reporting.words import in_words
 from runner.store import Run
 
-_BRACES = re.compile(r"\{(\w+)\}")
+_BRACES = re.compile(r"\{(\w+)(?:=([^{}]+))?\}")
+_WHOLE = re.compile(r"^(-?\d+)\.0$")
 
 
 @dataclass(frozen=True)
@@ -29,7 +33,7 @@ class Found:
 
 def axes_of(pattern: str) -> tuple[str, ...]:
     """Return the axes that a pattern names, in order."""
-    return tuple(_BRACES.findall(pattern))
+    return tuple(axis for axis, _ in _BRACES.findall(pattern))
 
 
 def found(runs: Mapping[str, Run], pattern: str, by: Sequence[str] = ()) -> list[Found]:
@@ -53,7 +57,10 @@ def found(runs: Mapping[str, Run], pattern: str, by: Sequence[str] = ()) -> list
     if not levels:
         raise RunnerError(f"no run is named like '{pattern}'{nearest(pattern, names)}")
     order = [*by, *(axis for axis in axes if axis not in by)]
-    ranks = {axis: list(dict.fromkeys(own[axis] for own in levels.values())) for axis in order}
+    chosen = {axis: own.split("|") for axis, own in _BRACES.findall(pattern) if own}
+    ranks = {
+        axis: list(dict.fromkeys([*chosen.get(axis, ()), *(own[axis] for own in levels.values())])) for axis in order
+    }
     ranked = sorted(levels, key=lambda name: [ranks[axis].index(levels[name][axis]) for axis in order])
     return [Found(name, runs[name], levels[name]) for name in ranked]
 
@@ -80,20 +87,19 @@ def filled_in(pattern: str, levels: Mapping[str, str]) -> str:
 
 
 def called(text: str, levels: Mapping[str, str], words: Mapping[str, str]) -> str:
-    """Return a text with levels in words in place of the axes in braces."""
-    return filled_in(text, {axis: words.get(level, in_words(level)) for axis, level in levels.items()})
+    """Return a text with levels in words in place of the axes in braces, whole numbers without decimals."""
+    whole = {axis: _WHOLE.sub(r"\1", level) for axis, level in levels.items()}
+    return filled_in(text, {axis: words.get(level, in_words(whole[axis])) for axis, level in levels.items()})
 
 
 def _matches(names: Iterable[str], pattern: str) -> Iterator[tuple[str, dict[str, str]]]:
-    parts = _BRACES.split(pattern)
-    seen: set[str] = set()
-    expression = ""
-    for index, part in enumerate(parts):
-        if index % 2 == 0:
-            expression += re.escape(part)
-        else:
-            expression += f"(?P={part})" if part in seen else f"(?P<{part}>[^/]+)"
-            seen.add(part)
+    expression, end = "", 0
+    for brace in _BRACES.finditer(pattern):
+        axis, chosen = brace.groups()
+        first = f"(?P<{axis}>" not in expression
+        levels = "|".join(map(re.escape, chosen.split("|"))) if chosen else "[^/]+"
+        expression += re.escape(pattern[end : brace.start()]) + (f"(?P<{axis}>{levels})" if first else f"(?P={axis})")
+        end = brace.end()
     for name in names:
-        if match := re.fullmatch(expression, name):
+        if match := re.fullmatch(expression + re.escape(pattern[end:]), name):
             yield name, match.groupdict()

@@ -28,8 +28,9 @@ def line(
     factor: float = 1.0,
     until: float | None = None,
     words: Mapping[str, str] | None = None,
+    x: Signal | None = None,
 ) -> list[Series]:
-    """Return a signal over time, of each run that a pattern stands for.
+    """Return a signal over time, or over another signal, of each run that a pattern stands for.
 
     Args:
         runs: The runs of the work by name.
@@ -42,6 +43,7 @@ def line(
         factor: What its values are multiplied by, such as 1000 for mm.
         until: End of the time, in s; None for all.
         words: What a level is called in the legend.
+        x: The signal in place of the time.
     """
     series = []
     for index, each in enumerate(found(runs, pattern)):
@@ -49,7 +51,8 @@ def line(
         t = times_of(each.run, len(values))
         shown = t <= np.inf if until is None else t <= until + 1e-9
         own = None if color is None else color + index
-        series.append(Series(called(name, each.levels, words or {}), t[shown], values[shown], style, color=own))
+        place = t if x is None else trace_of(x, each.run)
+        series.append(Series(called(name, each.levels, words or {}), place[shown], values[shown], style, color=own))
     return series
 
 
@@ -79,10 +82,13 @@ def over(
     style: Style = "points_line",
     color: int | None = None,
     words: Mapping[str, str] | None = None,
+    x: Callable[[Run], float] | None = None,
+    x_factor: float = 1.0,
+    though_failed: bool = False,
 ) -> list[Series]:
     """Return a number of runs against an axis, a curve for each combination of the pattern's other axes.
 
-    A metric has a band from the least to the largest of its repetitions, where these differ.
+    A metric has a band from the least to the largest of its repetitions, where these differ and a line joins points.
 
     Args:
         runs: The runs of the work by name.
@@ -94,6 +100,9 @@ def over(
         style: How it is drawn.
         color: Index of the first one's color; None takes the next ones.
         words: What a level is called in the legend.
+        x: Gives the abscissa of a run; the level where it is left out.
+        x_factor: What the abscissae are multiplied by, such as 1000 for mm.
+        though_failed: Whether what a function reads of a run until it failed is shown.
     """
     if axis not in axes_of(pattern):
         raise RunnerError(f"the pattern {pattern} has no axis '{axis}'; axes: {', '.join(axes_of(pattern)) or 'none'}")
@@ -104,15 +113,16 @@ def over(
         points = curves.setdefault(key, [])
         levels[key] = each.levels
         of = [other(runs, one, each.levels) for one in others] or [each.run]
-        points.append((_abscissa(each.levels[axis], len(points)), *_with_ends(what, of)))
+        place = _abscissa(each.levels[axis], len(points)) if x is None else x(each.run)
+        points.append((place, *_with_ends(what, of, though_failed)))
     series = []
     for index, (key, points) in enumerate(curves.items()):
-        x, y, low, high = (np.array(column) for column in zip(*points, strict=True))
-        varies = bool(np.any(high > low))
-        band = (low, high) if varies else (None, None)
+        at, y, low, high = (np.array(column) for column in zip(*points, strict=True))
+        joined = style != "points"  # a band between points that nothing joins would say what lies between
+        band = (low, high) if joined and np.any(high > low) else (None, None)
         own = None if color is None else color + index
         legend = called(name, levels[key], words or {})
-        series.append(Series(legend, x, y, style, band[0], band[1], own))
+        series.append(Series(legend, x_factor * at, y, style, band[0], band[1], own))
     return series
 
 
@@ -157,7 +167,7 @@ def panel(
     x_names: Sequence[str] = (),
 ) -> Panel:
     """Return one pair of axes; on an axis of powers of ten zeros are left out."""
-    drawn = [_positive(each) if y_log else each for own in series for each in own]
+    drawn = [_positive(each, x_log, y_log) for own in series for each in own]
     ranges = [None if own is None else (float(own[0]), float(own[1])) for own in (x_range, y_range)]
     return Panel(title, x_label, y_label, drawn, x_log, y_log, ranges[0], ranges[1], tuple(x_names))
 
@@ -219,9 +229,9 @@ def _abscissa(level: str, place: int) -> float:
         return float(place)
 
 
-def _with_ends(what: Signal, runs: Sequence[Run]) -> tuple[float, float, float]:
+def _with_ends(what: Signal, runs: Sequence[Run], though_failed: bool) -> tuple[float, float, float]:
     """Return a number with the least and the largest of its repetitions; NaN where it has no value."""
-    if runs[0].status == "failed":
+    if runs[0].status == "failed" and not though_failed:
         return (np.nan,) * 3
     value = number_of(what, *runs)
     if value is None:
@@ -231,9 +241,12 @@ def _with_ends(what: Signal, runs: Sequence[Run]) -> tuple[float, float, float]:
     return value, value if low is None else float(low), value if high is None else float(high)
 
 
-def _positive(series: Series) -> Series:
+def _positive(series: Series, x_log: bool, y_log: bool) -> Series:
+    """Return a curve without the values that an axis of powers of ten has no place for."""
+    kept = series.x > 0.0 if x_log else np.ones(len(series.x), bool)
+
     def cut(values: FloatArray) -> FloatArray:
-        return np.where(values > 0.0, values, np.nan)
+        return np.where(values[kept] > 0.0, values[kept], np.nan) if y_log else values[kept]
 
     ends = [None if own is None else cut(own) for own in (series.low, series.high)]
-    return replace(series, y=cut(series.y), low=ends[0], high=ends[1])
+    return replace(series, x=series.x[kept], y=cut(series.y), low=ends[0], high=ends[1])

@@ -143,10 +143,9 @@ def conditions_of(
     """
     given = values.value(stated.expression, stated.line, instead)
     conditions = given if isinstance(given, list | tuple) else [given]
-    for condition in conditions or [None]:
-        if not isinstance(condition, Condition):
-            what = f"gives {type(condition).__name__}, no condition; compare measured values"
-            raise ProseError(file, stated.line, f"holds: {stated.expression}: {what}")
+    if not conditions or not all(isinstance(each, Condition) for each in conditions):
+        what = f"gives {type(given).__name__}, no condition; compare measured values"
+        raise ProseError(file, stated.line, f"holds: {stated.expression}: {what}")
     return list(conditions)
 
 

@@ -1,6 +1,6 @@
 """Reads signals and numbers from stored runs, by name or by a function."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -39,6 +39,20 @@ def number_of(what: Signal, *runs: Run) -> float | None:
         return run_values.median(runs[0], what)
     value = what(*runs)
     return value.value if isinstance(value, Measured) else value if value is None else float(value)
+
+
+def config_value(run: Run, key: str) -> Any:
+    """Return a value of a run's config by its dotted key.
+
+    Raises:
+        RunnerError: if there is no such key.
+    """
+    value: Any = run.config
+    for part in key.split("."):
+        if not isinstance(value, Mapping) or part not in value:
+            raise RunnerError(f"no key {key} in a config{nearest(part, value if isinstance(value, Mapping) else ())}")
+        value = value[part]
+    return value
 
 
 def check_signal(run: Run, column: str) -> None:

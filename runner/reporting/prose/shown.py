@@ -3,10 +3,10 @@
 import re
 from typing import Any
 
+from runner.quantities import number
 from runner.reporting.measured import Measured
 from runner.reporting.prose.expressions import PLACEHOLDER, PRIVATE, Values
 from runner.reporting.prose.problem import ProseError
-from runner.reporting.quantities import number
 
 
 def filled(text: str, values: Values, file: str, mathematics: bool = False) -> str:

@@ -1,16 +1,16 @@
 """Tables over the runs that a pattern stands for."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from runner.errors import RunnerError
-from runner.reporting.document import Table
+from runner.errors import RunnerError, nearest
+from runner.quantities import Shown, above_rounding, labelled
+from runner.reporting.document import Origin, Table
 from runner.reporting.figures import origin
 from runner.reporting.measured import Measured
-from runner.reporting.metric_titles import metric_label
+from runner.reporting.metric_titles import title
 from runner.reporting.prose.patterns import Found, axes_of, called, found, other
 from runner.reporting.prose.reading import Signal
-from runner.reporting.quantities import above_rounding, labelled
 from runner.reporting.run_values import cell, median
 from runner.store import Run
 
@@ -25,11 +25,13 @@ class Column:
         title: What stands above it.
         cell: Gives its text for a run, from the work's runs and the run.
         metric: The metric that it shows, whose unit its title takes.
+        levels: Axes that it is about, with the levels that it names of them.
     """
 
     title: str
     cell: Callable[[Mapping[str, Run], Found], str]
     metric: str = ""
+    levels: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
 
 def level(axis: str, title: str = "", words: Mapping[str, str] | None = None, missing: str = _DASH) -> Column:
@@ -45,11 +47,16 @@ def level(axis: str, title: str = "", words: Mapping[str, str] | None = None, mi
     def text(_runs: Mapping[str, Run], row: Found) -> str:
         return called(f"{{{axis}}}", row.levels, words or {}) if axis in row.levels else missing
 
-    return Column(title or axis, text)
+    return Column(title or axis, text, levels={axis: ()})
 
 
 def column(
-    title: str, what: Signal, *others: str, digits: int = 3, only: Mapping[str, str | Sequence[str]] | None = None
+    title: str,
+    what: Signal,
+    *others: str,
+    digits: int = 3,
+    only: Mapping[str, str | Sequence[str]] | None = None,
+    though_failed: bool = False,
 ) -> Column:
     """Return a column with a number of each run.
 
@@ -61,16 +68,17 @@ def column(
         others: Names of the runs that it is a number of, with axes in braces; the row's own run where there are none.
         digits: How many digits.
         only: Levels by axis of the rows that have it; the others have a dash.
+        though_failed: Whether what a function reads of a run until it failed is shown.
     """
 
     def text(runs: Mapping[str, Run], row: Found) -> str:
-        if any(row.levels.get(axis) not in ([own] if isinstance(own, str) else own) for axis, own in chosen.items()):
+        if any(row.levels.get(axis) not in own for axis, own in chosen.items()):
             return _DASH
         of = [other(runs, name, row.levels) for name in others] or [row.run]
-        return _text(what, of, digits)
+        return _text(what, of, digits, though_failed)
 
-    chosen = only or {}
-    return Column(title, text, what if isinstance(what, str) else "")
+    chosen = {axis: [own] if isinstance(own, str) else own for axis, own in (only or {}).items()}
+    return Column(title, text, what if isinstance(what, str) else "", chosen)
 
 
 def table(
@@ -93,9 +101,24 @@ def table(
     """
     patterns = [pattern] if isinstance(pattern, str) else pattern
     rows = [row for each in patterns for row in found(runs, each, [axis for axis in by if axis in axes_of(each)])]
+    for each in columns:
+        _check_levels(each, rows)
     cells = [[each.cell(runs, row) for each in columns] for row in rows]
     header = [_header(each, rows) for each in columns]
     return Table(caption, header, cells, _numeric(cells), origin(rows[0].run, number))
+
+
+def _check_levels(given: Column, rows: Sequence[Found]) -> None:
+    """Refuse a column about an axis or a level that no row has."""
+    for axis, levels in given.levels.items():
+        axes = dict.fromkeys(own for row in rows for own in row.levels)
+        if axis not in axes:
+            raise RunnerError(f"no axis '{axis}'{nearest(axis, axes)}; axes: {', '.join(axes) or 'none'}")
+        there = list(dict.fromkeys(row.levels[axis] for row in rows if axis in row.levels))
+        for level in levels:
+            if level not in there:
+                known = f"{nearest(level, there)}; levels: {', '.join(there)}"
+                raise RunnerError(f"axis '{axis}' has no level '{level}'{known}")
 
 
 def comparison(
@@ -110,25 +133,42 @@ def comparison(
     if len(axes_of(pattern)) != 1:
         raise RunnerError(f"'{pattern}': a comparison goes over one axis in braces")
     shown = found(runs, pattern)
-    good = next((each.run for each in shown if each.run.metrics), shown[0].run)
-    rows = [
-        [metric_label(metric, _unit(good, metric)), *(_text(metric, [each.run], 3) for each in shown)]
-        for metric in metrics
-    ]
+    rows = [[title(metric), *(_with_unit(metric, each.run) for each in shown)] for metric in metrics]
     header = ["metric", *(called(f"{{{axes_of(pattern)[0]}}}", each.levels, words or {}) for each in shown)]
-    return Table(caption, header, rows, tuple(range(1, len(header))), origin(shown[0].run, number))
+    return Table(caption, header, rows, (), origin(shown[0].run, number))
 
 
-def _text(what: Signal, runs: Sequence[Run], digits: int) -> str:
-    if any(run.status == "failed" for run in runs):
+def listing(
+    runs: Mapping[str, Run],
+    caption: str,
+    run: str,
+    header: Sequence[str],
+    *rows: Sequence[str | float | Measured | None],
+    number: str = "",
+) -> Table:
+    """Return a table whose cells stand in the chapter; the command of a run stands under it, if one is named."""
+    cells = [[_told(cell, 3) for cell in row] for row in rows]
+    return Table(caption, header, cells, _numeric(cells), origin(runs[run], number) if run else Origin(number))
+
+
+def _text(what: Signal, runs: Sequence[Run], digits: int, though_failed: bool = False) -> str:
+    if not though_failed and any(run.status == "failed" for run in runs):
         return "failed"
     if isinstance(what, str):
         never = what.startswith("settling_time") and median(runs[0], what) is None
         return _NEVER if never else cell(runs[0], what, digits)
-    value = what(*runs)
+    return _told(what(*runs), digits)
+
+
+def _told(value: str | float | Measured | None, digits: int) -> str:
     if isinstance(value, str):
         return value
     return above_rounding(value.value if isinstance(value, Measured) else value, digits=digits)
+
+
+def _with_unit(metric: str, run: Run) -> str:
+    text = _text(metric, [run], 3)
+    return above_rounding(median(run, metric), _unit(run, metric)) if isinstance(text, Shown) else text
 
 
 def _header(given: Column, rows: Sequence[Found]) -> str:

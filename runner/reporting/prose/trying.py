@@ -53,10 +53,16 @@ def _changed(named: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def _each_changed(value: Any, change: Callable[[float], float | None]) -> Iterator[Any]:
-    """Yield a value with each measured value in it changed in turn."""
+    """Yield a value, which may be a list or group of them, with each measured value in it changed in turn."""
     if isinstance(value, Measured):
         if value.value is not None:
             yield dataclasses.replace(value, value=change(value.value), parts=())
+    elif isinstance(value, Mapping):
+        for name, own in value.items():
+            yield from ({**value, name: other} for other in _each_changed(own, change))
     elif isinstance(value, list | tuple):
         for index, own in enumerate(value):
             yield from ([*value[:index], other, *value[index + 1 :]] for other in _each_changed(own, change))
+    elif isinstance(value, Mapping):
+        for key, own in value.items():
+            yield from ({**value, key: other} for other in _each_changed(own, change))

@@ -3,8 +3,9 @@
 import math
 
 from runner.config.meanings import key_unit
+from runner.quantities import labelled
 from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
-from runner.reporting.quantities import labelled
+from runner.reporting.markup import literal, literals
 from runner.reporting.sweep.subject import Subject, axis_label, value_names
 from runner.statistics import SMALLEST_SAMPLE
 from runner.sweeps.resolved import UNITS
@@ -30,7 +31,7 @@ def section(subject: Subject, command: str) -> Section:
     blocks: list[Block] = []
     cells = len(measurements.hashes)
     if rows:
-        blocks.append(Table("Swept axes.", ["axis", "number", "values"], [_literal(row) for row in rows], (1,), origin))
+        blocks.append(Table("Swept axes.", ["axis", "number", "values"], [literals(row) for row in rows], (1,), origin))
     blocks += _also_differs(subject)
     grid = math.prod(len(axis.values) for axis in subject.axes)
     whole = "every combination of their values" if grid == cells else f"not all of the {grid} combinations"
@@ -38,7 +39,7 @@ def section(subject: Subject, command: str) -> Section:
     blocks.append(
         Text(
             f"{cells} cells, {whole}; repetitions in a cell: {measurements.repetitions}. "
-            + (f"The same in all: {fixed}." if fixed else "").replace("$", "$$")
+            + (literal(f"The same in all: {fixed}.") if fixed else "")
         )
     )
     failed = sum(status != "ok" for status in measurements.statuses)
@@ -74,17 +75,13 @@ def _also_differs(subject: Subject) -> list[Block]:
     left = [difference.key for difference in subject.measurements.differences[_MOST_ROWS:]]
     if not rows:
         return []
-    more = f" {len(left)} more: {', '.join(left)}.".replace("$", "$$") if left else ""
+    more = literal(f" {len(left)} more: {', '.join(left)}.") if left else ""
     caption = (
         "Also differs: config values that are not the same in all cells, though they were not swept. What an axis "
         f"seems to do may be done by what goes with it.{more}"
     )
-    return [Table(caption, ["key", "goes with", "values"], [_literal(row) for row in rows])]
+    return [Table(caption, ["key", "goes with", "values"], [literals(row) for row in rows])]
 
 
 def _short(text: str) -> str:
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
-
-
-def _literal(cells: list[str]) -> list[str]:
-    return [cell.replace("$", "$$") for cell in cells]

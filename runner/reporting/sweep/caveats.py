@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from runner.reporting.document import Block, Notice, Section, Table
+from runner.reporting.markup import literal, literals
 from runner.reporting.sweep.subject import Subject
 
 
@@ -26,12 +27,11 @@ def section(subject: Subject) -> Section:
         for rule, found in sorted(sprung.items(), key=lambda item: -len(item[1])):
             cell, worst = max(found, key=lambda entry: float(entry[1]["value"]))
             where = subject.cell_name(cell) or "the only one"
-            rows.append([rule, f"{len(found)} of {cells}", where, str(worst["text"])])
+            rows.append(literals([rule, f"{len(found)} of {cells}", where, str(worst["text"])]))
         caption = "Why results may not be what they seem: rules, cells with that caveat, and the worst of them."
-        literal = [[text.replace("$", "$$") for text in row] for row in rows]
-        blocks.append(Table(caption, ["caveat", "cells", "worst cell", "what was found there"], literal, (1,)))
+        blocks.append(Table(caption, ["caveat", "cells", "worst cell", "what was found there"], rows, (1,)))
     if measurements.caveat_changes:
         changes = "; ".join(f"{what} ({count} of {cells} cells)" for what, count in measurements.caveat_changes.items())
-        text = f"Caveats were looked for by {changes}.".replace("$", "$$")
+        text = literal(f"Caveats were looked for by {changes}.")
         blocks.append(Notice("warning", "Caveats by other rules than today's", text))
     return Section("Caveats", blocks)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from runner.drawing.thinning import spaced
 from runner.reporting.document import Block, Curves, Panel, Section, Series
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import QUANTILE_RULE, Subject, spans_decades, value_name
@@ -27,7 +28,7 @@ def section(subject: Subject) -> Section:
 
 def _shares(subject: Subject, metric: str, axis: Axis) -> Panel:
     values = subject.measurements.values[metric]
-    levels = np.unique(np.linspace(0, len(axis.values) - 1, _MOST_LINES).round().astype(int)).tolist()
+    levels = spaced(len(axis.values), _MOST_LINES)
     series = []
     for level in levels:
         pooled = values[axis.level == level]

@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from runner.quantities import number
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
+from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
-from runner.reporting.quantities import number
 from runner.reporting.sweep.intervals import axis_panel, cells_with_intervals, places
 from runner.reporting.sweep.subject import QUANTILE_RULE, Subject
 from runner.statistics import PERMUTATIONS, EffectAnalysis
@@ -50,8 +51,8 @@ def _table(analyses: dict[str, EffectAnalysis]) -> Table:
     return Table(
         "Share of the variation that each axis explains, and what two axes do together beyond what each does by "
         "itself.",
-        [cell.replace("$", "$$") for cell in header],
-        [[cell.replace("$", "$$") for cell in row] for row in rows],
+        literals(header),
+        [literals(row) for row in rows],
     )
 
 
@@ -76,7 +77,7 @@ def _explained(analyses: dict[str, EffectAnalysis]) -> str:
         else "",
         _on_chance(tests) if tests else "",
     ]
-    return " ".join(text for text in texts if text).replace("$", "$$")
+    return literal(" ".join(text for text in texts if text))
 
 
 def _on_chance(tests: int) -> str:

@@ -5,10 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from runner.errors import StoreError
+from runner.quantities import with_ends
 from runner.reporting.document import Block, Notice, Section, Table, Text
 from runner.reporting.figures import playback, torque_and_error
+from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
-from runner.reporting.quantities import with_ends
 from runner.reporting.sweep.pairs import HEADER, columns, compare
 from runner.reporting.sweep.subject import Subject
 from runner.statistics import median_interval
@@ -42,11 +43,11 @@ def _medians(subject: Subject, cells: Sequence[int]) -> Table:
         unit = subject.measurements.units[name]
         rows.append(
             [
-                title(name).replace("$", "$$"),
+                literal(title(name)),
                 *(_with_interval(subject.measurements.of_cell(name, cell), unit) for cell in cells),
             ]
         )
-    header = ["metric", *(subject.cell_name(cell).replace("$", "$$") for cell in cells)]
+    header = ["metric", *(literal(subject.cell_name(cell)) for cell in cells)]
     return Table(
         "Best and worst cell: medians, in brackets their 95 % intervals by the bootstrap over n repetitions.",
         header,
@@ -73,7 +74,7 @@ def _behind(subject: Subject, ranked: Sequence[int]) -> list[Block]:
     for cell in shared[:_BEHIND]:
         comparison = compare(subject, metric, ranked[0], cell)
         if comparison is not None:
-            name = subject.cell_name(cell).replace("$", "$$")
+            name = literal(subject.cell_name(cell))
             rows.append([name, *columns(comparison, unit), comparison.verdict])
     return [
         Table(
@@ -95,5 +96,5 @@ def _motion(title: str, run: Run) -> Section:
             playback(run, "The motion of repetition 0."),
         ]
     except StoreError as error:
-        blocks = [Notice("warning", "No motion to show", str(error).replace("$", "$$"))]
+        blocks = [Notice("warning", "No motion to show", literal(str(error)))]
     return Section(title, blocks)

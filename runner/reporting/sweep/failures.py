@@ -3,6 +3,7 @@
 import numpy as np
 
 from runner.reporting.document import Block, Section, Table
+from runner.reporting.markup import literals
 from runner.reporting.sweep.subject import Subject, value_name
 
 _MOST_ROWS = 40
@@ -24,7 +25,7 @@ def section(subject: Subject) -> Section:
             for level in range(len(axis.values))
             if failed[axis.level == level].any()
         ]
-        blocks.append(Table("Failed runs by axis.", ["axis", "value", "failed"], _literal(rows), (2,)))
+        blocks.append(Table("Failed runs by axis.", ["axis", "value", "failed"], [literals(row) for row in rows], (2,)))
     cells = np.flatnonzero(failed).tolist()
     rows = [
         [measurements.hashes[cell][:8], subject.cell_name(cell), measurements.failures[cell]]
@@ -32,9 +33,5 @@ def section(subject: Subject) -> Section:
     ]
     left = len(cells) - len(rows)
     more = f" {left} more stand in the list of runs and in the table of the sweep." if left else ""
-    blocks.append(Table(f"Failed runs.{more}", ["run", "cell", "failure"], _literal(rows)))
+    blocks.append(Table(f"Failed runs.{more}", ["run", "cell", "failure"], [literals(row) for row in rows]))
     return Section("Failed runs", blocks)
-
-
-def _literal(rows: list[list[str]]) -> list[list[str]]:
-    return [[cell.replace("$", "$$") for cell in row] for row in rows]

@@ -5,8 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from runner.drawing.thinning import spaced
 from runner.reporting import metric_titles
 from runner.reporting.document import Block, Map, Maps, Section
+from runner.reporting.markup import literal
 from runner.reporting.sweep import theory
 from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_name, value_names
 from runner.sweeps.measurements import Axis, FloatArray
@@ -62,7 +64,7 @@ def _maps(subject: Subject, metric: str, x: Axis, y: Axis, others: Sequence[Axis
     else:
         levels = np.column_stack([axis.level for axis in others])
         combinations = np.unique(levels, axis=0)
-        shown = np.unique(np.linspace(0, len(combinations) - 1, _MOST_MULTIPLES).round().astype(int))
+        shown = spaced(len(combinations), _MOST_MULTIPLES)
         panels = [
             _map(subject, metric, x, y, np.flatnonzero((levels == some).all(axis=1)).tolist(),
                  ", ".join(f"{axis.name} = {value_name(axis, int(level))}"
@@ -75,7 +77,7 @@ def _maps(subject: Subject, metric: str, x: Axis, y: Axis, others: Sequence[Axis
         if len(shown) < len(combinations):
             what += f" ({len(shown)} of {len(combinations)}, evenly chosen; All runs has the others)"
     crosses = " A cross marks failed runs." if any(panel.failed.any() for panel in panels) else ""
-    caption = f"{what}: {metric_titles.title(metric)}.{crosses}".replace("$", "$$")
+    caption = literal(f"{what}: {metric_titles.title(metric)}.{crosses}")
     return Maps(caption, subject.label(metric), panels, spans_decades(medians), columns)
 
 

@@ -5,9 +5,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from runner.drawing.thinning import spaced
+from runner.quantities import with_ends
 from runner.reporting.document import Block, Section, Table, Text
+from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
-from runner.reporting.quantities import with_ends
 from runner.reporting.sweep.subject import Subject, value_name
 from runner.statistics import Comparison, compare_paired
 from runner.sweeps.measurements import Axis
@@ -80,8 +82,7 @@ def _table(subject: Subject, axis: Axis) -> Table | None:
     metric = subject.metrics[0]
     values = subject.measurements.values[metric]
     everything = [(a, b) for a, b in pairs(subject, axis) if (~np.isnan(values[a]) & ~np.isnan(values[b])).any()]
-    places = np.unique(np.linspace(0, len(everything) - 1, _MOST_ROWS).round().astype(int)).tolist()
-    chosen = [everything[place] for place in places] if everything else []
+    chosen = [everything[place] for place in spaced(len(everything), _MOST_ROWS)]
     rows = [row for row in (_row(subject, axis, metric, *pair) for pair in chosen) if row]
     if not rows:
         return None
@@ -91,8 +92,8 @@ def _table(subject: Subject, axis: Axis) -> Table | None:
     name = title(metric)
     within = "within each level of the other axes" if len(subject.axes) > 1 else "as the only axis"
     return Table(
-        f"{name[:1].upper()}{name[1:]} by {axis.name}, {within}{f' ({which})' if which else ''}.".replace("$", "$$"),
-        ["at", axis.name.replace("$", "$$"), *HEADER, "the second is"],
+        literal(f"{name[:1].upper()}{name[1:]} by {axis.name}, {within}{f' ({which})' if which else ''}."),
+        ["at", literal(axis.name), *HEADER, "the second is"],
         rows,
         tuple(range(2, 2 + len(HEADER))),
     )
@@ -106,4 +107,4 @@ def _row(subject: Subject, axis: Axis, metric: str, a: int, b: int) -> Sequence[
     first, second = (value_name(axis, int(axis.level[cell])) for cell in (a, b))
     names = [", ".join(others) or "–", f"{first}, {second}"]
     told = columns(comparison, subject.measurements.units[metric])
-    return [*(name.replace("$", "$$") for name in names), *told, comparison.verdict]
+    return [*literals(names), *told, comparison.verdict]

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from runner.reporting.document import Document, Provenance, RunList, Section, Text
+from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep import axes, caveats, distributions, effects, extremes, failures, maps, pairs, tradeoff
 from runner.reporting.sweep.subject import Subject, choose, value_names
@@ -54,7 +55,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     return Document(
         title="Sweep over " + (" × ".join(axis.name for axis in subject.axes) or "nothing"),
         subtitle=", ".join(measurements.fixed),
-        abstract=_abstract(subject).replace("$", "$$"),
+        abstract=literal(_abstract(subject)),
         sections=sections,
         date=max(measurements.provenance["made on"]),
     )

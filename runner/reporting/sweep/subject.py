@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from runner.config.meanings import key_unit
 from runner.errors import RunnerError, nearest
+from runner.quantities import labelled, quantity
 from runner.reporting.metric_titles import metric_label, title
-from runner.reporting.quantities import labelled, quantity
 from runner.statistics import EffectAnalysis, axis_effects
 from runner.sweeps.measurements import Axis, FloatArray, Measurements
 

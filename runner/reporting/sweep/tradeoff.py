@@ -4,9 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from runner.drawing.thinning import spaced
+from runner.quantities import quantity
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
+from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
-from runner.reporting.quantities import quantity
 from runner.reporting.sweep.subject import COSTS, Subject, spans_decades
 from runner.sweeps.measurements import FloatArray
 
@@ -71,11 +73,11 @@ def section(subject: Subject, metrics: tuple[str, str]) -> Section:
 
 def _table(subject: Subject, metrics: tuple[str, str], best: Sequence[int]) -> Table:
     # Of a long front, cells along the whole of it.
-    chosen = [best[index] for index in np.unique(np.linspace(0, len(best) - 1, _MOST_ROWS).round().astype(int))]
+    chosen = [best[index] for index in spaced(len(best), _MOST_ROWS)]
     units = subject.measurements.units
     rows = [
         [
-            subject.cell_name(cell).replace("$", "$$"),
+            literal(subject.cell_name(cell)),
             *(quantity(float(subject.medians[name][cell]), units[name]) for name in metrics),
         ]
         for cell in chosen

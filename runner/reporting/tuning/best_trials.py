@@ -3,11 +3,12 @@
 from collections.abc import Mapping, Sequence
 
 from runner.metrics.summary import units
+from runner.quantities import spread
 from runner.reporting.document import Block, Origin, Section, Table
 from runner.reporting.figures import playback, torque_and_error
+from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
-from runner.reporting.quantities import spread
-from runner.reporting.tuning.subject import Subject, key_label, key_value, literal
+from runner.reporting.tuning.subject import Subject, key_label, key_value
 from runner.store import Run
 from runner.tuning.objective import Objective
 
@@ -31,12 +32,12 @@ def section(subject: Subject, runs: Mapping[int, Run], commands: Mapping[int, st
 def _trial(subject: Subject, trial: int, objectives: Sequence[Objective], run: Run, command: str) -> Section:
     params = subject.trials[trial].params
     rows = [
-        literal([key_label(key), key_value(params[key.name]), f"{key_value(key.low)} to {key_value(key.high)}"])
+        literals([key_label(key), key_value(params[key.name]), f"{key_value(key.low)} to {key_value(key.high)}"])
         for key in subject.keys
     ]
     goals = [objective.metric for objective in subject.objectives]
     names = dict.fromkeys([*goals, *(name for name in run.metrics if name in units())])
-    metrics = [[*literal([title(name)]), spread(run.metrics[name])] for name in names]
+    metrics = [[literal(title(name)), spread(run.metrics[name])] for name in names]
     blocks: list[Block] = [
         Table("Tuned keys.", ["key", "value", "range"], rows, (1, 2), Origin(command=command)),
         torque_and_error(run, "Torque of each joint and tip position error, repetition 0."),

@@ -2,13 +2,13 @@
 
 from itertools import combinations
 
-import numpy as np
-
+from runner.drawing.thinning import spaced
+from runner.quantities import quantity
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
+from runner.reporting.markup import literals
 from runner.reporting.metric_titles import title
-from runner.reporting.quantities import quantity
 from runner.reporting.sweep.subject import spans_decades
-from runner.reporting.tuning.subject import Subject, key_value, label, literal
+from runner.reporting.tuning.subject import Subject, key_value, label
 
 _MOST_ROWS = 20
 
@@ -37,9 +37,8 @@ def section(subject: Subject) -> Section:
 
 def _table(subject: Subject) -> Table:
     # Of a long front, trials along the whole of it.
-    shown = np.unique(np.linspace(0, len(subject.best) - 1, _MOST_ROWS).round().astype(int)).tolist()
     rows = []
-    for trial in (subject.best[place] for place in shown):
+    for trial in (subject.best[place] for place in spaced(len(subject.best), _MOST_ROWS)):
         found = subject.trials[trial]
         values = zip(subject.objectives, found.values, strict=True)
         settings = [key_value(found.params[key.name]) for key in subject.keys]
@@ -49,4 +48,4 @@ def _table(subject: Subject) -> Table:
         *(title(objective.metric) for objective in subject.objectives),
         *(key.name for key in subject.keys),
     ]
-    return Table("Trials on the front.", literal(header), rows, tuple(range(len(header))))
+    return Table("Trials on the front.", literals(header), rows, tuple(range(len(header))))

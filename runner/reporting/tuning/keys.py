@@ -3,9 +3,10 @@
 import numpy as np
 
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
+from runner.reporting.markup import literals
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import spans_decades
-from runner.reporting.tuning.subject import Subject, key_label, label, literal
+from runner.reporting.tuning.subject import Subject, key_label, label
 from runner.tuning.sampler import importances
 
 
@@ -42,4 +43,4 @@ def _importance(subject: Subject) -> Block:
         "among all of them, in shares (PED-ANOVA). Where trials crowd, it says what still decides there."
     )
     header = ["key", *(title(objective.metric) for objective in subject.objectives)]
-    return Table(caption, literal(header), [literal(row) for row in rows], tuple(range(1, len(header))))
+    return Table(caption, literals(header), [literals(row) for row in rows], tuple(range(1, len(header))))

@@ -9,9 +9,10 @@ import numpy as np
 
 from runner.config.meanings import key_unit
 from runner.reporting.document import Document, FloatArray, Notice, Origin, Provenance, RunList, Section, Table, Text
+from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
 from runner.reporting.tuning import best_trials, front, history, keys
-from runner.reporting.tuning.subject import Subject, key_label, key_value, literal
+from runner.reporting.tuning.subject import Subject, key_label, key_value
 from runner.store import Sweep, open_run
 from runner.sweeps.measurements import Measurements, measure
 from runner.tuning.study import Tuning
@@ -51,7 +52,7 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
     return Document(
         title=f"Tuning to {_goals(subject)}",
         subtitle=", ".join(tuning.study.overrides),
-        abstract=_abstract(subject).replace("$", "$$"),
+        abstract=literal(_abstract(subject)),
         sections=sections,
         date=max(measurements.provenance.get("made on", [""])),
     )
@@ -89,7 +90,7 @@ def _what(subject: Subject) -> Section:
     )
     header = ["key", "low", "high", "scale", "values"]
     origin = Origin(command=study.command)
-    table = Table("Tuned keys with their ranges.", header, [literal(row) for row in rows], (1, 2), origin)
+    table = Table("Tuned keys with their ranges.", header, [literals(row) for row in rows], (1, 2), origin)
     failed = len(subject.trials) - len(subject.good)
     if not failed:
         return Section("What was tuned", (table, text))
@@ -106,7 +107,7 @@ def _failures(subject: Subject) -> Section:
     rows = []
     for place in failed[:_MOST_FAILURES]:
         trial = subject.trials[place]
-        rows.append(literal([str(place), trial.run[:8] or "–", subject.settings(place), trial.failure]))
+        rows.append(literals([str(place), trial.run[:8] or "–", subject.settings(place), trial.failure]))
     left = len(failed) - len(rows)
     more = f" {left} more stand in the list of runs." if left else ""
     return Section("Failed trials", (Table(f"Failed trials.{more}", ["trial", "run", "values", "failure"], rows),))

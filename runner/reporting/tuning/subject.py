@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 
 from runner.config.meanings import key_unit
+from runner.quantities import labelled, number, quantity
 from runner.reporting.document import FloatArray
 from runner.reporting.metric_titles import metric_label, title
-from runner.reporting.quantities import labelled, number, quantity
 from runner.tuning.key import Key
 from runner.tuning.objective import Objective
 from runner.tuning.study import Tuning
@@ -96,8 +96,3 @@ def key_label(key: Key) -> str:
 def key_value(value: float) -> str:
     """Return the value of a key as text."""
     return number(value, 4)
-
-
-def literal(cells: Sequence[str]) -> list[str]:
-    """Return texts in which a dollar sign is one, as a table takes them."""
-    return [cell.replace("$", "$$") for cell in cells]

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from runner.reporting.drawings.canvas import GREY, INK, PALE, Camera, arrow, circle, drawing, scene, triad, write
+from runner.drawing.canvas import GREY, INK, PALE, Camera, arrow, circle, drawing, scene, triad, write
 from runner.robots.denavit_hartenberg import denavit_hartenberg, frames
 from runner.robots.model import FloatArray, RobotModel
 

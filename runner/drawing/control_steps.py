@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch, Polygon
 
-from runner.reporting import palette
-from runner.reporting.drawings.canvas import INK, arrow, drawing, scene, write
+from runner.drawing import palette
+from runner.drawing.canvas import INK, arrow, drawing, scene, write
 from runner.robots.model import FloatArray
 
 # Measures in inches, at the size on paper.

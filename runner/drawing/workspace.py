@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
 
-from runner.reporting import palette
-from runner.reporting.drawings.canvas import GREY, INK, Camera, arrow, circle, drawing, triad, write
+from runner.drawing import palette
+from runner.drawing.canvas import GREY, INK, Camera, arrow, circle, drawing, triad, write
 from runner.robots.model import FloatArray
 from runner.robots.workspace import Workspace
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.reporting.document import FloatArray, Series
+from runner.drawing.figure import FloatArray, Series
 
 POINTS = 2000
 """Most points of a drawn curve: more than a screen or a printed page can tell apart."""
@@ -31,6 +31,11 @@ def thin(series: Series, points: int = POINTS) -> Series:
     low, high = (None if edge is None else edge[kept] for edge in (series.low, series.high))
     hints, runs = ([texts[index] for index in kept] if texts else () for texts in (series.hints, series.runs))
     return replace(series, x=series.x[kept], y=series.y[kept], low=low, high=high, hints=hints, runs=runs)
+
+
+def spaced(count: int, most: int) -> list[int]:
+    """Return at most `most` of the indices below `count`, evenly spaced, the first and the last among them."""
+    return [int(place) for place in np.linspace(0, count - 1, min(count, most)).round()]
 
 
 def usable(limits: tuple[float, float] | None, log: bool) -> bool:

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
-from runner.reporting import palette
+from runner.drawing import palette
 from runner.robots.model import FloatArray
 
 INK, GREY, PALE = "#20242a", "#7d8590", "#d3d8de"
@@ -74,14 +74,12 @@ class Camera:
         a, e = np.radians([self.azimuth, self.elevation])
         right = np.array([-np.sin(a), np.cos(a), 0.0])
         up = np.array([-np.cos(a) * np.sin(e), -np.sin(a) * np.sin(e), np.cos(e)])
-        picture: FloatArray = np.asarray(points) @ np.column_stack([right, up])
-        return picture
+        return np.asarray(np.asarray(points) @ np.column_stack([right, up]))
 
     def nearness(self, points: FloatArray) -> FloatArray:
         """Return how far points lie towards the viewer, shape (..., 3) to (...)."""
         a, e = np.radians([self.azimuth, self.elevation])
-        distance: FloatArray = np.asarray(points) @ [np.cos(a) * np.cos(e), np.sin(a) * np.cos(e), np.sin(e)]
-        return distance
+        return np.asarray(np.asarray(points) @ [np.cos(a) * np.cos(e), np.sin(a) * np.cos(e), np.sin(e)])
 
 
 def scene(width: float, height: float) -> tuple[Figure, Axes]:

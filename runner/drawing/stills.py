@@ -1,4 +1,4 @@
-"""A figure of curves as a still SVG for the PDF, drawn by matplotlib at the size it has on paper."""
+"""A figure of curves as a still SVG, drawn by matplotlib at the size it has on paper."""
 
 import io
 import math
@@ -16,11 +16,11 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from runner.reporting import palette
-from runner.reporting.document import Curves, Panel, Series
-from runner.reporting.markup import plain
-from runner.reporting.quantities import number
-from runner.reporting.thinning import thin, usable
+from runner.drawing import palette
+from runner.drawing.figure import CurveFigure, Panel, Series
+from runner.drawing.thinning import thin, usable
+from runner.quantities import number
+from runner.texts import plain
 
 WIDTH = 6.5
 """Width of the text on paper [in]."""
@@ -79,7 +79,7 @@ class _Frame:
         return math.ceil(len(named) / self.columns) * lines * _LINE + 0.05
 
 
-def draw(curves: Curves) -> str:
+def draw(curves: CurveFigure) -> str:
     """Return the figure as SVG; the same figure gives the same text."""
     return to_svg(lambda: _figure(curves))
 
@@ -95,7 +95,7 @@ def to_svg(make: Callable[[], Figure]) -> str:
     return stream.getvalue()
 
 
-def _figure(curves: Curves) -> Figure:
+def _figure(curves: CurveFigure) -> Figure:
     columns = max(1, min(curves.columns, len(curves.panels)))
     width = WIDTH / columns
     frames = [_frame(panel, width - _LEFT - _RIGHT, {1: 2.3, 2: 1.75}.get(columns, 1.35)) for panel in curves.panels]

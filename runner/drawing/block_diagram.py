@@ -11,8 +11,8 @@ from matplotlib.patches import Circle, FancyBboxPatch
 from matplotlib.textpath import TextPath
 
 from runner.controllers.graph import ControlGraph, Edge, Node, Side
-from runner.reporting import palette
-from runner.reporting.drawings.canvas import INK, arrow, drawing, scene, write
+from runner.drawing import palette
+from runner.drawing.canvas import INK, arrow, drawing, scene, write
 from runner.robots.model import FloatArray
 
 # Measures in inches, at the size on paper.

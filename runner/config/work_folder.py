@@ -1,0 +1,24 @@
+"""A config folder that is a work's: its experiments are found as experiment=NAME/..., NAME being the folder's."""
+
+from pathlib import Path
+
+_WORK, _GROUP = "work.yaml", "experiment"
+
+
+def place_in(folder: Path, config_path: str) -> str:
+    """Return where a config stands in a folder: experiment/NAME/x of the work NAME as experiment/x, others as asked."""
+    own = _own(folder)
+    if own and (config_path == own or config_path.startswith(f"{own}/")):
+        return f"{_GROUP}{config_path.removeprefix(own)}"
+    return config_path
+
+
+def option_in(folder: Path, group: str, name: str) -> str:
+    """Return by which option of a group a file of a folder is chosen: NAME/x for the experiment x of the work NAME."""
+    return f"{folder.resolve().name}/{name}" if group == _GROUP and _own(folder) else name
+
+
+def _own(folder: Path) -> str:
+    """Return how the configs of a work's experiments begin; nothing for a folder that is none, or holds such a one."""
+    own = f"{_GROUP}/{folder.resolve().name}"
+    return own if (folder / _WORK).is_file() and not (folder / own).is_dir() else ""

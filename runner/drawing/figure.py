@@ -1,0 +1,118 @@
+"""What a figure shows, as plain data: curves on axes, and maps of coloured cells."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Series:
+    """One curve.
+
+    Attributes:
+        name: Its legend entry; with an empty name it stands in no legend.
+        x: Abscissae, shape (T,).
+        y: Ordinates, shape (T,); NaN breaks the line.
+        style: Line, dashed line, dotted line, single points, or points joined by a line.
+        low: Lower edge of a shaded band around the curve, shape (T,), or None.
+        high: Upper edge of the band, shape (T,), or None.
+        color: Index into the palette; None takes the next one. Curves that belong together share it.
+        hints: What the reader is told of each point when pointing at it, one for each, or none.
+        runs: Hash of the run behind each point, one for each, or none.
+    """
+
+    name: str
+    x: FloatArray
+    y: FloatArray
+    style: Literal["line", "dashed", "dotted", "points", "points_line"] = "line"
+    low: FloatArray | None = None
+    high: FloatArray | None = None
+    color: int | None = None
+    hints: Sequence[str] = ()
+    runs: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes with its curves; labels carry the unit, as in "tip error (m)".
+
+    With `x_names` the abscissae are places 0, 1, ... with these names below them.
+    """
+
+    title: str
+    x_label: str
+    y_label: str
+    series: Sequence[Series]
+    x_log: bool = False
+    y_log: bool = False
+    x_range: tuple[float, float] | None = None
+    y_range: tuple[float, float] | None = None
+    x_names: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Map:
+    """One grid of coloured cells: rows from below, columns from the left.
+
+    Attributes:
+        title: What stands above it.
+        x_label: Name of the horizontal axis.
+        y_label: Name of the vertical axis.
+        x_names: Name of each column.
+        y_names: Name of each row.
+        values: Value of each cell, shape (rows, columns); NaN leaves it empty.
+        failed: Whether a cell is marked as failed, shape (rows, columns).
+        lines: Curves over the grid, abscissae counted in columns and ordinates in rows, both from 0.
+        contours: Whether it shows lines of equal value in place of cells.
+        hints: What the reader is told of each cell, row by row, or none.
+        runs: Hash of the run behind each cell, row by row, or none.
+    """
+
+    title: str
+    x_label: str
+    y_label: str
+    x_names: Sequence[str]
+    y_names: Sequence[str]
+    values: FloatArray
+    failed: NDArray[np.bool_]
+    lines: Sequence[Series] = ()
+    contours: bool = False
+    hints: Sequence[str] = ()
+    runs: Sequence[str] = ()
+
+
+class CurveFigure(Protocol):
+    """What is drawn of a figure of curves, whatever else it holds."""
+
+    @property
+    def panels(self) -> Sequence[Panel]:
+        """The axes, in reading order."""
+
+    @property
+    def columns(self) -> int:
+        """How many panels stand beside each other."""
+
+
+class MapFigure(Protocol):
+    """What is drawn of heat maps with one scale of colours, whatever else the figure holds."""
+
+    @property
+    def panels(self) -> Sequence[Map]:
+        """The maps, in reading order."""
+
+    @property
+    def value_label(self) -> str:
+        """What the colours mean, with unit."""
+
+    @property
+    def log(self) -> bool:
+        """Whether the colours follow the logarithm."""
+
+    @property
+    def columns(self) -> int:
+        """How many maps stand beside each other."""

@@ -1,0 +1,55 @@
+"""Heat maps in numbers: what their colours follow, how the scale is marked, which values are printed."""
+
+import numpy as np
+
+from runner.drawing.figure import FloatArray, Map, MapFigure
+from runner.quantities import digits_between, number
+
+OVERLAY = 1
+"""Palette index of what lies over the cells, red, which their colours do not hold."""
+CONTOURS = 10
+"""About how many lines of equal value a map shows."""
+MOST_PARTED = 20
+"""Most cells beside each other that are parted by white lines."""
+_MOST_PRINTED = 10  # cells beside each other whose values can be read
+
+
+def scaled(values: FloatArray, log: bool) -> FloatArray:
+    """Return what the colours follow: the values or their logarithms, NaN where there is none."""
+    if not log:
+        return np.where(np.isfinite(values), values, np.nan)
+    positive = np.isfinite(values) & (values > 0)
+    return np.log10(values, out=np.full(values.shape, np.nan), where=positive)
+
+
+def value_range(figure: MapFigure) -> tuple[float, float]:
+    """Return the ends of the scale of colours, as scaled."""
+    everything = np.concatenate([np.zeros(0), *(scaled(panel.values, figure.log).ravel() for panel in figure.panels)])
+    finite = everything[np.isfinite(everything)]
+    return (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+
+
+def scale_marks(figure: MapFigure) -> tuple[list[float], list[str]]:
+    """Return where the scale of colours is marked, as scaled, and with which values."""
+    low, high = value_range(figure)
+    places = np.linspace(low, high, 5 if high > low else 1)
+    values = 10.0**places if figure.log else places
+    digits = digits_between(values[0], values[-1])
+    return places.tolist(), [number(float(value), digits) for value in values]
+
+
+def prints_values(panel: Map, figure: MapFigure) -> bool:
+    """Return whether the cells of a map have room for their values."""
+    beside = max(1, min(figure.columns, len(figure.panels)))
+    return not panel.contours and beside * len(panel.x_names) <= _MOST_PRINTED
+
+
+def printed_values(panel: Map, figure: MapFigure) -> list[list[str]]:
+    """Return the value that is printed into each cell; nothing into an empty one, nor where a cross stands."""
+    low, high = value_range(figure)
+    digits = digits_between(10.0**low, 10.0**high) if figure.log else digits_between(low, high)
+    return [
+        ["" if np.isnan(value) or failed else number(float(value), digits) if np.isfinite(value) else "never"
+         for value, failed in zip(*row, strict=True)]
+        for row in zip(panel.values, panel.failed, strict=True)
+    ]  # fmt: skip

@@ -1,0 +1,77 @@
+"""What `work.yaml` says of a work: its titles, chapters, presets and profiles."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field
+
+from runner.data_file import read_data
+from runner.errors import RunnerError, nearest
+from runner.registry import StrictModel
+from runner.works.profiles import Profile
+
+FILE = "work.yaml"
+_SUFFIXES = (".md", ".py")
+
+Text = Annotated[str, Field(min_length=1)]
+
+
+class Part(StrictModel):
+    """A chapter whose sections are files of their own.
+
+    Attributes:
+        title: Its title.
+        sections: The files, `.md` or `.py`, in order.
+    """
+
+    title: Text
+    sections: Annotated[list[Text], Field(min_length=1)]
+
+
+class About(StrictModel):
+    """All that `work.yaml` says.
+
+    Attributes:
+        title: Title of the report.
+        source: One line below it: whose work it is.
+        abstract: What comes out; inline mathematics between dollar signs.
+        chapters: Files of the chapters in order, `.md` or `.py`, and chapters that have files as sections.
+        presets: Names of the presets under which claims are judged, with their words.
+        in_all: Whether `runner reproduce all` makes the work.
+        plugins: Parts of the work's own, GROUP=FILE.py each, such as "controller=spring.py".
+        profiles: Profiles by name.
+    """
+
+    title: Text
+    source: Text
+    abstract: Text
+    chapters: Annotated[list[Text | Part], Field(min_length=1)]
+    presets: dict[str, str] = Field(default_factory=dict)
+    in_all: bool = True
+    plugins: list[Text] = Field(default_factory=list)
+    profiles: dict[str, Profile] = Field(default_factory=dict)
+
+    def files(self) -> Iterator[str]:
+        """Yield the files of all chapters and sections, in order."""
+        for chapter in self.chapters:
+            yield from (chapter,) if isinstance(chapter, str) else chapter.sections
+
+
+def read_about(folder: Path) -> About:
+    """Return what a work's folder says of it.
+
+    Raises:
+        RunnerError: if `work.yaml` cannot be read or does not fit, or names a file that is not there.
+    """
+    path = folder / FILE
+    about = read_data(path, About)
+    there = sorted(each.name for each in folder.iterdir() if each.suffix in _SUFFIXES)
+    problems = [
+        f"chapters: {name}: must be a file of this folder, {' or '.join(_SUFFIXES)}{nearest(name, there)}"
+        for name in about.files()
+        if name not in there
+    ]
+    if problems:
+        raise RunnerError("\n".join(f"{path}: {problem}" for problem in problems))
+    return about

@@ -1,0 +1,48 @@
+"""The caveats that a work expects of its runs, as `caveats.yaml` of its folder lists them."""
+
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field
+
+from runner.caveats.registry import SETTING_RULES, TRACE_RULES
+from runner.data_file import read_data
+from runner.errors import RunnerError, nearest
+from runner.registry import StrictModel
+from runner.reporting.expected_caveats import ExpectedCaveat
+
+FILE = "caveats.yaml"
+_Texts = Annotated[list[Annotated[str, Field(min_length=1)]], Field(min_length=1)]
+
+
+class Entry(StrictModel):
+    """Some caveats of some runs that are expected for one reason.
+
+    Attributes:
+        rules: Names of the rules that find them.
+        runs: Patterns of the names of the runs, such as "figure_5_*/as_reported".
+        why: Why they are there, and why the work's conclusions stand; a sentence.
+    """
+
+    rules: _Texts
+    runs: _Texts
+    why: Annotated[str, Field(min_length=1)]
+
+
+def read_expected(folder: Path) -> tuple[ExpectedCaveat, ...]:
+    """Return the caveats that a work expects; none where it has no such file.
+
+    Raises:
+        RunnerError: if the file does not fit, or names a rule that does not exist; tells entry and key.
+    """
+    path = folder / FILE
+    if not path.is_file():
+        return ()
+    entries = read_data(path, list[Entry])
+    known = [*(rule.name for rule in TRACE_RULES), *(rule.name for rule in SETTING_RULES)]
+    for rule in (rule for entry in entries for rule in entry.rules):
+        if rule not in known:
+            raise RunnerError(f"{path}: there is no rule '{rule}'{nearest(rule, known)}; rules: {', '.join(known)}")
+    return tuple(
+        ExpectedCaveat(rule, runs, entry.why) for entry in entries for runs in entry.runs for rule in entry.rules
+    )

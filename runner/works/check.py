@@ -1,0 +1,72 @@
+"""Looks through a work for what its report would not show: conditions that cannot fail, numbers that go stale."""
+
+from collections.abc import Iterator, Mapping
+from fnmatch import fnmatchcase
+
+from runner.errors import RunnerError
+from runner.reporting.conclusions import fallen
+from runner.reporting.document import Document
+from runner.reporting.expected_caveats import unexpected_caveats
+from runner.reporting.formulas import faulty
+from runner.reporting.job import MissingError
+from runner.reporting.prose.trying import never_failing
+from runner.reporting.prose.typed import levels_in, typed_numbers
+from runner.store import Calibration, Run
+from runner.works.about import FILE as ABOUT
+from runner.works.work import Work
+
+
+def problems(work: Work, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -> Iterator[str]:
+    """Yield what is wrong with a work, a line each.
+
+    Every chapter is read, so that each expression is evaluated; every condition is tried with changed values.
+
+    Args:
+        work: The work.
+        runs: Its stored runs by name.
+        calibrations: Its stored calibrations by name.
+    """
+    levels = levels_in([*runs, *calibrations])
+    faults = 0
+    for file in work.about.files():
+        for line in _of_chapter(work, file, runs, calibrations, levels):
+            faults += 1
+            yield line
+    yield from (f"{work.name}: {name}: expected caveats: no run of it is named so" for name in _unused(work, runs))
+    yield from unexpected_caveats(runs, work.expected)
+    if not faults:
+        document = work.document(runs, calibrations)
+        yield from fallen(document)
+        yield from formulas_at(work, document)
+
+
+def formulas_at(work: Work, document: Document) -> Iterator[str]:
+    """Yield each formula of a work's report that cannot be read, with file and line where a chapter has it."""
+    texts = [(file, (work.folder / file).read_text(encoding="utf-8")) for file in work.about.files()]
+    for formula in faulty(document):
+        found = ((file, text.count("\n", 0, text.index(formula)) + 1) for file, text in texts if formula in text)
+        file, line = next(found, (ABOUT, 1))
+        yield f"{work.folder.name}/{file}:{line}: {formula}: no formula in Typst's notation"
+
+
+def _of_chapter(
+    work: Work, file: str, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration], levels: set[str]
+) -> Iterator[str]:
+    path = work.folder / file
+    if path.suffix != ".md":
+        return
+    text, name = path.read_text(encoding="utf-8"), f"{work.folder.name}/{file}"
+    try:
+        yield from never_failing(name, text, work.chapters(runs, calibrations).names(path.stem))
+    except MissingError as error:
+        yield f"{name}: {error}"
+        return
+    except RunnerError as error:
+        yield str(error)
+        return
+    yield from typed_numbers(name, text, levels)
+
+
+def _unused(work: Work, runs: Mapping[str, Run]) -> Iterator[str]:
+    patterns = dict.fromkeys(each.runs for each in work.expected)
+    yield from (pattern for pattern in patterns if not any(fnmatchcase(name, pattern) for name in runs))

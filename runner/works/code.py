@@ -1,0 +1,94 @@
+"""The Python of a work: run where it is installed, and in a folder only when the command says so."""
+
+import ast
+import hashlib
+import re
+import sys
+from collections.abc import Callable
+from importlib import import_module
+from importlib.machinery import ModuleSpec
+from importlib.util import module_from_spec
+from inspect import getmembers, isfunction
+from pathlib import Path
+from types import ModuleType
+from typing import Any, NoReturn
+
+from runner.errors import RunnerError, told
+from runner.reporting.job import MissingError
+
+
+class Code:
+    """The modules of a work's folder.
+
+    Args:
+        folder: The folder.
+        package: The installed package that it is, such as "runner.works.thesis"; None for a folder that is none.
+        allowed: Whether the command allows code of such a folder.
+
+    Attributes:
+        runs: Whether it is run.
+    """
+
+    def __init__(self, folder: Path, package: str | None, allowed: bool) -> None:
+        self._folder = folder
+        self.runs = package is not None or allowed
+        digest = hashlib.sha256(str(folder).encode()).hexdigest()[:8]
+        self._package = package or f"work_{re.sub(r'[^0-9a-zA-Z]', '_', folder.name)}_{digest}"
+        if package is None and allowed and self._package not in sys.modules:
+            spec = ModuleSpec(self._package, None, is_package=True)
+            spec.submodule_search_locations = [str(folder)]
+            sys.modules[self._package] = module_from_spec(spec)
+
+    def functions(self, stem: str) -> dict[str, Callable[..., Any]]:
+        """Return the public functions that a module of the folder defines, by name; none where there is no such module.
+
+        Where code may not run, each of them says so when it is called.
+
+        Raises:
+            RunnerError: if the module cannot be imported; names the place.
+        """
+        path = self._folder / f"{stem}.py"
+        if not path.is_file():
+            return {}
+        if not self.runs:
+            return {name: _not_run(path) for name in _defined(path)}
+        try:
+            module = import_module(f"{self._package}.{stem}")
+        except Exception as error:
+            if self._package.startswith("runner."):
+                raise
+            raise RunnerError(f"{path.name} cannot be imported: {told(error)}") from error
+        return public_functions(module)
+
+    def about(self) -> str:
+        """Return a digest of the folder's Python, and whether it was run; nothing where there is none."""
+        files = sorted(self._folder.glob("*.py"))
+        if not files:
+            return ""
+        digest = hashlib.sha256(b"\0".join(path.read_bytes() for path in files)).hexdigest()[:24]
+        return digest if self.runs else f"{digest}, not run: it was made without --code"
+
+
+def public_functions(module: ModuleType) -> dict[str, Callable[..., Any]]:
+    """Return the public functions that a module itself defines, by name."""
+    return {
+        name: function
+        for name, function in getmembers(module, isfunction)
+        if function.__module__ == module.__name__ and not name.startswith("_")
+    }
+
+
+def _not_run(path: Path) -> Callable[..., NoReturn]:
+    def refuse(*_: object, **__: object) -> NoReturn:
+        raise MissingError(f"{path.name} was not run: code in a folder runs with --code alone")
+
+    return refuse
+
+
+def _defined(path: Path) -> list[str]:
+    """Return the public functions of a module without running it."""
+    try:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+    except (SyntaxError, ValueError) as error:
+        raise RunnerError(f"{path.name} cannot be read: {error}") from error
+    return [node.name for node in tree.body if isinstance(node, ast.FunctionDef) and not node.name.startswith("_")]

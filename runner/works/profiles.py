@@ -1,0 +1,54 @@
+"""Profiles of a work: a smaller or larger making of it, with other levels of axes or another number of repetitions."""
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated
+
+from pydantic import Field, PositiveInt
+
+from runner.errors import nearest
+from runner.registry import StrictModel
+from runner.works.arithmetic import Level
+from runner.works.grid import Grid, Overrides
+
+
+class Profile(StrictModel):
+    """What differs from the whole work.
+
+    Attributes:
+        repetitions: Repetitions of every run; None leaves those of the grids.
+        levels: Levels of axes in place of those in runs.yaml, by grid and axis; of an axis with labels some of these.
+    """
+
+    repetitions: PositiveInt | None = None
+    levels: dict[str, dict[str, Annotated[list[Level], Field(min_length=1)]]] = Field(default_factory=dict)
+
+    def problems(self, grids: Mapping[str, Grid]) -> Iterator[str]:
+        """Yield what it names that the grids do not have."""
+        for key, axes in self.levels.items():
+            if key not in grids:
+                yield f"there is no grid '{key}'{nearest(key, grids)}"
+                continue
+            over = grids[key].over
+            for axis, levels in axes.items():
+                if axis not in over:
+                    yield f"grid '{key}': there is no axis '{axis}'{nearest(axis, over)}"
+                elif None not in over[axis].values():
+                    known = [str(level) for level in over[axis]]
+                    for level in map(str, levels):
+                        if level not in known:
+                            yield f"grid '{key}': axis '{axis}' has no level '{level}'{nearest(level, known)}"
+
+    def applied(self, key: str, grid: Grid) -> Grid:
+        """Return a grid with the levels that the profile gives its axes."""
+        given = self.levels.get(key, {})
+        over = {
+            axis: {level: levels.get(level) for level in given.get(axis, levels)} for axis, levels in grid.over.items()
+        }
+        return grid.model_copy(update={"over": over})
+
+    def repeated(self, overrides: Overrides) -> Overrides:
+        """Return a run's overrides with the profile's number of repetitions."""
+        if self.repetitions is None:
+            return overrides
+        kept = (text for text in overrides if not text.startswith("repetitions="))
+        return (*kept, f"repetitions={self.repetitions}")
