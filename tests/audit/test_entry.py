@@ -1,6 +1,5 @@
 import pytest
 
-from runner.audit import entry as module
 from runner.audit.entry import Entry, entries, parts
 from runner.audit.sources import sources
 from runner.errors import RunnerError
@@ -22,16 +21,27 @@ def test_a_form_is_evaluated_in_one_way(form, message):
         Entry.model_validate(GOOD | {"printed": form})
 
 
-def test_a_file_that_does_not_fit_names_the_keys():
-    with pytest.raises(RunnerError, match=r"bad.yaml: .*entries.0.verdict: Extra inputs"):
-        module._read("bad.yaml", "source: a\nsymbols: b\nentries: [{id: a, verdict: correct}]")
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("symbols: b.c\nentries: [{number: 3.4, verdict: correct}]", r"bad.yaml: .*entries.0 \(3.4\).verdict: Extra"),
+        ("entries: []", "bad.yaml: names no 'robot', so 'symbols' must name the function that draws the sample"),
+        ("robot: macro\nentries: [{printed: {elements: {a: [1]}}}]", r"printed.elements.a: is \[1\]; allowed: an expr"),
+        ("robot: [", "cannot read .*bad.yaml"),
+    ],
+)
+def test_a_file_that_does_not_fit_names_entry_and_key(tmp_path, text, message):
+    (tmp_path / "equations").mkdir()
+    (tmp_path / "equations" / "bad.yaml").write_text(text)
+    with pytest.raises(RunnerError, match=message):
+        parts(tmp_path)
 
 
 @pytest.mark.parametrize("source", sources())
 def test_ids_are_unique_and_name_the_source(source):
     ids = [entry.id for _, entry in entries(source)]
     assert len(set(ids)) == len(ids) > 0
-    assert all(part.source == source for part in parts(source))
+    assert all(part.source.name == source for part in parts(source))
     assert all(name.startswith(f"{source}-") for name in ids)
 
 

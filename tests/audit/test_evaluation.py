@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runner.audit.evaluation import evaluate
-from runner.audit.expressions import ExpressionError, parse
+from runner.expressions.parser import ExpressionError, parse
 
 X = np.array([0.3, -1.2, 2.0])
 Y = np.array([1.5, 0.4, -0.7])

@@ -22,5 +22,5 @@ def test_what_is_missing_is_named(monkeypatch):
     places = list(inventory("xarm7").places)
     places[1] = places[1].model_copy(update={"equations": [*places[1].equations, "q8"]})
     changed = inventory("xarm7").model_copy(update={"places": places})
-    monkeypatch.setattr(module, "inventory", lambda source: changed)
+    monkeypatch.setattr(module, "inventory", lambda where: changed)
     assert differences("xarm7") == ["Inverse kinematics, page 8: q8 is not audited"]

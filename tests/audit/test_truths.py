@@ -6,11 +6,11 @@ import pytest
 from runner.audit.chains import derivative, jacobian_by_differences, rotation
 from runner.audit.entry import entries, parts
 from runner.audit.evaluation import evaluate
-from runner.audit.expressions import parse
 from runner.audit.sources import sources, truth_of
-from runner.audit.verdict import error
+from runner.audit.verdict import Judge, error
+from runner.expressions.parser import parse
 from runner.works.meca500.equations.truths import meca500
-from runner.works.xarm7.equations.truths import xarm7, xarm7_claims, xarm7_inverse
+from runner.works.xarm7.equations.truths import xarm7, xarm7_inverse
 
 SAMPLES = 40
 
@@ -18,24 +18,23 @@ SAMPLES = 40
 @pytest.mark.parametrize("source", sources())
 def test_the_two_ways_to_every_truth_agree(source):
     for part in parts(source):
-        values = truth_of(part.source, part.symbols)(SAMPLES, np.random.default_rng(1))
-        for name, unit in {(entry.truth, entry.unit) for entry in part.entries if entry.truth}:
-            first, second = truth_of(part.source, name).first(values), truth_of(part.source, name).second(values)
-            assert set(first) == set(second), name
+        judge = Judge(part, SAMPLES)
+        for entry in part.entries:
+            truth = judge.truth(entry) if entry.truth else None
+            first, second = (truth.first(judge.symbols), truth.second(judge.symbols)) if truth else ({}, {})
+            assert set(first) == set(second), entry.id
             for element, expected in first.items():
                 size = max(1.0, float(np.abs(expected).max()))
-                assert error(second[element], expected, unit).max() <= 2e-5 * size, f"{name}: {element}"
+                assert error(second[element], expected, entry.unit).max() <= 2e-5 * size, f"{entry.id}: {element}"
 
 
 @pytest.mark.parametrize("source", sources())
 def test_a_tolerance_is_small_beside_what_it_measures(source):
     for part in parts(source):
-        values = truth_of(part.source, part.symbols)(SAMPLES, np.random.default_rng(1))
+        judge = Judge(part, SAMPLES)
         for entry in part.entries:
             if entry.truth:
-                largest = max(
-                    float(np.abs(true).max()) for true in truth_of(part.source, entry.truth).first(values).values()
-                )
+                largest = max(float(np.abs(true).max()) for true in judge.truth(entry).first(judge.symbols).values())
                 assert entry.tolerance <= 3e-4 * max(1.0, largest), entry.id
 
 
@@ -48,14 +47,14 @@ def test_the_meca500_tip_at_known_configurations():
     q = np.array([[0.0] * 6, [0.1, 0.2, -0.3, 0.4, 0.5, -0.6]])
     expected = [[190, 0, 308], [204.299956, 33.632783, 292.475814]]
     np.testing.assert_allclose(meca500.pose(q)[:, :3, 3], expected, atol=1e-6)
-    np.testing.assert_allclose(meca500.model_poses(q)[:, :3, 3], expected, atol=1e-6)
+    np.testing.assert_allclose(meca500.BY_MODEL.pose(q)[:, :3, 3], expected, atol=1e-6)
     np.testing.assert_allclose(meca500.pose(q)[0, :3, :3], [[0, 0, 1], [0, 1, 0], [-1, 0, 0]], atol=1e-12)
 
 
 def test_the_inverse_kinematics_mended_reaches_its_target():
     y = np.linspace(-20, 20, 9)
-    tip = xarm7.model_poses(xarm7_inverse.full(xarm7_claims.solve(xarm7_claims.points(y))))[:, :3, 3]
-    np.testing.assert_allclose(tip, xarm7_claims.points(y), atol=1e-10)
+    tip = xarm7.BY_MODEL.pose(xarm7_inverse.full(xarm7_inverse.solve(xarm7_inverse.points(y))))[:, :3, 3]
+    np.testing.assert_allclose(tip, xarm7_inverse.points(y), atol=1e-10)
 
 
 def test_differences_are_exact_for_a_polynomial_of_fourth_degree():

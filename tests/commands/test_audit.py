@@ -37,7 +37,7 @@ def test_bad_input_ends_with_2_and_says_what_is_allowed(cli, tmp_path):
         ((), "nothing to compare: give one of --position, --jacobian, --mass-matrix, --gravity"),
         (("--position", "own.yaml", "--samples", "0"), "--samples is 0; allowed: 1 to 100000"),
         (("--position", "own.yaml", "--tolerance", "-1"), "--tolerance is -1; allowed: above 0"),
-        (("--position", "none.yaml"), "none.yaml: cannot be read"),
+        (("--position", "none.yaml"), "cannot read none.yaml"),
     ):
         ending = cli("audit", "macro.urdf", "--tip", "tip", *arguments)
         assert (ending.code, ending.out) == (2, "")

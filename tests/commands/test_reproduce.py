@@ -1,7 +1,5 @@
 import csv
 import json
-from dataclasses import replace
-from functools import partial
 from types import SimpleNamespace
 
 import pytest
@@ -10,40 +8,43 @@ from runner.audit import entry
 from runner.audit.audit import audit
 from runner.audit.verdict import VERDICTS
 from runner.commands import reproduce
-from runner.reporting.document import Document, Section, Text
+from runner.reporting.document import Document, Section
 from runner.reporting.expected_caveats import ExpectedCaveat
 from runner.reporting.findings import finding
-from runner.reporting.job import Job
 from runner.reporting.measured import Measured
-from runner.reporting.run_report import run_document
-from runner.reporting.work_report import parts, work_document
 from runner.sweeps import work as workers
 from runner.sweeps.lock import at_work
 from runner.works.making import make_all
-from runner.works.thesis import work as thesis
-from runner.works.work import Work
+from runner.works.work import load_work
 
-
-def _listed(runs, calibrations):
-    return run_document(list(runs.values()))
+FILES = {
+    "work.yaml": "title: T\nsource: S\nabstract: A\nchapters: [one.md, two.md]\n",
+    "runs.yaml": """\
+grids:
+  goal: {with: [robot=macro, duration=0.1]}
+  quintic: {with: [robot=mini, trajectory=quintic, duration=0.01]}
+  singular: {with: [experiment=thesis/singular]}
+""",
+    "one.md": '# One\n\n{{ failures("singular") }}\n\n{{ table("Goal.", "goal", column("moved", "peak_torque")) }}\n',
+    "two.md": '# Two\n\n{{ table("Quintic.", "quintic", column("moved", "peak_torque")) }}\n',
+}
 
 
 @pytest.fixture
-def small_work(monkeypatch):
-    """Works of three short runs, one of which fails."""
-    jobs = {
-        "goal": Job(("robot=macro", "duration=0.1")),
-        "quintic": Job(("robot=mini", "trajectory=quintic", "duration=0.01")),
-        "singular": Job(("experiment=thesis/singular",)),
-    }
-    for work in ("thesis", "xarm7"):
-        monkeypatch.setattr(f"runner.works.{work}.work.WORK", Work(lambda: jobs, _listed))
+def small_work(tmp_path):
+    """A work of three short runs, one of which fails, in the folder `small`."""
+    folder = tmp_path / "small"
+    folder.mkdir()
+    for name, text in FILES.items():
+        (folder / name).write_text(text)
+    return folder
 
 
 def test_an_unknown_work_names_the_nearest(cli, tmp_path):
     ending = cli("reproduce", "thesys")
     assert ending.code == 2
-    assert ending.err == "runner: no work 'thesys' (did you mean thesis?); works: meca500, thesis, xarm7, audit, all\n"
+    told = "runner: no work 'thesys' (did you mean thesis?); works: meca500, thesis, xarm7, audit, all, or a folder"
+    assert ending.err == f"{told} with a work.yaml\n"
     assert list(tmp_path.iterdir()) == []
 
 
@@ -54,16 +55,16 @@ def test_an_unknown_flag_is_bad_input(cli):
 
 
 def test_a_second_time_nothing_is_simulated(cli, small_work, tmp_path):
-    first = cli("reproduce", "thesis", "hydra.sweeper.workers=1")
+    first = cli("reproduce", "small", "hydra.sweeper.workers=1")
     assert first.code == 0
-    assert first.folder == tmp_path / "outputs" / "reports" / "thesis"
+    assert first.folder == tmp_path / "outputs" / "reports" / "small"
     assert sorted(path.name for path in first.folder.iterdir()) == ["conclusions.json", "report.html", "report.pdf"]
     records = sorted((tmp_path / "outputs" / "runs").glob("*/metrics.json"))
     assert len(records) == 3
     written = [path.stat().st_mtime_ns for path in records]
     report = first.folder.joinpath("report.html").read_bytes()
 
-    second = cli("reproduce", "thesis")
+    second = cli("reproduce", "small")
     assert (second.code, second.folder) == (0, first.folder)
     assert [path.stat().st_mtime_ns for path in records] == written
     assert first.folder.joinpath("report.html").read_bytes() == report
@@ -82,58 +83,50 @@ def test_a_run_that_was_cut_short_is_an_error_and_the_report_says_what_is_missin
         return simulate(config, composed)
 
     monkeypatch.setattr(workers, "simulate_job", breaks)
-    monkeypatch.setattr(thesis, "WORK", replace(thesis.WORK, document=_document))
-    ending = cli("reproduce", "thesis", HERE)
+    ending = cli("reproduce", "small", HERE)
     assert ending.code == 1
-    assert "runner: thesis: quintic is missing in the report: cut short: RuntimeError: the machine broke" in ending.err
+    assert "runner: small: quintic is missing in the report: cut short: RuntimeError: the machine broke" in ending.err
     page = (ending.folder / "report.html").read_text()
     assert "Not made, and so missing in this report" in page
     assert "This part needs what was not made: quintic: cut short: RuntimeError: the machine broke" in page
+    assert "1 of 1 runs failed" in page  # the one that diverged is a result like any other
     monkeypatch.setattr(workers, "simulate_job", simulate)
-    assert cli("reproduce", "thesis", HERE).code == 0
-
-
-def _document(runs, calibrations):
-    """A report of one part for each run; the one that diverged is a result like any other."""
-    assert runs["singular"].status == "failed"
-    makers = [partial(_part, name=name) for name in ("goal", "quintic")]
-    checklist = lambda sections: Section("Checklist", ())  # noqa: E731
-    return work_document("Title", "", "Abstract", parts(runs, *makers), "", runs, (), checklist)
-
-
-def _part(runs, name):
-    return Section(name, (Text(runs[name].status),))
+    assert cli("reproduce", "small", HERE).code == 0
 
 
 def test_only_how_runs_are_made_can_be_set(cli, small_work, tmp_path):
     for text in ("seed=1", "sweep.trace=never", "hydra.searchpath=[]"):
-        ending = cli("reproduce", "thesis", text)
+        ending = cli("reproduce", "small", text)
         assert ending.code == 2
         assert f"reproduce: {text}: what is simulated is the work's own; free are " in ending.err
-    ending = cli("reproduce", "thesis", HERE, "limits.cpu_hours=1e-9")
+    ending = cli("reproduce", "small", HERE, "limits.cpu_hours=1e-9")
     assert ending.code == 2
     assert "limits.cpu_hours: 3 runs would take about" in ending.err
-    ending = cli("reproduce", "thesis", "hydra.sweeper.address=tcp://127.0.0.1:1")
+    ending = cli("reproduce", "small", "hydra.sweeper.address=tcp://127.0.0.1:1")
     assert "no Dask scheduler answers at tcp://127.0.0.1:1" in ending.err
 
 
 def test_one_at_a_time_works_in_a_folder(cli, small_work, tmp_path):
     (tmp_path / "outputs").mkdir()
     with at_work(tmp_path / "outputs"):
-        assert "another sweep is at work in outputs" in cli("reproduce", "thesis", HERE).err
+        assert "another sweep is at work in outputs" in cli("reproduce", "small", HERE).err
 
 
-def test_calibrations_are_made_by_the_same_engine(tmp_path):
-    jobs = {"goal": Job(("robot=macro", "duration=0.1"))}
-    calibrations = {"tool": ("calibration=tool_direction", "repetitions=2"), "none": ("calibration.poses=3",)}
-    runs, found = make_all(jobs, calibrations, tmp_path, (HERE,))
+def test_calibrations_are_made_by_the_same_engine(small_work, tmp_path):
+    (small_work / "runs.yaml").write_text(
+        "grids: {goal: {with: [robot=macro, duration=0.1]}}\n"
+        "calibrations:\n  tool: {with: [calibration=tool_direction, repetitions=2]}\n"
+        "  none: {with: [calibration.poses=3]}\n"
+    )
+    work = load_work(str(small_work))
+    runs, found = make_all(work, tmp_path, (HERE,))
     assert (list(runs), list(found), runs.missing, found.missing) == (["goal"], ["tool", "none"], {}, {})
     written = {
         path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.json") if path.parent.parent.name != "sweeps"
     }
     path = found["tool"].folder / "robot.urdf"
     path.write_text(path.read_text().replace("1", "2", 1))
-    make_all(jobs, calibrations, tmp_path, (HERE,))
+    make_all(work, tmp_path, (HERE,))
     again = [path for path, time in written.items() if path.stat().st_mtime_ns != time]
     assert again == [found["tool"].folder / "result.json"]
 
@@ -149,19 +142,19 @@ def test_the_audit_is_a_report_and_a_table(cli, monkeypatch, tmp_path):
     assert {row["verdict"] for row in table} <= set(VERDICTS)
 
 
-def test_all_reproduces_every_work(cli, small_work, monkeypatch, tmp_path):
+def test_all_reproduces_every_work_the_shortest_first(cli, monkeypatch, tmp_path):
     empty = reproduce._Reproduced(Document("", "", "", (), "2026-01-01"), {}, {})
     monkeypatch.setattr(reproduce, "_reproduce_work", lambda *_: empty)
     monkeypatch.setattr(reproduce, "_audit", lambda *_: empty)
     monkeypatch.setattr("runner.reporting.render.write_report", lambda *_: None)
     assert cli("reproduce").out.split() == [
-        f"outputs/reports/{name}" for name in ("audit", "thesis", "xarm7", "meca500")
+        f"outputs/reports/{name}" for name in ("audit", "xarm7", "meca500", "thesis")
     ]
 
 
 def test_outputs_that_cannot_be_written_are_told_before_anything_is_simulated(cli, small_work, tmp_path):
     (tmp_path / "file").write_text("in the way")
-    ending = cli("reproduce", "thesis", "--outputs", "file")
+    ending = cli("reproduce", "small", "--outputs", "file")
     assert ending.code == 2
     assert ending.err.startswith("runner: cannot write file/runs")
 

@@ -6,9 +6,9 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from runner.controllers.admittance_filter import Admittance, AdmittanceFilter, discretise
-from runner.controllers.admittance_response import step_response
 from runner.errors import ConfigError
 from runner.sensing.wrench import wrench_transform
+from runner.works.meca500.admittance_response import step_response
 
 MASS = np.array([2.0, 3.0, 1.0, 0.02, 0.03, 0.01])
 DAMPING = np.array([20.0, 120.0, 0.0, 0.1, 0.9, 0.2])  # light, heavy, none

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.audit.expressions import parse
+from runner.expressions.parser import parse
 from runner.reporting.claim import Claim, ClaimResult
 from runner.reporting.document import (
     Body,
@@ -121,7 +121,7 @@ def document(text: str = "words") -> Document:
             text,
             text,
             text,
-            [ClaimResult(text, text, "holds"), ClaimResult(text, text, "contradicts itself")],
+            [ClaimResult(text, text, "holds", text), ClaimResult(text, text, "contradicts itself", text)],
             text,
             text,
         ),

@@ -40,7 +40,7 @@ def run(metrics=None, failure=None, width=0.4):
     made = Run(
         Path("run"),
         {"robot": {"settling_band": 0.02}},
-        {"status": status, "metrics": metrics or {}, "failure": failure, "provenance": {}},
+        {"status": status, "metrics": metrics or {}, "failure": failure, "provenance": {"command": "runner macro"}},
     )
     y = np.linspace(0.0, width, 5)
     signals = {"tip_x": 0.6, "tip_y": y, "tip_z": 0.1508, "desired_x": 0.6, "desired_y": 0.4 * y / width}
@@ -67,7 +67,7 @@ def test_a_number_is_judged_by_the_median_and_shown_with_its_range():
     (block,) = blocks({"macro": run({"settling_time": metric(3.0, 4.0, 5.0)})}, NUMBER)
     assert told(block) == ("4.00 s (3.00 to 5.00)", "worse")
     assert (block.number, block.printed, block.reason) == ("1", "1.4 s", "As printed.")
-    assert block.command == "runner experiment=work/macro preset=as_reported"
+    assert block.command == "runner macro"
 
 
 def test_a_printed_range_is_shown_by_both_ends():
@@ -138,3 +138,23 @@ def test_statements_are_numbered_and_take_their_verdicts_by_name():
     assert (second.number, second.findings[0].measured, second.reason) == ("2", "3 mm", "So.")
     with pytest.raises(ValueError, match="stated: a, b; judged: a, c"):
         statement_blocks(stated, {"a": ("holds", ""), "c": ("holds", "")})
+
+
+def test_a_claim_names_a_run_and_presets_of_the_works_own():
+    claim = PublishedClaim.model_validate({**NUMBER, "experiment": "", "run": "goal"})
+    runs = {"goal/slow": run({"settling_time": metric(1.4)}), "goal/fast": run({"settling_time": metric(0.1)})}
+    (block,) = claim_blocks([claim], runs, {"slow": "half", "fast": "whole"})
+    assert [(each.preset, each.verdict) for each in block.findings] == [("slow", "holds"), ("fast", "better")]
+    assert verdict_table("All.", [block], {"slow": "half", "fast": "whole"}).header[3:] == ["half", "whole"]
+
+
+def test_without_presets_a_claim_is_judged_once():
+    claim = PublishedClaim.model_validate({**NUMBER, "experiment": "", "run": "goal"})
+    (block,) = claim_blocks([claim], {"goal": run({"settling_time": metric(1.4)})}, {})
+    assert [(each.preset, each.verdict) for each in block.findings] == [("", "holds")]
+    assert verdict_table("All.", [block], {}).header[3:] == ["simulated"]
+
+
+def test_a_claim_names_an_experiment_or_a_run():
+    with pytest.raises(ValueError, match="names an experiment or a run, one of the two"):
+        PublishedClaim.model_validate({**NUMBER, "run": "goal"})

@@ -1,8 +1,8 @@
 import pytest
 
+from runner.quantities import number
 from runner.reporting.column_units import in_readable_units, readable
 from runner.reporting.document import Document, Section, Table
-from runner.reporting.quantities import number
 
 
 def column(head, *cells):

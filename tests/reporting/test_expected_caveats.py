@@ -1,4 +1,3 @@
-from importlib import import_module
 from types import SimpleNamespace
 
 import pytest
@@ -14,6 +13,7 @@ from runner.reporting.expected_caveats import (
 )
 from runner.reporting.job import Made
 from runner.reporting.run_values import cell, measured
+from runner.works.work import load_work
 
 
 def run(*rules):
@@ -60,9 +60,10 @@ def test_programs_get_every_caveat_with_why_it_is_expected():
 
 @pytest.mark.parametrize("work", ["thesis", "xarm7", "meca500"])
 def test_what_a_work_expects_is_of_known_rules_and_of_runs_that_it_has(work):
-    names = import_module(f"runner.works.{work}.plan").plan()
+    made = load_work(work)
+    names = made.jobs()
     rules = {rule.name for rule in (*TRACE_RULES, *SETTING_RULES)}
-    for expected in import_module(f"runner.works.{work}.caveats").EXPECTED:
+    for expected in made.expected:
         assert expected.rule in rules
         assert any(expected.covers(name, {"rule": expected.rule}) for name in names), expected
         assert expected.why.endswith(".")

@@ -11,8 +11,9 @@ from sample_document import HOSTILE, curves, document, playback
 
 from runner.reporting import html
 from runner.reporting.document import Block, Document, Section, Text
-from runner.reporting.markup import plain, spans
+from runner.reporting.markup import spans
 from runner.reporting.templating import html_environment
+from runner.texts import plain
 
 
 class Page(HTMLParser):

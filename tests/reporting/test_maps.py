@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 from sample_document import HOSTILE, maps
 
-from runner.reporting import map_stills
+from runner.drawing import map_stills
+from runner.drawing.map_scale import scale_marks, value_range
 from runner.reporting.document import Map, Maps
-from runner.reporting.maps import maps_spec, scale_marks, value_range
+from runner.reporting.maps import maps_spec
 
 
 def one_map(values, log=False, **changes):

@@ -1,6 +1,7 @@
 import pytest
 
-from runner.reporting.markup import Link, Literal, Math, plain, spans
+from runner.reporting.markup import Link, Literal, Math, spans
+from runner.texts import plain
 
 
 def test_dollars_enclose_mathematics():

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from runner import run
+from runner.quantities import quantity
 from runner.reporting.figures import columns
 from runner.reporting.plant_agreement import describe_agreement, disagreement, find_twin
-from runner.reporting.quantities import quantity
 
 CASE = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "duration=0.5", "noise=thesis")
 

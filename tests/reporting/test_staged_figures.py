@@ -10,10 +10,10 @@ from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.controllers.macro_mini_graph import macro_mini_graph
 from runner.controllers.whole_body_graph import whole_body_graph
-from runner.reporting.drawings import block_diagram, canvas, frame_assignment
-from runner.reporting.drawings.control_steps import _centre, _half, control_steps, steps
+from runner.drawing import block_diagram, canvas, frame_assignment
+from runner.drawing.control_steps import _centre, _half, control_steps, steps
+from runner.drawing.stills import draw
 from runner.reporting.figures_staged import macro_mini_targets, staged_torque_and_error
-from runner.reporting.stills import draw
 from runner.store import open_run
 
 SCHEDULES = [(schedule, beyond) for schedule in ("both", "turns") for beyond in ("hold", "stretch")]

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from sample_document import HOSTILE, curves
 
-from runner.reporting import stills
+from runner.drawing import stills
 from runner.reporting.curves import plotly_spec
 from runner.reporting.document import Curves, Panel, Series
 

@@ -10,12 +10,8 @@ from runner.reporting.work_report import parts
 RUNS = Made({"a": 1, "b": 2}, {"c": "cut short: killed for $5"})
 
 
-def arms_section(made):
-    return Section("Arms", (Text(f"{made['a']}"),))
-
-
-def wrist_section(made):
-    return Section("Wrist", (Text(f"{made['c']}"),))
+def section(name):
+    return Section(name, (Text(f"{RUNS[name]}"),))
 
 
 def test_what_was_not_made_is_said_where_it_is_asked_for():
@@ -27,7 +23,7 @@ def test_what_was_not_made_is_said_where_it_is_asked_for():
 
 
 def test_a_part_that_needs_it_is_left_out():
-    arms, wrist = parts(RUNS, arms_section, wrist_section)
-    assert arms.title == "Arms"
-    assert wrist.title == "Left out: wrist"
+    arms, wrist = parts([("arms.md", lambda: section("a")), ("wrist.md", lambda: section("c"))])
+    assert arms.title == "a"
+    assert wrist.title == "Left out: wrist.md"
     assert wrist.blocks[0].text == "This part needs what was not made: c: cut short: killed for $$5."

@@ -1,6 +1,7 @@
 """The Meca500's URDF against the report's table, in the modified convention, and the arm's published data."""
 
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,7 +16,9 @@ from runner.robots.denavit_hartenberg import (
     modified_transform,
 )
 from runner.robots.inertials import Payload
-from runner.robots.meca500 import TABLE
+from runner.works.meca500.equations.truths import meca500 as report
+
+TABLE = [replace(row, a=row.a / 1000.0, d=row.d / 1000.0) for row in report.TABLE]  # in m
 
 
 def model_of(inertials=None, payload=None):

@@ -1,9 +1,11 @@
 import json
+from importlib.metadata import EntryPoint
 
 import pytest
 
 from runner.config.compose import compose
 from runner.paths import package_dir
+from runner.plugins import source_files
 from runner.store import identity, run_hash, simulated_part
 
 CONFIG = {"seed": 0, "controller": {"period": 0.01, "kind": "a"}, "outputs": "x", "preset": {"feedforward": True}}
@@ -86,8 +88,9 @@ def test_every_room_is_physics_or_known_not_to_be():
     """A new room belongs to one of the two lists; what decides about results must count in the hash."""
     after_the_run = {
         "audit", "caveats", "claims", "cli.py", "commands", "data_file.py", "doctor", "engine_output.py", "errors.py",
-        "paths.py", "plugins.py", "provenance.py", "references", "reporting", "servo_contact.py", "statistics", "store",
-        "sweeps", "texts.py", "tuning", "works", "__init__.py", "__main__.py",
+        "drawing", "expressions", "paths.py", "plugins.py",
+        "provenance.py", "quantities.py", "references", "reporting", "servo_contact.py",
+        "statistics", "store", "sweeps", "texts.py", "tuning", "works", "__init__.py", "__main__.py",
     }  # fmt: skip
     rooms = {path.name for path in package_dir().iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()}
     assert set(identity._PHYSICS) | after_the_run == rooms
@@ -96,3 +99,17 @@ def test_every_room_is_physics_or_known_not_to_be():
 
 def test_the_simulated_part_leaves_out_what_does_not_count():
     assert set(simulated_part(CONFIG)) == {"seed", "controller"}
+
+
+def test_a_part_counts_in_the_runs_that_use_it(monkeypatch):
+    point = EntryPoint("a", "runner.works.xarm7.parts.three_joint", "runner.controller")
+    other = {"controller": {"kind": "b"}}
+    before = changed(), changed(**other)
+    monkeypatch.setattr(identity, "added", lambda group: (point,) if group == "controller" else ())
+    assert changed() != before[0]
+    assert changed(**other) == before[1]
+
+
+def test_of_a_part_of_our_works_the_source_is_its_folder():
+    names = [path.name for path in source_files("runner.works.xarm7.parts.three_joint")]
+    assert names == ["__init__.py", "three_joint.py", "three_joint_kinematics.py", "xarm7_as_printed.py"]

@@ -1,35 +1,30 @@
 """Numbers in the words of findings come from runs, or are levels of an axis."""
 
-from importlib import import_module
-
 import pytest
-from finding_words import typed_in_chapter, typed_numbers
+from finding_words import typed_in_module
 
-from runner.paths import package_dir, works_dir
+from runner.paths import package_dir
+from runner.reporting.prose.typed import levels_in, typed_numbers
+from runner.works.work import load_work
 
 
 @pytest.mark.parametrize("work", ["thesis", "xarm7", "meca500"])
 def test_no_number_is_typed_in_the_words_of_a_finding(work):
-    names = import_module(f"runner.works.{work}.plan").plan()
-    folder = works_dir() / work
-    assert [told for path in sorted(folder.rglob("*.py")) for told in typed_numbers(path, names)] == []
-    assert [told for path in sorted(folder.rglob("*.md")) for told in typed_in_chapter(path, names)] == []
+    made = load_work(work)
+    levels = levels_in([*made.jobs(), *made.calibrations()])
+    texts = {path: path.read_text(encoding="utf-8") for path in sorted(made.folder.glob("*.md"))}
+    assert [told for path, text in texts.items() for told in typed_numbers(path.name, text, levels)] == []
+    assert [path.name for path in made.folder.rglob("*.py") if "finding(" in path.read_text(encoding="utf-8")] == []
 
 
 def test_no_finding_of_all_works_has_one():
-    assert [told for path in (package_dir() / "reporting").rglob("*.py") for told in typed_numbers(path, ())] == []
+    assert [told for path in (package_dir() / "reporting").rglob("*.py") for told in typed_in_module(path, ())] == []
 
 
 def lint(tmp_path, words, names=()):
     module = tmp_path / "module.py"
     module.write_text(f"def conclude(error):\n    more = f'about 7 m'\n    return finding({words})\n")
-    return [told.split(": ")[1] for told in typed_numbers(module, names)]
-
-
-def test_the_lint_finds_typed_numbers_in_a_chapter(tmp_path):
-    chapter = tmp_path / "chapter.md"
-    chapter.write_text("# T\n\nAfter 3 s.\n\n::: finding It takes {{ x / 2 }} or 4 s\nClaim 3.\nholds: x > 7\n:::\n")
-    assert [told.split(": ")[1] for told in typed_in_chapter(chapter, ())] == ["4 s"]
+    return [told.split(": ")[1] for told in typed_in_module(module, names)]
 
 
 def test_the_lint_finds_typed_numbers_and_no_others(tmp_path):

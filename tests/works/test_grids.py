@@ -33,7 +33,7 @@ grids:
         ("alone", ("robot=xarm7",)),
     ]
     assert grids.jobs()["alone"].overrides == ("robot=xarm7",)
-    assert grids.labels("turns", "schedule")["turns"] == ("a=1", "b=2")
+    assert grids.grid("turns").over["schedule"]["turns"] == ("a=1", "b=2")
     assert grids.calibrations == {}
 
 

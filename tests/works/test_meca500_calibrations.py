@@ -1,41 +1,22 @@
 """The calibrations' sections of the Meca500 report: they build, and what they compute themselves is right."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from study_sections import blocks, unfinished_texts
 from thin_plans import make_calibrations, make_runs
-from work_plans import meca500_calibrations
+from work_plans import chapter, meca500_calibrations
 
 from runner.calibration import REST, GravityCalibration, Tool, WrenchCompensation
 from runner.calibration.tool_centre_point import identify_tool_centre_point
 from runner.reporting import formulas
 from runner.reporting.document import Curves, Document, Table
-from runner.works.meca500.calibration_plan import name_of
-from runner.works.meca500.calibration_studies import (
-    consistency_finding,
-    consistency_values,
-    fit,
-    found_error,
-    predicted_error,
-    refusal,
-)
-from runner.works.meca500.gravity import gravity_section
-from runner.works.meca500.gravity_printed import (
-    force_step,
-    swapped_moment_step,
-    theta_by_arc_cosine,
-    theta_by_arc_sine,
-)
-from runner.works.meca500.gravity_residual import exact_readings
-from runner.works.meca500.tool_centre_point import (
-    common_point_covariance,
-    independent_rows_covariance,
-    tool_centre_point_section,
-)
-from runner.works.meca500.tool_direction import tool_direction_section
+from runner.works.meca500.figures import consistency, error, fit, predicted, refusal
+from runner.works.meca500.gravity import angles, exact_readings, force_step, swapped_moment_step
+from runner.works.meca500.tool_centre_point import common_point_covariance, independent_rows_covariance
 
 GRAVITY = 9.81
 PARAMETERS = np.array([0.25, 0.3, 0.01, -0.003, 0.028, 0.4, -0.3, 0.8, 0.01, -0.02, 0.005])
@@ -57,11 +38,8 @@ def weighed(shared_store):
 
 @pytest.fixture(scope="module")
 def sections(calibrations, weighed):
-    return (
-        tool_centre_point_section(calibrations),
-        tool_direction_section(calibrations),
-        gravity_section(calibrations, weighed),
-    )
+    names = ("tool_centre_point", "tool_direction", "gravity")
+    return tuple(chapter("meca500", f"{name}.md")(weighed, calibrations) for name in names)
 
 
 def table(section, caption):
@@ -82,10 +60,11 @@ def test_every_table_and_figure_carries_its_command(sections):
                 assert block.origin.command.startswith("runner ")
 
 
-def test_each_calibration_is_carried_out_once(calibrations):
-    assert len({done.hash for done in calibrations.values()}) == len(calibrations)
-    assert name_of("tool_centre_point/poses", 4) == "tool_centre_point/base"
-    assert name_of("tool_centre_point/poses", 6) == "tool_centre_point/poses/6"
+def test_the_level_of_the_base_case_is_the_base_case(calibrations):
+    base = calibrations["tool_centre_point/base"].hash
+    assert calibrations["tool_centre_point/poses/4"].hash == base
+    assert calibrations["tool_centre_point/poses/6"].hash != base
+    assert len({done.config["seed"] for done in calibrations.values()}) == len({d.hash for d in calibrations.values()})
 
 
 def test_refusals_name_the_reason(sections):
@@ -104,37 +83,32 @@ def test_weighed_by_pybullet_s_reaction_the_tool_is_the_true_one(sections):
 
 
 def test_without_noise_errors_are_rounding(calibrations):
-    for variation in ("tool_centre_point/repeatability", "tool_direction/repeatability", "gravity/noise"):
-        done = calibrations[name_of(variation, 0.0)]
-        assert found_error(done) < 1e-9
-        assert predicted_error(done) == 0.0
+    for name in ("tool_centre_point/repeatability/0", "tool_direction/repeatability/0", "gravity/noise/0"):
+        assert error()(calibrations[name]) < 1e-9
+        assert predicted()(calibrations[name]) == 0.0
 
 
 def test_the_tip_s_error_is_proportional_to_the_repeatability(calibrations):
-    values = np.array([1e-6, 2e-5, 1e-4])
-    errors = [predicted_error(calibrations[name_of("tool_centre_point/repeatability", v)]) for v in values]
-    assert fit(values, np.array(errors)) == pytest.approx(1.0, abs=1e-3)
+    levels = ("1e-06", "2e-05", "0.0001")
+    errors = [predicted()(calibrations[f"tool_centre_point/repeatability/{level}"]) for level in levels]
+    assert fit(np.array(levels, dtype=float), np.array(errors)) == pytest.approx(1.0, abs=1e-3)
 
 
 def test_averaging_readings_makes_the_error_smaller_by_the_root(calibrations):
     values = np.array([1.0, 10.0, 100.0])
-    errors = [predicted_error(calibrations[name_of("gravity/samples", v)], "mass") for v in values]
+    errors = [predicted("mass")(calibrations[f"gravity/samples/{value:g}"]) for value in values]
     assert fit(values, np.array(errors)) == pytest.approx(-0.5, abs=0.01)
 
 
-def test_what_lies_in_the_band_is_counted(calibrations):
-    base = calibrations["gravity/base"]
-    outside = replace(base, record={**base.record, "consistency": {**base.consistency, "holds": False}})
+def test_what_lies_in_the_band_is_counted_once_for_each_calibration(calibrations):
+    base, exact = calibrations["gravity/base"], calibrations["gravity/noise/0"]
+    judged = {**base.consistency, "holds": False}
+    others = [replace(base, folder=Path(name), record={**base.record, "consistency": judged}) for name in "bc"]
     inside = replace(base, record={**base.record, "consistency": {**base.consistency, "holds": True}})
-    exact = calibrations[name_of("gravity/noise", 0.0)]
-    good = consistency_finding(**consistency_values({"a/1": inside, "a/2": exact, "b/1": outside}, "a"))
-    assert (good.holds, " in 1 of 1 of these" in good.sentences) == (True, True)
-    bad = consistency_finding(**consistency_values({"a/1": inside, "a/2": outside, "a/3": outside}, "a"))
-    assert (bad.holds, " in 1 of 3 of these" in bad.sentences) == (False, True)
-
-
-def test_each_calibration_draws_from_a_seed_of_its_own(calibrations):
-    assert len({done.config["seed"] for done in calibrations.values()}) == len(calibrations)
+    found = consistency({"a/1": inside, "a/2": exact, "a/3": inside, "b/1": others[0]}, "a")
+    assert [found[key].value for key in ("inside", "number", "outside")] == [1, 1, 0]
+    found = consistency({"a/1": inside, "a/2": others[0], "a/3": others[1]}, "a")
+    assert [found[key].value for key in ("inside", "number", "outside")] == [1, 3, 2]
 
 
 def half_turns():
@@ -172,20 +146,13 @@ def test_exact_readings_are_what_compensation_takes_off():
     np.testing.assert_allclose(exact_readings(PARAMETERS, np.eye(3)[None], GRAVITY)[0], upright, atol=1e-15)
 
 
-def test_readings_of_many_parameters_at_once():
-    several = np.stack([PARAMETERS, 2.0 * PARAMETERS])
-    found = exact_readings(several, ORIENTATIONS, GRAVITY)
-    assert found.shape == (2, 12, 6)
-    np.testing.assert_array_equal(found[0], exact_readings(PARAMETERS, ORIENTATIONS, GRAVITY))
-
-
 def test_the_third_row_gives_the_angle_and_the_third_column_does_not():
     forces = exact_readings(PARAMETERS, ORIENTATIONS, GRAVITY)[:, :3]
-    right, printed = force_step(forces, ORIENTATIONS), force_step(forces, ORIENTATIONS.transpose(0, 2, 1))
-    assert np.arctan2(right.G_s, right.G_c) == pytest.approx(0.3, abs=1e-12)
-    assert pytest.approx(0.25 * GRAVITY) == right.G
-    assert right.residual < 1e-12
-    assert printed.residual > 0.1
+    (G_c, G_s, G, left), printed = force_step(forces, ORIENTATIONS), force_step(forces, ORIENTATIONS.transpose(0, 2, 1))
+    assert np.arctan2(G_s, G_c) == pytest.approx(0.3, abs=1e-12)
+    assert pytest.approx(0.25 * GRAVITY) == G
+    assert left < 1e-12
+    assert printed[3] > 0.1
 
 
 def test_swapped_axes_give_another_centre_of_mass():
@@ -193,6 +160,6 @@ def test_swapped_axes_give_another_centre_of_mass():
     assert np.linalg.norm(swapped_moment_step(readings[:, :3], readings[:, 3:]) - PARAMETERS[2:5]) > 5e-3
 
 
-def test_arc_cosine_loses_the_sign_and_arc_sine_the_half_turn():
-    assert theta_by_arc_cosine(np.cos(-0.3), 1.0) == pytest.approx(0.3)
-    assert theta_by_arc_sine(np.sin(2.0), 1.0) == pytest.approx(np.pi - 2.0)
+def test_arc_cosine_loses_the_sign_and_arc_sine_the_half_turn(calibrations):
+    assert angles(calibrations, -0.3) == ["-0.3", "0.300", "-0.300", "-0.300"]
+    assert angles(calibrations, 2.0) == ["2", "2.000", "1.142", "2.000"]

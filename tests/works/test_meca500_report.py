@@ -10,7 +10,7 @@ from runner.reporting import outline
 from runner.reporting.document import Curves, Notice, Playback, Table
 from runner.reporting.formulas import faulty
 from runner.reporting.render import write_report
-from runner.works.meca500.report import document as meca500_document
+from runner.works.work import load_work
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +22,7 @@ def runs(shared_store, thin):
 
 @pytest.fixture(scope="module")
 def document(runs, shared_store):
-    return meca500_document(runs, make_calibrations(shared_store, meca500_calibrations()))
+    return load_work("meca500").document(runs, make_calibrations(shared_store, meca500_calibrations()))
 
 
 def blocks_of(document, *kinds):

@@ -14,6 +14,7 @@ from runner.works.thesis.equations.truths.thesis import symbols
 from runner.works.thesis.equations.truths.thesis_appendix import appendix_damages, damages, true_series
 from runner.works.thesis.equations.truths.thesis_arms import COMBINED
 
+TRUTH = COMBINED.audited.truth("model.dynamics")
 TERMS = (1011, 592, 427, 359, 325, 239)
 GROUPS = (26, 25, 24, 19, 21, 20)  # with gravity, which joint 1 does not feel
 DAMAGED = (7, 2, 2, 1, 1, 106)
@@ -138,8 +139,7 @@ def test_the_true_series_is_the_torque():
     q, dq, ddq = COMBINED.q(values), COMBINED.dq(values), COMBINED.ddq(values)
     terms = [(torque, factor, h, c) for (torque, factor), found in true_series().items() for h, c in found.items()]
     torques = evaluate(terms, q, dq, ddq)
-    for torque, expected in thesis_appendix.torques.first(values).items():
-        np.testing.assert_allclose(torques[:, int(torque[-1]) - 1], expected, atol=1e-12)
+    np.testing.assert_allclose(torques, TRUTH.first(values)["tau"], atol=1e-12)
 
 
 def test_known_torques():
@@ -148,8 +148,8 @@ def test_known_torques():
         f"ddq{i}": np.array([0.7 - i / 10]) for i in range(1, 7)
     }
     expected = [0.756871, 17.639557, -1.458317, 0.001641, 0.132384, -0.057832]
-    for way in (thesis_appendix.torques.first, thesis_appendix.torques.second):
-        np.testing.assert_allclose([tau[0] for tau in way(values).values()], expected, atol=1e-6)
+    for way in (TRUTH.first, TRUTH.second):
+        np.testing.assert_allclose(way(values)["tau"][0], expected, atol=1e-6)
 
 
 # Damage.
@@ -203,7 +203,7 @@ def test_a_term_printed_twice_is_right_once():
 def test_the_numbers_of_the_finding(torque):
     entry = next(entry for _, entry in entries("thesis") if entry.id == f"thesis-appendix-{torque}")
     values = symbols(1000, np.random.default_rng(0))
-    true = thesis_appendix.torques.first(values)[f"tau_{torque}"]
+    true = TRUTH.first(values)[f"tau_{torque}"]
     read = getattr(thesis_appendix, f"read_{torque}")(values)[f"tau_{torque}"]
     error = np.abs(read - true)
     numbers = [TERMS[torque - 1], GROUPS[torque - 1], TERMS[torque - 1] - DAMAGED[torque - 1] + (torque == 4)]

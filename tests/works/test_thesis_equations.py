@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from runner.audit.entry import entries, parts
+from runner.audit.truth import along
 from runner.audit.verdict import AuditError, Judge
-from runner.works.thesis.equations.truths import thesis_arms, thesis_measures, thesis_operational
+from runner.works.thesis.equations.truths import thesis_measures, thesis_operational
 from runner.works.thesis.equations.truths.thesis import regular_symbols, symbols, symbols_at
 from runner.works.thesis.equations.truths.thesis_arms import COMBINED, MACRO, MINI
 
@@ -137,8 +138,12 @@ def test_a_matrix_has_all_its_elements(name):
 @pytest.mark.parametrize("arm", [MACRO, MINI, COMBINED])
 def test_the_chain_is_the_model(arm):
     values = symbols(20, np.random.default_rng(3))
-    q, dq, model = arm.q(values), arm.dq(values), arm.model()
-    M, V, G, T = arm.mass_matrix(q), arm.coriolis_torque(q, dq), arm.gravity_torque(q), arm.frame(len(arm.a), q)
+    q, dq, model = arm.q(values), arm.dq(values), arm.model
+    M, V, G, T = 0.0, 0.0, arm.weight(q), arm.frame(len(arm.a), q)
+    for link, mass in enumerate(arm.masses, start=1):  # point masses, by d'Alembert's principle
+        J = arm.end_jacobian(link, q)[:, :3]
+        M = M + mass * J.transpose(0, 2, 1) @ J
+        V = V + mass * along(J.transpose(0, 2, 1), arm.bias_acceleration(link, q, dq))
     for row in range(20):
         np.testing.assert_allclose(T[row], model.tip_pose(q[row]), atol=1e-12)
         np.testing.assert_allclose(M[row], model.mass_matrix(q[row]), atol=1e-12)
@@ -149,7 +154,7 @@ def test_the_chain_is_the_model(arm):
 def test_regular_samples_keep_off_singular_postures():
     values = regular_symbols(500, np.random.default_rng(0))
     for arm in (MACRO, MINI):
-        J = np.array([arm.model().tip_jacobian(q)[:3] for q in arm.q(values)]) / arm.a[2]
+        J = np.array([arm.model.tip_jacobian(q)[:3] for q in arm.q(values)]) / arm.a[2]
         assert np.abs(np.linalg.det(J)).min() > 0.049
     assert len(values["q1"]) == 500
 
@@ -181,5 +186,5 @@ def test_the_closed_loop_decays_as_the_gains_say():
     found = thesis_operational.goal_closed.first(values)["acceleration"]
     q, dq = MACRO.q(values), MACRO.dq(values)
     x = MACRO.frame(3, q)[:, :3, 3]
-    dx = thesis_arms.along(MACRO.end_jacobian(3, q)[:, :3], dq)
+    dx = along(MACRO.end_jacobian(3, q)[:, :3], dq)
     np.testing.assert_allclose(found, -60.0 * dx - 900.0 * (x - [0.1679, -0.7571, 0.4255]), atol=1e-7)

@@ -14,26 +14,31 @@ from runner.reporting.findings import findings
 from runner.reporting.formulas import faulty
 from runner.reporting.job import PRESETS
 from runner.reporting.render import write_report
-from runner.works.xarm7.plan import STEPS, plan
-from runner.works.xarm7.report import document as xarm7_document
+from runner.works.chapters import Chapters
+from runner.works.work import load_work
 
 STUDIES = ("why_it_failed", "null_space", "rates", "servo", "payload", "torque_level")
+TITLES = {"why_it_failed": "Why the second part failed"}  # of those that the checklist names
 OWN_FIGURES = ("sketch of the motion", "Graphs of x, y and z", "Graphs of q1, q2 and q4")
 
 
 @pytest.fixture(scope="module")
 def runs(shared_store):
-    studies = xarm7_studies()
-    return make_runs(shared_store, {name: job.overrides for name, job in plan().items() if name not in studies})
+    studies, jobs = xarm7_studies(), load_work("xarm7").jobs()
+    return make_runs(shared_store, {name: job.overrides for name, job in jobs.items() if name not in studies})
 
 
 @pytest.fixture(scope="module")
 def document(runs):
+    section = Chapters.section
+
+    def without_studies(self, chapter):
+        name = str(chapter).removesuffix(".md")
+        return Section(TITLES.get(name, name)) if name in STUDIES else section(self, chapter)
+
     with pytest.MonkeyPatch.context() as patch:
-        for name in STUDIES:
-            title = "Why the second part failed" if name == "why_it_failed" else name
-            patch.setattr(f"runner.works.xarm7.report.{name}_section", lambda runs, title=title: Section(title))
-        return xarm7_document(runs, {})
+        patch.setattr(Chapters, "section", without_studies)
+        return load_work("xarm7").document(runs, {})
 
 
 def blocks_of(document, *kinds):
@@ -132,8 +137,8 @@ def test_the_plants_disagreement_is_measured_and_shrinks_with_the_step(document)
     assert text.count("the tip is at most") == len(PRESETS)
     distances = [float(re.sub("·10⁻⁶$", "e-6", row[2]).replace("·10⁻⁷", "e-7")) for row in
                  table(document, "PyBullet's step against Runge-Kutta").rows]  # fmt: skip
-    for first in range(0, len(distances), len(STEPS)):
-        coarse, middle, fine = distances[first : first + len(STEPS)]
+    for first in range(0, len(distances), 3):
+        coarse, middle, fine = distances[first : first + 3]
         assert middle / coarse == pytest.approx(0.5, rel=0.05)  # first order
         assert fine / middle == pytest.approx(0.5, rel=0.05)
 

@@ -1,12 +1,14 @@
 """Which runs the tests of the works' reports make: those of the plans, with what takes long cut to a moment."""
 
+from collections.abc import Callable, Mapping
+
 from thin_plans import Overrides
 
+from runner.reporting.document import Section
 from runner.reporting.job import Job
-from runner.works.meca500.calibration_plan import calibration_jobs
-from runner.works.meca500.plan import plan as meca500_plan
-from runner.works.thesis.plan import plan as thesis_plan
-from runner.works.xarm7.plan import plan as xarm7_plan
+from runner.reporting.prose.trying import never_failing
+from runner.store import Calibration, Run
+from runner.works.work import Work, load_work
 
 MOMENT = 0.08  # s
 _ONE_ARM = ("gravity_term", "similarity", "lag", "base_axis", "plants", "sampling", "singular")
@@ -21,7 +23,7 @@ def cut(overrides: Overrides, duration: float) -> Overrides:
 
 def thesis_jobs() -> dict[str, Overrides]:
     """Return all runs of the thesis, with two repetitions in place of forty; the twins of another plant have one."""
-    return {name: _repeated(job.overrides) for name, job in thesis_plan().items()}
+    return {name: _repeated(job.overrides) for name, job in load_work("thesis").jobs().items()}
 
 
 def _repeated(overrides: Overrides) -> Overrides:
@@ -44,7 +46,8 @@ def thesis_moments() -> dict[str, Overrides]:
 
 def xarm7_studies() -> dict[str, Job]:
     """Return the runs of the studies on the xArm7, of which none is an experiment of the report's."""
-    return {name: job for name, job in xarm7_plan().items() if not job.overrides[0].startswith("experiment=")}
+    jobs = load_work("xarm7").jobs()
+    return {name: job for name, job in jobs.items() if not job.overrides[0].startswith("experiment=")}
 
 
 def xarm7_moments() -> dict[str, Overrides]:
@@ -54,7 +57,7 @@ def xarm7_moments() -> dict[str, Overrides]:
 
 def meca500_jobs() -> dict[str, Overrides]:
     """Return all runs of the Meca500 report; those of contact, guiding and steps as short as shows what they do."""
-    jobs = {name: job.overrides for name, job in meca500_plan().items()}
+    jobs = {name: job.overrides for name, job in load_work("meca500").jobs().items()}
     lengths = {name: _MECA500.get(name.partition("/")[0]) for name in jobs}
     return {name: o if lengths[name] is None else cut(o, lengths[name]) for name, o in jobs.items()}
 
@@ -63,5 +66,29 @@ def meca500_calibrations() -> dict[str, Overrides]:
     """Return all calibrations of the Meca500 report, with few repetitions."""
     return {
         name: (*(override for override in overrides if override != "repetitions=1"), "repetitions=4")
-        for name, overrides in calibration_jobs().items()
+        for name, overrides in load_work("meca500").calibrations().items()
     }
+
+
+def chapter_files(work: str) -> list[str]:
+    """Return the files of a work's chapters."""
+    return list(load_work(work).about.files())
+
+
+def chapter(work: str, file: str) -> Callable[..., Section]:
+    """Return what makes a chapter of a work from runs, and calibrations."""
+
+    def make(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration] = {}) -> Section:
+        return load_work(work).chapters(runs, calibrations).section(file)
+
+    make.__name__ = file
+    return make
+
+
+def conditions_that_never_fail(
+    work: str, file: str, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration] = {}
+) -> list[str]:
+    """Return the conditions of a chapter in Markdown that hold whatever is changed."""
+    made: Work = load_work(work)
+    text = (made.folder / file).read_text(encoding="utf-8")
+    return never_failing(file, text, made.chapters(runs, calibrations).names(file.removesuffix(".md")))

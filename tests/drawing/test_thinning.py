@@ -1,9 +1,10 @@
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runner.reporting.document import Series
-from runner.reporting.thinning import band, runs, thin
+from runner.drawing.figure import Series
+from runner.drawing.thinning import band, runs, spaced, thin
 
 
 @given(st.integers(2001, 9000), st.data())
@@ -55,3 +56,11 @@ def test_hints_and_runs_stay_with_their_points():
     thinned = thin(Series("", x, np.sin(40 * x), hints=names, runs=names), 100)
     assert len(thinned.x) < 200
     assert list(thinned.hints) == list(thinned.runs) == [f"{value:.6f}" for value in thinned.x]
+
+
+@pytest.mark.parametrize(("count", "most"), [(0, 5), (1, 5), (5, 5), (6, 5), (1000, 24), (7, 1)])
+def test_evenly_spaced_places_are_different_and_reach_both_ends(count, most):
+    places = spaced(count, most)
+    assert len(places) == len(set(places)) == min(count, most)
+    assert places[:1] == ([0] if count else [])
+    assert most == 1 or places[-1:] == ([count - 1] if count else [])

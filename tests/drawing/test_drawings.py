@@ -7,11 +7,11 @@ import pytest
 
 from runner.controllers.graph import ControlGraph, Edge, Node
 from runner.controllers.operational_space_graph import operational_space_graph
-from runner.reporting.drawings import arm_motion, block_diagram, frame_assignment, top_view, workspace_sphere
-from runner.reporting.drawings.arm import _nearest
-from runner.reporting.drawings.block_diagram import _box, _route
-from runner.reporting.drawings.canvas import Camera, circle
-from runner.reporting.drawings.workspace import _best_samples
+from runner.drawing import arm_motion, block_diagram, frame_assignment, top_view, workspace_sphere
+from runner.drawing.arm import _nearest
+from runner.drawing.block_diagram import _box, _route
+from runner.drawing.canvas import Camera, circle
+from runner.drawing.workspace import _best_samples
 from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.robots.workspace import analyse
 

@@ -1,6 +1,7 @@
 import pytest
 
-from runner.audit.expressions import ExpressionError, names, parse
+from runner.expressions.parser import ExpressionError, parse
+from runner.expressions.tree import names
 
 
 @pytest.mark.parametrize(

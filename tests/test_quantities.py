@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from runner.reporting.quantities import (
+from runner.quantities import (
     above_rounding,
     digits_between,
     labelled,

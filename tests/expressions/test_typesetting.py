@@ -1,7 +1,7 @@
 import pytest
 
-from runner.audit.expressions import parse
-from runner.audit.typesetting import symbol, typeset
+from runner.expressions.parser import parse
+from runner.expressions.typesetting import symbol, typeset
 from runner.reporting import formulas
 
 

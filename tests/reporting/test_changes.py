@@ -6,7 +6,7 @@ import json
 import pytest
 
 from runner.errors import RunnerError
-from runner.works.changes import FILE, Change, changes, read_conclusions
+from runner.reporting.changes import FILE, Change, changes, read_conclusions
 
 OLD = {
     "thesis": {

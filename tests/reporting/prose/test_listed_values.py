@@ -1,0 +1,73 @@
+"""Numbers over the runs that patterns stand for, and tables whose cells stand in the chapter."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from runner.errors import RunnerError
+from runner.reporting.measured import Measured
+from runner.reporting.prose import trying
+from runner.reporting.prose.blocks import config, count, each
+from runner.reporting.prose.plots import over, panel
+from runner.reporting.prose.signals import moved, part, scaled, setting
+from runner.reporting.prose.tables import listing
+
+
+def run(stiffness, status="ok"):
+    provenance = {"commit": "", "command": "runner"}
+    trace = pd.DataFrame({"t": [0.0, 1.0], "tip_x": [2.0, 2.5]})
+    own = {"wall": {"stiffness": stiffness}}
+    return SimpleNamespace(status=status, config=own, trace=trace, provenance=provenance, hash="h")
+
+
+RUNS = {"wall/soft": run(10.0), "wall/hard": run(1000.0), "wall/gone": run(5.0, "failed"), "free": run(0.0)}
+
+
+def test_a_number_of_each_run_is_none_where_it_failed():
+    found = each(RUNS, "stiffness", scaled(2.0, setting("wall.stiffness")), "N/m", "wall/{case}", "free")
+    assert [own.value for own in found] == [20.0, 2000.0, None, 0.0]
+    assert found[0].name == "stiffness of wall/soft"
+
+
+def test_a_number_of_some_runs_alone():
+    hard = each(RUNS, "k", setting("wall.stiffness"), "N/m", "wall/{case}", only=lambda own: own.hash == "none")
+    assert hard == []
+    assert part(lambda own: {"k": setting("wall.stiffness")(own)}, "k", 2.0)(RUNS["wall/soft"]) == 20.0
+
+
+def test_a_logarithmic_axis_leaves_zeros_out():
+    levels = {"at/0": run(0.0), "at/2": run(4.0)}
+    series = over(levels, "at/{level}", "level", setting("wall.stiffness"), x_factor=1000.0)
+    drawn = panel("", "x", "y", series, x_log=True).series[0]
+    np.testing.assert_array_equal(drawn.x, [2000.0])
+    np.testing.assert_array_equal(drawn.y, [4.0])
+    np.testing.assert_array_equal(panel("", "x", "y", series).series[0].x, [0.0, 2000.0])
+
+
+def test_runs_are_counted():
+    assert count(RUNS, "walls", None, "wall/{case}").value == 3
+    assert count(RUNS, "hard ones", lambda own: setting("wall.stiffness")(own) > 100.0, "wall/{case}").value == 1
+
+
+def test_a_key_of_no_config_is_refused_with_the_nearest():
+    assert config(RUNS, "free", "wall.stiffness") == 0.0
+    with pytest.raises(RunnerError, match=r"no key wall.stifness in a config \(did you mean stiffness\?\)"):
+        setting("wall.stifness")(RUNS["free"])
+
+
+def test_a_signal_from_where_it_begins():
+    np.testing.assert_array_equal(moved("tip_x")(RUNS["free"]), [0.0, 0.5])
+
+
+def test_a_listing_shows_texts_numbers_and_measured_values():
+    table = listing(RUNS, "What", "free", ["word", "number"], ["a", 0.25], ["b", Measured("c", 3e-14)])
+    assert (table.rows, table.numeric) == ([["a", "0.25"], ["b", "0 (rounding)"]], (1,))
+
+
+def test_each_value_of_a_group_is_changed_in_turn():
+    group = {"a": Measured("a", 1.0), "b": [Measured("b", 2.0)]}
+    box = "::: finding A\nSo.\nholds: group.a < group.b[0]\nholds: 1 < given().a * 2\n:::\n"
+    text = f"# T\n\n{{% set group = given() %}}\n\n{box}"
+    assert len(trying.never_failing("a.md", text, {"given": lambda: group})) == 1

@@ -1,0 +1,173 @@
+"""Tables, curves and numbers over the runs that a pattern names, from runs that are made up here."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from runner.errors import RunnerError
+from runner.reporting.job import Made, MissingError
+from runner.reporting.measured import Measured
+from runner.reporting.prose import blocks, plots, signals, tables
+from runner.reporting.prose.patterns import found
+from runner.store import Run
+
+
+def run(value, failed=False, ends=None, unit="m"):
+    low, high = ends or (value, value)
+    stored = {"unit": unit, "median": value, "min": low, "max": high, "values": [value]}
+    record = {
+        "status": "failed" if failed else "ok",
+        "metrics": {} if failed else {"error": stored, "settling_time": {**stored, "unit": "s", "median": None}},
+        "failure": {"reason": "diverged", "time": 0.5, "joint": None, "repetition": 0} if failed else None,
+        "provenance": {"command": f"runner {value}", "commit": ""},
+    }
+    made = Run(Path("run"), {"controller": {"gain": 10 * value}}, record)
+    t = np.array([0.0, 0.5, 1.0])
+    signal = {"error_x": 3.0 * value * t, "error_y": 4.0 * value * t, "error_z": 0.0 * t}
+    made.__dict__["trace"] = pd.DataFrame({"t": t, "q1": value * t, "q2": -t} | signal)
+    return made
+
+
+RUNS = {
+    f"gain/{gain}/{preset}": run(float(gain) * (1.0 if preset == "sound" else 2.0))
+    for preset in ("sound", "as_reported")
+    for gain in (1, 10, 5)
+} | {"held": run(7.0)}
+
+
+def test_a_pattern_names_runs_in_the_order_of_the_plan():
+    assert [one.name for one in found(RUNS, "gain/{gain}/sound")] == ["gain/1/sound", "gain/10/sound", "gain/5/sound"]
+    by = [one.levels for one in found(RUNS, "gain/{gain}/{preset}", ["preset"])]
+    assert by[:3] == [{"gain": gain, "preset": "sound"} for gain in ("1", "10", "5")]
+    assert [one.levels["preset"] for one in found(RUNS, "gain/{gain}/{preset}")][:2] == ["sound", "as_reported"]
+
+
+def test_a_pattern_that_names_nothing_is_refused():
+    with pytest.raises(RunnerError, match=r"no run is named like 'gian/\{gain\}/sound'"):
+        found(RUNS, "gian/{gain}/sound")
+    with pytest.raises(RunnerError, match=r"has no axis 'gian' \(did you mean gain\?\)"):
+        found(RUNS, "gain/{gain}/sound", ["gian"])
+    with pytest.raises(MissingError, match="gain/2/sound: cut short"):
+        found(Made(RUNS, {"gain/2/sound": "cut short"}), "gain/{gain}/sound")
+
+
+def test_a_table_has_a_row_for_each_run_and_a_unit_for_each_metric():
+    made = tables.table(
+        RUNS,
+        "Errors.",
+        ["gain/{gain}/{preset}", "held"],
+        tables.level("preset", "preset", missing="held"),
+        tables.level("gain", words={"10": "ten"}),
+        tables.column("error", "error"),
+        tables.column("settles", "settling_time"),
+        tables.column("of the sound one", signals.at_the_end("q1"), "gain/{gain}/sound", only={"gain": "5"}),
+        by=["preset"],
+        number="table 1",
+    )
+    assert made.header == ["preset", "gain", "error (m)", "settles (s)", "of the sound one"]
+    assert [row[:2] for row in made.rows][:4] == [
+        ["full equations", "1"],
+        ["full equations", "ten"],
+        ["full equations", "5"],
+        ["as reported", "1"],
+    ]
+    assert [row[2] for row in made.rows] == ["1", "10", "5", "2", "20", "10", "7"]
+    assert {row[3] for row in made.rows} == {"never"}
+    assert [row[4] for row in made.rows] == ["–", "–", "5", "–", "–", "5", "–"]
+    assert made.rows[-1][:2] == ["held", "–"]
+    assert made.numeric == (2, 4)
+    assert (made.origin.number, made.origin.command) == ("table 1", "runner 1.0")
+
+
+def test_a_failed_run_says_so():
+    runs = {**RUNS, "gain/10/sound": run(0.0, failed=True)}
+    made = tables.table(runs, "Errors.", "gain/{gain}/sound", tables.column("error", "error"))
+    assert [row[0] for row in made.rows] == ["1", "failed", "5"]
+    (series,) = plots.over(runs, "gain/{gain}/sound", "gain", "error")
+    assert np.isnan(series.y[1])
+
+
+def test_a_comparison_has_a_row_for_each_metric_and_a_column_for_each_level():
+    made = tables.comparison(RUNS, "Both.", "gain/5/{preset}", "error", "settling_time")
+    assert made.header == ["metric", "full equations", "as reported"]
+    assert made.rows == [["error", "5 m", "10 m"], ["settling time", "never", "never"]]
+    with pytest.raises(RunnerError, match="a comparison goes over one axis"):
+        tables.comparison(RUNS, "Both.", "gain/{gain}/{preset}", "error")
+
+
+def test_a_number_against_an_axis_has_the_band_of_its_repetitions():
+    runs = {**RUNS, "gain/10/sound": run(10.0, ends=(8.0, 13.0))}
+    sound, reported = plots.over(runs, "gain/{gain}/{preset}", "gain", "error", "{preset}", color=3)
+    assert (sound.name, reported.name, sound.color, reported.color) == ("full equations", "as reported", 3, 4)
+    np.testing.assert_array_equal(sound.x, [1.0, 10.0, 5.0])
+    np.testing.assert_array_equal(sound.y, [1.0, 10.0, 5.0])
+    np.testing.assert_array_equal(sound.low, [1.0, 8.0, 5.0])
+    np.testing.assert_array_equal(sound.high, [1.0, 13.0, 5.0])
+    assert reported.low is None
+    (named,) = plots.over(RUNS, "gain/5/{preset}", "preset", "error")
+    np.testing.assert_array_equal(named.x, [0.0, 1.0])
+
+
+def test_signals_over_time():
+    sound, reported = plots.line(RUNS, "gain/5/{preset}", signals.norm("error"), "{preset}", factor=1e3, until=0.5)
+    np.testing.assert_allclose(sound.y, [0.0, 12.5e3])
+    np.testing.assert_array_equal(reported.x, [0.0, 0.5])
+    (apart,) = plots.line(RUNS, "gain/5/sound", signals.apart("error"), "", "gain/5/as_reported")
+    np.testing.assert_allclose(apart.y, [0.0, 12.5, 25.0])
+    assert [series.name for series in plots.joints(RUNS, "held")] == ["q1", "q2"]
+    assert [series.name for series in plots.axes(RUNS, "held")] == ["x", "y", "z"]
+    assert signals.largest_of("q2")(RUNS["held"]) == 1.0
+    with pytest.raises(RunnerError, match=r"has no signal 'q3'"):
+        plots.line(RUNS, "held", "q3")
+
+
+def test_closed_forms_and_limits():
+    (curve,) = plots.closed_form(lambda x: None if x > 5.0 else 1.0 / x, 1.0, 10.0, "1/x", log=True)
+    np.testing.assert_allclose(curve.y[curve.x <= 5.0], 1.0 / curve.x[curve.x <= 5.0])
+    assert np.isnan(curve.y[curve.x > 5.0]).all()
+    np.testing.assert_allclose(np.diff(np.log(curve.x)), np.log(10.0) / 99)
+    (level,) = plots.limit(2.0, 0.0, 1.0)
+    np.testing.assert_array_equal([level.x, level.y], [[0.0, 1.0], [2.0, 2.0]])
+    (upright,) = plots.upright(2.0, 0.0, 1.0)
+    np.testing.assert_array_equal([upright.x, upright.y], [[2.0, 2.0], [0.0, 1.0]])
+
+
+def test_a_panel_of_powers_of_ten_leaves_zeros_out():
+    panel = plots.panel("", "t", "e", plots.line(RUNS, "held", "q1"), y_log=True, x_range=[0, 1])
+    assert np.isnan(panel.series[0].y[0])
+    assert panel.x_range == (0.0, 1.0)
+    figure = plots.curves(RUNS, "Figure.", "held", panel, number="figure 1")
+    assert (figure.columns, figure.origin.number) == (1, "figure 1")
+
+
+def test_a_map_has_a_cell_for_each_run():
+    runs = {**RUNS, "gain/10/sound": run(0.0, failed=True)}
+    made = plots.heat_map(runs, "Map.", "gain/{gain}/{preset}", "gain", "preset", "error", "error (m)")
+    (panel,) = made.panels
+    assert (panel.x_names, panel.y_names) == (["1", "10", "5"], ["sound", "as_reported"])
+    np.testing.assert_array_equal(panel.values, [[1.0, np.nan, 5.0], [2.0, 20.0, 10.0]])
+    np.testing.assert_array_equal(panel.failed, [[False, True, False], [False, False, False]])
+
+
+def test_values_of_runs_and_the_largest_of_them():
+    one, two = (blocks.metric(RUNS, f"gain/{gain}/sound", "error") for gain in (1, 5))
+    assert blocks.largest("largest", one, two).value == 5.0
+    assert blocks.smallest("smallest", one, two).parts == (one, two)
+    assert blocks.largest("largest", one, Measured("none", None, "m")).value is None
+    assert blocks.of_run(RUNS, "end", signals.at_the_end("q1"), "rad", "held").value == 7.0
+    assert blocks.of_run({"held": run(1.0, failed=True)}, "end", signals.at_the_end("q1"), "rad", "held").value is None
+
+
+@pytest.mark.parametrize(
+    ("column", "told"),
+    [
+        (tables.level("presett"), r"no axis 'presett' \(did you mean preset\?\); axes: gain, preset"),
+        (tables.column("e", "error", only={"gian": "5"}), r"no axis 'gian' \(did you mean gain\?\)"),
+        (tables.column("e", "error", only={"preset": "sond"}), r"has no level 'sond' \(did you mean sound\?\)"),
+    ],
+)
+def test_an_axis_or_level_that_no_run_has_is_refused(column, told):
+    with pytest.raises(RunnerError, match=told):
+        tables.table(RUNS, "Errors.", "gain/{gain}/{preset}", column)

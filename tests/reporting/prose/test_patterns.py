@@ -1,0 +1,66 @@
+"""Patterns of run names, and what is made of the runs that they stand for."""
+
+from types import SimpleNamespace
+
+import pandas as pd
+import pytest
+
+from runner.errors import RunnerError
+from runner.reporting.measured import Measured
+from runner.reporting.prose.blocks import each, named
+from runner.reporting.prose.patterns import found
+from runner.reporting.prose.plots import line
+from runner.reporting.prose.tables import listing
+from runner.reporting.prose.trying import never_failing
+
+RUNS = dict.fromkeys(["line/a/1", "line/a/2", "line/b/1", "line/c/1", "circle/a/1"])
+
+
+def names(pattern, by=()):
+    return [each.name for each in found(RUNS, pattern, by)]
+
+
+def test_an_axis_stands_for_each_of_its_levels_in_the_order_of_the_plan():
+    assert names("line/{case}/1") == ["line/a/1", "line/b/1", "line/c/1"]
+    assert names("{path}/{case}/1", ["case"]) == ["line/a/1", "circle/a/1", "line/b/1", "line/c/1"]
+
+
+def test_an_axis_with_levels_stands_for_these_alone_in_their_order():
+    assert names("line/{case=c|a}/{number}") == ["line/c/1", "line/a/1", "line/a/2"]
+    with pytest.raises(RunnerError, match="no run is named like"):
+        names("line/{case=ab}/1")
+
+
+def test_a_listing_shows_texts_and_numbers_as_they_are():
+    length = Measured("length", 0.4, "m")
+    table = listing({}, "Caption", "", ["what", "how much"], ["length", length], ["way", 2e-15], ["time", None])
+    assert table.rows == [["length", "0.4"], ["way", "0 (rounding)"], ["time", "–"]]
+    assert table.numeric == (1,)
+
+
+def run(value, status="ok"):
+    trace = pd.DataFrame({"t": [0.0, 1.0], "tip_x": [0.0, value], "tip_y": [2.0, 3.0]})
+    metric = {"median": value, "unit": "m"}
+    return SimpleNamespace(status=status, metrics={"error": metric}, trace=trace)
+
+
+def test_each_run_gives_a_value_that_conditions_call_by_words_with_axes_or_by_its_name():
+    runs = {"line/1": run(0.5), "line/2": run(0.7, status="failed")}
+    found = each(runs, "error at {rate} Hz", "error", "m", "line/{rate}")
+    assert [(one.name, one.value, one.unit) for one in found] == [
+        ("error at 1 Hz", 0.5, "m"),
+        ("error at 2 Hz", None, "m"),
+    ]
+    (twice,) = each(runs, "twice the error", lambda one: 2.0 * one.metrics["error"]["median"], "m", "line/1")
+    assert (twice.name, twice.value) == ("twice the error of line/1", 1.0)
+
+
+def test_a_signal_is_drawn_over_another_one():
+    (series,) = line({"line/1": run(0.5)}, "line/1", "tip_x", x="tip_y")
+    assert (series.x.tolist(), series.y.tolist()) == ([2.0, 3.0], [0.0, 0.5])
+
+
+def test_values_in_a_group_are_changed_too():
+    names = {"values": lambda: {"error": named("error", 1.0, "m")}}
+    chapter = "# T\n\n{% set own = values() %}\n\n::: finding A\nB.\nholds: own.error < 2\n:::\n"
+    assert never_failing("chapter.md", chapter, names) == []

@@ -1,0 +1,47 @@
+"""Conditions are tried with changed values; numbers that are typed in findings are told."""
+
+import pytest
+
+from runner.reporting.measured import Measured
+from runner.reporting.prose import ProseError
+from runner.reporting.prose.trying import never_failing
+from runner.reporting.prose.typed import typed_numbers
+
+NAMES = {
+    "number": lambda value: Measured("number", value, "m"),
+    "numbers": lambda: [Measured("one", 1.0, "m"), Measured("two", 2.0, "m")],
+    "less": lambda values, bound: [each < bound for each in values],
+}
+CHAPTER = """\
+# Title
+
+{% set a = number(2.0) %}
+{% set b = numbers() %}
+
+::: finding Title
+Words.
+holds: CONDITION
+:::
+"""
+
+
+@pytest.mark.parametrize("condition", ["a > 1", "a < 1e2", "a.near(2, 0.1)", "less(b, 3)", "a < 2 * b[1]"])
+def test_a_condition_that_some_change_refutes_is_good(condition):
+    assert never_failing("one.md", CHAPTER.replace("CONDITION", condition), NAMES) == []
+
+
+@pytest.mark.parametrize("condition", ["a > -1e9", "number(2.0) > 1", "less(b, 1e9)", "less([b[0], number(1.0)], 3)"])
+def test_a_condition_that_nothing_refutes_is_told(condition):
+    (told,) = never_failing("one.md", CHAPTER.replace("CONDITION", condition), NAMES)
+    assert told.startswith(f"one.md:8: holds: {condition}: no change of a named value makes it fail")
+
+
+def test_a_list_of_conditions_is_one_each_and_an_empty_one_none():
+    with pytest.raises(ProseError, match=r"one.md:8: holds: \[\]: gives list, no condition"):
+        never_failing("one.md", CHAPTER.replace("CONDITION", "[]"), NAMES)
+
+
+def test_numbers_typed_in_a_finding_are_told():
+    text = CHAPTER.replace("Words.", "It takes 5 s and {{ a }}\nof claim 3, $2 x$, 0.1 kg and\n7.").replace("a", "a")
+    found = [*typed_numbers("one.md", text, {"0.1 kg"})]
+    assert [line.split(" a number")[0] for line in found] == ["one.md:7: 5 s:", "one.md:9: 7:"]

@@ -1,0 +1,243 @@
+"""A work in a folder of a stranger's: written, read, made, checked, and what is said when something is wrong."""
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+from runner import run
+from runner.cli import dispatch
+from runner.errors import RunnerError
+from runner.paths import example_work_dir
+from runner.reporting.document import Table
+from runner.works.check import problems
+from runner.works.names import find_work, work_names
+from runner.works.new import write_new
+from runner.works.work import load_work
+
+ABOUT = "title: T\nsource: S\nabstract: A\nchapters: [one.md]\n"
+RUNS = """\
+grids:
+  goal:
+    with: [robot=macro, trajectory=quintic]
+    over:
+      preset: {slow: controller.natural_frequency=5, fast: controller.natural_frequency=10}
+      duration: [0.05, 0.1]
+"""
+CHAPTER = """\
+# One
+
+{% set error = metric("goal/slow/0.1", "max_tracking_error", "largest error") %}
+
+{{ table("Errors.", "goal/{preset}/{duration}", level("preset"), column("error", "max_tracking_error")) }}
+
+::: finding It errs
+It errs by {{ error }}.
+holds: error > 1e-9
+:::
+"""
+
+
+def a_work(folder: Path, **files: str) -> Path:
+    """Write a small work; files by name, with `__` for the dot."""
+    folder.mkdir(exist_ok=True)
+    for name, text in ({"work__yaml": ABOUT, "runs__yaml": RUNS, "one__md": CHAPTER} | files).items():
+        (folder / name.replace("__", ".")).write_text(text, encoding="utf-8")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """The runs of the small work, by name."""
+    root = tmp_path_factory.mktemp("made")
+    jobs = load_work(str(a_work(root / "paper"))).jobs()
+    return {name: run(*job.overrides, f"outputs={root}") for name, job in jobs.items()}
+
+
+def read(folder, runs, **options):
+    work = load_work(str(folder), **options)
+    return work, work.chapters(runs, {}).sections()
+
+
+def test_the_work_that_is_written_first_is_small_and_stands(tmp_path, capsys):
+    folder = tmp_path / "paper"
+    assert dispatch(["work", "new", str(folder)]) == 0
+    texts = {path.name: path.read_text() for path in folder.iterdir()}
+    assert sorted(texts) == ["claims.yaml", "goal.md", "runs.yaml", "work.yaml"]
+    lines = [line for text in texts.values() for line in text.splitlines()]
+    assert len(lines) <= 45
+    assert max(map(len, lines)) <= 100
+    outputs = f"--outputs={tmp_path / 'outputs'}"
+    assert dispatch(["reproduce", str(folder), outputs, "--check"]) == 0
+    report = Path(capsys.readouterr().out.splitlines()[-1])
+    assert report == tmp_path / "outputs" / "reports" / "paper"
+    assert {"report.html", "report.pdf", "conclusions.json"} <= {path.name for path in report.iterdir()}
+    assert dispatch(["work", "check", str(folder), outputs]) == 0
+    assert "nothing is wrong" in capsys.readouterr().out
+
+
+def test_the_first_work_is_not_written_over_something(tmp_path):
+    (tmp_path / "mine.txt").write_text("mine")
+    with pytest.raises(RunnerError, match="is there already, and not empty"):
+        write_new(tmp_path)
+
+
+def test_its_chapters_read_its_runs(tmp_path, made):
+    work, (chapter,) = read(a_work(tmp_path / "paper"), made)
+    (table, finding) = chapter.blocks
+    assert isinstance(table, Table)
+    assert table.header == ["preset", "error (m)"]
+    assert [row[0] for row in table.rows] == ["slow", "slow", "fast", "fast"]
+    assert finding.holds
+    assert [*problems(work, made, {})] == []
+
+
+@pytest.mark.parametrize(
+    ("holds", "words", "told"),
+    [
+        ("holds: error > 1e-9", "It errs by 3.2 m.", r"paper/one.md:7: 3.2 m: a number typed in a finding goes stale"),
+        ("holds: error > -1e9", "It errs.", r"paper/one.md:8: holds: error > -1e9: no change of a named value"),
+        ("holds: error > 1e9", "It errs.", r"It errs: not so: largest error > 1·10⁹ m"),
+        ("holds: errr > 1e-9", "It errs.", r"paper/one.md:8: .*no name 'errr' \(did you mean error\?\)"),
+    ],
+)
+def test_what_is_wrong_with_a_work_is_told_with_its_place(tmp_path, made, holds, words, told):
+    text = CHAPTER.replace("holds: error > 1e-9", holds).replace("It errs by {{ error }}.", words)
+    text = "\n".join(line for line in text.splitlines() if not line.startswith("{{ table"))
+    work = load_work(str(a_work(tmp_path / "paper", one__md=text)))
+    found = [*problems(work, made, {})]
+    assert len(found) == 1
+    assert re.search(told, found[0]), found
+
+
+def test_caveats_that_no_run_can_have_are_told(tmp_path, made):
+    caveats = "- {rules: [saturation], runs: [gaol/*], why: So.}\n"
+    work = load_work(str(a_work(tmp_path / "paper", caveats__yaml=caveats)))
+    assert [*problems(work, made, {})] == ["paper: gaol/*: expected caveats: no run of it is named so"]
+
+
+def test_a_part_has_sections_and_a_file_of_python_is_a_chapter(tmp_path, made):
+    about = "title: T\nsource: S\nabstract: A\nchapters: [{title: Part, sections: [one.md, two.py]}]\n"
+    code = (
+        "from runner.reporting.document import Section\ndef section(runs):\n    return Section(f'{len(runs)} runs')\n"
+    )
+    folder = a_work(tmp_path / "paper", work__yaml=about, two__py=code)
+    _, (part,) = read(folder, made, allow_code=True)
+    assert [section.title for section in part.sections] == ["One", "4 runs"]
+    _, (part,) = read(folder, made)
+    assert part.sections[1].title == "Left out: two.py"
+    assert "two.py was not run: code in a folder runs with --code alone" in part.sections[1].blocks[0].text
+
+
+def test_functions_of_the_work_are_called_where_code_may_run(tmp_path, made):
+    chapter = "# One\n\nThere are {{ count() }} runs, {{ twice(2) }}.\n"
+    folder = a_work(
+        tmp_path / "paper",
+        one__md=chapter,
+        figures__py="def count(runs):\n    return len(runs)\n",
+        one__py="def twice(x):\n    return 2 * x\n",
+    )
+    _, (section,) = read(folder, made, allow_code=True)
+    assert section.blocks[0].text == "There are 4 runs, 4."
+    _, (section,) = read(folder, made)
+    assert section.title == "Left out: one.md"
+    assert "not run" in load_work(str(folder)).document(made, {}).sections[-1].blocks[1].rows[-1][1]
+
+
+def test_code_that_cannot_be_imported_is_told(tmp_path, made):
+    folder = a_work(tmp_path / "paper", figures__py="1 / 0\n")
+    with pytest.raises(RunnerError, match=r"figures.py cannot be imported: .*division by zero"):
+        read(folder, made, allow_code=True)
+
+
+def test_a_run_that_was_not_made_leaves_its_chapter_out(tmp_path, made):
+    from runner.reporting.job import Made
+
+    runs = Made({name: each for name, each in made.items() if name != "goal/slow/0.1"}, {"goal/slow/0.1": "cut short"})
+    _, (section,) = read(a_work(tmp_path / "paper"), runs)
+    assert section.title == "Left out: one.md"
+    assert "goal/slow/0.1: cut short" in section.blocks[0].text
+
+
+def test_a_profile_makes_other_levels(tmp_path):
+    about = ABOUT + "profiles: {quick: {repetitions: 3, levels: {goal: {duration: [0.2], preset: [slow]}}}}\n"
+    folder = a_work(tmp_path / "paper", work__yaml=about)
+    jobs = load_work(str(folder), profile="quick").jobs()
+    assert list(jobs) == ["goal/slow/0.2"]
+    assert jobs["goal/slow/0.2"].overrides[-2:] == ("duration=0.2", "repetitions=3")
+    assert len(load_work(str(folder)).jobs()) == 4
+    with pytest.raises(RunnerError, match=r"no profile 'quik' \(did you mean quick\?\); profiles: quick"):
+        load_work(str(folder), profile="quik")
+
+
+@pytest.mark.parametrize(
+    ("files", "told"),
+    [
+        ({"work__yaml": "title: T\n"}, r"work.yaml: source: Field required; .*chapters: Field required"),
+        ({"work__yaml": ABOUT.replace("one.md", "on.md")}, r"work.yaml: chapters: on.md: must be .*mean one.md\?\)"),
+        ({"work__yaml": ABOUT + "in_al: false\n"}, r"work.yaml: in_al: Extra inputs are not permitted"),
+        ({"work__yaml": "title: [\n"}, r"work.yaml, line 2"),
+        ({"runs__yaml": "grids: {goal: {wiht: []}}\n"}, r"runs.yaml: grids.goal.*wiht"),
+        ({"caveats__yaml": "- {rules: [satration], runs: [a], why: W.}\n"}, r"no rule 'satration' \(did you mean satu"),
+        ({"caveats__yaml": "- {rules: [saturation], runs: [a]}\n"}, r"caveats.yaml: 0.why: Field required"),
+        (
+            {"work__yaml": ABOUT + "profiles: {quick: {levels: {goal: {preset: [slaw]}}}}\n"},
+            r"grid 'goal': axis 'preset' has no level 'slaw' \(did you mean slow\?\)",
+        ),
+    ],
+)
+def test_data_that_do_not_fit_are_refused_with_file_and_key(tmp_path, files, told):
+    with pytest.raises(RunnerError, match=told):
+        load_work(str(a_work(tmp_path / "paper", **files)), profile="quick" if "quick" in str(files) else "")
+
+
+def test_what_is_no_work_is_told(tmp_path):
+    with pytest.raises(RunnerError, match=r"no work 'tesis' \(did you mean thesis\?\); works: meca500, thesis, xarm7"):
+        find_work("tesis")
+    with pytest.raises(RunnerError, match=r"no work: there is no work.yaml in it; `runner work new"):
+        find_work(str(tmp_path))
+    with pytest.raises(RunnerError, match="is the name of an installed work; rename the folder"):
+        find_work(str(a_work(tmp_path / "thesis")))
+
+
+def test_an_installed_package_is_a_work_by_its_entry_point(tmp_path, made, monkeypatch):
+    package = a_work(tmp_path / "a_paper", one__md="# One\n\n{{ count() }} runs.\n")
+    (package / "__init__.py").write_text("")
+    (package / "one.py").write_text("def count(runs):\n    return len(runs)\n")
+    info = tmp_path / "a_paper-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: a-paper\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text("[runner.works]\nsmith_2020 = a_paper\n")
+    monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
+    assert "smith_2020" in work_names()
+    _, (section,) = read("smith_2020", made)
+    assert section.blocks[0].text == "4 runs."
+
+
+def test_the_example_is_what_is_written():
+    assert {path.name for path in example_work_dir().iterdir()} >= {"work.yaml", "runs.yaml", "claims.yaml", "goal.md"}
+
+
+def test_its_printed_equations_are_judged_by_yaml_alone(tmp_path, made):
+    folder = a_work(tmp_path / "paper", one__md='# One\n\n{{ equations("All.") }}\n')
+    (folder / "equations").mkdir()
+    entry = (
+        '- {id: %s, number: "1", place: p. 1, title: Height, printed: {elements: {P_z: %s}}, truth: model.position%s}'
+    )
+    right = "cos(q2 + q3) + sin(q2)"
+    corrected = f", corrected: {{elements: {{P_z: {right}}}}}"
+    entries = [entry % ("a", right, ""), entry % ("b", "sin(q2)", corrected)]
+    (folder / "equations" / "1.yaml").write_text("\n".join(["robot: macro", "entries:", *entries]))
+    _, (section,) = read(folder, made)
+    assert [row.verdict for row in section.blocks[0].rows] == ["correct", "wrong as printed"]
+
+
+def test_a_formula_that_cannot_be_read_is_told_with_its_line(tmp_path, made):
+    work = load_work(str(a_work(tmp_path / "paper", one__md="# One\n\nSo.\n\nThis is $frac(1$.\n")))
+    assert [*problems(work, made, {})] == ["paper/one.md:5: frac(1: no formula in Typst's notation"]
+
+
+def test_claims_that_do_not_fit_are_told_before_anything_is_made(tmp_path):
+    with pytest.raises(RunnerError, match=r"claims.yaml: 0.number: Field required"):
+        load_work(str(a_work(tmp_path / "paper", claims__yaml="- {statement: S}\n")))
