@@ -36,13 +36,17 @@ class Made(dict[str, Thing]):
     Args:
         found: Those that were made.
         missing: Why the others were not, by name.
+        dropped: Why others again were not asked for, by name; patterns of names do not stand for them.
     """
 
-    def __init__(self, found: Mapping[str, Thing], missing: Mapping[str, str]) -> None:
+    def __init__(
+        self, found: Mapping[str, Thing], missing: Mapping[str, str], dropped: Mapping[str, str] | None = None
+    ) -> None:
         super().__init__(found)
         self.missing = dict(missing)
+        self.dropped = dict(dropped or {})
 
     def __missing__(self, name: str) -> Thing:
-        if name in self.missing:
-            raise MissingError(f"{name}: {self.missing[name]}")
+        if name in self.missing or name in self.dropped:
+            raise MissingError(f"{name}: {self.missing.get(name) or self.dropped[name]}")
         raise RunnerError(f"the work has no run or calibration '{name}'{nearest(name, [*self, *self.missing])}")

@@ -101,10 +101,10 @@ class Chapters:
 
     def _stored(self) -> Made[Run | Calibration]:
         """Return runs and calibrations in one."""
-        missing: dict[str, str] = {}
-        for each in (self._runs, self._calibrations):
-            missing |= each.missing if isinstance(each, Made) else {}
-        return Made({**self._runs, **self._calibrations}, missing)
+        made = [each for each in (self._runs, self._calibrations) if isinstance(each, Made)]
+        missing, dropped = ({name: why for own in each for name, why in own.items()} for each in
+                            ([each.missing for each in made], [each.dropped for each in made]))  # fmt: skip
+        return Made({**self._runs, **self._calibrations}, missing, dropped)
 
     def _claims(self) -> list[Claim]:
         return claim_blocks(load_claims(self._folder), self._runs, self._about.presets)

@@ -56,6 +56,6 @@ def make_all(
         if name not in missing
     }
     return (
-        Made(runs, {name: why for name, why in missing.items() if name in jobs}),
+        Made(runs, {name: why for name, why in missing.items() if name in jobs}, work.dropped()),
         Made(found, {name: why for name, why in missing.items() if name in calibrations}),
     )

@@ -77,6 +77,11 @@ class Work:
             more = {name: Job(self._profile.repeated(job.overrides)) for name, job in more.items()}
         return {**self._grids.jobs(), **more}
 
+    def dropped(self) -> dict[str, str]:
+        """Return the runs of the whole work that its profile does without, by name, each with why."""
+        whole = Grids(self.folder / RUNS).runs if self.profile else ()
+        return {name: f"the profile {self.profile} has no such run" for name in whole if name not in self._grids.runs}
+
     def calibrations(self) -> Calibrations:
         """Return the calibrations that it needs, by name, as `plan.py` changes those of runs.yaml."""
         changed: Calibrations = self._planned("calibrations", lambda given: given, self._grids.calibrations)

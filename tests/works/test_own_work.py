@@ -167,6 +167,7 @@ def test_a_profile_makes_other_levels(tmp_path):
     assert list(jobs) == ["goal/slow/0.2"]
     assert jobs["goal/slow/0.2"].overrides[-2:] == ("duration=0.2", "repetitions=3")
     assert len(load_work(str(folder)).jobs()) == 4
+    assert sorted(load_work(str(folder), profile="quick").dropped()) == sorted(load_work(str(folder)).jobs())
     with pytest.raises(RunnerError, match=r"no profile 'quik' \(did you mean quick\?\); profiles: quick"):
         load_work(str(folder), profile="quik")
 
@@ -241,3 +242,16 @@ def test_a_formula_that_cannot_be_read_is_told_with_its_line(tmp_path, made):
 def test_claims_that_do_not_fit_are_told_before_anything_is_made(tmp_path):
     with pytest.raises(RunnerError, match=r"claims.yaml: 0.number: Field required"):
         load_work(str(a_work(tmp_path / "paper", claims__yaml="- {statement: S}\n")))
+
+
+def test_what_a_profile_does_without_is_left_out_of_tables_and_of_the_chapters_that_name_it(tmp_path):
+    text = '# One\n\n{{ table("Errors.", "goal/{preset}/{duration}", column("error", "max_tracking_error")) }}\n'
+    about = ABOUT.replace("[one.md]", "[one.md, two.md]")
+    about += "profiles: {quick: {levels: {goal: {duration: [0.05], preset: [slow]}}}}\n"
+    folder = a_work(tmp_path / "paper", work__yaml=about, one__md=text, two__md=CHAPTER)
+    outputs = f"--outputs={tmp_path / 'outputs'}"
+    assert dispatch(["reproduce", str(folder), outputs, "--profile", "quick", "hydra.sweeper.workers=0"]) == 0
+    page = (tmp_path / "outputs" / "reports" / "paper" / "report.html").read_text()
+    assert "goal/slow/0.1: the profile quick has no such run" in page
+    assert page.count("Left out:") >= 1
+    assert "Left out: one.md" not in page
