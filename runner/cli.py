@@ -104,9 +104,9 @@ def dispatch(arguments: Sequence[str]) -> int:
         print(f"runner: not enough memory: {error}; shorten the run or ask for fewer repetitions", file=sys.stderr)
         return 2
     except Exception as error:
-        from runner.plugins import GROUPS, added
+        from runner.plugins import has_users_parts
 
-        if not (user_place(error) and any(map(added, GROUPS))):  # a fault of ours: its whole trace is of use
+        if not (user_place(error) and has_users_parts()):  # a fault of ours: its whole trace is of use
             raise
         print(one_line(f"runner: a part of yours failed: {told(error)}"), file=sys.stderr)
         return 2

@@ -75,6 +75,11 @@ def added(group: str) -> tuple[EntryPoint, ...]:
     return (*of_command_line, *_installed(f"runner.{group}", tuple(sys.path)))
 
 
+def has_users_parts() -> bool:
+    """Tell whether there are parts of the user's; those of our own works are none."""
+    return any(not point.value.startswith("runner.") for group in GROUPS for point in added(group))
+
+
 def load(group: str, name: str, module: str) -> ModuleType:
     """Import a part's module.
 
