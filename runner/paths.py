@@ -32,6 +32,11 @@ def works_dir() -> Path:
     return _PACKAGE / "works"
 
 
+def works_with(file: str) -> list[str]:
+    """Return the names of our works that have a file, such as "claims.yaml", sorted."""
+    return sorted(folder.name for folder in works_dir().iterdir() if (folder / file).is_file())
+
+
 def example_work_dir() -> Path:
     """Return the folder of the work that `runner work new` starts from."""
     return _root() / "examples" / "own_paper"

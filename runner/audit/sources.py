@@ -5,17 +5,15 @@ A folder has `equations/*.yaml` and, where truths of its own are needed, `equati
 its path.
 """
 
-import importlib
-import sys
 from dataclasses import dataclass
-from hashlib import sha256
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
-from runner.errors import RunnerError, nearest, told
-from runner.paths import package_dir, works_dir
+from runner.errors import RunnerError, nearest
+from runner.folder_code import folder_module
+from runner.paths import works_dir, works_with
+
+_FOLDER = "equations"
 
 
 @dataclass(frozen=True)
@@ -38,7 +36,7 @@ class Source:
     @property
     def equations(self) -> Path:
         """Where its entries are."""
-        return self.folder / "equations"
+        return self.folder / _FOLDER
 
 
 Where = str | Path | Source
@@ -47,7 +45,7 @@ Where = str | Path | Source
 
 def sources() -> tuple[str, ...]:
     """Return the names of our works whose equations are audited."""
-    return tuple(sorted(path.parents[1].name for path in works_dir().glob("*/equations/inventory.yaml")))
+    return tuple(works_with(f"{_FOLDER}/inventory.yaml"))
 
 
 def source_of(where: Where) -> Source:
@@ -82,24 +80,7 @@ def _resolve(source: Source, kind: str, name: str) -> Any:
     known = sorted(path.stem for path in (source.equations / kind).glob("[!_]*.py"))
     if stem not in known:
         raise RunnerError(f"'{name}': no module{nearest(stem, known)}; modules: {', '.join(known) or 'none'}")
-    module = _module(source.equations / kind / f"{stem}.py")
+    module = folder_module(source.folder, f"{_FOLDER}.{kind}.{stem}")
     if not hasattr(module, attribute):
         raise RunnerError(f"'{name}': {stem}.py has no '{attribute}'{nearest(attribute, vars(module))}")
     return getattr(module, attribute)
-
-
-def _module(path: Path) -> ModuleType:
-    """Return the module of a file: a part of this package by its own name, another by one that its path makes."""
-    if path.is_relative_to(package_dir()):
-        inside = path.relative_to(package_dir().parent).with_suffix("")
-        return importlib.import_module(".".join(inside.parts))
-    name = f"{path.stem}_{sha256(str(path.resolve()).encode()).hexdigest()[:12]}"
-    spec = spec_from_file_location(name, path)
-    if name not in sys.modules and spec is not None and spec.loader is not None:
-        sys.modules[name] = module_from_spec(spec)
-        try:
-            spec.loader.exec_module(sys.modules[name])
-        except Exception as error:
-            del sys.modules[name]
-            raise RunnerError(f"{path} cannot be imported: {told(error)}") from error
-    return sys.modules[name]

@@ -9,7 +9,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
 from runner.data_file import read_data
 from runner.errors import RunnerError
-from runner.paths import works_dir
+from runner.paths import works_dir, works_with
 from runner.registry import StrictModel
 
 FILE = "claims.yaml"
@@ -116,7 +116,7 @@ class PublishedClaim(StrictModel):
 
 def claimed() -> list[str]:
     """Return the names of the works that have claims, sorted."""
-    return sorted(path.parent.name for path in works_dir().glob(f"*/{FILE}"))
+    return works_with(FILE)
 
 
 def load_claims(work: str | Path) -> list[PublishedClaim]:

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from runner.data_file import read_data
-from runner.paths import works_dir
+from runner.paths import works_dir, works_with
 from runner.registry import StrictModel
 
 _FILE = "statements.yaml"
@@ -27,7 +27,7 @@ class PublishedStatement(StrictModel):
 
 def stated() -> list[str]:
     """Return the names of the works that have statements, sorted."""
-    return sorted(path.parent.name for path in works_dir().glob(f"*/{_FILE}"))
+    return works_with(_FILE)
 
 
 def load_statements(work: str | Path) -> list[PublishedStatement]:

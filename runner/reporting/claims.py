@@ -9,7 +9,6 @@ from runner.reporting.document import Table
 from runner.reporting.figures import columns
 from runner.reporting.job import MissingError
 from runner.reporting.run_values import median
-from runner.reporting.words import PRESET
 from runner.store import Run
 
 RULE = (
@@ -22,9 +21,7 @@ RULE = (
 _DIGITS = 4  # at least as many as a source prints
 
 
-def claim_blocks(
-    claims: Sequence[PublishedClaim], runs: Mapping[str, Run], presets: Mapping[str, str] = PRESET
-) -> list[Claim]:
+def claim_blocks(claims: Sequence[PublishedClaim], runs: Mapping[str, Run], presets: Mapping[str, str]) -> list[Claim]:
     """Return each claim with what the runs say of it, under each preset.
 
     Args:
@@ -59,7 +56,7 @@ def statement_blocks(
     ]
 
 
-def verdict_table(caption: str, blocks: Sequence[Claim], presets: Mapping[str, str] = PRESET) -> Table:
+def verdict_table(caption: str, blocks: Sequence[Claim], presets: Mapping[str, str]) -> Table:
     """Return the claims as a table: a row for each, a column for each preset."""
     rows = [[c.number, c.statement, c.printed, *(f"{f.measured}: {f.verdict}" for f in c.findings)] for c in blocks]
     return Table(caption, ["claim", "statement", "printed", *(presets.values() or ("simulated",))], rows)

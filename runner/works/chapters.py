@@ -1,6 +1,7 @@
 """The chapters of a work from its files: Markdown with the work's own functions, or Python where much is computed."""
 
 import shlex
+from collections import ChainMap
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from inspect import signature
@@ -102,8 +103,8 @@ class Chapters:
     def _stored(self) -> Made[Run | Calibration]:
         """Return runs and calibrations in one."""
         made = [each for each in (self._runs, self._calibrations) if isinstance(each, Made)]
-        missing, dropped = ({name: why for own in each for name, why in own.items()} for each in
-                            ([each.missing for each in made], [each.dropped for each in made]))  # fmt: skip
+        missing = ChainMap(*(each.missing for each in made))
+        dropped = ChainMap(*(each.dropped for each in made))
         return Made({**self._runs, **self._calibrations}, missing, dropped)
 
     def _claims(self) -> list[Claim]:

@@ -2,18 +2,14 @@
 
 import ast
 import hashlib
-import re
-import sys
 from collections.abc import Callable
-from importlib import import_module
-from importlib.machinery import ModuleSpec
-from importlib.util import module_from_spec
 from inspect import getmembers, isfunction
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NoReturn
 
-from runner.errors import RunnerError, told
+from runner.errors import RunnerError
+from runner.folder_code import folder_module
 from runner.reporting.job import MissingError
 
 
@@ -30,14 +26,8 @@ class Code:
     """
 
     def __init__(self, folder: Path, package: str | None, allowed: bool) -> None:
-        self._folder = folder
+        self._folder, self._package = folder, package or ""
         self.runs = package is not None or allowed
-        digest = hashlib.sha256(str(folder).encode()).hexdigest()[:8]
-        self._package = package or f"work_{re.sub(r'[^0-9a-zA-Z]', '_', folder.name)}_{digest}"
-        if package is None and allowed and self._package not in sys.modules:
-            spec = ModuleSpec(self._package, None, is_package=True)
-            spec.submodule_search_locations = [str(folder)]
-            sys.modules[self._package] = module_from_spec(spec)
 
     def functions(self, stem: str) -> dict[str, Callable[..., Any]]:
         """Return the public functions that a module of the folder defines, by name; none where there is no such module.
@@ -52,13 +42,7 @@ class Code:
             return {}
         if not self.runs:
             return {name: _not_run(path) for name in _defined(path)}
-        try:
-            module = import_module(f"{self._package}.{stem}")
-        except Exception as error:
-            if self._package.startswith("runner."):
-                raise
-            raise RunnerError(f"{path.name} cannot be imported: {told(error)}") from error
-        return public_functions(module)
+        return public_functions(folder_module(self._folder, stem, self._package))
 
     def about(self) -> str:
         """Return a digest of the folder's Python, and whether it was run; nothing where there is none."""

@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from runner.errors import RunnerError, nearest
-from runner.paths import works_dir
+from runner.paths import works_dir, works_with
 from runner.works.about import FILE
 
 GROUP = "runner.works"
@@ -28,10 +28,15 @@ class Place:
     folder: Path
     package: str | None = None
 
+    @property
+    def ours(self) -> bool:
+        """Whether it is one of ours, whose configs are those of the runner."""
+        return self.folder.parent == works_dir()
+
 
 def work_names() -> tuple[str, ...]:
     """Return the names of the installed works, sorted."""
-    return tuple(sorted({path.parent.name for path in works_dir().glob(f"*/{FILE}")} | {e.name for e in _installed()}))
+    return tuple(sorted({*works_with(FILE), *(point.name for point in _installed())}))
 
 
 def find_work(text: str, others: Sequence[str] = ()) -> Place:

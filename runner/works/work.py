@@ -54,6 +54,7 @@ class Work:
         self.name, self.folder = place.name, place.folder
         self.about = read_about(place.folder)
         self.installed = place.package is not None
+        self._ours = place.ours
         self.profile = profile
         self._profile = self._chosen(profile)
         self._code = Code(place.folder, place.package, allow_code)
@@ -68,7 +69,7 @@ class Work:
     @property
     def config_dirs(self) -> tuple[Path, ...]:
         """Folders in which configs of the work's own are looked for: its own, unless it is one of ours."""
-        return () if self.installed and self.folder.parent.name == "works" else (self.folder,)
+        return () if self._ours else (self.folder,)
 
     def jobs(self) -> Jobs:
         """Return the runs that it needs, by name: those of runs.yaml, and those that `plan.py` works out."""

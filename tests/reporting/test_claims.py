@@ -50,7 +50,7 @@ def run(metrics=None, failure=None, width=0.4):
 
 def blocks(runs, *claims):
     both = {f"{name}/{preset}": each for name, each in runs.items() for preset in PRESETS}
-    return claim_blocks([PublishedClaim.model_validate(claim) for claim in claims], both)
+    return claim_blocks([PublishedClaim.model_validate(claim) for claim in claims], both, PRESET)
 
 
 def told(block):
@@ -126,7 +126,7 @@ def test_repetitions_that_are_late_are_counted_where_the_error_at_rest_is_judged
 
 def test_the_table_has_a_row_for_each_claim_and_a_column_for_each_preset():
     made = blocks({"macro": run({"settling_time": metric(1.4)})}, NUMBER, NUMBER | {"number": 2})
-    table = verdict_table("Verdicts.", made)
+    table = verdict_table("Verdicts.", made, PRESET)
     assert table.header == ["claim", "statement", "printed", "as reported", "full equations"]
     assert table.rows == [[n, "It settles", "1.4 s", "1.4 s: holds", "1.4 s: holds"] for n in "12"]
 

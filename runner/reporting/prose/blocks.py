@@ -1,6 +1,6 @@
 """What every chapter may call: values of stored runs, and the blocks that most chapters need.
 
-A function whose first argument is `runs` gets the work's runs filled in; see names.
+A function whose first argument is `runs` gets the work's runs filled in by what makes the chapter.
 """
 
 import math

@@ -63,6 +63,3 @@ def _each_changed(value: Any, change: Callable[[float], float | None]) -> Iterat
     elif isinstance(value, list | tuple):
         for index, own in enumerate(value):
             yield from ([*value[:index], other, *value[index + 1 :]] for other in _each_changed(own, change))
-    elif isinstance(value, Mapping):
-        for key, own in value.items():
-            yield from ({**value, key: other} for other in _each_changed(own, change))

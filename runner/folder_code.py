@@ -1,0 +1,46 @@
+"""Python of a folder that may be no installed package: its modules, imported under a name that its path makes."""
+
+import hashlib
+import importlib
+import re
+import sys
+from importlib.machinery import ModuleSpec
+from importlib.util import module_from_spec
+from pathlib import Path
+from types import ModuleType
+
+from runner.errors import RunnerError, told
+from runner.paths import package_dir
+
+
+def folder_module(folder: Path, name: str, package: str = "") -> ModuleType:
+    """Return a module of a folder; relative imports in it find its neighbours.
+
+    Args:
+        folder: The folder.
+        name: Name of the module, with dots for folders below: "equations.truths.arm".
+        package: The installed package that the folder is, where it is one; a folder of ours is found to be one.
+
+    Raises:
+        RunnerError: if a module that is not ours cannot be imported; names the file and the place.
+    """
+    folder = folder.resolve()
+    if folder.is_relative_to(package_dir()):
+        parts = folder.relative_to(package_dir().parent).parts
+        return importlib.import_module(f"{'.'.join(parts)}.{name}")
+    try:
+        return importlib.import_module(f"{package or _package_of(folder)}.{name}")
+    except Exception as error:
+        path = folder.joinpath(*name.split(".")).with_suffix(".py")
+        raise RunnerError(f"{path} cannot be imported: {told(error)}") from error
+
+
+def _package_of(folder: Path) -> str:
+    """Return the name of the package that stands for a folder."""
+    digest = hashlib.sha256(str(folder).encode()).hexdigest()[:12]
+    name = f"{re.sub(r'[^0-9a-zA-Z]', '_', folder.name)}_{digest}"
+    if name not in sys.modules:
+        spec = ModuleSpec(name, None, is_package=True)
+        spec.submodule_search_locations = [str(folder)]
+        sys.modules[name] = module_from_spec(spec)
+    return name
