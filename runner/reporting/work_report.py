@@ -43,9 +43,8 @@ def work_document(
 
 def _where_from(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration], code: str) -> Section:
     count = len({run.hash for run in runs.values()})
-    more, folders = (
-        (f" and {len(calibrations)} calibrations", " and outputs/calibrations") if calibrations else ("", "")
-    )
+    found = len({calibration.hash for calibration in calibrations.values()})  # one may have several names
+    more, folders = (f" and {found} calibrations", " and outputs/calibrations") if calibrations else ("", "")
     text = (
         f"{count} runs{more} lie behind this report, each stored with its config, trace and metrics under "
         f"outputs/runs{folders}. Figures show repetition 0; numbers are medians over the repetitions."

@@ -45,8 +45,8 @@ class Code:
         return public_functions(folder_module(self._folder, stem, self._package))
 
     def about(self) -> str:
-        """Return a digest of the folder's Python, and whether it was run; nothing where there is none."""
-        files = sorted(self._folder.glob("*.py"))
+        """Return a digest of all Python in the folder, and whether it was run; nothing where there is none."""
+        files = sorted(self._folder.rglob("*.py"))
         if not files:
             return ""
         digest = hashlib.sha256(b"\0".join(path.read_bytes() for path in files)).hexdigest()[:24]

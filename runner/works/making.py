@@ -1,6 +1,5 @@
 """The runs and calibrations of a work, made by the engine of sweeps where they are not stored yet."""
 
-import os
 import shlex
 from collections.abc import Sequence
 from pathlib import Path
@@ -43,8 +42,7 @@ def make_all(
     ends = {name: ended.ends.get(place) for name, place in places.items()}
     missing = {name: "not begun" for name, end in ends.items() if end is None}
     missing |= {name: end.failure for name, end in ends.items() if end is not None and end.cut_short}
-    own = [word for folder in work.config_dirs for word in ("--config-dir", os.path.relpath(folder))]
-    commands = {name: shlex.join(["runner", *own, *job.overrides]) for name, job in jobs.items()}
+    commands = {name: shlex.join(["runner", *work.options, *job.overrides]) for name, job in jobs.items()}
     runs = {
         name: store.open_run(outputs / "runs" / places[name]).made_by(commands[name])
         for name in jobs
@@ -57,5 +55,5 @@ def make_all(
     }
     return (
         Made(runs, {name: why for name, why in missing.items() if name in jobs}, work.dropped()),
-        Made(found, {name: why for name, why in missing.items() if name in calibrations}),
+        Made(found, {name: why for name, why in missing.items() if name in calibrations}, work.dropped()),
     )

@@ -62,14 +62,25 @@ class Work:
         self.expected: tuple[ExpectedCaveat, ...] = read_expected(place.folder)
         if (place.folder / CLAIMS).is_file():
             load_claims(place.folder)  # told before anything is simulated
-        if self.about.plugins and (self.installed or allow_code):
-            named = (text.partition("=") for text in self.about.plugins)
-            use_plugins([f"{group}={place.folder / file}" for group, _, file in named])
+        self._plugins = self._parts()
+        if self._plugins and not self._code.runs:
+            named = ", ".join(self.about.plugins)
+            raise RunnerError(f"{self.name}: its runs need {named}: code in a folder runs with --code alone")
+        if self._plugins:
+            use_plugins(self._plugins)
 
     @property
     def config_dirs(self) -> tuple[Path, ...]:
         """Folders in which configs of the work's own are looked for: its own, unless it is one of ours."""
         return () if self._ours else (self.folder,)
+
+    @property
+    def options(self) -> tuple[str, ...]:
+        """What a command that makes one of its runs has before the overrides."""
+        folders = (word for folder in self.config_dirs for word in ("--config-dir", os.path.relpath(folder)))
+        parts = (text.partition("=") for text in self._plugins)
+        named = (word for group, _, file in parts for word in ("--plugin", f"{group}={os.path.relpath(file)}"))
+        return (*folders, *named)
 
     def jobs(self) -> Jobs:
         """Return the runs that it needs, by name: those of runs.yaml, and those that `plan.py` works out."""
@@ -79,9 +90,15 @@ class Work:
         return {**self._grids.jobs(), **more}
 
     def dropped(self) -> dict[str, str]:
-        """Return the runs of the whole work that its profile does without, by name, each with why."""
-        whole = Grids(self.folder / RUNS).runs if self.profile else ()
-        return {name: f"the profile {self.profile} has no such run" for name in whole if name not in self._grids.runs}
+        """Return the runs and calibrations of the whole work that its profile does without, each with why."""
+        if not self.profile:
+            return {}
+        whole, kept = Grids(self.folder / RUNS), {**self._grids.runs, **self._grids.calibrations}
+        return {
+            name: f"the profile {self.profile} has no such run"
+            for name in (*whole.runs, *whole.calibrations)
+            if name not in kept
+        }
 
     def calibrations(self) -> Calibrations:
         """Return the calibrations that it needs, by name, as `plan.py` changes those of runs.yaml."""
@@ -113,6 +130,11 @@ class Work:
             code=self._code.about(),
         )
         return made if not self.profile else replace(made, sections=[_smaller(self.profile), *made.sections])
+
+    def _parts(self) -> list[str]:
+        """Return its plug-ins, GROUP=FILE each, files by their whole paths."""
+        named = (text.partition("=") for text in self.about.plugins)
+        return [f"{group}={self.folder / file}" for group, _, file in named]
 
     def _planned(self, name: str, otherwise: Callable[..., Any], *given: Any) -> Any:
         return self._code.functions(_PLAN).get(name, otherwise)(*given)

@@ -7,7 +7,7 @@ from thin_plans import make_calibrations, make_runs, stand_ins
 from work_plans import meca500_calibrations, meca500_jobs
 
 from runner.reporting import outline
-from runner.reporting.document import Curves, Notice, Playback, Table
+from runner.reporting.document import Curves, Notice, Playback, Table, Text
 from runner.reporting.formulas import faulty
 from runner.reporting.render import write_report
 from runner.works.work import load_work
@@ -86,3 +86,8 @@ def test_html_and_pdf_are_written(document, tmp_path):
     html, pdf = write_report(document, tmp_path)
     assert not re.findall(r"(?:src|href)=[\"']?(?:https?:)?//", html.read_text())
     assert pdf.read_bytes().startswith(b"%PDF")
+
+
+def test_calibrations_are_counted_once_though_some_have_several_names(document):
+    texts = [block.text for block in blocks_of(document, Text) if "calibrations lie behind this report" in block.text]
+    assert re.findall(r"and (\d+) calibrations", texts[0]) == ["36"]

@@ -255,3 +255,51 @@ def test_what_a_profile_does_without_is_left_out_of_tables_and_of_the_chapters_t
     assert "goal/slow/0.1: the profile quick has no such run" in page
     assert page.count("Left out:") >= 1
     assert "Left out: one.md" not in page
+
+
+LAW = """\
+from typing import Literal
+
+import numpy as np
+
+from runner.controllers import Loop
+from runner.registry import StrictModel
+
+
+class CONFIG(StrictModel):
+    kind: Literal["resting"]
+    period: float
+
+
+class Resting:
+    def reset(self):
+        pass
+
+    def torque(self, time, q, dq, reference):
+        return np.zeros(len(q))
+
+
+def build(config, robot):
+    return (Loop("arm", slice(0, robot.model.nq), config.period, Resting()),)
+"""
+
+
+def test_a_law_of_the_works_own_runs_with_code_and_its_command_names_it(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("RUNNER_PLUGINS", "")
+    monkeypatch.chdir(tmp_path)
+    folder = a_work(
+        tmp_path / "paper",
+        work__yaml=ABOUT + "plugins: [controller=resting.py]\n",
+        runs__yaml="grids: {rest: {with: [robot=macro, controller=resting, duration=0.02]}}\n",
+        one__md='# One\n\n{{ table("Rest.", "rest", column("moved", "peak_torque")) }}\n',
+        resting__py=LAW,
+    )
+    (folder / "controller").mkdir()
+    (folder / "controller" / "resting.yaml").write_text("kind: resting\nperiod: 0.01\n")
+    command = ["reproduce", "paper", "hydra.sweeper.workers=0"]
+    assert dispatch(command) == 2
+    told = "runner: paper: its runs need controller=resting.py: code in a folder runs with --code alone"
+    assert told in capsys.readouterr().err
+    assert dispatch([*command, "--code"]) == 0
+    page = (tmp_path / "outputs" / "reports" / "paper" / "report.html").read_text()
+    assert "runner --config-dir paper --plugin controller=paper/resting.py robot=macro controller=resting" in page
