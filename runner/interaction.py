@@ -6,7 +6,7 @@ import pinocchio as pin
 from runner.environments import Environment
 from runner.robots.robot import Robot
 from runner.robots.tool_link import find_tool, holding_wrench
-from runner.sensing.wrench import wrench_transform
+from runner.sensing.wrench import cross, wrench_transform
 from runner.trace import FloatArray
 
 
@@ -69,7 +69,7 @@ class Interaction:
         if self._environment is not None:
             applied = self._environment.wrench(time, tip.translation.copy(), J[:3] @ dq)
         self.external[:] = applied + contact
-        self.external[3:] -= np.cross(tip.translation, contact[:3])
+        self.external[3:] -= cross(tip.translation, contact[:3])
         self.load[:] = self._load_on_flange(tip)
         torques: FloatArray = J.T @ applied
         return torques

@@ -1,15 +1,16 @@
 """Computed-torque control: joints follow a joint motion that is resolved from the tip's."""
 
-from typing import Literal
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
 
 import numpy as np
-import pinocchio as pin
 from pydantic import NonNegativeFloat, PositiveFloat
-from scipy.linalg.lapack import dposv
 
 from runner.controllers.controller import FloatArray, Loop
-from runner.controllers.tip_task import TaskName, TipTask, held_orientation, task_start
-from runner.controllers.whole_body_posture import HeldPosture
+from runner.controllers.maths import Array, Scalar
+from runner.controllers.tip_task import TaskName, TipNumbers, TipTask, held_orientation, task_start
+from runner.controllers.torque_law import Arm, TorqueLaw
+from runner.controllers.whole_body_posture import HeldPosture, PostureNumbers, drawn_to
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
@@ -30,6 +31,7 @@ class ComputedTorqueConfig(StrictModel):
             0 is the law without damping.
         null_space_frequency: omega_n of the posture task, home, of an arm with more joints than the task needs, in
             rad/s.
+        integral_gain: How fast the integral of each joint's error acts, k_i in 1/s^3; 0 is the law without it.
     """
 
     kind: Literal["computed_torque"]
@@ -41,14 +43,37 @@ class ComputedTorqueConfig(StrictModel):
     feedforward: bool
     singularity_damping: NonNegativeFloat
     null_space_frequency: NonNegativeFloat
+    integral_gain: NonNegativeFloat
 
 
-class ComputedTorque:
+class ComputedTorqueNumbers(NamedTuple):
+    """The numbers of computed-torque control.
+
+    Attributes:
+        tip: Of the task that leads the imagined arm's tip.
+        posture: Of its null space.
+        k_p: omega_n^2, in 1/s^2.
+        k_v: 2 xi omega_n, in 1/s.
+        k_i: Of the integral, in 1/s^3.
+        period: Time between two ticks, in s.
+    """
+
+    tip: TipNumbers
+    posture: PostureNumbers
+    k_p: Scalar
+    k_v: Scalar
+    k_i: Scalar
+    period: Scalar
+
+
+class ComputedTorque(TorqueLaw[ComputedTorqueNumbers]):
     r"""Inverse dynamics in joint space (Luh, Walker and Paul, IEEE Transactions on Automatic Control 25(3), 1980).
 
-    .. math:: \tau = M (\ddot q_d + 2 \xi \omega_n (\dot q_d - \dot q) + \omega_n^2 (q_d - q)) + V + G
+    .. math:: \tau = M (\ddot q_d + 2 \xi \omega_n (\dot q_d - \dot q) + \omega_n^2 (q_d - q) + k_i z) + V + G
 
-    Under an exact model each joint's error obeys eq. (3.36) of the thesis, whatever the posture and speed. The joint
+    Under an exact model each joint's error obeys eq. (3.36) of the thesis, whatever the posture and speed. The integral
+    z of q_d - q, tick by tick, takes away what a wrong model or a constant load leaves at rest; the closed loop is
+    stable for k_i < 2 xi omega_n^3, and winds up while a torque is at its limit. Without it k_i is 0. The joint
     motion q_d is that of an imagined arm, whose tip obeys F* of TipTask (resolved acceleration):
 
     .. math::
@@ -72,14 +97,8 @@ class ComputedTorque:
     """
 
     def __init__(self, model: RobotModel, config: ComputedTorqueConfig, rest: FloatArray) -> None:
-        self._model = pin.Model(model.pin_model)
-        if not config.gravity_compensation:
-            self._model.gravity.linear = np.zeros(3)
-        self._data = self._model.createData()
         self._task = TipTask(
             model,
-            self._model,
-            self._data,
             held_orientation(config.task, model, rest),
             config.natural_frequency,
             config.damping_ratio,
@@ -87,43 +106,52 @@ class ComputedTorque:
             None,
             config.singularity_damping,
         )
-        self._k_p = config.natural_frequency**2
-        self._k_v = 2.0 * config.damping_ratio * config.natural_frequency
-        self._posture = HeldPosture(config.null_space_frequency, rest)
-        self._period = config.period
-        self._started = False
-        self._q_d, self._dq_d = np.zeros(model.nq), np.zeros(model.nq)
+        self._integrates = config.integral_gain > 0.0
+        numbers = ComputedTorqueNumbers(
+            tip=self._task.numbers,
+            posture=HeldPosture(config.null_space_frequency, rest).numbers,
+            k_p=config.natural_frequency**2,
+            k_v=2.0 * config.damping_ratio * config.natural_frequency,
+            k_i=config.integral_gain,
+            period=config.period,
+        )
+        super().__init__([model], config.gravity_compensation, numbers)
 
-    def reset(self) -> None:
-        """Forget the joint motion; it starts anew where the next measurement finds the arm, at rest."""
-        self._started = False
+    def start(self, q: FloatArray) -> FloatArray:
+        """Return the joint motion where it starts, at rest, and no integral: q_d, dq_d/dt and z, shape (3 nq,)."""
+        return np.concatenate([q, np.zeros(2 * len(q))])
 
-    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
-        """Return the torques of the law above, and go on to the next tick; see Controller.torque."""
-        if not self._started:
-            self._started = True
-            self._q_d, self._dq_d = q.copy(), np.zeros(len(q))
-        q_d, dq_d, h = self._q_d, self._dq_d, self._period
-        ddq_d = self._resolved_acceleration(q_d, dq_d, reference)
-        ddq = ddq_d + self._k_v * (dq_d - dq) + self._k_p * (q_d - q)
-        torque: FloatArray = pin.rnea(self._model, self._data, q, dq, ddq)
-        self._q_d = q_d + h * dq_d + 0.5 * h**2 * ddq_d
-        self._dq_d = dq_d + h * ddq_d
-        return torque
+    def evaluate(
+        self,
+        arms: Sequence[Arm],
+        numbers: ComputedTorqueNumbers,
+        time: Scalar,
+        q: Array,
+        dq: Array,
+        reference: Array,
+        memory: Array,
+    ) -> tuple[Array, Array]:
+        """Return the torques of the law above, and the joint motion at the next tick; see TorqueLaw."""
+        (arm,), h, n = arms, numbers.period, len(q)
+        q_d, dq_d, z = memory[:n], memory[n : 2 * n], memory[2 * n :]
+        ddq_d = self._resolved_acceleration(arm, numbers, q_d, dq_d, reference)
+        error = q_d - q
+        ddq = ddq_d + numbers.k_v * (dq_d - dq) + numbers.k_p * error
+        if self._integrates:
+            ddq, z = ddq + numbers.k_i * z, z + h * error
+        goes_on = np.concatenate([q_d + h * dq_d + 0.5 * h**2 * ddq_d, dq_d + h * ddq_d, z])
+        return arm.inverse_dynamics(q, dq, ddq), goes_on
 
-    def _resolved_acceleration(self, q_d: FloatArray, dq_d: FloatArray, reference: FloatArray) -> FloatArray:
-        J, dJ_dq = self._task.update(q_d, dq_d)
-        error = self._task.error(reference)
-        ddq_0 = self._posture.acceleration(q_d, dq_d)
-        asked = self._task.acceleration(error, J.dot(dq_d), reference) - dJ_dq - J.dot(ddq_0)
-        square = J.dot(J.T)
-        added = self._task.damping(J, error, square)
-        if added is not None:
-            square[np.diag_indices_from(square)] += added
-        _, solution, info = dposv(square, asked)
-        if info:
-            raise np.linalg.LinAlgError("the tip's Jacobian is singular")
-        return np.asarray(ddq_0 + J.T.dot(solution))
+    def _resolved_acceleration(
+        self, arm: Arm, numbers: ComputedTorqueNumbers, q_d: Array, dq_d: Array, reference: Array
+    ) -> Array:
+        maths, task, tip = arm.maths, self._task, arm.tip(q_d, dq_d)
+        J, dJ_dq = task.jacobian(numbers.tip, tip)
+        error = task.error(maths, numbers.tip, tip, reference)
+        ddq_0 = drawn_to(numbers.posture, q_d, dq_d)
+        F = task.acceleration(maths, numbers.tip, error, J.dot(dq_d), reference) - dJ_dq - J.dot(ddq_0)
+        square = task.damp(maths, numbers.tip, J, error, J.dot(J.T))
+        return np.asarray(ddq_0 + J.T.dot(maths.solve_symmetric(square, F, "the tip's Jacobian is singular")))
 
 
 CONFIG = ComputedTorqueConfig

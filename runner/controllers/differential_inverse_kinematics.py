@@ -80,6 +80,7 @@ class DifferentialInverseKinematics:
         _check_gain(config)
         self._orientation = held_orientation(config.task, model, home)
         self._directions = task_directions(model, config.task == "pose")
+        self._whole = len(self._directions) == self._directions.shape[1]
         self._model = pin.Model(model.pin_model)
         self._data = self._model.createData()
         self._tip = model.tip_frame
@@ -106,7 +107,7 @@ class DifferentialInverseKinematics:
         off, turn = self._tip_offset(q) if self._measured else (np.zeros(3), np.eye(3))
         command, slope, motion = self._command, np.zeros_like(q), np.zeros_like(q)
         bounds = (self._position_limits - command) / self._period
-        bounds = np.clip(bounds, -self._speed_limits, self._speed_limits)
+        bounds = np.minimum(np.maximum(bounds, -self._speed_limits), self._speed_limits)
         for place, weight in self._rule:
             ahead = place * self._period
             slope = self._joint_velocity(command + ahead * slope, ahead, off, turn, reference, bounds)
@@ -132,8 +133,10 @@ class DifferentialInverseKinematics:
         if self._orientation is not None:
             v = np.concatenate([v, self._gain * pin.log3(self._orientation @ (turn @ R).T)])
         dq0 = self._null_space.velocity(q, J, self._directions)
-        task = self._directions @ J[: len(v)]
-        return self._resolved_rate.solve(task, self._directions @ v, dq0, *bounds)
+        task, wanted = J[: len(v)], v
+        if not self._whole:
+            task, wanted = self._directions.dot(task), self._directions.dot(v)
+        return self._resolved_rate.solve(task, wanted, dq0, *bounds)
 
     def _tip_at(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return position, orientation and basic Jacobian of the tip in the base frame."""

@@ -65,7 +65,7 @@ class LimitedMotion:
         tip = self._data.oMf[self._frame]
         way = np.concatenate([wanted.translation - tip.translation, pin.log3(wanted.rotation @ tip.rotation.T)])
         near = self._share * (self._limits - self._q)
-        lower, upper = np.clip(near, -self._speeds, self._speeds)
+        lower, upper = np.minimum(np.maximum(near, -self._speeds), self._speeds)
         dq = self._rate.solve(J, way / self._period, np.zeros(len(self._q)), lower, upper)
         self._q = self._q + self._period * dq
         reached = self.tip

@@ -9,7 +9,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 from runner.config.per_stage import PositivePerStage, by_stage
 from runner.controllers.controller import Controller, FloatArray, Loop
 from runner.controllers.stage_law import StageLaw
-from runner.controllers.stage_loops import Aim, CarrierController, HeldController, RiderController, Turns
+from runner.controllers.stage_loops import Aim, CarrierController, HeldController, RiderController
 from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.robot import Robot, end_points
@@ -86,10 +86,10 @@ def build(config: MacroMiniConfig, robot: Robot) -> tuple[Loop, ...]:
 
 def _controller(config: MacroMiniConfig, robot: Robot, index: int, carrier_period: float) -> Controller:
     parallel = config.wrist_rotation == "parallel"
-    turns = Turns(carrier_period) if config.schedule == "turns" else None
+    turn = carrier_period if config.schedule == "turns" else None
     law = _law(config, robot, index)
     if index == 0:
-        return CarrierController(robot, law, _carrier_offset(config, robot), parallel, config.reach, turns)
+        return CarrierController(robot, law, _carrier_offset(config, robot), parallel, config.reach, turn)
     if config.coupling == "mini_held":
         return HeldController(robot, index, law, parallel)
     return RiderController(
@@ -102,7 +102,7 @@ def _controller(config: MacroMiniConfig, robot: Robot, index: int, carrier_perio
         moving_target=config.mini_reference_velocity == "full",
         reach=config.reach,
         stretch=config.beyond_reach == "stretch",
-        turns=turns,
+        turn=turn,
     )
 
 

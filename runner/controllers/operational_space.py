@@ -1,15 +1,16 @@
 """Operational-space control of the tip's position or pose."""
 
-from typing import Literal
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
 
 import numpy as np
-import pinocchio as pin
 from pydantic import NonNegativeFloat
-from scipy.linalg.lapack import dgesv
 
 from runner.config.per_stage import NonNegativePerStage, PositivePerStage, by_stage
 from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.maths import Array, Scalar
 from runner.controllers.tip_task import TaskName, held_orientation, task_start
+from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.controllers.whole_body import WholeBody, WholeBodyLaw
 from runner.errors import ConfigError
 from runner.registry import StrictModel
@@ -46,7 +47,25 @@ class OperationalSpaceConfig(StrictModel):
     null_space_frequency: NonNegativePerStage
 
 
-class OperationalSpace:
+class OperationalSpaceNumbers(NamedTuple):
+    """The numbers of operational-space control.
+
+    Attributes:
+        weights: Of desired position, velocity and acceleration in F*, shape (3,).
+        k_p: omega_n^2, shape (3,), in 1/s^2: NumPy multiplies arrays quicker than a float.
+        k_v: 2 xi omega_n, shape (3,), in 1/s.
+        damping: Square of the share of the tip's error by which the inverse of J is damped.
+        singular_below: Singular value below which it is, in m.
+    """
+
+    weights: Array
+    k_p: Array
+    k_v: Array
+    damping: Scalar
+    singular_below: Scalar
+
+
+class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
     r"""Dynamic decoupling and linear control of the tip position of an arm with three joints.
 
     The thesis writes the law in operational space, eq. (3.32) with (3.40):
@@ -98,55 +117,55 @@ class OperationalSpace:
                     f"the arm has {model.nq} ({', '.join(model.joint_names)})"
                 ]
             )
-        self._model = pin.Model(model.pin_model)
-        self._gravity_compensation = gravity_compensation
-        self._no_gravity = np.zeros(3)
-        self.set_gravity(model.gravity)
-        self._data = self._model.createData()
-        self._tip = model.tip_frame
-        # A view into Pinocchio's data: each update of the frame refreshes it, without a new object per tick.
-        self._x = self._data.oMf[self._tip].translation
-        self._zero = np.zeros(model.nq)
         k_p, k_v = natural_frequency**2, 2.0 * damping_ratio * natural_frequency
-        self._weights = np.array([k_p, k_v, 1.0]) if feedforward else np.array([k_p, 0.0, 0.0])
-        self._k_p, self._k_v = np.full(3, k_p), np.full(3, k_v)  # NumPy multiplies arrays quicker than a float
-        self._damping = singularity_damping
-        self._singular_below = 0.1 * model.reach
+        weights = np.array([k_p, k_v, 1.0]) if feedforward else np.array([k_p, 0.0, 0.0])
+        self._damped = singularity_damping > 0.0
+        numbers = OperationalSpaceNumbers(
+            weights, np.full(3, k_p), np.full(3, k_v), singularity_damping**2, 0.1 * model.reach
+        )
+        super().__init__([model], gravity_compensation, numbers)
 
-    def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector in the arm's base frame, shape (3,), in m/s^2."""
-        self._model.gravity.linear = gravity if self._gravity_compensation else self._no_gravity
+    def evaluate(
+        self,
+        arms: Sequence[Arm],
+        numbers: OperationalSpaceNumbers,
+        time: Scalar,
+        q: Array,
+        dq: Array,
+        reference: Array,
+        memory: Array,
+    ) -> tuple[Array, Array]:
+        """Return the torques of the law above; see TorqueLaw."""
+        (arm,) = arms
+        return self.lead(arm, numbers, q, dq, reference), memory
 
-    def reset(self) -> None:
-        """Do nothing: the law has no memory."""
-
-    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
-        """Return the torques of the law above; see Controller.torque."""
-        model, data = self._model, self._data
-        pin.forwardKinematics(model, data, q, dq, self._zero)
-        pin.computeJointJacobians(model, data)
-        pin.updateFramePlacement(model, data, self._tip)
-        J = pin.getFrameJacobian(model, data, self._tip, pin.LOCAL_WORLD_ALIGNED)[:3]
-        dJ_dq = pin.getFrameClassicalAcceleration(model, data, self._tip, pin.LOCAL_WORLD_ALIGNED).linear
-        F = self._weights.dot(reference)
-        F -= self._k_p * self._x
-        F -= self._k_v * J.dot(dq)
-        F -= dJ_dq
-        lu, _, ddq, info = dgesv(J, F)
-        if self._damping:
+    def lead(
+        self,
+        arm: Arm,
+        numbers: OperationalSpaceNumbers,
+        q: Array,
+        dq: Array,
+        reference: Array,
+        gravity: Array | None = None,
+    ) -> Array:
+        """Return the torques of the law above; see Arm.inverse_dynamics for gravity, TorqueLaw for the others."""
+        maths, tip = arm.maths, arm.tip(q, dq)
+        J = tip.J[:3]
+        F = numbers.weights.dot(reference) - numbers.k_p * tip.x - numbers.k_v * J.dot(dq) - tip.dJ_dq[:3]
+        solution, determinant = maths.solve_three(J, F, None if self._damped else "the tip's Jacobian is singular")
+        if self._damped:
             # |det J| over the other two singular values' largest possible product: a lower bound of the smallest.
-            smallest = 2.0 * abs(lu[0, 0] * lu[1, 1] * lu[2, 2]) / np.vdot(J, J)
-            if smallest < self._singular_below:
-                ddq = self._damped_solve(J, F, reference[0] - self._x, smallest / self._singular_below)
-        elif info:
-            raise np.linalg.LinAlgError("the tip's Jacobian is singular")
-        torque: FloatArray = pin.rnea(model, data, q, dq, ddq)
-        return torque
+            entries = J.ravel()
+            nearness = 2.0 * maths.absolute(determinant) / (entries.dot(entries) * numbers.singular_below)
 
-    def _damped_solve(self, J: FloatArray, F: FloatArray, error: FloatArray, nearness: float) -> FloatArray:
-        damping = self._damping**2 * error.dot(error) * (1.0 - nearness**2)
-        solution: FloatArray = J.T @ np.linalg.solve(J @ J.T + damping * np.eye(3), F)
-        return solution
+            def damped() -> Array:
+                error = reference[0] - tip.x
+                added = numbers.damping * error.dot(error) * (1.0 - nearness * nearness)
+                square = J.dot(J.T) + added * np.eye(3)
+                return np.asarray(J.T.dot(maths.solve_symmetric(square, F, "the tip's Jacobian is singular")))
+
+            solution = maths.choose(maths.less(nearness, 1.0), damped, lambda: solution)
+        return arm.inverse_dynamics(q, dq, solution, gravity)
 
 
 def tip_law(

@@ -1,6 +1,7 @@
 """Joint velocities for a tip velocity: weighted, damped, within bounds, with a null-space motion beside."""
 
 import numpy as np
+from scipy.linalg.lapack import dgesv, dpotrf
 
 from runner.controllers.controller import FloatArray
 
@@ -58,14 +59,21 @@ class ResolvedRate:
             except np.linalg.LinAlgError:
                 break  # the others cannot do it
             beyond = np.where(free, np.maximum(lower - dq, dq - upper), 0.0)
-        bounded: FloatArray = np.clip(dq, lower, upper)
-        return bounded
+        return np.minimum(np.maximum(dq, lower), upper)
 
     def _solve(self, J: FloatArray, v: FloatArray, dq0: FloatArray, mobility: FloatArray | None = None) -> FloatArray:
         spread = (self._mobility if mobility is None else mobility)[:, None] * J.T
-        A = J @ spread
-        if self._damping:
+        A = J.dot(spread)
+        if self._damping and self._is_near(A):
             smallest = max(float(np.linalg.eigvalsh(A)[0]), 0.0)
             A.flat[:: len(A) + 1] += max(self._damping**2 - smallest, 0.0)  # the diagonal
-        solution: FloatArray = dq0 + spread @ np.linalg.solve(A, v - J @ dq0)
-        return solution
+        _, _, solution, singular = dgesv(A, v - J.dot(dq0))
+        if singular:
+            raise np.linalg.LinAlgError("the tip's Jacobian is singular")
+        return np.asarray(dq0 + spread.dot(solution))
+
+    def _is_near(self, A: FloatArray) -> bool:
+        """Tell whether an eigenvalue of A lies below the damping's square, which a Cholesky factor shows sooner."""
+        above = A.copy()
+        above.flat[:: len(A) + 1] -= self._damping**2
+        return bool(dpotrf(above)[1] != 0)

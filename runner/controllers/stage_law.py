@@ -1,16 +1,36 @@
-"""The tip law of one stage, on its own dynamics."""
+"""What a stage can be told to do from its own model alone."""
+
+from typing import Any, NamedTuple
 
 from runner.controllers.controller import FloatArray
-from runner.controllers.joint_hold import JointHold
+from runner.controllers.maths import Array, Scalar
 from runner.controllers.operational_space import tip_law
+from runner.controllers.torque_law import Arm, structure_of
 from runner.controllers.whole_body import WholeBodyLaw
 from runner.robots.model import RobotModel
 
 
-class StageLaw:
-    """What a stage can be told to do from its own model alone: bring its tip somewhere, or hold a posture.
+class StageNumbers(NamedTuple):
+    """The numbers of a stage's law.
 
-    The tip is brought there by tip_law: more joints than three are drawn home in its null space.
+    Attributes:
+        tip: Of the law that leads its tip.
+        k_p: omega_n^2 of a posture held, in 1/s^2.
+        k_v: 2 xi omega_n of it, in 1/s.
+    """
+
+    tip: Any
+    k_p: Scalar
+    k_v: Scalar
+
+
+class StageLaw:
+    r"""What a stage can be told to do from its own model alone: bring its tip somewhere, or hold a posture.
+
+    The tip is brought there by tip_law: more joints than three are drawn home in its null space. A posture q_0 is held
+    by inverse dynamics in joint space:
+
+    .. math:: \tau = M (-\omega_n^2 (q - q_0) - 2 \xi \omega_n \dot q) + V + G
 
     Args:
         model: The stage's arm on a fixed base.
@@ -20,6 +40,11 @@ class StageLaw:
         feedforward: Whether the tip law follows the reference's velocity and acceleration.
         singularity_damping: As in OperationalSpace.
         home: Joint positions at home, shape (nq,), in rad.
+
+    Attributes:
+        model: The arm.
+        gravity_compensation: As above.
+        numbers: The numbers of both.
 
     Raises:
         ConfigError: if the arm has fewer than three joints.
@@ -35,7 +60,7 @@ class StageLaw:
         singularity_damping: float,
         home: FloatArray,
     ) -> None:
-        numbers = WholeBodyLaw(
+        config = WholeBodyLaw(
             natural_frequency=natural_frequency,
             damping_ratio=damping_ratio,
             gravity_compensation=gravity_compensation,
@@ -44,18 +69,23 @@ class StageLaw:
             max_tip_speed=None,
             singularity_damping=singularity_damping,
         )
-        self._tip = tip_law(model, numbers, home)
-        self._posture = JointHold(model, natural_frequency, damping_ratio, gravity_compensation)
+        self.model, self.gravity_compensation = model, gravity_compensation
+        self._tip: Any = tip_law(model, config, home)  # one of two, each with numbers of its own kind
+        self.numbers = StageNumbers(self._tip.numbers, natural_frequency**2, 2.0 * damping_ratio * natural_frequency)
 
-    def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector in the stage's base frame, shape (3,), in m/s^2."""
-        self._tip.set_gravity(gravity)
-        self._posture.set_gravity(gravity)
+    def structure(self) -> dict[str, Any]:
+        """Return what decides how it goes, beside its numbers; see TorqueLaw.structure."""
+        return structure_of(self)
 
-    def move(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
-        """Return the torques that bring the tip to a reference in the stage's base frame; see Controller.torque."""
-        return self._tip.torque(time, q, dq, reference)
+    def move(
+        self, arm: Arm, numbers: StageNumbers, q: Array, dq: Array, reference: Array, gravity: Array | None = None
+    ) -> Array:
+        """Return the torques that bring the tip to a reference in the stage's base frame; see OperationalSpace.lead."""
+        torque: Array = self._tip.lead(arm, numbers.tip, q, dq, reference, gravity)
+        return torque
 
-    def hold(self, q: FloatArray, dq: FloatArray, posture: FloatArray) -> FloatArray:
-        """Return the torques that hold a posture, shapes (nq,)."""
-        return self._posture.torque(q, dq, posture)
+    def hold(
+        self, arm: Arm, numbers: StageNumbers, q: Array, dq: Array, posture: Array, gravity: Array | None = None
+    ) -> Array:
+        """Return the torques that hold a posture, shape (nq,), in rad; see Arm.inverse_dynamics for gravity."""
+        return arm.inverse_dynamics(q, dq, numbers.k_p * (posture - q) - numbers.k_v * dq, gravity)

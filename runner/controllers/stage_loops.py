@@ -1,48 +1,82 @@
 """Control loops of riding arms: each stage's own law, and the target that the coupling gives it."""
 
-from typing import Literal
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from runner.controllers.controller import FloatArray
-from runner.controllers.stage_law import StageLaw
-from runner.robots.robot import Robot, StageBase, end_points
+from runner.controllers.maths import Array, Maths, Scalar
+from runner.controllers.stage_law import StageLaw, StageNumbers
+from runner.controllers.torque_law import Arm, TorqueLaw
+from runner.robots.model import RobotModel
+from runner.robots.robot import Robot, end_points
+from runner.sensing.wrench import cross
 
 Aim = Literal["rest", "own_offset", "base_offset"]
 
+_STILL = np.zeros(3)
 
-class Turns:
-    """Whose turn it is, where only one arm moves at a time: a period of the carrier each, beginning with the carrier.
 
-    Args:
-        period: Length of a turn, in s.
+class CarrierNumbers(NamedTuple):
+    """The numbers of the first stage's loop.
+
+    Attributes:
+        law: Of the stage's law.
+        offset: Offset o as a motion, shape (3, 3): it stands still.
+        later: Home offset of what rides on the first rider, in the robot's base frame, shape (3,), in m.
+        rotations: From the riders' base frames at home into the robot's, shape (riders, 3, 3).
+        reach: Distance up to which the first rider follows its target, in m.
+        turn: Length of a turn, in s.
     """
 
-    def __init__(self, period: float) -> None:
-        self._period = period
-
-    def rider_moves(self, time: float) -> bool:
-        """Tell whether it is the rider's turn."""
-        return int(time / self._period + 1e-9) % 2 == 1
-
-
-class _Posture:
-    """A posture that is kept from the first moment of a hold to its end."""
-
-    def __init__(self) -> None:
-        self._held: FloatArray | None = None
-
-    def keep(self, q: FloatArray) -> FloatArray:
-        """Return the posture held, which is the present one when the hold begins."""
-        if self._held is None:
-            self._held = q.copy()
-        return self._held
-
-    def release(self) -> None:
-        self._held = None
+    law: StageNumbers
+    offset: Array
+    later: Array
+    rotations: Array
+    reach: Scalar
+    turn: Scalar
 
 
-class CarrierController:
+class RiderNumbers(NamedTuple):
+    """The numbers of a riding stage's loop.
+
+    Attributes:
+        law: Of the stage's law.
+        offset: Offset r_0 that it keeps as a motion, shape (3, 3): it stands still.
+        later: Home offset of what rides on it, in the robot's base frame, shape (3,), in m.
+        rotation: From its base frame at home into the robot's, shape (3, 3).
+        gravity: In the robot's base frame, shape (3,), in m/s^2.
+        reach: Distance up to which it follows its target, in m.
+        turn: Length of a turn, in s.
+    """
+
+    law: StageNumbers
+    offset: Array
+    later: Array
+    rotation: Array
+    gravity: Array
+    reach: Scalar
+    turn: Scalar
+
+
+class HeldNumbers(NamedTuple):
+    """The numbers of a loop that holds a stage's joints.
+
+    Attributes:
+        law: Of the stage's law.
+        posture: Shape (n,), in rad.
+        rotation: From the stage's base frame at home into the robot's, shape (3, 3).
+        gravity: In the robot's base frame, shape (3,), in m/s^2.
+    """
+
+    law: StageNumbers
+    posture: Array
+    rotation: Array
+    gravity: Array
+
+
+class CarrierController(TorqueLaw[CarrierNumbers]):
     """The loop of the first stage, which stands on the ground.
 
     Its target is x_d - o, where o stands for the stages that ride on it: nothing (macro_target tip_goal), their
@@ -54,46 +88,69 @@ class CarrierController:
         offset: Offset o, shape (3,), in m; None takes the riders' present one.
         parallel: Whether the riders' base is taken parallel to the ground's.
         reach: Distance up to which the first rider follows its target, in m.
-        turns: Whose turn it is; None where both arms move at any time.
+        turn: Length of a turn, in s; see rider_moves. None where both arms move at any time.
     """
 
     def __init__(
-        self, robot: Robot, law: StageLaw, offset: FloatArray | None, parallel: bool, reach: float, turns: Turns | None
+        self, robot: Robot, law: StageLaw, offset: FloatArray | None, parallel: bool, reach: float, turn: float | None
     ) -> None:
-        self._law, self._offset, self._reach, self._turns = law, offset, reach, turns
-        self._joints = robot.stages[0].joints
-        self._riders = robot.stages[1:]
-        self._bases = [StageBase(robot, index, parallel) for index in range(1, len(robot.stages))]
+        riders = range(1, len(robot.stages))
+        placed = [_base(robot, rider) for rider in riders]
+        bases = [model for model, _ in placed]
+        self._law, self._end = law, robot.stages[0].joints.stop
+        self._turns, self._parallel = turn is not None, parallel
+        self._riders = [(s.joints.start, s.joints.stop) for s in robot.stages[1:]] if offset is None else []
+        self._bases = len(bases) if offset is None and not parallel else int(self._turns)
+        self._released = _no_posture(self._end if self._turns else None)
+        tips = [stage.model for stage in robot.stages[1:]] if offset is None else []
         at_home = end_points(robot, robot.home[None])[:, 0]
-        self._later = at_home[-1] - at_home[1]  # of the stages that ride on the first rider
-        self._posture = _Posture()
+        numbers = CarrierNumbers(
+            law=law.numbers,
+            offset=_at_rest(_STILL if offset is None else offset),
+            later=at_home[-1] - at_home[1],
+            rotations=np.array([rotation for _, rotation in placed]),
+            reach=reach,
+            turn=0.0 if turn is None else turn,
+        )
+        models = [law.model, *bases[: self._bases], *tips]
+        super().__init__(models, law.gravity_compensation, numbers, robot.model.nq)
 
-    def reset(self) -> None:
-        """Forget the posture held."""
-        self._posture.release()
+    def start(self, q: FloatArray) -> FloatArray:
+        """Return that no posture is held; see TorqueLaw."""
+        return self._released
 
-    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
-        """Return the torques of the first stage; see Controller.torque."""
-        own_q, own_dq = q[self._joints], dq[self._joints]
-        if self._turns is not None and self._turns.rider_moves(time):
-            self._bases[0].update(q, dq)
-            distance = reference[0] - self._bases[0].position - self._later
-            if distance.dot(distance) <= self._reach**2:
-                return self._law.hold(own_q, own_dq, self._posture.keep(own_q))
-        self._posture.release()
-        target = reference.copy()
-        target[0] -= self._present_offset(q, dq) if self._offset is None else self._offset
-        return self._law.move(time, own_q, own_dq, target)
+    def evaluate(
+        self,
+        arms: Sequence[Arm],
+        numbers: CarrierNumbers,
+        time: Scalar,
+        q: Array,
+        dq: Array,
+        reference: Array,
+        memory: Array,
+    ) -> tuple[Array, Array]:
+        """Return the torques of the first stage, and the posture held; see TorqueLaw."""
+        own, own_q, own_dq = arms[0], q[: self._end], dq[: self._end]
+        bases = [arm.place(q) for arm in arms[1 : 1 + self._bases]] if self._bases else []
+        target = reference - numbers.offset
+        if self._riders:
+            rotations = numbers.rotations if self._parallel else [R for _, R in bases]
+            for (first, end), rider, R in zip(self._riders, arms[1 + self._bases :], rotations, strict=True):
+                x, _ = rider.place(q[first:end])
+                target[0] -= R.dot(x)
+        if not self._turns:
+            return self._law.move(own, numbers.law, own_q, own_dq, target), memory
+        maths, distance = own.maths, reference[0] - bases[0][0] - numbers.later
+        beyond = maths.less(numbers.reach * numbers.reach, distance.dot(distance))
+        own_turn = maths.less(rider_moves(maths, numbers.turn, time), 0.5)
+        return maths.choose(
+            maths.any_of(own_turn, beyond),
+            lambda: (self._law.move(own, numbers.law, own_q, own_dq, target), self._released),
+            lambda: _hold(self._law, own, numbers.law, own_q, own_dq, memory),
+        )
 
-    def _present_offset(self, q: FloatArray, dq: FloatArray) -> FloatArray:
-        offset = np.zeros(3)
-        for rider, base in zip(self._riders, self._bases, strict=True):
-            base.update(q, dq)
-            offset += base.rotation.dot(rider.model.tip_position(q[rider.joints]))
-        return offset
 
-
-class RiderController:
+class RiderController(TorqueLaw[RiderNumbers]):
     """The loop of a stage that rides on others.
 
     Its target is the rest of the way, R^T (x_d - o - x_E), seen from its base. As for the first stage, o is the home
@@ -113,7 +170,7 @@ class RiderController:
         moving_target: Whether the target's velocity is part of the reference.
         reach: Distance up to which it follows, in m.
         stretch: Whether it stretches towards a target beyond reach; else it holds its posture.
-        turns: Whose turn it is; None where both arms move at any time.
+        turn: Length of a turn, in s; see rider_moves. None where both arms move at any time.
     """
 
     def __init__(
@@ -127,54 +184,90 @@ class RiderController:
         moving_target: bool,
         reach: float,
         stretch: bool,
-        turns: Turns | None,
+        turn: float | None,
     ) -> None:
-        self._law, self._aim, self._later, self._moving = law, aim, later_offset, moving_target
-        self._reach, self._stretch, self._turns = reach, stretch, turns
-        self._joints = robot.stages[stage].joints
-        self._home_offset = robot.stages[stage].home_offset
-        self._base = StageBase(robot, stage, parallel)
-        self._base.update(robot.home, np.zeros_like(robot.home))
-        self._base_offset = self._base.rotation.dot(self._home_offset)
-        self._gravity = robot.model.gravity
-        self._posture = _Posture()
+        self._law, self._aim, self._parallel = law, aim, parallel
+        self._stretch, self._turns = stretch, turn is not None
+        self._moving = moving_target and aim != "own_offset"
+        joints, r_0 = robot.stages[stage].joints, robot.stages[stage].home_offset
+        self._first, self._end = joints.start, joints.stop
+        self._follows = aim == "rest"
+        self._holds = self._follows and (self._turns or not stretch)
+        self._released = _no_posture(self._end - self._first if self._holds else None)
+        base, at_home = _base(robot, stage)
+        numbers = RiderNumbers(
+            law=law.numbers,
+            offset=_at_rest(at_home.dot(r_0) if aim == "base_offset" else r_0),
+            later=later_offset,
+            rotation=at_home,
+            gravity=robot.model.gravity,
+            reach=reach,
+            turn=0.0 if turn is None else turn,
+        )
+        super().__init__([law.model, base], law.gravity_compensation, numbers, robot.model.nq)
 
-    def reset(self) -> None:
-        """Forget the posture held."""
-        self._posture.release()
+    def start(self, q: FloatArray) -> FloatArray:
+        """Return that no posture is held; see TorqueLaw."""
+        return self._released
 
-    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
-        """Return the torques of this stage; see Controller.torque."""
-        base = self._base
-        base.update(q, dq)
-        R = base.rotation
-        self._law.set_gravity(R.T.dot(self._gravity))
-        own_q, own_dq = q[self._joints], dq[self._joints]
-        rest = reference[0] - self._later - base.position
-        distance_squared = rest.dot(rest)
-        waits = self._turns is not None and not self._turns.rider_moves(time)
-        beyond = distance_squared > self._reach**2 and not self._stretch
-        if self._aim == "rest" and (waits or beyond):
-            return self._law.hold(own_q, own_dq, self._posture.keep(own_q))
-        self._posture.release()
-        target = np.zeros((3, 3))
-        if self._aim == "rest":
-            target[0] = R.T.dot(rest)
-            if distance_squared > self._reach**2:
-                target[0] *= self._reach / np.sqrt(distance_squared)
-            elif self._moving:
-                velocity, spin = base.velocity()
-                target[1] = R.T.dot(reference[1] - velocity - _cross(spin, rest))
-        elif self._aim == "base_offset":
-            target[0] = R.T.dot(self._base_offset)
-            if self._moving:
-                target[1] = R.T.dot(-_cross(base.velocity()[1], self._base_offset))
+    def evaluate(
+        self,
+        arms: Sequence[Arm],
+        numbers: RiderNumbers,
+        time: Scalar,
+        q: Array,
+        dq: Array,
+        reference: Array,
+        memory: Array,
+    ) -> tuple[Array, Array]:
+        """Return the torques of this stage, and the posture held; see TorqueLaw."""
+        own, base = arms
+        maths, own_q, own_dq = own.maths, q[self._first : self._end], dq[self._first : self._end]
+        way, target, gravity = self._seen(base, numbers, q, dq, reference)
+        if not self._follows:
+            return self._law.move(own, numbers.law, own_q, own_dq, target, gravity), memory
+        squared, near = way.dot(way), target
+        beyond = maths.less(numbers.reach * numbers.reach, squared)
+        if self._stretch:
+            target = maths.choose(
+                beyond, lambda: _at_rest(near[0] * (numbers.reach / maths.sqrt(squared))), lambda: near
+            )
+        if not self._holds:
+            return self._law.move(own, numbers.law, own_q, own_dq, target, gravity), memory
+        return maths.choose(
+            self._waits(maths, numbers, time, beyond),
+            lambda: _hold(self._law, own, numbers.law, own_q, own_dq, memory, gravity),
+            lambda: (self._law.move(own, numbers.law, own_q, own_dq, target, gravity), self._released),
+        )
+
+    def _seen(
+        self, base: Arm, numbers: RiderNumbers, q: Array, dq: Array, reference: Array
+    ) -> tuple[Array, Array, Array]:
+        """Return the way to the target in the robot's base frame, and target and gravity in the stage's own."""
+        if self._moving:
+            x, R, moves = base.motion(q, dq)
         else:
-            target[0] = self._home_offset
-        return self._law.move(time, own_q, own_dq, target)
+            x, R = base.place(q)
+        if self._parallel:
+            R = numbers.rotation
+        if self._aim == "own_offset":
+            return numbers.offset[0], numbers.offset, R.T.dot(numbers.gravity)
+        way = reference[0] - numbers.later - x if self._follows else numbers.offset[0]
+        velocity = _STILL
+        if self._moving:
+            velocity = reference[1] - moves[:3] if self._follows else _STILL
+            velocity = velocity if self._parallel else velocity - cross(moves[3:], way)
+        seen = np.array([way, velocity, _STILL, numbers.gravity]).dot(R)  # R^T of each row
+        return way, seen[:3], seen[3]
+
+    def _waits(self, maths: Maths, numbers: RiderNumbers, time: Scalar, beyond: Scalar) -> Scalar:
+        if not self._turns:
+            return beyond
+        waits = maths.less(rider_moves(maths, numbers.turn, time), 0.5)
+        return waits if self._stretch else maths.any_of(waits, beyond)
 
 
-class HeldController:
+class HeldController(TorqueLaw[HeldNumbers]):
     """The loop of a riding stage whose joints are held at home.
 
     Args:
@@ -185,22 +278,58 @@ class HeldController:
     """
 
     def __init__(self, robot: Robot, stage: int, law: StageLaw, parallel: bool) -> None:
-        self._law = law
-        self._joints, self._home = robot.stages[stage].joints, robot.stages[stage].home
-        self._base = StageBase(robot, stage, parallel)
-        self._gravity = robot.model.gravity
+        self._law, self._parallel = law, parallel
+        self._first, self._end = robot.stages[stage].joints.start, robot.stages[stage].joints.stop
+        base, at_home = _base(robot, stage)
+        numbers = HeldNumbers(law.numbers, robot.stages[stage].home, at_home, robot.model.gravity)
+        super().__init__([law.model, base], law.gravity_compensation, numbers, robot.model.nq)
 
-    def reset(self) -> None:
-        """Do nothing: the law has no memory."""
+    def evaluate(
+        self,
+        arms: Sequence[Arm],
+        numbers: HeldNumbers,
+        time: Scalar,
+        q: Array,
+        dq: Array,
+        reference: Array,
+        memory: Array,
+    ) -> tuple[Array, Array]:
+        """Return the torques of this stage; see TorqueLaw."""
+        own, base = arms
+        R = numbers.rotation if self._parallel else base.place(q)[1]
+        own_q, own_dq = q[self._first : self._end], dq[self._first : self._end]
+        gravity = R.T.dot(numbers.gravity)
+        return self._law.hold(own, numbers.law, own_q, own_dq, numbers.posture, gravity), memory
 
-    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
-        """Return the torques of this stage; see Controller.torque."""
-        self._base.update(q, dq)
-        self._law.set_gravity(self._base.rotation.T.dot(self._gravity))
-        return self._law.hold(q[self._joints], dq[self._joints], self._home)
+
+def rider_moves(maths: Maths, turn: Scalar, time: Scalar) -> Scalar:
+    """Return 1 in the rider's turn and 0 in the carrier's, which begins; each is of this length, in s."""
+    count = maths.floor(time / turn + 1e-9)
+    return count - 2.0 * maths.floor(0.5 * count)
 
 
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return a x b; numpy's own takes ten times as long for single vectors."""
-    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
-    return np.array((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx))
+def _base(robot: Robot, stage: int) -> tuple[RobotModel, FloatArray]:
+    """Return the robot with the base of a riding stage as its tip, and the base's rotation at home, shape (3, 3)."""
+    frame = robot.stages[stage].base_frame
+    assert frame is not None  # noqa: S101 - it rides
+    model = robot.model.with_tip(frame)
+    return model, model.tip_pose(robot.home)[:3, :3]
+
+
+def _at_rest(position: Array) -> Array:
+    """Return a position as a motion, shape (3, 3)."""
+    return np.array([position, _STILL, _STILL])
+
+
+def _no_posture(joints: int | None) -> FloatArray:
+    """Return the memory of a stage that holds no posture: one of its joints, and 1 where it is held; None never is."""
+    return np.zeros(0 if joints is None else joints + 1)
+
+
+def _hold(
+    law: StageLaw, arm: Arm, numbers: StageNumbers, q: Array, dq: Array, memory: Array, gravity: Array | None = None
+) -> tuple[Array, Array]:
+    """Return the torques that hold a posture from the first moment of a hold to its end, and the memory of it."""
+    maths = arm.maths
+    kept = maths.choose(maths.less(0.5, memory[-1]), lambda: memory, lambda: np.concatenate([q, [1.0]]))
+    return law.hold(arm, numbers, q, dq, kept[:-1], gravity), kept

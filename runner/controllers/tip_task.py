@@ -1,11 +1,12 @@
 """What the tip is to do: its position led, or its pose; the same for every law that asks it for an acceleration."""
 
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
-import pinocchio as pin
 
 from runner.controllers.controller import FloatArray
+from runner.controllers.maths import Array, Maths, Scalar
+from runner.controllers.torque_law import Tip
 from runner.errors import ConfigError
 from runner.robots.inverse_kinematics import solve_tip_pose
 from runner.robots.model import RobotModel
@@ -13,6 +14,30 @@ from runner.robots.robot import Robot
 from runner.robots.task_space import task_directions
 
 TaskName = Literal["position", "pose"]
+
+
+class TipNumbers(NamedTuple):
+    """The numbers of a tip task.
+
+    Attributes:
+        k_p: omega_n^2, in 1/s^2.
+        k_v: 2 xi omega_n, in 1/s.
+        directions: What the task has for its rows, shape (rows, 3) or (rows, 6); see task_directions.
+        orientation: The orientation held, in the base frame, shape (3, 3).
+        largest_pull: Largest k_p |x_d - x|, in m/s^2.
+        damping: Square of the share of the tip's error by which inverses are damped.
+        singular_below: Square of the singular value below which they are, in m^2.
+        lengths: Length that a unit of each row counts as, shape (rows,).
+    """
+
+    k_p: Scalar
+    k_v: Scalar
+    directions: Array
+    orientation: Array
+    largest_pull: Scalar
+    damping: Scalar
+    singular_below: Scalar
+    lengths: Array
 
 
 class TipTask:
@@ -39,8 +64,6 @@ class TipTask:
 
     Args:
         model: The arm.
-        pin_model: Its Pinocchio model, as the law that asks has it.
-        data: The data of that model; `update` renews them.
         orientation: R_0 in the base frame, shape (3, 3); None leads the position alone.
         natural_frequency: omega_n in rad/s; k_p = omega_n^2 (3.37).
         damping_ratio: xi; k_v = 2 xi omega_n (3.38).
@@ -52,8 +75,6 @@ class TipTask:
     def __init__(
         self,
         model: RobotModel,
-        pin_model: pin.Model,
-        data: pin.Data,
         orientation: FloatArray | None,
         natural_frequency: float,
         damping_ratio: float,
@@ -64,87 +85,87 @@ class TipTask:
         directions = task_directions(model, orientation is not None)
         self.rows = len(directions)
         """Dimensions of the task: 3 or 6 of an arm that can move its tip in every direction."""
-        self._directions = None if self.rows == directions.shape[1] else directions
-        self._model, self._data = pin_model, data
-        self._tip = model.tip_frame
-        # Views into Pinocchio's data: each update of the frame refreshes them, without a new object per tick.
-        self._x: FloatArray = data.oMf[self._tip].translation
-        self._R: FloatArray = data.oMf[self._tip].rotation
-        self._orientation = orientation
-        self._zero = np.zeros(model.nq)
-        self._k_p = natural_frequency**2
-        self._k_v = 2.0 * damping_ratio * natural_frequency
-        self._feedforward = feedforward
-        self._max_speed = max_speed
-        self._damping = singularity_damping
-        self._singular_below = 0.1 * model.reach
+        moves = int(np.count_nonzero(directions[:, :3].any(axis=1)))  # the other rows turn
+        self._moves, self._turns = moves, orientation is not None
+        self._whole = self.rows == directions.shape[1]
+        self._feedforward, self._bounded, self._damped = feedforward, max_speed is not None, singularity_damping > 0.0
+        k_p, k_v = natural_frequency**2, 2.0 * damping_ratio * natural_frequency
         # A turn counts as the way that it moves a point a reach away, so that all rows are lengths.
-        self._moves = int(np.count_nonzero(directions[:, :3].any(axis=1)))  # the other rows turn
-        self._lengths = np.array(self._moves * [1.0] + (self.rows - self._moves) * [model.reach])
+        lengths = np.array(moves * [1.0] + (self.rows - moves) * [model.reach])
+        self.numbers = TipNumbers(
+            k_p=k_p,
+            k_v=k_v,
+            directions=directions,
+            orientation=np.eye(3) if orientation is None else orientation,
+            largest_pull=k_v * max_speed if max_speed is not None else 0.0,
+            damping=singularity_damping**2,
+            singular_below=(0.1 * model.reach) ** 2,
+            lengths=lengths,
+        )
 
-    def update(self, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Take joint positions and velocities, shapes (nq,).
+    def jacobian(self, numbers: TipNumbers, tip: Tip) -> tuple[Array, Array]:
+        """Return the task's Jacobian J in the base frame, shape (rows, nq), and dJ/dt dq, shape (rows,)."""
+        J, dJ_dq = tip.J, tip.dJ_dq
+        if not self._turns:
+            J, dJ_dq = J[:3], dJ_dq[:3]
+        return (J, dJ_dq) if self._whole else (numbers.directions.dot(J), numbers.directions.dot(dJ_dq))
 
-        Returns:
-            The task's Jacobian J in the base frame, shape (rows, nq), and dJ/dt dq, shape (rows,).
-        """
-        model, data = self._model, self._data
-        pin.forwardKinematics(model, data, q, dq, self._zero)
-        pin.computeJointJacobians(model, data)
-        pin.updateFramePlacement(model, data, self._tip)
-        J: FloatArray = pin.getFrameJacobian(model, data, self._tip, pin.LOCAL_WORLD_ALIGNED)
-        motion = pin.getFrameClassicalAcceleration(model, data, self._tip, pin.LOCAL_WORLD_ALIGNED)
-        dJ_dq = motion.vector
-        if self._orientation is None:
-            J, dJ_dq = J[:3], motion.linear
-        return (J, dJ_dq) if self._directions is None else (self._directions.dot(J), self._directions.dot(dJ_dq))
+    def error(self, maths: Maths, numbers: TipNumbers, tip: Tip, reference: Array) -> Array:
+        """Return desired less actual, shape (rows,), in m and rad."""
+        error: Array = reference[0] - tip.x
+        if self._turns:
+            error = np.concatenate([error, maths.rotation_vector(numbers.orientation.dot(tip.R.T))])
+        return error if self._whole else np.asarray(numbers.directions.dot(error))
 
-    def error(self, reference: FloatArray) -> FloatArray:
-        """Return desired less actual since the last update, shape (rows,), in m and rad."""
-        error: FloatArray = reference[0] - self._x
-        if self._orientation is not None:
-            error = np.concatenate([error, pin.log3(self._orientation @ self._R.T)])
-        return error if self._directions is None else self._directions.dot(error)
-
-    def acceleration(self, error: FloatArray, velocity: FloatArray, reference: FloatArray) -> FloatArray:
+    def acceleration(self, maths: Maths, numbers: TipNumbers, error: Array, velocity: Array, reference: Array) -> Array:
         """Return F*, shape (rows,), in m/s^2 and rad/s^2, from the task's error and velocity."""
-        approach = self._k_p * error
-        if self._max_speed is not None:
-            largest = self._k_v * self._max_speed
-            way = approach[: self._moves]
-            norm = float(np.sqrt(way.dot(way)))
-            if norm > largest:
-                way *= largest / norm
+        approach: Array = numbers.k_p * error
+        if self._bounded:
+            approach = self._bound(maths, numbers, approach)
         if not self._feedforward:
-            return np.asarray(approach - self._k_v * velocity)
-        desired = reference[1:] if self._orientation is None else np.pad(reference[1:], ((0, 0), (0, 3)))
-        if self._directions is not None:
-            desired = desired.dot(self._directions.T)
-        return np.asarray(desired[1] + self._k_v * (desired[0] - velocity) + approach)
+            return np.asarray(approach - numbers.k_v * velocity)
+        desired = reference[1:] if not self._turns else np.pad(reference[1:], ((0, 0), (0, 3)))
+        if not self._whole:
+            desired = desired.dot(numbers.directions.T)
+        return np.asarray(desired[1] + numbers.k_v * (desired[0] - velocity) + approach)
 
-    def damping(self, J: FloatArray, error: FloatArray, mobility: FloatArray) -> FloatArray | None:
-        r"""Return what to add to the diagonal of J A J^T before it is inverted, shape (rows,); None where nothing.
+    def _bound(self, maths: Maths, numbers: TipNumbers, approach: Array) -> Array:
+        way = approach[: self._moves]
+        norm = maths.sqrt(way.dot(way))
+        return maths.choose(
+            maths.less(numbers.largest_pull, norm),
+            lambda: np.concatenate([way * (numbers.largest_pull / norm), approach[self._moves :]]),
+            lambda: approach,
+        )
 
-        With rows in units of length it is lambda^2 = (singularity_damping |e|)^2, times how large J A J^T is to J J^T.
-        It fades in as the smallest singular value falls below a tenth of the reach, and vanishes with the error, so
-        that neither rest nor close tracking is touched.
+    def damp(self, maths: Maths, numbers: TipNumbers, J: Array, error: Array, mobility: Array) -> Array:
+        r"""Return J A J^T, shape (rows, rows), with what is added to its diagonal before it is inverted.
+
+        With rows in units of length that is lambda^2 = (singularity_damping |e|)^2, times how large J A J^T is to
+        J J^T. It fades in as the smallest singular value falls below a tenth of the reach, and vanishes with the error,
+        so that neither rest nor close tracking is touched.
 
         Args:
+            maths: The functions over the scalars of these arrays.
+            numbers: The task's numbers.
             J: The task's Jacobian, shape (rows, nq).
             error: The task's error, shape (rows,).
             mobility: J A J^T, shape (rows, rows).
         """
-        if not self._damping:
-            return None
-        J, error = self._lengths[:, None] * J, self._lengths * error
-        smallest = float(np.sqrt(abs(np.linalg.eigvalsh(J.dot(J.T))[0])))
-        if smallest >= self._singular_below:
-            return None
-        nearness = smallest / self._singular_below
-        size = float(np.diagonal(mobility).dot(self._lengths**2))
-        scale = size / max(float(np.vdot(J, J)), 1e-300)
-        amount: float = scale * self._damping**2 * error.dot(error) * (1.0 - nearness**2)
-        return amount / self._lengths**2
+        if not self._damped:
+            return mobility
+        J, error = numbers.lengths[:, None] * J, numbers.lengths * error
+        square = J.dot(J.T)
+
+        def damped() -> Array:
+            nearness = maths.absolute(maths.smallest_eigenvalue(square)) / numbers.singular_below  # squared
+            size = np.diagonal(mobility).dot(numbers.lengths**2)
+            scale = size / maths.maximum(np.trace(square), 1e-300)
+            amount = scale * numbers.damping * error.dot(error) * (1.0 - nearness)
+            return np.asarray(mobility + np.diag(amount / numbers.lengths**2))
+
+        far = maths.positive_definite(square - numbers.singular_below * np.eye(self.rows))
+        return maths.choose(far, lambda: mobility, damped)
 
 
 def held_orientation(task: TaskName, model: RobotModel, home: FloatArray) -> FloatArray | None:

@@ -1,15 +1,15 @@
 """Operational-space control of a redundant arm as a whole, with a dynamically consistent null space."""
 
-from typing import Literal
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
 
-import numpy as np
-import pinocchio as pin
 from pydantic import NonNegativeFloat, PositiveFloat
-from scipy.linalg.lapack import dposv
 
 from runner.controllers.controller import FloatArray, Loop
-from runner.controllers.tip_task import TipTask
-from runner.controllers.whole_body_posture import HeldJoints, HeldPosture, Posture
+from runner.controllers.maths import Array, Scalar
+from runner.controllers.tip_task import TipNumbers, TipTask
+from runner.controllers.torque_law import Arm, TorqueLaw
+from runner.controllers.whole_body_posture import HeldJoints, HeldPosture, Posture, PostureNumbers
 from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots import RobotModel
@@ -52,7 +52,14 @@ class WholeBodyConfig(WholeBodyLaw):
     period: PositiveFloat
 
 
-class WholeBody:
+class WholeBodyNumbers(NamedTuple):
+    """The numbers of the whole-body law: the tip's, and the posture's."""
+
+    tip: TipNumbers
+    posture: PostureNumbers
+
+
+class WholeBody(TorqueLaw[WholeBodyNumbers]):
     r"""Operational-space control of the tip of an arm with more joints than the task needs (thesis method 1).
 
     .. math::
@@ -84,14 +91,8 @@ class WholeBody:
         first_held: int | None = None,
         orientation: FloatArray | None = None,
     ) -> None:
-        self._model = pin.Model(model.pin_model)
-        self._data = self._model.createData()
-        self._gravity_compensation = config.gravity_compensation
-        self.set_gravity(model.gravity)
         self._task = TipTask(
             model,
-            self._model,
-            self._data,
             orientation,
             config.natural_frequency,
             config.damping_ratio,
@@ -111,44 +112,47 @@ class WholeBody:
         self._posture: Posture = (
             HeldJoints(model, frequency, rest, first_held) if first_held else HeldPosture(frequency, rest)
         )
+        numbers = WholeBodyNumbers(self._task.numbers, self._posture.numbers)
+        super().__init__([model], config.gravity_compensation, numbers)
 
-    def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector in the arm's base frame, shape (3,), in m/s^2."""
-        self._model.gravity.linear = gravity if self._gravity_compensation else np.zeros(3)
+    def evaluate(
+        self,
+        arms: Sequence[Arm],
+        numbers: WholeBodyNumbers,
+        time: Scalar,
+        q: Array,
+        dq: Array,
+        reference: Array,
+        memory: Array,
+    ) -> tuple[Array, Array]:
+        """Return the torques of the law above; see TorqueLaw."""
+        (arm,) = arms
+        return self.lead(arm, numbers, q, dq, reference), memory
 
-    def reset(self) -> None:
-        """Do nothing: the law has no memory."""
-
-    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
-        """Return the torques of the law above; see Controller.torque."""
-        model, data = self._model, self._data
-        J, dJ_dq = self._task.update(q, dq)
-        bias = pin.nonLinearEffects(model, data, q, dq).copy()
-        M = pin.crba(model, data, q)  # its upper triangle is all that dposv reads
-        _, M_inverse_J, info = dposv(M, J.T)
-        if info:
-            raise np.linalg.LinAlgError("the mass matrix is singular")
-        error = self._task.error(reference)
-        task = self._task.acceleration(error, J.dot(dq), reference) - dJ_dq
-        # N^T tau_0 = tau_0 - J^T Lambda J M^-1 tau_0.
-        ddq_0, spring = self._posture.ask(J, q, dq)
-        task -= J.dot(ddq_0) + M_inverse_J.T.dot(spring)
-        force = self._solve_task_inertia(J, J.dot(M_inverse_J), task, error)
-        full = np.triu(M) + np.triu(M, 1).T
-        torque: FloatArray = bias + J.T.dot(force) + full.dot(ddq_0) + spring
-        return torque
-
-    def _solve_task_inertia(
-        self, J: FloatArray, mobility: FloatArray, force: FloatArray, error: FloatArray
-    ) -> FloatArray:
-        """Return Lambda times a task acceleration, damped near a singular posture."""
-        added = self._task.damping(J, error, mobility)
-        if added is not None:
-            mobility = mobility + np.diag(added)
-        _, solution, info = dposv(mobility, force)
-        if info:
-            raise np.linalg.LinAlgError("the tip's Jacobian is singular")
-        return np.asarray(solution)
+    def lead(
+        self,
+        arm: Arm,
+        numbers: WholeBodyNumbers,
+        q: Array,
+        dq: Array,
+        reference: Array,
+        gravity: Array | None = None,
+    ) -> Array:
+        """Return the torques of the law above; see Arm.inverse_dynamics for gravity, TorqueLaw for the others."""
+        maths, task, tip = arm.maths, self._task, arm.tip(q, dq)
+        J, dJ_dq = task.jacobian(numbers.tip, tip)
+        error = task.error(maths, numbers.tip, tip, reference)
+        M_inverse_J = maths.solve_symmetric(arm.mass_matrix(q), J.T, "the mass matrix is singular")
+        F = task.acceleration(maths, numbers.tip, error, J.dot(dq), reference) - dJ_dq
+        # N^T tau_0 = tau_0 - J^T Lambda J M^-1 tau_0, and tau_0 = M ddq_0 + spring.
+        ddq_0, spring = self._posture.ask(maths, numbers.posture, J, q, dq)
+        F = F - J.dot(ddq_0)
+        if spring is not None:
+            F = F - M_inverse_J.T.dot(spring)
+        mobility = task.damp(maths, numbers.tip, J, error, J.dot(M_inverse_J))
+        force = maths.solve_symmetric(mobility, F, "the tip's Jacobian is singular")
+        torque: Array = arm.inverse_dynamics(q, dq, ddq_0, gravity) + J.T.dot(force)
+        return torque if spring is None else torque + spring
 
 
 CONFIG = WholeBodyConfig

@@ -1,21 +1,44 @@
 """What a redundant arm is asked in the null space of its tip's task: to hold a posture."""
 
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
-from scipy.linalg.lapack import dposv
 
 from runner.controllers.controller import FloatArray
+from runner.controllers.maths import Array, Maths, Scalar
 from runner.robots.model import RobotModel
+
+
+class PostureNumbers(NamedTuple):
+    """The numbers of a posture task.
+
+    Attributes:
+        k_p: omega_n^2, in 1/s^2.
+        k_v: 2 omega_n, in 1/s.
+        rest: The posture, shape (nq,), in rad.
+        stiffness: K of a spring, shape (nq, nq), in N m/rad.
+    """
+
+    k_p: Scalar
+    k_v: Scalar
+    rest: Array
+    stiffness: Array
 
 
 class Posture(Protocol):
     """A posture task; its torque is M a + s, before the tip's part is taken out of it."""
 
-    def ask(self, J: FloatArray, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return a joint acceleration a, in rad/s^2, and a torque s, in N m, both of shape (nq,).
+    @property
+    def numbers(self) -> PostureNumbers:
+        """Its numbers."""
+        ...
+
+    def ask(self, maths: Maths, numbers: PostureNumbers, J: Array, q: Array, dq: Array) -> tuple[Array, Array | None]:
+        """Return a joint acceleration a, in rad/s^2, and a torque s, in N m or None, both of shape (nq,).
 
         Args:
+            maths: The functions over the scalars of these arrays.
+            numbers: The task's numbers.
             J: Jacobian of the tip's task, shape (rows, nq).
             q: Joint positions, shape (nq,), in rad.
             dq: Joint velocities, likewise, in rad/s.
@@ -41,14 +64,12 @@ class HeldJoints:
     """
 
     def __init__(self, model: RobotModel, frequency: float, rest: FloatArray, first: int) -> None:
-        self.stiffness = frequency**2 * _inertia_at_rest(model, rest, first)
-        """K, shape (nq, nq), in N m/rad."""
-        self._k_vn = 2.0 * frequency
-        self._rest = rest
+        stiffness = frequency**2 * _inertia_at_rest(model, rest, first)
+        self.numbers = PostureNumbers(frequency**2, 2.0 * frequency, rest, stiffness)
 
-    def ask(self, J: FloatArray, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def ask(self, maths: Maths, numbers: PostureNumbers, J: Array, q: Array, dq: Array) -> tuple[Array, Array | None]:
         """Return -k_vn dq and the spring's torque; see Posture."""
-        return -self._k_vn * dq, self.stiffness.dot(self._rest - q)
+        return -numbers.k_v * dq, numbers.stiffness.dot(numbers.rest - q)
 
 
 class HeldPosture:
@@ -66,25 +87,23 @@ class HeldPosture:
     """
 
     def __init__(self, frequency: float, rest: FloatArray) -> None:
-        self._k_p, self._k_v = frequency**2, 2.0 * frequency
-        self._rest = rest
-        self._no_torque = np.zeros(len(rest))
+        self.numbers = PostureNumbers(frequency**2, 2.0 * frequency, rest, np.zeros((0, 0)))
 
-    def ask(self, J: FloatArray, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def ask(self, maths: Maths, numbers: PostureNumbers, J: Array, q: Array, dq: Array) -> tuple[Array, Array | None]:
         """Return the joint acceleration that the tip does not feel, and no torque; see Posture."""
-        return without_tip_motion(J, self.acceleration(q, dq)), self._no_torque
-
-    def acceleration(self, q: FloatArray, dq: FloatArray) -> FloatArray:
-        """Return the joint acceleration towards the posture, whatever the tip does, shape (nq,), in rad/s^2."""
-        return np.asarray(self._k_p * (self._rest - q) - self._k_v * dq)
+        return without_tip_motion(maths, J, drawn_to(numbers, q, dq)), None
 
 
-def without_tip_motion(J: FloatArray, ddq: FloatArray) -> FloatArray:
+def drawn_to(numbers: PostureNumbers, q: Array, dq: Array) -> Array:
+    """Return the joint acceleration towards a posture, whatever the tip does, shape (nq,), in rad/s^2."""
+    return np.asarray(numbers.k_p * (numbers.rest - q) - numbers.k_v * dq)
+
+
+def without_tip_motion(maths: Maths, J: Array, ddq: Array) -> Array:
     """Return (1 - J^+ J) ddq, shapes (rows, nq) and (nq,); smooth through singular postures."""
     square = J.dot(J.T)
-    square[np.diag_indices_from(square)] += 1e-12 * np.trace(square)
-    _, solution, _ = dposv(square, J.dot(ddq))
-    return np.asarray(ddq - J.T.dot(solution))
+    square = square + 1e-12 * sum(square[i, i] for i in range(len(square))) * np.eye(len(square))
+    return np.asarray(ddq - J.T.dot(maths.solve_symmetric(square, J.dot(ddq), None)))
 
 
 def _inertia_at_rest(model: RobotModel, rest: FloatArray, first: int) -> FloatArray:

@@ -9,7 +9,7 @@ from runner.controllers.controller import FloatArray
 from runner.robots.robot import Robot
 from runner.robots.tool_link import find_tool, holding_wrench
 from runner.sensing.force_torque import ForceTorqueConfig
-from runner.sensing.wrench import wrench_transform
+from runner.sensing.wrench import cross, wrench_transform
 
 Compensation = Literal["none", "gravity", "gravity_and_inertia"]
 
@@ -67,5 +67,5 @@ class ToolCompensation:
         at_flange = wrench_transform(world.homogeneous) @ own
         lever = flange.translation - tip.translation
         at_tip = at_flange.copy()
-        at_tip[3:] += np.cross(lever, at_flange[:3])
+        at_tip[3:] += cross(lever, at_flange[:3])
         return at_tip, at_flange

@@ -2,9 +2,11 @@
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from functools import wraps
 
 import numpy as np
 import pinocchio as pin
+from scipy.linalg.lapack import dgesv
 
 from runner.errors import ConfigError
 from runner.robots.model import FloatArray, RobotModel
@@ -15,11 +17,30 @@ _STEPS = 200  # way-points from home to the target; each needs a few Newton step
 _MAX_NEWTON = 60
 _REACHED = 1e-9  # m, or rad
 _SEARCHES = 40  # random postures tried where no way leads from home
+_KEPT = 1024  # postures found that a process keeps
 
 # Error of the tip at joint positions, and the Jacobian of its velocity: shapes (k,) and (k, nq).
 Task = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
+Solve = Callable[[RobotModel, FloatArray, FloatArray], FloatArray]
 
 
+def _once(solve: Solve) -> Solve:
+    """Return a function that finds a posture once in a process: runs of a sweep ask for the same one, each anew."""
+    found: dict[tuple[bytes, ...], FloatArray] = {}
+
+    @wraps(solve)
+    def once(model: RobotModel, wanted: FloatArray, home: FloatArray) -> FloatArray:
+        key = model.kinematics, *(np.asarray(part, dtype=float).tobytes() for part in (wanted, home))
+        if key not in found:
+            if len(found) >= _KEPT:
+                found.pop(next(iter(found)))
+            found[key] = solve(model, wanted, home)
+        return found[key].copy()
+
+    return once
+
+
+@_once
 def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) -> FloatArray:
     """Return joint positions that bring the tip to a target, on the branch of the home posture.
 
@@ -45,9 +66,9 @@ def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) 
         return np.array(home, dtype=float)
     paths = (_straight(start, target), _around(model.shoulder, start, target))
     directions = task_directions(model, pose=False)
-    branch, found, reached = _branch(model, home), [], []
+    branch, found, reached, tip = _branch(model, home), [], [], _Tip(model)
     for path in paths:
-        q = _follow(model, (_position_task(model, point, directions) for point in path), home)
+        q = _follow(model, (_position_task(tip, point, directions) for point in path), home)
         found.append(q)
         if float(np.linalg.norm(model.tip_position(q) - target)) <= _REACHED:
             if _branch(model, q) == branch:
@@ -55,7 +76,7 @@ def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) 
             reached.append(q)
     if reached:
         return reached[0]
-    task = _position_task(model, target, directions)
+    task = _position_task(tip, target, directions)
     q = _search(model, task, [np.array(home, dtype=float), *found])
     distance = float(np.linalg.norm(target - model.tip_position(q)))
     if distance <= _REACHED:
@@ -68,6 +89,7 @@ def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) 
     )
 
 
+@_once
 def solve_tip_pose(model: RobotModel, pose: FloatArray, home: FloatArray) -> FloatArray:
     """Return joint positions that bring the tip to a position and an orientation, on the branch of the home posture.
 
@@ -92,12 +114,12 @@ def solve_tip_pose(model: RobotModel, pose: FloatArray, home: FloatArray) -> Flo
     turn = pin.log3(start[:3, :3].T @ pose[:3, :3])
     points = _straight(start[:3, 3], pose[:3, 3])
     turned = [start[:3, :3] @ pin.exp3(turn * (step + 1) / _STEPS) for step in range(_STEPS - 1)] + [pose[:3, :3]]
-    directions = task_directions(model, pose=True)
-    q = _follow(model, (_pose_task(model, p, R, directions) for p, R in zip(points, turned, strict=True)), home)
-    task = _pose_task(model, pose[:3, 3], pose[:3, :3], directions)
+    directions, tip = task_directions(model, pose=True), _Tip(model)
+    q = _follow(model, (_pose_task(tip, p, R, directions) for p, R in zip(points, turned, strict=True)), home)
+    task = _pose_task(tip, pose[:3, 3], pose[:3, :3], directions)
     if np.linalg.norm(task(q)[0]) > _REACHED:
         q = _search(model, task, [np.array(home, dtype=float), q])
-    error = _pose_error(model, q, pose[:3, 3], pose[:3, :3])
+    error = _pose_error(*tip.at(q)[:2], pose[:3, 3], pose[:3, :3])
     if np.linalg.norm(error) <= _REACHED:
         return q
     turn = pin.log3(pose[:3, :3])
@@ -110,24 +132,51 @@ def solve_tip_pose(model: RobotModel, pose: FloatArray, home: FloatArray) -> Flo
     )
 
 
-def _position_task(model: RobotModel, target: FloatArray, directions: FloatArray) -> Task:
+class _Tip:
+    """The tip of an arm at joint positions; at those that it was asked for last, which nobody changes, it knows it."""
+
+    def __init__(self, model: RobotModel) -> None:
+        self._model, self._data, self._frame = model.pin_model, model.pin_model.createData(), model.tip_frame
+        placement = self._data.oMf[self._frame]
+        self._x: FloatArray = placement.translation  # views, which each update refreshes
+        self._R: FloatArray = placement.rotation
+        self._q: FloatArray | None = None
+        self._J: FloatArray = np.empty(0)
+
+    def at(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return position, rotation and Jacobian in the base frame, shapes (3,), (3, 3) and (6, nq)."""
+        if q is not self._q:
+            model, data, frame = self._model, self._data, self._frame
+            pin.computeJointJacobians(model, data, q)
+            pin.updateFramePlacement(model, data, frame)
+            self._q, self._J = q, pin.getFrameJacobian(model, data, frame, pin.LOCAL_WORLD_ALIGNED)
+        return self._x, self._R, self._J
+
+
+def _position_task(tip: _Tip, target: FloatArray, directions: FloatArray) -> Task:
+    everywhere = len(directions) == 3  # their product changes nothing
+
     def task(q: FloatArray) -> tuple[FloatArray, FloatArray]:
-        return directions @ (target - model.tip_position(q)), directions @ model.tip_jacobian(q)[:3]
+        x, _, J = tip.at(q)
+        return (target - x, J[:3]) if everywhere else (directions @ (target - x), directions @ J[:3])
 
     return task
 
 
-def _pose_task(model: RobotModel, position: FloatArray, rotation: FloatArray, directions: FloatArray) -> Task:
+def _pose_task(tip: _Tip, position: FloatArray, rotation: FloatArray, directions: FloatArray) -> Task:
+    everywhere = len(directions) == 6
+
     def task(q: FloatArray) -> tuple[FloatArray, FloatArray]:
-        return directions @ _pose_error(model, q, position, rotation), directions @ model.tip_jacobian(q)
+        x, R, J = tip.at(q)
+        error = _pose_error(x, R, position, rotation)
+        return (error, J) if everywhere else (directions @ error, directions @ J)
 
     return task
 
 
-def _pose_error(model: RobotModel, q: FloatArray, position: FloatArray, rotation: FloatArray) -> FloatArray:
-    pose = model.tip_pose(q)
-    turn = pin.log3(rotation @ pose[:3, :3].T)  # of the base frame's axes, as the Jacobian's angular rows
-    return np.concatenate([position - pose[:3, 3], turn])
+def _pose_error(x: FloatArray, R: FloatArray, position: FloatArray, rotation: FloatArray) -> FloatArray:
+    turn = pin.log3(rotation.dot(R.T))  # of the base frame's axes, as the Jacobian's angular rows
+    return np.concatenate([position - x, turn])
 
 
 def _branch(model: RobotModel, q: FloatArray) -> float:
@@ -166,16 +215,21 @@ def _newton(task: Task, q: FloatArray, limits: FloatArray) -> FloatArray:
     lower, upper = limits
     for _ in range(_MAX_NEWTON):
         error, J = task(q)
-        left = float(error @ error)
+        left = float(error.dot(error))
         if math.sqrt(left) < TOLERANCE:
             break
         # The damping vanishes with the error: Newton's speed near the solution, no leaps near a singular posture.
-        damping = 1e-3 * left * np.eye(len(error))
-        step = J.T @ np.linalg.solve(J @ J.T + damping, error)
+        square, added = J.dot(J.T), 1e-3 * left
+        square.flat[:: len(error) + 1] += added
+        _, _, solution, singular = dgesv(square, error)
+        if singular:
+            raise np.linalg.LinAlgError("the tip's Jacobian is singular")
+        step = J.T.dot(solution)
         moved = q + step
-        if ((moved >= lower) & (moved <= upper)).all():
+        if np.minimum(moved - lower, upper - moved).min() >= 0.0:
             q = moved
             continue
+        damping = added * np.eye(len(error))
         blocked = np.zeros(len(q), dtype=bool)
         while (outside := ~blocked & ((q + step < lower) | (q + step > upper))).any():
             blocked |= outside  # these joints stop at their limits, and the others do without them
@@ -197,7 +251,9 @@ def _search(model: RobotModel, task: Task, guesses: Sequence[FloatArray]) -> Flo
     best, least = guesses[0], np.inf
     for guess in (*guesses, *postures):
         inside = np.clip(guess, lower + 1e-9, upper - 1e-9)
-        found = least_squares(lambda q: task(q)[0], inside, jac=lambda q: -task(q)[1], bounds=(lower, upper))
+        found = least_squares(
+            lambda q: task(q.copy())[0], inside, jac=lambda q: -task(q.copy())[1], bounds=(lower, upper)
+        )
         q = _newton(task, found.x, model.position_limits) if found.cost < 1e-6 else found.x
         error = float(np.linalg.norm(task(q)[0]))
         if error <= _REACHED:

@@ -77,7 +77,7 @@ def _change(model: RobotModel, mismatch: MismatchConfig, masses: FloatArray, cen
         frame.placement.translation *= mismatch.length
     believed.gravity.linear = mismatch.gravity * model.gravity
     changed = copy.copy(model)
-    for remembered in ("reach", "shoulder"):  # of the true lengths
+    for remembered in ("reach", "shoulder", "kinematics"):  # of the true lengths
         changed.__dict__.pop(remembered, None)
     changed.pin_model = believed
     changed._data = believed.createData()

@@ -140,6 +140,13 @@ class RobotModel:
         """Mass of all moving links, in kg."""
         return float(sum(inertia.mass for inertia in list(self.pin_model.inertias)[1:]))
 
+    def copy(self) -> "RobotModel":
+        """Return this arm with a Pinocchio model of its own, so that no change of this one reaches it."""
+        own = copy.copy(self)
+        own.pin_model = pin.Model(self.pin_model)
+        own._data = own.pin_model.createData()
+        return own
+
     def with_payload(self, mass: float, position: FloatArray | None = None) -> "RobotModel":
         """Return this arm with a point mass fixed at its tip.
 
@@ -147,13 +154,20 @@ class RobotModel:
             mass: In kg; below 0 it takes off what is there.
             position: Its place in the tip's frame, shape (3,), in m; None is the tip itself.
         """
-        loaded = copy.copy(self)
-        loaded.pin_model = pin.Model(self.pin_model)
+        loaded = self.copy()
         frame = loaded.pin_model.frames[self.tip_frame]
         point = pin.Inertia(mass, np.zeros(3) if position is None else position, np.zeros((3, 3)))
         loaded.pin_model.appendBodyToJoint(frame.parentJoint, point, frame.placement)
         loaded._data = loaded.pin_model.createData()
         return loaded
+
+    def with_tip(self, frame: str) -> "RobotModel":
+        """Return this arm with another of its frames, by name, as its tip."""
+        other = self.copy()
+        other.tip_name, other.tip_frame = frame, self.pin_model.getFrameId(frame)
+        for counted_to_tip in ("reach", "kinematics"):
+            other.__dict__.pop(counted_to_tip, None)
+        return other
 
     @property
     def position_limits(self) -> FloatArray:
@@ -196,6 +210,18 @@ class RobotModel:
         last = self.pin_model.frames[self.tip_frame].placement
         travel = float(np.abs(self.position_limits[:, self.slides]).max(axis=0).sum())
         return float(sum(np.linalg.norm(p.translation) for p in (*placements, last))) + travel
+
+    @cached_property
+    def kinematics(self) -> bytes:
+        """What is the same for two arms whose joints bring the tip to the same places within the same limits."""
+        model = self.pin_model
+        tip = model.frames[self.tip_frame]
+        parts = [self.position_limits, list(model.parents), tip.parentJoint, tip.placement.homogeneous]
+        for joint, placement in zip(list(model.joints)[1:], list(model.jointPlacements)[1:], strict=True):
+            data = joint.createData()
+            joint.calc(data, np.zeros(1))
+            parts += [placement.homogeneous, data.S]
+        return b"".join(np.asarray(part, dtype=np.float64).tobytes() for part in parts)
 
     @cached_property
     def shoulder(self) -> FloatArray:

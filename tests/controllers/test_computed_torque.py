@@ -26,6 +26,7 @@ def law(name="xarm7", **changes):
         "feedforward": True,
         "singularity_damping": 0.3,
         "null_space_frequency": 30.0,
+        "integral_gain": 0.0,
     }
     return ComputedTorque(ARMS[name].model, ComputedTorqueConfig(**(values | changes)), ARMS[name].home)
 
@@ -43,7 +44,7 @@ def joint_motion(controller, model, q, reference, ticks, period=0.01):
     motions = []
     for tick in range(ticks):
         controller.torque(tick * period, q, np.zeros(model.nq), reference(tick * period))
-        motions.append((controller._q_d.copy(), controller._dq_d.copy()))
+        motions.append(np.split(controller.memory, 3)[:2])
     return motions
 
 
@@ -69,10 +70,10 @@ def test_nothing_measured_enters_the_joint_motion_but_its_start():
         calm.torque(0.01 * tick, XARM7.home, np.zeros(7), reference)
         disturbed = XARM7.home if tick == 0 else XARM7.home + generator.normal(size=7)
         shaken.torque(0.01 * tick, disturbed, generator.normal(size=7), reference)
-    np.testing.assert_array_equal(calm._q_d, shaken._q_d)
+    np.testing.assert_array_equal(calm.memory, shaken.memory)
     other = law()
     other.torque(0.0, XARM7.home + 0.1, np.zeros(7), circle(0.0, centre))
-    assert np.abs(other._q_d - XARM7.home - 0.1).max() < 0.01
+    assert np.abs(other.memory[:7] - XARM7.home - 0.1).max() < 0.01
 
 
 def test_the_joint_motion_ends_where_it_is_nearest_to_home():
@@ -85,6 +86,28 @@ def test_the_joint_motion_ends_where_it_is_nearest_to_home():
     away = q - XARM7.home
     np.testing.assert_allclose(away - np.linalg.pinv(J) @ J @ away, 0.0, atol=1e-7)
     assert np.abs(away).max() > 0.05
+
+
+def test_the_integral_holds_what_the_model_does_not_know(simulated):
+    command = "robot=macro", "controller=computed_torque", "controller.gravity_compensation=false", "duration=6"
+    sagging, held = (simulated(*command, f"controller.integral_gain={gain}") for gain in (0.0, 2000.0))
+    assert np.abs(sagging.error[-1]).max() > 1e-3
+    np.testing.assert_allclose(held.error[-1], 0.0, atol=1e-7)
+    np.testing.assert_allclose(held.tau[-1], ARMS["macro"].model.gravity_torque(held.q[-1]), atol=1e-4)
+
+
+def test_the_integral_sums_the_joint_errors_tick_by_tick():
+    goal = np.array([XARM7.model.tip_position(XARM7.home), np.zeros(3), np.zeros(3)])
+    plain, ours = law(), law(integral_gain=500.0)
+    q, off = XARM7.home, np.full(7, 0.01)
+    for controller in (plain, ours):
+        controller.torque(0.0, q, np.zeros(7), goal)
+        controller.torque(0.01, q - off, np.zeros(7), goal)
+    more = ours.torque(0.02, q, np.zeros(7), goal) - plain.torque(0.02, q, np.zeros(7), goal)
+    np.testing.assert_allclose(more, XARM7.model.mass_matrix(q) @ (500.0 * 0.01 * off), rtol=1e-6)
+    ours.reset()
+    again = law(integral_gain=500.0).torque(0.0, q, np.zeros(7), goal)
+    np.testing.assert_array_equal(ours.torque(0.0, q, np.zeros(7), goal), again)
 
 
 def test_inputs_are_only_read():

@@ -103,15 +103,12 @@ def test_both_loops_are_closed():
 class Recorder:
     """Stands in for a stage's law and notes what it is told."""
 
-    def set_gravity(self, gravity):
-        self.gravity = gravity.copy()
-
-    def move(self, time, q, dq, reference):
-        self.told = ("move", reference.copy())
+    def move(self, arm, numbers, q, dq, reference, gravity=None):
+        self.told, self.gravity = ("move", reference.copy()), gravity
         return np.zeros(3)
 
-    def hold(self, q, dq, posture):
-        self.told = ("hold", posture.copy())
+    def hold(self, arm, numbers, q, dq, posture, gravity=None):
+        self.told, self.gravity = ("hold", posture.copy()), gravity
         return np.zeros(3)
 
 

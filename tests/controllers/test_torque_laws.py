@@ -86,7 +86,9 @@ def law(kind, name, task, **changes):
     elif kind == "operational_space":
         (loop,) = build_operational_space(OperationalSpaceConfig(kind=kind, task=task, **values), arm_of(name))
     else:
-        (loop,) = build_computed_torque(ComputedTorqueConfig(kind=kind, task=task, **values), arm_of(name))
+        (loop,) = build_computed_torque(
+            ComputedTorqueConfig(kind=kind, task=task, integral_gain=0.0, **values), arm_of(name)
+        )
     assert loop.joints == slice(0, arm_of(name).model.nq)
     return loop.controller
 

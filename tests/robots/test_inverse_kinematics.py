@@ -6,7 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runner.errors import ConfigError
-from runner.robots import RobotModel, find_urdf, read_urdf, solve_tip_pose, solve_tip_position
+from runner.robots import RobotModel, find_urdf, inverse_kinematics, read_urdf, solve_tip_pose, solve_tip_position
+from runner.robots.mismatch import MismatchConfig, believe
+from runner.robots.robot import Robot, Stage
 
 MODELS = {name: RobotModel(read_urdf(find_urdf(f"{name}.urdf"), {}), "tip") for name in ("macro", "mini")}
 LENGTH = {"macro": 1.0, "mini": 0.1}
@@ -178,3 +180,33 @@ def test_a_wrist_out_of_reach_says_how_far_though_the_tip_is_not():
     solve_tip_position(MECA500, pose[:3, 3], MECA500_HOME)
     with pytest.raises(ConfigError, match=r"m and 0\.\d+ rad are left; it lies 0\.2752 m from the shoulder"):
         solve_tip_pose(MECA500, pose, MECA500_HOME)
+
+
+# Asked again.
+
+
+def test_a_posture_is_found_once_for_all_arms_of_the_same_kinematics(monkeypatch):
+    target = XARM7.tip_position(XARM7_HOME) + np.array([0.0123, 0.0456, -0.0789])
+    first = solve_tip_position(XARM7, target, XARM7_HOME)
+    expected = first.copy()
+    first += 1.0  # whoever asked may change it
+    monkeypatch.setattr(inverse_kinematics, "_follow", None)  # nothing is led anywhere any more
+    again, loaded = RobotModel(XARM7_URDF, "flange"), XARM7.with_payload(2.0)
+    for model in (XARM7, again, loaded):
+        np.testing.assert_array_equal(solve_tip_position(model, target, XARM7_HOME), expected)
+    longer = believed_longer(XARM7)
+    for model, wanted, home in (
+        (longer, target, XARM7_HOME),
+        (XARM7.with_tip("link5"), target, XARM7_HOME),
+        (XARM7, target + 1e-9, XARM7_HOME),
+        (XARM7, target, XARM7_HOME + 1e-9),
+    ):
+        with pytest.raises(TypeError):
+            solve_tip_position(model, wanted, home)
+
+
+def believed_longer(model):
+    stage = Stage("arm", model, XARM7_URDF, slice(0, model.nq), XARM7_HOME, None)
+    longer = MismatchConfig(mass=1.0, centre_of_mass=1.0, length=1.001, gravity=1.0, payload=0.0, spread=0.0)
+    robot = Robot(XARM7_URDF, model, (stage,), "flange")
+    return believe(robot, longer, np.zeros(3), np.random.default_rng(0)).model

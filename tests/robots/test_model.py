@@ -208,6 +208,17 @@ def test_the_reach_counts_from_the_shoulder():
     np.testing.assert_array_equal(model.effort_limits, [7.0])
 
 
+def test_another_tip_is_another_place_and_reach(checked_config):
+    arm = checked_config("robot=combined").arm
+    base = str(arm.stages[1].base_frame)
+    whole = arm.model.reach
+    moved, q = arm.model.with_tip(base), np.array([0.3, -0.5, 0.7, 0.2, -0.4, 0.9])
+    np.testing.assert_array_equal(moved.tip_pose(q), arm.model.frame_poses(q, (base,))[0])
+    assert (moved.tip_name, moved.nq) == (base, 6)
+    assert (arm.model.reach, arm.model.tip_name) == (whole, "mini_tip")
+    assert moved.reach != whole
+
+
 def test_limits_are_read():
     limits = '<limit lower="-0.5" upper="2" effort="3" velocity="4"/>'
     model = RobotModel(one_joint(limits=limits), "hand")

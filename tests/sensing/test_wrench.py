@@ -1,3 +1,5 @@
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -6,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from runner.errors import ConfigError
 from runner.robots import RobotModel, find_urdf, read_urdf
-from runner.sensing.wrench import cross_matrix, wrench_seen_from, wrench_transform
+from runner.sensing.wrench import cross, cross_matrix, wrench_seen_from, wrench_transform
 
 vectors = st.lists(st.floats(-2.0, 2.0), min_size=3, max_size=3).map(np.array)
 wrenches = st.lists(st.floats(-10.0, 10.0), min_size=6, max_size=6).map(np.array)
@@ -90,3 +92,10 @@ def test_frames_that_do_not_exist_are_named(meca500):
         wrench_seen_from(meca500, Q, np.zeros(6), "flang", "tool")
     assert "'flang' does not exist (did you mean flange?); frames: " in refusal.value.problems[0]
     assert "'tool' does not exist" in refusal.value.problems[1]
+
+
+def test_the_cross_product_is_numpy_s_of_any_scalars():
+    for a, b in np.random.default_rng(5).normal(size=(20, 2, 3)):
+        np.testing.assert_array_equal(cross(a, b), np.cross(a, b))
+        exact = [np.array([Fraction(x) for x in vector], dtype=object) for vector in (a, b)]
+        np.testing.assert_allclose(cross(*exact).astype(float), np.cross(a, b), atol=1e-15)

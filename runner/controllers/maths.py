@@ -1,0 +1,124 @@
+"""The functions of which control laws are made, beside what NumPy's operators do: for floats, and what others offer."""
+
+from collections.abc import Callable
+from math import floor
+from typing import Any, Protocol, TypeVar
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dgesv, dposv, dpotrf
+
+Array = NDArray[Any]
+"""Of floats, or of objects that stand for numbers."""
+Scalar = Any
+"""A float, or what stands for one; also a condition."""
+Chosen = TypeVar("Chosen", bound=Array | tuple[Array, ...])
+
+
+class Maths(Protocol):
+    """Functions over one kind of scalar.
+
+    A law that uses these, and the operators and `dot` of NumPy's arrays, can be evaluated on floats and written as
+    expressions. It branches by `choose` alone. A text `singular` is the error where a system has no solution; without
+    one the result is then of no use.
+    """
+
+    def choose(self, condition: Scalar, yes: Callable[[], Chosen], no: Callable[[], Chosen]) -> Chosen:
+        """Return what one of two functions gives, an array or a tuple of arrays; on floats the other is not asked."""
+        ...
+
+    def less(self, a: Scalar, b: Scalar) -> Scalar:
+        """Return the condition a < b of two scalars."""
+        ...
+
+    def any_of(self, *conditions: Scalar) -> Scalar:
+        """Return the condition that one or more of some conditions hold."""
+        ...
+
+    def maximum(self, a: Scalar, b: Scalar) -> Scalar:
+        """Return the larger of two scalars."""
+        ...
+
+    def floor(self, a: Scalar) -> Scalar:
+        """Return the largest whole number that is not above a scalar."""
+        ...
+
+    def absolute(self, a: Scalar) -> Scalar:
+        """Return the absolute value of a scalar."""
+        ...
+
+    def sqrt(self, a: Scalar) -> Scalar:
+        """Return the square root of a scalar."""
+        ...
+
+    def solve_three(self, A: Array, b: Array, singular: str | None) -> tuple[Array, Scalar]:
+        """Return A^-1 b and det A, shapes (3, 3) and (3,)."""
+        ...
+
+    def solve_symmetric(self, A: Array, b: Array, singular: str | None) -> Array:
+        """Return A^-1 b of a positive definite A, of which the upper triangle is read; b of shape (n,) or (n, k)."""
+        ...
+
+    def positive_definite(self, A: Array) -> Scalar:
+        """Return the condition that a symmetric A is positive definite."""
+        ...
+
+    def smallest_eigenvalue(self, A: Array) -> Scalar:
+        """Return the smallest eigenvalue of a symmetric A that is positive definite or nearly so."""
+        ...
+
+    def rotation_vector(self, R: Array) -> Array:
+        """Return axis times angle of a rotation of less than half a turn, shapes (3, 3) and (3,), in rad."""
+        ...
+
+
+class _Floats:
+    """The functions on floats; see Maths."""
+
+    def choose(self, condition: Scalar, yes: Callable[[], Chosen], no: Callable[[], Chosen]) -> Chosen:
+        return yes() if condition else no()
+
+    def less(self, a: Scalar, b: Scalar) -> Scalar:
+        return a < b
+
+    def any_of(self, *conditions: Scalar) -> Scalar:
+        return any(conditions)
+
+    def maximum(self, a: Scalar, b: Scalar) -> Scalar:
+        return max(a, b)
+
+    def floor(self, a: Scalar) -> Scalar:
+        return float(floor(a))
+
+    def absolute(self, a: Scalar) -> Scalar:
+        return abs(a)
+
+    def sqrt(self, a: Scalar) -> Scalar:
+        return float(np.sqrt(a))
+
+    def solve_three(self, A: Array, b: Array, singular: str | None) -> tuple[Array, Scalar]:
+        lu, pivots, solution, info = dgesv(A, b)
+        if info and singular is not None:
+            raise np.linalg.LinAlgError(singular)
+        swaps = int(pivots[0] != 0) + int(pivots[1] != 1)
+        determinant = lu[0, 0] * lu[1, 1] * lu[2, 2]
+        return solution, -determinant if swaps == 1 else determinant
+
+    def solve_symmetric(self, A: Array, b: Array, singular: str | None) -> Array:
+        _, solution, info = dposv(A, b)
+        if info and singular is not None:
+            raise np.linalg.LinAlgError(singular)
+        return np.asarray(solution)
+
+    def positive_definite(self, A: Array) -> Scalar:
+        return dpotrf(A)[1] == 0
+
+    def smallest_eigenvalue(self, A: Array) -> Scalar:
+        return float(np.linalg.eigvalsh(A)[0])
+
+    def rotation_vector(self, R: Array) -> Array:
+        return np.asarray(pin.log3(R))
+
+
+FLOATS: Maths = _Floats()
