@@ -5,8 +5,10 @@ from contextlib import ExitStack
 
 import numpy as np
 
+from runner.compiled.closed_loop import CompiledCommands, Whole
+from runner.compiled.compile import compile_commands, compile_whole, find_commands
 from runner.config.run import RunConfig
-from runner.controllers import CONTROLLERS, ControllerConfig
+from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.controllers.admittance_stability import check_wall
 from runner.controllers.kinds import ChecksStability, FollowsWithinReach, LeadsByForce
 from runner.environments import ENVIRONMENTS, Environment
@@ -44,12 +46,8 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
             follow it, or a part refuses its config.
     """
     arm, path, timing = config.arm, config.path, config.timing
-    q_start = _start_posture(config.controller, arm, path.start, config.parallel)
-    if CONTROLLERS.follows_paths(config.controller.kind):
-        check_path(config.controller, arm, path, q_start, config.robot.settling_band)
-    generator = np.random.default_rng([config.settings.seed, repetition, _BELIEFS])
-    believed = believe(arm, config.mismatch, np.array(config.robot.payload.position), generator)
-    loops = config.loops if believed is arm else CONTROLLERS.build(config.controller, believed)
+    q_start = _find_start(config)
+    believed, loops = _believe(config, repetition)
     environment = ENVIRONMENTS.build(config.environment)
     with ExitStack() as on_error:
         plant = _make_plant(config, believed, loops[0].period)
@@ -57,6 +55,7 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
         if isinstance(environment, Wall):
             environment = _put_up(environment, config, plant)
         interaction = Interaction(arm, environment, timing.tick) if config.feels else None
+        compiled = _compile(config, loops)
         on_error.pop_all()
     return ClosedLoop(
         robot=arm,
@@ -71,7 +70,51 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
         q_start=q_start,
         parallel=config.parallel,
         delay=timing.delay,
+        compiled=compiled,
     )
+
+
+def assemble_whole(config: RunConfig, repetition: int = 0) -> tuple[Whole, FloatArray] | None:
+    """Return a closed loop that is compiled as a whole, and where it starts, shape (nq,), in rad; None where none is.
+
+    Args:
+        config: The checked config.
+        repetition: Number of the repetition, of which the beliefs follow.
+
+    Raises:
+        ConfigError: see assemble.
+    """
+    if config.commands != "torque" or config.feels or PLANTS.motion(config.plant, config.arm) is None:
+        return None
+    compiled = _compile(config, _believe(config, repetition)[1])
+    return (compiled, _find_start(config)) if isinstance(compiled, Whole) else None
+
+
+def _find_start(config: RunConfig) -> FloatArray:
+    """Return where the arm starts, shape (nq,), in rad."""
+    arm, path = config.arm, config.path
+    q_start = _start_posture(config.controller, arm, path.start, config.parallel)
+    if CONTROLLERS.follows_paths(config.controller.kind):
+        check_path(config.controller, arm, path, q_start, config.robot.settling_band)
+    return q_start
+
+
+def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...]]:
+    """Return the robot as its controllers believe it to be, and the loops that they make for it."""
+    generator = np.random.default_rng([config.settings.seed, repetition, _BELIEFS])
+    believed = believe(config.arm, config.mismatch, np.array(config.robot.payload.position), generator)
+    return believed, config.loops if believed is config.arm else CONTROLLERS.build(config.controller, believed)
+
+
+def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledCommands | None:
+    """Return the closed loop as compiled code, or what its loops ask; None where neither can be had."""
+    if config.commands != "torque":
+        return None
+    tick, limits = config.timing.tick, config.torque_limits
+    commands = find_commands(config.arm, config.parallel, loops, tick, config.noise, limits)
+    motion = None if config.feels else PLANTS.motion(config.plant, config.arm)
+    whole = None if motion is None else compile_whole(commands, motion, config.timing)
+    return compile_commands(commands) if whole is None else whole
 
 
 def _start_posture(controller: ControllerConfig, arm: Robot, start: FloatArray, parallel: bool) -> FloatArray:

@@ -5,16 +5,19 @@ import platform
 import shlex
 import subprocess
 import time
-from functools import cache
+from collections.abc import Sequence
+from functools import cache, lru_cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from runner import plugins
+from runner.compiled.engine import evaluator
 from runner.paths import package_dir
 
 if TYPE_CHECKING:
     from runner.config.compose import Composed
+    from runner.config.run import RunConfig
 
 _LIBRARIES = ("arm-control-runner", "pybullet", "pin", "numpy", "scipy", "hydra-core")
 
@@ -36,12 +39,30 @@ def made(composed: "Composed", *subcommand: str) -> dict[str, Any]:
     }
 
 
+def job_provenance(config: "RunConfig", composed: "Composed", notices: Sequence[str] = ()) -> dict[str, Any]:
+    """Return where a run comes from: what made it, choices, time steps, seed, warnings."""
+    return {
+        **made(composed),
+        "choices": dict(composed.choices),
+        "plant_step": config.timing.step,
+        "steps_per_tick": config.timing.steps_per_tick,
+        "tip_frame": config.arm.model.tip_name,
+        "stages": {stage.name: stage.base_frame for stage in config.arm.stages},
+        "joints": list(config.arm.model.joint_names),
+        "seed": config.settings.seed,
+        "warnings": [*config.warnings, *notices],
+    }
+
+
 def command(composed: "Composed", *subcommand: str) -> str:
     """Return the command that does what was composed, folders relative to where it was given."""
     added = [word for text in plugins.named() for word in ("--plugin", text)]
     own = [word for folder in composed.config_dirs for word in ("--config-dir", os.path.relpath(folder))]
     kept = [override for override in composed.overrides if not override.startswith("outputs=")]
-    return shlex.join(["runner", *added, *subcommand, *own, *kept])
+    return " ".join(map(_quoted, ["runner", *added, *subcommand, *own, *kept]))
+
+
+_quoted = lru_cache(4096)(shlex.quote)
 
 
 @cache
@@ -67,7 +88,7 @@ def commit() -> str | None:
 @cache
 def versions() -> dict[str, str]:
     """Return the versions of Python and of the libraries that results depend on."""
-    return {"python": platform.python_version(), **{name: version(name) for name in _LIBRARIES}}
+    return {"python": platform.python_version(), **{name: version(name) for name in _LIBRARIES}, **evaluator()}
 
 
 @cache

@@ -4,9 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.errors import SimulationError
 from runner.loop.closed_loop import ClosedLoop
 from runner.loop.command import Command
+from runner.loop.compiled_loop import run_commands, run_whole
 from runner.loop.contact import Contact
 from runner.loop.drive import make_drive
 from runner.loop.recorder import Recorder
@@ -33,26 +35,39 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
     Returns:
         The trace; one that ends early carries a failure.
     """
-    recorder, contact, load, k = Recorder(closed), None, None, 0
+    recorder, contact = Recorder(closed), None
     try:
         recorder.desired[:] = closed.trajectory.sample(recorder.times)
-        commands = [Command(closed, *pair, recorder) for pair in zip(closed.loops, encoders, strict=True)]
         if closed.interaction is not None and wrist is not None:
             contact = Contact(closed, closed.interaction, wrist)
-        drive = make_drive(closed, recorder)
-        closed.plant.reset(closed.q_start, np.zeros_like(closed.q_start))
         with np.errstate(over="ignore", invalid="ignore"):  # a diverging run ends as a failure, not as a warning
-            for k in range(closed.ticks + 1):
-                q, dq = recorder.observe(k)
-                if contact is not None:
-                    load = contact.update(k, recorder.times[k], q, dq)
-                for command in commands:
-                    if k % command.every == 0:
-                        command.update(k, q, dq)
-                recorder.keep_command(k)
-                if k < closed.ticks:
-                    drive.advance(k, load)
-            recorder.check_divergence(closed.ticks)
+            if isinstance(closed.compiled, Whole):
+                run_whole(closed.compiled, closed, encoders, recorder)
+            elif isinstance(closed.compiled, CompiledCommands):
+                run_commands(closed.compiled, closed, encoders, contact, recorder)
+            else:
+                _run(closed, encoders, contact, recorder)
+    except (np.linalg.LinAlgError, SimulationError) as error:
+        recorder.stop(0, error)
+    return recorder.trace(contact)
+
+
+def _run(closed: ClosedLoop, encoders: Sequence[JointEncoders], contact: Contact | None, recorder: Recorder) -> None:
+    """Run control loops that are asked one by one."""
+    commands = [Command(closed, *pair, recorder) for pair in zip(closed.loops, encoders, strict=True)]
+    drive, load, k = make_drive(closed, recorder), None, 0
+    closed.plant.reset(closed.q_start, np.zeros_like(closed.q_start))
+    try:
+        for k in range(closed.ticks + 1):
+            q, dq = recorder.observe(k)
+            if contact is not None:
+                load = contact.update(k, recorder.times[k], q, dq)
+            for command in commands:
+                if k % command.every == 0:
+                    command.update(k, q, dq)
+            recorder.keep_command(k)
+            if k < closed.ticks:
+                drive.advance(k, load)
+        recorder.check_divergence(closed.ticks)
     except (np.linalg.LinAlgError, SimulationError) as error:
         recorder.stop(k, error)
-    return recorder.trace(contact)

@@ -61,6 +61,7 @@ def loop_of(closed_loop):
             real,
             plant=Integrator(period, jump),
             loops=(Loop("arm", slice(0, 3), period, controller),),
+            compiled=None,
             tick=period,
             ticks=ticks,
             limits=np.zeros(3) + limits,
@@ -151,7 +152,7 @@ def test_a_limit_for_each_joint_comes_from_the_config(simulated):
 def test_the_controller_reads_noise_and_the_trace_the_truth(checked_config, velocity):
     config = checked_config("noise=thesis", f"noise.velocity={velocity}", "duration=0.3")
     recorder = Recorder(lambda tick: np.array([0.0, 9.0, -9.0]))
-    loop = dataclasses.replace(assemble(config), loops=(Loop("arm", slice(0, 3), 0.01, recorder),))
+    loop = dataclasses.replace(assemble(config), loops=(Loop("arm", slice(0, 3), 0.01, recorder),), compiled=None)
     try:
         trace = simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0))
     finally:

@@ -30,6 +30,11 @@ class WatchedController:
         self._controller, self._size = controller, size
         self._time = 0.0
 
+    @property
+    def watched(self) -> Any:
+        """What is watched."""
+        return self._controller
+
     def reset(self, *start: FloatArray) -> None:
         """Reset it; see Controller and PositionController."""
         self._time = 0.0

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.controllers import Loop
 from runner.interaction import Interaction
 from runner.plants import Plant, PositionPlant
@@ -28,6 +29,7 @@ class ClosedLoop:
         q_start: Joint positions at t = 0, shape (nq,), in rad; the robot starts at rest.
         parallel: Whether riding stages keep the orientation of home, as the plant has it.
         delay: Ticks from a command until it acts.
+        compiled: The closed loop as compiled code, or what its loops ask; None where neither is to be had.
     """
 
     robot: Robot
@@ -42,6 +44,7 @@ class ClosedLoop:
     q_start: FloatArray
     parallel: bool
     delay: int
+    compiled: Whole | CompiledCommands | None = None
 
     def close(self) -> None:
         """Release what the plant holds."""

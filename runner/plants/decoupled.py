@@ -7,9 +7,8 @@ from typing import Literal
 import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
-from runner.config.per_joint import expand
-from runner.errors import ConfigError
 from runner.plants.friction import FrictionConfig, with_friction
+from runner.plants.motion import find_motion
 from runner.plants.plant import FloatArray, Plant
 from runner.plants.servo import ServoConfig
 from runner.registry import StrictModel
@@ -54,34 +53,16 @@ def assemble_plant(
         make: Makes the plant of one arm, without friction, from its URDF text and model.
 
     Raises:
-        ConfigError: for coupled dynamics with a base that does not turn, which no rigid body can do, or a list of
-            another length than the robot has joints.
+        ConfigError: see find_motion.
     """
-    names = robot.model.joint_names
-    viscous = np.array(expand("plant.friction.viscous", config.friction.viscous, names))
-    coulomb = np.array(expand("plant.friction.coulomb", config.friction.coulomb, names))
-
-    parallel = config.wrist_rotation == "parallel"
-    coupled = len(robot.stages) == 1 or config.dynamics == "coupled"
-    if coupled and parallel and len(robot.stages) > 1:
-        raise ConfigError(
-            [
-                "plant.wrist_rotation: parallel leaves the rider's base unturned, which coupled rigid bodies "
-                "cannot; set plant.dynamics=decoupled, or plant.wrist_rotation=real"
-            ]
-        )
+    motion = find_motion(robot, config)
     with ExitStack() as on_error:
-
-        def make_arm(urdf: str, model: RobotModel, joints: slice) -> Plant:
-            plant = make(urdf, model)
+        plants = []
+        for arm in motion.arms:
+            plant = make(arm.urdf, arm.model)
             on_error.callback(plant.close)
-            return with_friction(plant, model, viscous[joints], coulomb[joints], tick)
-
-        if coupled:
-            whole = make_arm(robot.urdf, robot.model, slice(None))
-        else:
-            stages = [make_arm(stage.urdf, stage.model, stage.joints) for stage in robot.stages]
-            whole = Decoupled(robot, stages, parallel)
+            plants.append(with_friction(plant, arm.model, arm.viscous, arm.coulomb, tick))
+        whole = plants[0] if len(plants) == 1 else Decoupled(robot, plants, motion.parallel)
         on_error.pop_all()
     return whole
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Literal, Protocol, runtime_checkable
 
 from runner.guard import watch_plant
+from runner.plants.motion import Motion
 from runner.plants.plant import Plant
 from runner.plants.servo import ServoConfig
 from runner.registry import KindConfig, Registry
@@ -47,6 +48,15 @@ class ContactsImplicitly(Protocol):
     IMPLICIT_CONTACT: bool
 
 
+@runtime_checkable
+class MovesByRungeKutta(Protocol):
+    """A module whose plants are the classical Runge-Kutta scheme on a motion, so that runs may be compiled whole."""
+
+    def motion(self, config: PlantConfig, robot: Robot) -> Motion:
+        """Return what a plant moves."""
+        ...
+
+
 class ChoosesStep(Protocol):
     """The part of a plant's module that chooses the integration step where the config names none."""
 
@@ -69,6 +79,15 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
         """Return the step that a kind takes when its config names none, in s."""
         chooser: ChoosesStep = self.module(kind)
         return chooser.default_step(tick, stages)
+
+    def motion(self, config: PlantConfig, robot: Robot) -> Motion | None:
+        """Return what a plant moves; None where it is not known to be moved by the Runge-Kutta scheme.
+
+        Raises:
+            ConfigError: see find_motion.
+        """
+        module = self.module(config.kind)
+        return module.motion(config, robot) if isinstance(module, MovesByRungeKutta) else None
 
     def contacts_implicitly(self, kind: str) -> bool:
         """Tell whether a kind makes contacts in each step, from the velocity at its end; see ContactsImplicitly."""

@@ -5,7 +5,9 @@ from typing import Literal
 import numpy as np
 import pinocchio as pin
 
+from runner.compiled.compile import compile_motion
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
+from runner.plants.motion import Motion, find_motion
 from runner.plants.plant import FloatArray, Plant
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
@@ -23,8 +25,9 @@ class Rk4Config(TorquePlantConfig):
 
 
 class Rk4:
-    """An arm integrated by the classical Runge-Kutta scheme on Pinocchio's articulated-body algorithm.
+    """An arm integrated by the classical Runge-Kutta scheme.
 
+    Its accelerations are compiled code's where that is to be had, else those of Pinocchio's articulated-body algorithm.
     Fourth order in its step while the torques are held and the motion is smooth: no contact, no stops.
 
     Args:
@@ -34,6 +37,7 @@ class Rk4:
     """
 
     def __init__(self, model: RobotModel, step: float, steps_per_tick: int) -> None:
+        self._compiled = compile_motion(model, step)
         self._model = pin.Model(model.pin_model)
         # Each stage has its own, as aba returns a view of its result in there.
         self._data = [self._model.createData() for _ in range(4)]
@@ -49,9 +53,14 @@ class Rk4:
     def set_gravity(self, gravity: FloatArray) -> None:
         """Take another gravity vector; see Plant."""
         self._model.gravity.linear = gravity
+        if self._compiled is not None:
+            self._compiled.set_gravity(gravity)
 
     def advance(self, tau: FloatArray) -> None:
         """Hold the torques for one tick; see Plant."""
+        if self._compiled is not None:
+            self._compiled.advance(self.q, self.dq, tau, self._steps_per_tick)
+            return
         model, h = self._model, self._step
         data1, data2, data3, data4 = self._data
         half = 0.5 * h
@@ -84,6 +93,11 @@ def build(config: Rk4Config, robot: Robot, step: float, steps_per_tick: int) -> 
     """Make the plant that a config describes."""
     tick = step * steps_per_tick
     return assemble_plant(config, robot, tick, lambda _, model: Rk4(model, step, steps_per_tick))
+
+
+def motion(config: Rk4Config, robot: Robot) -> Motion:
+    """Return what the plant moves; see MovesByRungeKutta."""
+    return find_motion(robot, config)
 
 
 def default_step(tick: float, stages: int) -> float:

@@ -43,7 +43,7 @@ class Law:
 )
 def test_a_law_that_goes_wrong_is_a_failure_that_names_the_place(checked_config, closed_loop, answer, reason):
     loop = closed_loop("robot=macro", "duration=0.2")
-    loop = replace(loop, loops=(Loop("macro", slice(0, 3), 0.01, WatchedController(Law(answer), 3)),))
+    loop = replace(loop, loops=(Loop("macro", slice(0, 3), 0.01, WatchedController(Law(answer), 3)),), compiled=None)
     trace = simulate(loop, make_encoders(loop, checked_config("robot=macro", "duration=0.2").noise, 0, 0))
     assert trace.failure is not None
     assert trace.failure.time == pytest.approx(0.05)
@@ -57,7 +57,7 @@ def test_a_law_that_changes_what_it_is_handed_is_one_too(checked_config, closed_
             reference[0] -= 1.0
 
     loop = closed_loop("robot=macro", "duration=0.2")
-    loop = replace(loop, loops=(Loop("macro", slice(0, 3), 0.01, WatchedController(Writes(None), 3)),))
+    loop = replace(loop, loops=(Loop("macro", slice(0, 3), 0.01, WatchedController(Writes(None), 3)),), compiled=None)
     trace = simulate(loop, make_encoders(loop, checked_config("robot=macro", "duration=0.2").noise, 0, 0))
     assert re.fullmatch(
         r"ValueError: .*read-only \(test_controller.py, line \d+, in torque\); what a part is handed cannot be "
@@ -70,7 +70,7 @@ def test_a_reset_that_raises_is_a_failure_at_the_start(checked_config, closed_lo
     law = Law(None)
     law.reset = lambda: {}["memory"]
     loop = closed_loop("robot=macro", "duration=0.2")
-    loop = replace(loop, loops=(Loop("macro", slice(0, 3), 0.01, WatchedController(law, 3)),))
+    loop = replace(loop, loops=(Loop("macro", slice(0, 3), 0.01, WatchedController(law, 3)),), compiled=None)
     trace = simulate(loop, make_encoders(loop, checked_config("robot=macro", "duration=0.2").noise, 0, 0))
     assert re.fullmatch(r"KeyError: 'memory' \(test_controller.py, line \d+, in <lambda>\)", trace.failure.reason)
     assert trace.failure.time == 0.0

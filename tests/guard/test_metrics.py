@@ -33,7 +33,7 @@ def test_a_metric_that_goes_wrong_has_no_value_and_the_others_stay(
         return give()
 
     family.evaluate = evaluate_own
-    monkeypatch.setattr(summary, "families", lambda: (*summary._FAMILIES, family))
+    monkeypatch.setattr(summary, "_added", lambda: (family,))
     config = checked_config("robot=macro", "duration=0.1")
     loop = closed_loop("robot=macro", "duration=0.1")
     notices = []
@@ -59,7 +59,7 @@ def test_a_metric_that_changes_the_trace_is_a_failure_that_names_the_place(
         getattr(trace, what)[:] = 0.0
 
     family.evaluate = evaluate_own
-    monkeypatch.setattr(summary, "families", lambda: (*summary._FAMILIES, family))
+    monkeypatch.setattr(summary, "_added", lambda: (family,))
     config, loop = checked_config("robot=macro", "duration=0.1"), closed_loop("robot=macro", "duration=0.1")
     trace = simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0))
     with pytest.raises(SimulationError, match=r"metrics of mine: .*read-only \(test_metrics.py, line \d+, in evaluate"):

@@ -1,0 +1,219 @@
+"""Kinematics and dynamics of an arm by recursion over its bodies, over any kind of scalar."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from runner.compiled.arm import ArmConstants, Body
+from runner.compiled.elementary import sine_cosine
+from runner.compiled.vectors import (
+    Matrix,
+    Scalar,
+    Vector,
+    add,
+    cross,
+    dot,
+    matrix_product,
+    minus,
+    plus,
+    product,
+    scale,
+    shifted,
+    subtract,
+    times,
+    transpose,
+    turned,
+)
+
+_ZERO: Vector = [0.0, 0.0, 0.0]
+_Z: Vector = [0.0, 0.0, 1.0]
+_IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], _Z]
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """How a body moves, along the axes of its own frame."""
+
+    spin: Vector  # angular velocity, in rad/s
+    turning: Vector  # angular acceleration, in rad/s^2
+    acceleration: Vector  # of the origin, in m/s^2
+
+
+class ArmAlgebra:
+    """An arm's kinematics and dynamics as sums and products of scalars (Featherstone 2008, chapters 5 and 6).
+
+    Args:
+        constants: The arm's bodies, tip and gravity.
+        sine_cosine: Makes the sine and the cosine of a scalar.
+    """
+
+    def __init__(
+        self, constants: ArmConstants, sine_cosine: Callable[[Scalar], tuple[Scalar, Scalar]] = sine_cosine
+    ) -> None:
+        self._constants, self._sine_cosine = constants, sine_cosine
+        self._placed: tuple[Vector, list[tuple[Matrix, Vector]]] | None = None
+
+    def tip(self, q: Vector, dq: Vector) -> tuple[Vector, Matrix, Matrix, Vector]:
+        """Return the tip's position, rotation, Jacobian and dJ/dt dq in the base frame.
+
+        Args:
+            q: Joint positions, shape (nq,), in rad.
+            dq: Joint velocities, shape (nq,), in rad/s.
+
+        Returns:
+            Shapes (3,), (3, 3), (6, nq) and (6,), linear rows first.
+        """
+        constants, placements = self._constants, self._placements(q)
+        rotations: list[Matrix] = []
+        origins: list[Vector] = []
+        for body, (R, p) in zip(constants.bodies, placements, strict=True):
+            at = _IDENTITY if body.parent is None else rotations[body.parent]
+            rotations.append(matrix_product(at, R))
+            origins.append(add(_ZERO if body.parent is None else origins[body.parent], product(at, p)))
+        last = constants.tip_body
+        x = add(origins[last], product(rotations[last], constants.tip_position))
+        columns: list[Vector] = [[0.0] * 6 for _ in q]
+        carrier: int | None = last
+        while carrier is not None:
+            body = constants.bodies[carrier]
+            axis = [row[2] for row in rotations[carrier]]
+            columns[carrier] = [*axis, *_ZERO] if body.slides else [*cross(axis, subtract(x, origins[carrier])), *axis]
+            carrier = body.parent
+        moved = self._motions(placements, dq, [0.0] * len(q), _ZERO)[last]
+        lever = constants.tip_position
+        own = add(moved.acceleration, cross(moved.turning, lever), cross(moved.spin, cross(moved.spin, lever)))
+        bias = [*product(rotations[last], own), *product(rotations[last], moved.turning)]
+        return x, matrix_product(rotations[last], constants.tip_rotation), transpose(columns), bias
+
+    def inverse_dynamics(self, q: Vector, dq: Vector, ddq: Vector, gravity: Vector | None = None) -> Vector:
+        """Return the joint torques M ddq + V + G, shape (nq,), in N m, by the recursive Newton-Euler algorithm.
+
+        Args:
+            q: Joint positions, shape (nq,), in rad.
+            dq: Joint velocities, shape (nq,), in rad/s.
+            ddq: Joint accelerations, shape (nq,), in rad/s^2.
+            gravity: In the base frame, shape (3,), in m/s^2; None is the arm's own.
+        """
+        bodies, placements = self._constants.bodies, self._placements(q)
+        upwards = scale(-1.0, self._constants.gravity if gravity is None else gravity)
+        motions = self._motions(placements, dq, ddq, upwards)
+        forces: list[Vector] = []
+        moments: list[Vector] = []
+        for body, motion in zip(bodies, motions, strict=True):
+            w, turning, a = motion.spin, motion.turning, motion.acceleration
+            forces.append(add(scale(body.mass, a), cross(turning, body.moment), cross(w, cross(w, body.moment))))
+            moments.append(
+                add(product(body.inertia, turning), cross(w, product(body.inertia, w)), cross(body.moment, a))
+            )
+        torques: list[Scalar] = [0.0] * len(bodies)
+        for index in reversed(range(len(bodies))):
+            body, (R, p) = bodies[index], placements[index]
+            torques[index] = forces[index][2] if body.slides else moments[index][2]
+            if body.parent is not None:
+                force = product(R, forces[index])
+                forces[body.parent] = add(forces[body.parent], force)
+                moments[body.parent] = add(moments[body.parent], product(R, moments[index]), cross(p, force))
+        return torques
+
+    def mass_matrix(self, q: Vector) -> Matrix:
+        """Return M(q), shape (nq, nq), in kg m^2, by composite rigid bodies."""
+        bodies, placements = self._constants.bodies, self._placements(q)
+        masses = [body.mass for body in bodies]
+        moments = [body.moment for body in bodies]
+        inertias = [body.inertia for body in bodies]
+        for index in reversed(range(len(bodies))):
+            carrier, (R, p) = bodies[index].parent, placements[index]
+            if carrier is None:
+                continue
+            moment = product(R, moments[index])
+            about_carrier = shifted(turned(R, inertias[index]), moment, masses[index], p)
+            inertias[carrier] = [add(a, b) for a, b in zip(inertias[carrier], about_carrier, strict=True)]
+            moments[carrier] = add(moments[carrier], moment, scale(masses[index], p))
+            masses[carrier] = plus(masses[carrier], masses[index])
+        M: list[list[Scalar]] = [[0.0] * len(bodies) for _ in bodies]
+        for index, body in enumerate(bodies):
+            # Force and moment, about the body's origin, that accelerate all it carries by one unit of its joint.
+            force = scale(masses[index], _Z) if body.slides else cross(_Z, moments[index])
+            moment = cross(moments[index], _Z) if body.slides else [row[2] for row in inertias[index]]
+            at, carrier = index, body.parent
+            M[index][index] = force[2] if body.slides else moment[2]
+            while carrier is not None:
+                R, p = placements[at]
+                force = product(R, force)
+                moment = add(product(R, moment), cross(p, force))
+                at, carrier = carrier, bodies[carrier].parent
+                M[index][at] = M[at][index] = force[2] if bodies[at].slides else moment[2]
+        return M
+
+    def _placements(self, q: Vector) -> list[tuple[Matrix, Vector]]:
+        """Return each body's rotation into its carrier's frame and its origin there."""
+        if self._placed is None or self._placed[0] is not q:
+            pairs = zip(self._constants.bodies, q, strict=True)
+            self._placed = q, [self._placement(body, position) for body, position in pairs]
+        return self._placed[1]
+
+    def _placement(self, body: Body, position: Scalar) -> tuple[Matrix, Vector]:
+        R, p = body.rotation, body.position
+        if body.slides:
+            return R, add(p, [times(row[2], position) for row in R])
+        s, c = self._sine_cosine(position)
+        turning = [
+            [plus(times(row[0], c), times(row[1], s)), minus(times(row[1], c), times(row[0], s)), row[2]] for row in R
+        ]
+        return turning, p
+
+    def _motions(
+        self, placements: list[tuple[Matrix, Vector]], dq: Vector, ddq: Vector, acceleration: Vector
+    ) -> list[_Motion]:
+        """Return how each body moves, from the joints' speeds and accelerations and the base's acceleration."""
+        motions: list[_Motion] = []
+        for body, (R, p), speed, change in zip(self._constants.bodies, placements, dq, ddq, strict=True):
+            base = _Motion(_ZERO, _ZERO, acceleration) if body.parent is None else motions[body.parent]
+            back = transpose(R)
+            carried = add(base.acceleration, cross(base.turning, p), cross(base.spin, cross(base.spin, p)))
+            spin, turning, a = product(back, base.spin), product(back, base.turning), product(back, carried)
+            across = [times(spin[1], speed), scale(-1.0, [times(spin[0], speed)])[0], 0.0]  # spin x z, times the speed
+            if body.slides:
+                a = add(a, scale(2.0, across), [0.0, 0.0, change])
+            else:
+                spin, turning = add(spin, [0.0, 0.0, speed]), add(turning, across, [0.0, 0.0, change])
+            motions.append(_Motion(spin, turning, a))
+        return motions
+
+
+class Factors:
+    r"""A = L D L^T of a symmetric matrix, without pivoting.
+
+    Args:
+        A: Shape (n, n); its upper triangle is read.
+
+    Attributes:
+        pivots: D, shape (n,): A is positive definite where all are above 0.
+    """
+
+    def __init__(self, A: Matrix) -> None:
+        n = len(A)
+        self._L: list[list[Scalar]] = [[0.0] * n for _ in range(n)]
+        self._inverses: list[Scalar] = []
+        self.pivots: list[Scalar] = []
+        for j in range(n):
+            scaled = [times(self._L[j][k], self.pivots[k]) for k in range(j)]
+            self.pivots.append(minus(A[j][j], dot(self._L[j][:j], scaled)))
+            self._inverses.append(1.0 / self.pivots[j])
+            for i in range(j + 1, n):
+                self._L[i][j] = times(minus(A[j][i], dot(self._L[i][:j], scaled)), self._inverses[j])
+
+    def solve(self, b: Vector) -> Vector:
+        """Return A^-1 b, shape (n,)."""
+        L, n = self._L, len(b)
+        y: list[Scalar] = []
+        for i in range(n):
+            y.append(minus(b[i], dot(L[i][:i], y)))
+        x = [times(y[i], self._inverses[i]) for i in range(n)]
+        for i in reversed(range(n)):
+            x[i] = minus(x[i], dot([L[k][i] for k in range(i + 1, n)], x[i + 1 :]))
+        return x
+
+    def inverse(self) -> Matrix:
+        """Return A^-1, shape (n, n)."""
+        n = len(self.pivots)
+        return [self.solve([1.0 if i == j else 0.0 for i in range(n)]) for j in range(n)]

@@ -1,0 +1,172 @@
+"""The constants of an arm's rigid bodies, every joint's axis turned to z."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.compiled.vectors import Matrix, Scalar, Vector
+from runner.robots.model import RobotModel
+
+FloatArray = NDArray[np.float64]
+_ROUNDING = 1e-14  # a right angle's cosine is 6e-17
+_AXES = np.eye(3)
+
+
+@dataclass(frozen=True)
+class Body:
+    """A moving link, in the frame of the joint that moves it, whose axis is z.
+
+    Attributes:
+        parent: Index of the body that carries it; None is the base.
+        slides: Whether its joint slides along z, or turns about it.
+        rotation: Turns its frame at joint position 0 into its parent's, shape (3, 3).
+        position: Origin of its frame in its parent's at joint position 0, shape (3,), in m.
+        mass: In kg.
+        moment: Mass times the way from the origin to the centre of mass, shape (3,), in kg m.
+        inertia: About the origin, shape (3, 3), in kg m^2.
+    """
+
+    parent: int | None
+    slides: bool
+    rotation: Matrix
+    position: Vector
+    mass: Scalar
+    moment: Vector
+    inertia: Matrix
+
+
+class ArmConstants(NamedTuple):
+    """What kinematics and dynamics of an arm follow from.
+
+    Attributes:
+        bodies: The moving links, base first; a carrier stands before what it carries.
+        tip_body: Index of the body that holds the tip.
+        tip_rotation: Turns the tip's frame into that body's, shape (3, 3).
+        tip_position: The tip in that body's frame, shape (3,), in m.
+        gravity: In the base frame, shape (3,), in m/s^2.
+    """
+
+    bodies: tuple[Body, ...]
+    tip_body: int
+    tip_rotation: Matrix
+    tip_position: Vector
+    gravity: Vector
+
+
+def constants_of(
+    model: RobotModel, number: Callable[[float], Scalar] = float, gravity: Vector | None = None, tip: str | None = None
+) -> ArmConstants:
+    """Return an arm's constants.
+
+    Links that fixed joints hold are parts of the body that carries them, as Pinocchio has merged them.
+
+    Args:
+        model: The arm, which does not change any more.
+        number: Makes the scalar that stands for a constant; it is not asked for 0, 1 and -1, which stay floats.
+        gravity: In the base frame, shape (3,), in m/s^2, as scalars; None is the model's.
+        tip: Name of the frame that is taken for the tip; None is the model's.
+    """
+    bodies, (tip_body, rotation, position) = _raw_bodies(model), _raw_tip(model, tip)
+    return ArmConstants(
+        tuple(
+            Body(
+                body.parent,
+                body.slides,
+                [[_scalar(value, number) for value in row] for row in body.rotation],
+                [_scalar(value, number) for value in body.position],
+                _scalar(body.mass, number),
+                [_scalar(value, number) for value in body.moment],
+                _symmetric(body.inertia, number),
+            )
+            for body in bodies
+        ),
+        tip_body,
+        [[_scalar(value, number) for value in row] for row in rotation],
+        [_scalar(value, number) for value in position],
+        [_scalar(value, number) for value in _rounded(model.gravity)] if gravity is None else gravity,
+    )
+
+
+@lru_cache(maxsize=256)
+def _raw_bodies(model: RobotModel) -> tuple[Body, ...]:
+    """Return the bodies of an arm with their numbers, each joint's axis turned to z."""
+    arm, turns = model.pin_model, _turns(model)
+    bodies = []
+    for index, (placement, inertia) in enumerate(
+        zip(list(arm.jointPlacements)[1:], list(arm.inertias)[1:], strict=True)
+    ):
+        parent, turn = arm.parents[index + 1] - 1, turns[index]
+        at_parent = turns[parent].T
+        centre = turn.T @ inertia.lever
+        about_origin = turn.T @ inertia.inertia @ turn + inertia.mass * (
+            centre @ centre * _AXES - np.outer(centre, centre)
+        )
+        bodies.append(
+            Body(
+                parent if parent >= 0 else None,
+                bool(model.slides[index]),
+                _rounded(at_parent @ placement.rotation @ turn),
+                _rounded(at_parent @ placement.translation),
+                _rounded(inertia.mass),
+                _rounded(inertia.mass * centre),
+                _rounded(about_origin),
+            )
+        )
+    return tuple(bodies)
+
+
+@lru_cache(maxsize=256)
+def _raw_tip(model: RobotModel, frame: str | None) -> tuple[int, Any, Any]:
+    """Return the body that holds a frame, the frame's rotation and its origin there."""
+    arm = model.pin_model
+    end = arm.frames[model.tip_frame if frame is None else arm.getFrameId(frame)]
+    turn = _turns(model)[end.parentJoint - 1].T
+    return end.parentJoint - 1, _rounded(turn @ end.placement.rotation), _rounded(turn @ end.placement.translation)
+
+
+def _turns(model: RobotModel) -> list[FloatArray]:
+    """Return how each joint's frame is turned to have the axis along z; the last one, of the base, is not."""
+    return [*(_axis_to_z(joint) for joint in list(model.pin_model.joints)[1:]), _AXES]
+
+
+def _axis_to_z(joint: Any) -> FloatArray:
+    """Return a rotation that takes z to a joint's axis, shape (3, 3); along the axes where the axis is."""
+    data = joint.createData()
+    joint.calc(data, np.zeros(1))
+    motion = np.asarray(data.S, dtype=np.float64).reshape(6)
+    axis = motion[:3] if motion[:3].any() else motion[3:]
+    for first in range(3):
+        if axis[first] == 1.0:
+            return np.column_stack([_AXES[(first + 1) % 3], _AXES[(first + 2) % 3], axis])
+    across = np.cross(axis, _AXES[int(np.argmin(np.abs(axis)))])
+    across /= np.linalg.norm(across)
+    return np.column_stack([across, np.cross(axis, across), axis])
+
+
+def known(values: Any, number: Callable[[float], Scalar]) -> Any:
+    """Return numbers as scalars, nested as they are: 0, 1 and -1 as floats, others as `number` makes them."""
+    values = _rounded(values)
+    if isinstance(values, list):
+        return [known(value, number) for value in values]
+    return _scalar(values, number)
+
+
+def _scalar(value: float, number: Callable[[float], Scalar]) -> Scalar:
+    return value if value in (0.0, 1.0, -1.0) else number(value)
+
+
+def _rounded(values: Any) -> Any:
+    """Return numbers as nested lists; what is 0, 1 or -1 but for rounding is so."""
+    values = np.asarray(values, dtype=np.float64)
+    nearest = np.round(values)
+    near = (np.abs(nearest) <= 1.0) & (np.abs(values - nearest) < _ROUNDING)
+    return np.where(near, nearest + 0.0, values).tolist()
+
+
+def _symmetric(values: Matrix, number: Callable[[float], Scalar]) -> Matrix:
+    upper = {(i, j): _scalar(values[i][j], number) for i in range(3) for j in range(i, 3)}
+    return [[upper[min(i, j), max(i, j)] for j in range(3)] for i in range(3)]

@@ -1,0 +1,77 @@
+"""Compiled code kept in the user's cache folder, where it can be trusted: machine code is loaded as it is."""
+
+import hashlib
+import json
+import os
+import stat
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+_LARGEST = 64 * 2**20  # bytes of one file
+
+
+def folder() -> Path | None:
+    """Return the folder of compiled code, made where it is missing; None where it cannot be trusted.
+
+    It is `arm-control-runner/compiled` within XDG_CACHE_HOME or ~/.cache, open to the user alone. It is not used where
+    it, or a folder that leads to it, belongs to somebody else than the user or root, or can be written by others.
+    """
+    base = os.environ.get("XDG_CACHE_HOME")
+    try:
+        place = (Path(base) if base else Path.home() / ".cache") / "arm-control-runner" / "compiled"
+        place.mkdir(mode=0o700, parents=True, exist_ok=True)
+        place = place.resolve(strict=True)
+        own = _is_safe(place, {os.getuid()}, 0)
+        return place if own and all(_is_safe(p, {0, os.getuid()}, stat.S_ISVTX) for p in place.parents) else None
+    except (OSError, RuntimeError):
+        return None
+
+
+def _is_safe(path: Path, owners: set[int], allowed: int) -> bool:
+    """Tell whether only these owners can change what a folder holds, or whether it has an allowed bit.
+
+    In a sticky folder, as /tmp is, nobody can rename what belongs to another.
+    """
+    status = path.stat()
+    others = status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+    return status.st_uid in owners and bool(not others or status.st_mode & allowed)
+
+
+def read(key: str) -> tuple[bytes, dict[str, Any]] | None:
+    """Return the code of a key and what is kept with it; None where there is none, or it is damaged."""
+    place = folder()
+    if place is None:
+        return None
+    try:
+        with (place / key).open("rb") as file:
+            status = os.fstat(file.fileno())
+            if status.st_uid != os.getuid() or status.st_size > _LARGEST:
+                return None
+            header = json.loads(file.readline(2**16))
+            code = file.read()
+        about, digest = header["about"], header["sha256"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    if not isinstance(about, dict) or _digest(code, about) != digest:
+        return None
+    return code, about
+
+
+def write(key: str, code: bytes, about: Mapping[str, Any]) -> None:
+    """Keep the code of a key, and plain data on it; where that fails it is compiled again the next time."""
+    place = folder()
+    if place is None:
+        return
+    header = json.dumps({"about": about, "sha256": _digest(code, about)})
+    try:
+        with tempfile.NamedTemporaryFile(dir=place, delete=False) as file:
+            file.write(header.encode() + b"\n" + code)
+        Path(file.name).replace(place / key)
+    except OSError:
+        return
+
+
+def _digest(code: bytes, about: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(about).encode() + b"\0" + code).hexdigest()

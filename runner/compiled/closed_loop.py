@@ -1,0 +1,248 @@
+"""Closed loops as compiled code: what loops ask in a tick, or whole runs, one alone or many together."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from runner.compiled.code import ACTING
+from runner.compiled.commands import Commands, expressed_commands
+from runner.compiled.expression import places
+from runner.compiled.motion import expressed_motion, motion_pattern, motion_scalars
+from runner.compiled.places import Places
+from runner.compiled.program import LANES, Expressed, FloatArray, Frame, Program, program
+from runner.compiled.structure import Values
+from runner.plants.motion import Motion
+
+_AT_ONCE = 10_000  # ticks without a look at interruptions
+
+
+class CompiledCommands:
+    """What the loops of one arm ask of it, tick by tick, where something else moves it.
+
+    Args:
+        commands: The loops.
+
+    Attributes:
+        errors: Texts of what may go wrong, by their numbers less 1.
+
+    Raises:
+        CannotCompileError: where a law has no compiled form.
+    """
+
+    def __init__(self, commands: Commands) -> None:
+        def express() -> Expressed:
+            at = Places()
+            _, kept, errors = expressed_commands(commands, commands.scalars(at.number), at)
+            return Expressed([kept], [], at.widths, errors)
+
+        what = f"the control law of {len(commands.limits)} joints"
+        self._commands = commands
+        self._program = program(f"commands {commands.pattern}", what, express, 1, commands.are_ours)
+        values = Values()
+        commands.scalars(values.number)
+        self._values = values.values
+
+    def begin(
+        self, times: FloatArray, desired: FloatArray, errors: Sequence[FloatArray], q: FloatArray
+    ) -> "CommandsRun":
+        """Begin a run at rest.
+
+        Args:
+            times: Time of each tick, shape (T,), in s.
+            desired: Desired motion of the tip, shape (T, 3, 3).
+            errors: Errors of the positions at the ticks of each loop, shape (n, nq), in rad.
+            q: Joint positions at the start, shape (nq,), in rad.
+        """
+        commands, frame = self._commands, self._program.frame(len(times))
+        wrong = commands.measured_wrong(errors, len(times))
+        frame.given[:, :, 0] = np.hstack([commands.shared(times, desired), wrong])
+        frame.state[:, 0] = commands.start(q[None], [each[:1] for each in errors])[0]
+        frame.pars[:, 0] = self._values
+        return CommandsRun(frame, self._commands, times, self._program.errors)
+
+
+class CommandsRun:
+    """One run, tick by tick.
+
+    Args:
+        frame: Its arrays.
+        commands: The loops.
+        times: Time of each tick, shape (T,), in s.
+        errors: Texts of what may go wrong.
+
+    Attributes:
+        q: Joint positions at each tick, shape (T, nq), in rad.
+        dq: Joint velocities, shape (T, nq), in rad/s.
+        torque: Torques within their limits, shape (T, nq), in N m.
+        end_points: End point of each stage, shape (stages, T, 3), in m.
+    """
+
+    def __init__(self, frame: Frame, commands: Commands, times: FloatArray, errors: Sequence[str]) -> None:
+        self._commands, self._times = commands, times
+        rows, nq = frame.rows[:, :, 0], len(commands.limits)
+        self.q, self.dq, self.torque = (rows[:, part * nq : (part + 1) * nq] for part in range(3))
+        self._fault, self.end_points = rows[:, 3 * nq], rows[:, 3 * nq + 1 :].reshape(len(times), -1, 3).swapaxes(0, 1)
+        self._true_q, self._true_dq = frame.state[:nq, 0], frame.state[nq : 2 * nq, 0]
+        self._span, self._call, self._errors, self._watched = frame.span, frame.call, errors, commands.watched
+
+    def tick(self, k: int, q: FloatArray, dq: FloatArray) -> None:
+        """Compute tick k, after the one before, from the true state, shapes (nq,).
+
+        Raises:
+            LinAlgError: where a law has no answer.
+            SimulationError: where a user's law gives no finite numbers.
+        """
+        self._true_q[:] = q
+        self._true_dq[:] = dq
+        self._span[0], self._span[1] = k, k + 1
+        self._call()
+        if self._fault[k]:
+            raise np.linalg.LinAlgError(self._errors[int(self._fault[k]) - 1])
+        if self._watched:
+            fault = self._commands.fault(self.torque[k], self._times[k])
+            if fault is not None:
+                raise fault
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A closed loop that is compiled as a whole.
+
+    Attributes:
+        commands: Its loops.
+        motion: What moves.
+        tick: Time between two ticks, in s.
+        step: Integration step, in s.
+        steps: Steps in a tick.
+        delay: Ticks from a command until it acts.
+    """
+
+    commands: Commands
+    motion: Motion
+    tick: float
+    step: float
+    steps: int
+    delay: int
+
+    @cached_property
+    def pattern(self) -> str:
+        """A text that is the same for two whose code is the same."""
+        return f"run {self.commands.pattern} {motion_pattern(self.motion)}"
+
+    def program(self, lanes: int) -> Program:
+        """Return its code.
+
+        Raises:
+            CannotCompileError: where a law has no compiled form.
+        """
+
+        def express() -> Expressed:
+            at = Places()
+            commands = self.commands.scalars(at.number)
+            numbers = motion_scalars(self.motion, self.step, self.tick, at.number)
+            torques, kept, errors = expressed_commands(self.commands, commands, at)
+            nq = len(torques)
+            moved = expressed_motion(self.motion, numbers, at, places(ACTING, 2 * nq, nq))
+            return Expressed([kept], moved, at.widths, errors)
+
+        return program(
+            self.pattern,
+            f"a control tick of {len(self.commands.limits)} joints",
+            express,
+            lanes,
+            self.commands.are_ours,
+        )
+
+    @cached_property
+    def values(self) -> FloatArray:
+        """The parameters of its code."""
+        values = Values()
+        self.commands.scalars(values.number)
+        motion_scalars(self.motion, self.step, self.tick, values.number)
+        return np.array(values.values)
+
+
+@dataclass(frozen=True)
+class Signals:
+    """What runs left behind, true values, a row for each tick.
+
+    Attributes:
+        q: Joint positions, shape (runs, T, nq), in rad.
+        dq: Joint velocities, shape (runs, T, nq), in rad/s.
+        torque: Torques asked for, within their limits, shape (runs, T, nq), in N m.
+        fault: Number of what went wrong in a law, 0 for nothing, shape (runs, T).
+        end_points: End point of each stage, shape (stages, runs, T, 3), in m.
+        errors: Texts of what may go wrong, by their numbers less 1.
+        commands: The loops of one of them.
+    """
+
+    q: FloatArray
+    dq: FloatArray
+    torque: FloatArray
+    fault: FloatArray
+    end_points: FloatArray
+    errors: Sequence[str]
+    commands: Commands
+
+    def first_fault(self, run: int, times: FloatArray) -> tuple[int, Exception] | None:
+        """Return the first of some ticks in which a run's law had no answer, and the reason; None where all had one."""
+        failed = np.flatnonzero(self.fault[run, : len(times)])
+        watched = self.torque[run, : len(times) if self.commands.watched else 0]
+        wild = np.flatnonzero(~np.isfinite(watched).all(axis=1))
+        first = min([*failed[:1], *wild[:1]], default=None)
+        if first is None:
+            return None
+        if len(failed) and first == failed[0]:
+            return int(first), np.linalg.LinAlgError(self.errors[int(self.fault[run, first]) - 1])
+        error = self.commands.fault(self.torque[run, first], float(times[first]))
+        assert error is not None  # noqa: S101 - a torque is not finite there
+        return int(first), error
+
+
+def run_all(
+    whole: Whole, values: FloatArray, shared: FloatArray, errors: Sequence[FloatArray], start: FloatArray
+) -> Signals:
+    """Compute runs of as many ticks that share their code; each has the bits that it has alone.
+
+    Args:
+        whole: The closed loop of one of them.
+        values: The parameters of each, shape (runs, parameters); see Whole.values.
+        shared: What each tick is given of time and path, shape (T, entries) for all alike or (runs, T, entries).
+        errors: Errors of the positions at the ticks of each loop, shape (runs, n, nq), in rad.
+        start: The state of the first tick of each, shape (runs, entries); see Commands.start.
+
+    Raises:
+        CannotCompileError: where a law has no compiled form.
+    """
+    count, ticks, nq, stages = len(start), shared.shape[-2], len(whole.commands.limits), len(whole.motion.robot.stages)
+    code = whole.program(1 if count == 1 else LANES)
+    frame = code.frame(ticks, whole.delay, whole.steps)
+    q, dq, torque = (np.empty((count, ticks, nq)) for _ in range(3))
+    points = np.empty((stages, count, ticks, 3))
+    found = Signals(q, dq, torque, np.empty((count, ticks)), points, code.errors, whole.commands)
+    wide, long = shared.shape[-1], start.shape[1]
+    for first in range(0, count, code.lanes):
+        own = slice(first, min(first + code.lanes, count))
+        used = own.stop - first  # idle lanes go on with what the runs before left there
+        if shared.ndim == 3 or first == 0:
+            frame.given[:, :wide, : used if shared.ndim == 3 else code.lanes] = _lanes(shared, own)
+        wrong = whole.commands.measured_wrong([each[own] for each in errors], ticks)
+        frame.given[:, wide:, :used] = wrong.transpose(1, 2, 0)
+        frame.state[:long, :used], frame.state[long:] = start[own].T, 0.0
+        frame.pars[:, :used] = values[own].T
+        for begin in range(0, ticks, _AT_ONCE):
+            frame.span[:] = begin, min(begin + _AT_ONCE, ticks)
+            frame.call()
+        rows = frame.rows[:, :, :used].transpose(2, 0, 1)
+        found.q[own], found.dq[own], found.torque[own] = (rows[:, :, k * nq : (k + 1) * nq] for k in range(3))
+        found.fault[own] = rows[:, :, 3 * nq]
+        found.end_points[:, own] = rows[:, :, 3 * nq + 1 :].reshape(used, ticks, stages, 3).transpose(2, 0, 1, 3)
+    return found
+
+
+def _lanes(shared: FloatArray, runs: slice) -> FloatArray:
+    """Return what ticks are given with the runs last, shape (T, entries, runs), or 1 for all runs alike."""
+    found: FloatArray = shared[:, :, None] if shared.ndim == 2 else shared[runs].transpose(1, 2, 0)
+    return found

@@ -1,0 +1,194 @@
+"""Programs as the text of LLVM's intermediate representation: straight-line code within loops."""
+
+import struct
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from runner.compiled.expression import Expression, expression, in_order
+
+GIVEN, ACTING, ROWS, STATE, SCRATCH, PARS, TABLE = "given", "acting", "rows", "state", "scratch", "pars", "table"
+ARRAYS = (GIVEN, ROWS, STATE, SCRATCH, PARS, TABLE)
+INTEGERS = ("first", "end", "last", "delay", "steps")
+_COMPARISONS = {"less": "fcmp olt", "equal": "fcmp oeq"}
+_FUNCTIONS = ("sqrt", "fabs", "rint", "floor")
+
+
+@dataclass(frozen=True)
+class Block:
+    """Numbers that are computed and put into places; all places are read before any is written.
+
+    Attributes:
+        outputs: Space, index and value of each.
+    """
+
+    outputs: Sequence[tuple[str, int, Any]]
+
+
+@dataclass(frozen=True)
+class Repeat:
+    """Parts that are done one or more times.
+
+    Attributes:
+        parts: What is done.
+        times: How often: a number, or the name of an integer of the program.
+        until_zero: Index in scratch of a number that ends the loop where it is zero in all runs; None for none.
+        tabled: Whether each turn takes a row of the table, in order.
+    """
+
+    parts: Sequence["Part"]
+    times: int | str
+    until_zero: int | None = None
+    tabled: bool = False
+
+
+Part = Block | Repeat
+
+
+def written(ticks: Sequence[Part], between: Sequence[Part], widths: Mapping[str, int], lanes: int) -> str:
+    """Return a program as a module with the function `run`.
+
+    Its argument is a frame: the addresses of the arrays given, rows, state, scratch, pars and table, and the integers
+    first, end, last, delay and steps. It goes through the ticks from first to end - 1; what stands between two ticks
+    is left out after the tick `last`. The numbers of a place, one for each of the runs that are computed together, lie
+    side by side. `given`, `rows` and `acting` have a row for each tick; acting is the row of `delay` ticks ago, of tick
+    0 before there is one.
+
+    Args:
+        ticks: What each tick does.
+        between: What leads to the next tick.
+        widths: Numbers in a row of each space.
+        lanes: Runs that are computed together.
+    """
+    return _Writer(widths, lanes).write(ticks, between)
+
+
+class _Writer:
+    def __init__(self, widths: Mapping[str, int], lanes: int) -> None:
+        self._widths, self._lanes = widths, lanes
+        self._number, self._truth = ("double", "i1") if lanes == 1 else (f"<{lanes} x double>", f"<{lanes} x i1>")
+        self._lines: list[str] = []
+        self._count, self._label = 0, "entry"
+        self._rows = {space: f"%{space}" for space in (STATE, SCRATCH, PARS)}
+        self._used: dict[str, None] = {}
+
+    def write(self, ticks: Sequence[Part], between: Sequence[Part]) -> str:
+        for index, (name, kind) in enumerate([*((n, "ptr") for n in ARRAYS), *((n, "i64") for n in INTEGERS)]):
+            self._lines.append(f"  %{name}.at = getelementptr i64, ptr %frame, i64 {index}")
+            self._lines.append(f"  %{name} = load {kind}, ptr %{name}.at")
+        head, k = self._open("%first")
+        late = self._line(f"sub i64 {k}, %delay")
+        early = self._line(f"icmp slt i64 {late}, 0")
+        acting = self._line(f"select i1 {early}, i64 0, i64 {late}")
+        self._rows |= {GIVEN: self._row(GIVEN, k), ROWS: self._row(ROWS, k), ACTING: self._row(ROWS, acting)}
+        self._parts(ticks)
+        ends = self._line(f"icmp eq i64 {k}, %last")
+        moves, moved = self._fresh("moves"), self._fresh("moved")
+        self._lines.append(f"  br i1 {ends}, label %{moved}, label %{moves}")
+        self._begin(moves)
+        self._parts(between)
+        self._lines.append(f"  br label %{moved}")
+        self._begin(moved)
+        self._close(head, k, "%end", None)
+        declared = [f"declare {self._number} @llvm.{name}({self._number})" for name in self._used]
+        return "\n".join([*declared, "define void @run(ptr %frame) {", "entry:", *self._lines, "  ret void", "}", ""])
+
+    def _parts(self, parts: Sequence[Part]) -> None:
+        for part in parts:
+            if isinstance(part, Block):
+                self._block(part)
+                continue
+            head, turn = self._open("0")
+            if part.tabled:
+                self._rows[TABLE] = self._row(TABLE, turn)
+            self._parts(part.parts)
+            times = f"%{part.times}" if isinstance(part.times, str) else str(part.times)
+            self._close(head, turn, times, part.until_zero)
+
+    def _block(self, block: Block) -> None:
+        values = [expression(value) for _, _, value in block.outputs]
+        names: dict[int, str] = {}
+        known: dict[tuple[Any, ...], str] = {}
+        for node in in_order(values):
+            operands = [names[id(part)] if isinstance(part, Expression) else part for part in node.operands]
+            key = (node.operation, *operands)
+            if key not in known:
+                known[key] = self._operation(node.operation, operands)
+            names[id(node)] = known[key]
+        for (space, index, _), value in zip(block.outputs, values, strict=True):
+            self._lines.append(f"  store {self._number} {names[id(value)]}, ptr {self._place(space, index)}, align 8")
+
+    def _operation(self, operation: str, operands: Sequence[Any]) -> str:
+        number, truth = self._number, self._truth
+        if operation == "constant":
+            return self._constant(operands[0])
+        if operation == "place":
+            return self._line(f"load {number}, ptr {self._place(*operands)}, align 8")
+        if operation in _COMPARISONS:
+            return self._line(f"{_COMPARISONS[operation]} {number} {operands[0]}, {operands[1]}")
+        if operation == "select":
+            return self._line(f"select {truth} {operands[0]}, {number} {operands[1]}, {number} {operands[2]}")
+        if operation == "and":
+            return self._line(f"and {truth} {operands[0]}, {operands[1]}")
+        if operation == "not":
+            return self._line(f"xor {truth} {operands[0]}, {'true' if self._lanes == 1 else 'splat (i1 true)'}")
+        if operation in _FUNCTIONS:
+            name = f"{operation}.{'f64' if self._lanes == 1 else f'v{self._lanes}f64'}"
+            self._used[name] = None
+            return self._line(f"call {number} @llvm.{name}({number} {operands[0]})")
+        return self._line(f"{operation} {number} {', '.join(operands)}")
+
+    def _constant(self, value: float) -> str:
+        bits = struct.unpack(">Q", struct.pack(">d", value))[0]
+        return f"0x{bits:016X}" if self._lanes == 1 else f"splat (double 0x{bits:016X})"
+
+    def _place(self, space: str, index: int) -> str:
+        return self._line(f"getelementptr double, ptr {self._rows[space]}, i64 {index * self._lanes}")
+
+    def _row(self, space: str, row: str) -> str:
+        width = self._widths[ROWS if space == ACTING else space] * self._lanes
+        return self._line(f"getelementptr double, ptr %{space}, i64 {self._line(f'mul i64 {row}, {width}')}")
+
+    def _open(self, first: str) -> tuple[str, str]:
+        """Begin a loop; return its label and its counter."""
+        head, before = self._fresh("loop"), self._label
+        self._lines.append(f"  br label %{head}")
+        self._begin(head)
+        counter = f"%{head}.k"
+        self._lines.append(f"  {counter} = phi i64 [ {first}, %{before} ], [ {counter}.next, %{head}.end ]")
+        return head, counter
+
+    def _close(self, head: str, counter: str, times: str, until_zero: int | None) -> None:
+        """End a loop after so many turns, or where a number is zero in all runs."""
+        goes_on = None if until_zero is None else self._any(until_zero)
+        self._lines.append(f"  br label %{head}.end")
+        self._begin(f"{head}.end")
+        self._lines.append(f"  {counter}.next = add i64 {counter}, 1")
+        again = self._line(f"icmp slt i64 {counter}.next, {times}")
+        if goes_on is not None:
+            again = self._line(f"and i1 {again}, {goes_on}")
+        after = self._fresh("after")
+        self._lines.append(f"  br i1 {again}, label %{head}, label %{after}")
+        self._begin(after)
+
+    def _any(self, index: int) -> str:
+        """Return the condition that a number of scratch is not zero in some run."""
+        value = self._line(f"load {self._number}, ptr {self._place(SCRATCH, index)}, align 8")
+        found = self._line(f"fcmp une {self._number} {value}, {self._constant(0.0)}")
+        if self._lanes == 1:
+            return found
+        bits = self._line(f"bitcast {self._truth} {found} to i{self._lanes}")
+        return self._line(f"icmp ne i{self._lanes} {bits}, 0")
+
+    def _begin(self, label: str) -> None:
+        self._lines.append(f"{label}:")
+        self._label = label
+
+    def _fresh(self, word: str) -> str:
+        self._count += 1
+        return f"{word}{self._count}"
+
+    def _line(self, text: str) -> str:
+        self._count += 1
+        self._lines.append(f"  %v{self._count} = {text}")
+        return f"%v{self._count}"

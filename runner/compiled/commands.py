@@ -1,0 +1,254 @@
+"""What control loops ask of their joints in a tick, as code: measurement, law and torque limit."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.compiled.code import GIVEN, ROWS, STATE, Block
+from runner.compiled.end_points import PointScalars, expressed_points, point_scalars
+from runner.compiled.expression import Value, both, equal, less, rounded, select
+from runner.compiled.law import LawScalars, expressed_torque, law_scalars
+from runner.compiled.maths import Expressions
+from runner.compiled.places import Places
+from runner.compiled.structure import any_number, pattern_of
+from runner.compiled.vectors import as_array
+from runner.controllers.controller import FloatArray
+from runner.controllers.maths import Array
+from runner.controllers.torque_law import TorqueLaw
+from runner.errors import SimulationError
+from runner.guard.faults import find_fault, place
+from runner.robots.robot import Robot
+from runner.sensing import EncoderNoise
+
+_OURS = ("runner", "abc", "typing", "builtins")
+
+
+@dataclass(frozen=True)
+class LoopCode:
+    """A control loop.
+
+    Attributes:
+        law: Its law.
+        joints: Joints that it commands.
+        every: Ticks between two of its own.
+        period: Time between them, in s.
+    """
+
+    law: TorqueLaw[Any]
+    joints: slice
+    every: int
+    period: float
+
+
+@dataclass(frozen=True)
+class Commands:
+    """All loops of a robot and what they measure.
+
+    Attributes:
+        robot: The robot.
+        parallel: Whether riding stages keep the orientation of home.
+        loops: The loops.
+        noise: Noise, bias and steps of the joints.
+        limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
+        watched: Whether torques that are no finite numbers end the run as a fault of the law.
+    """
+
+    robot: Robot
+    parallel: bool
+    loops: tuple[LoopCode, ...]
+    noise: EncoderNoise
+    limits: FloatArray
+    watched: bool = False
+
+    @cached_property
+    def pattern(self) -> str:
+        """A text that is the same for two whose code is the same."""
+        loops = [(pattern_of(loop.law), loop.joints, loop.every > 1) for loop in self.loops]
+        points = point_scalars(self.robot, self.parallel, any_number)
+        return repr((loops, points, self._rounded.tolist(), self.differenced))
+
+    @property
+    def are_ours(self) -> bool:
+        """Whether their laws follow from our source alone."""
+        kinds = [kind for loop in self.loops for kind in type(loop.law).__mro__]
+        return all(kind.__module__.partition(".")[0] in _OURS for kind in kinds)
+
+    @property
+    def _rounded(self) -> NDArray[np.bool_]:
+        rounded: NDArray[np.bool_] = self.noise.resolution > 0.0
+        return rounded
+
+    @property
+    def differenced(self) -> bool:
+        """Whether velocities are differences of the measured positions."""
+        return self.noise.velocity == "finite_difference"
+
+    def scalars(self, number: Callable[[float], Any]) -> "CommandScalars":
+        """Return the numbers of the loops as scalars, as `number` makes them."""
+        return CommandScalars(
+            [number(limit) for limit in self.limits.tolist()],
+            {joint: number(self.noise.resolution[joint]) for joint in np.flatnonzero(self._rounded).tolist()},
+            [law_scalars(loop.law, loop.period, number) for loop in self.loops],
+            point_scalars(self.robot, self.parallel, number),
+        )
+
+    def fault(self, torque: FloatArray, time: float) -> SimulationError | None:
+        """Return what is wrong with torques that a user's law gave, shape (nq,); None where nothing is."""
+        if not self.watched or np.isfinite(torque).all():
+            return None
+        for loop in self.loops:
+            text = find_fault(torque[loop.joints], torque[loop.joints].shape)
+            if text:
+                return SimulationError(f"{place(loop.law.evaluate)} gave {text}", time)
+        return None
+
+    def shared(self, times: FloatArray, desired: FloatArray) -> FloatArray:
+        """Return what each tick is given of time and path, shape (..., T, entries): the first entries of `given`.
+
+        Args:
+            times: Time of each tick, shape (T,), in s.
+            desired: Desired motion of the tip, shape (..., T, 3, 3), of one run or of several.
+        """
+        ticks = np.arange(len(times))
+        own = [times, *(ticks % loop.every == 0 for loop in self.loops)]
+        columns = np.broadcast_to(np.stack(own, axis=-1, dtype=float), (*desired.shape[:-2], len(own)))
+        return np.concatenate([columns, desired.reshape(*desired.shape[:-2], 9)], axis=-1)
+
+    def measured_wrong(self, errors: Sequence[FloatArray], ticks: int) -> FloatArray:
+        """Return the errors of the positions in each tick, shape (..., T, entries): what follows in `given`.
+
+        Args:
+            errors: Errors at the ticks of each loop, shape (..., n, nq), in rad.
+            ticks: T, number of ticks.
+        """
+        numbers = np.arange(ticks)
+        own = [
+            wrong[..., :ticks, :] if loop.every == 1 else wrong[..., numbers // loop.every, :]
+            for loop, wrong in zip(self.loops, errors, strict=True)
+        ]
+        return own[0] if len(own) == 1 else np.concatenate(own, axis=-1)
+
+    def start(self, q: FloatArray, errors: Sequence[FloatArray]) -> FloatArray:
+        """Return the state of the first tick of runs at rest, shape (runs, entries).
+
+        Args:
+            q: Joint positions, shape (runs, nq), in rad.
+            errors: First errors of the positions that each loop measures, shape (runs, nq), in rad.
+        """
+        parts = [q, np.zeros_like(q)]
+        steps, some = self.noise.resolution[self._rounded], self._rounded
+        for loop, wrong in zip(self.loops, errors, strict=True):
+            measured = q + wrong
+            measured[:, some] = np.round(measured[:, some] / steps) * steps
+            if self.differenced:
+                parts.append(measured)
+            if len(loop.law.start(measured[0])):
+                parts.append(np.array([loop.law.start(own) for own in measured]))
+            if loop.every > 1:
+                parts.append(np.zeros((len(q), loop.joints.stop - loop.joints.start)))
+        return np.concatenate(parts, axis=1)
+
+
+class CommandScalars(NamedTuple):
+    """The numbers of all loops.
+
+    Attributes:
+        limits: Torque limit of each joint, shape (nq,), in N m.
+        resolution: Step of the encoders of some joints, in rad.
+        laws: Those of each loop.
+        points: What the end points of the stages follow from.
+    """
+
+    limits: Sequence[Value]
+    resolution: dict[int, Value]
+    laws: Sequence[LawScalars]
+    points: tuple[PointScalars, ...]
+
+
+def expressed_commands(commands: Commands, numbers: CommandScalars, at: Places) -> tuple[list[Value], Block, list[str]]:
+    """Return the torques of a tick, what is kept of it, and the texts of what may go wrong.
+
+    It is the first that takes places. A row holds joint positions, velocities, torques, each of shape (nq,), the
+    number of what went wrong, 0 for nothing, and the end points of the stages.
+
+    Raises:
+        CannotCompileError: where a law asks for what expressions cannot do.
+    """
+    nq, loops = len(commands.limits), range(len(commands.loops))
+    (time,), due = at.take(GIVEN, 1)[1], at.take(GIVEN, len(loops))[1]
+    reference = as_array(at.take(GIVEN, 9)[1]).reshape(3, 3)
+    errors = [at.take(GIVEN, nq)[1] for _ in loops]
+    q, dq = at.take(STATE, nq)[1], at.take(STATE, nq)[1]
+    given = [_Given(time, due[loop], reference, q, dq, errors[loop]) for loop in loops]
+    torques: list[Value] = [0.0] * nq
+    kept: list[tuple[str, int, Any]] = []
+    texts: list[str] = []
+    fault: Value = 0.0
+    for loop, own, its in zip(commands.loops, numbers.laws, given, strict=True):
+        asked, changes, maths = _asked(commands, loop, own, numbers, its, at)
+        torques[loop.joints] = asked
+        kept += changes
+        failed = both(equal(fault, 0.0), less(0.0, maths.fault))
+        if loop.every > 1:
+            failed = both(failed, less(0.5, its.due))
+        fault = select(failed, maths.fault + float(len(texts)), fault)
+        texts += maths.errors
+    shown = [*q, *dq, *torques, fault, *expressed_points(numbers.points, q)]
+    kept += _at(ROWS, at.take(ROWS, len(shown))[0], shown)
+    return torques, Block(kept), texts
+
+
+class _Given(NamedTuple):
+    """What a loop is given in a tick; `due` is 1 in a tick of its own, and 0 else."""
+
+    time: Value
+    due: Value
+    reference: Array
+    q: Sequence[Value]
+    dq: Sequence[Value]
+    errors: Sequence[Value]
+
+
+def _asked(
+    commands: Commands, loop: LoopCode, own: LawScalars, numbers: CommandScalars, given: _Given, at: Places
+) -> tuple[list[Value], list[tuple[str, int, Any]], Expressions]:
+    """Return the torques that a loop asks for, how the state goes on, and what may go wrong."""
+    measured = [position + wrong for position, wrong in zip(given.q, given.errors, strict=True)]
+    for joint, step in numbers.resolution.items():
+        measured[joint] = rounded(measured[joint] / step) * step
+    velocity: Sequence[Value] = given.dq
+    changes: list[tuple[str, int, Any]] = []
+    if commands.differenced:
+        first, last = at.take(STATE, len(measured))
+        velocity = [(a - b) / own.period for a, b in zip(measured, last, strict=True)]
+        changes += _at(STATE, first, _in_own_ticks(loop, given, last, measured))
+    first, memory = at.take(STATE, len(loop.law.start(np.zeros(len(measured)))))
+    asked, after, maths = expressed_torque(loop.law, own, given.time, measured, velocity, given.reference, memory)
+    changes += _at(STATE, first, _in_own_ticks(loop, given, memory, after))
+    torques = [_clip(value, limit) for value, limit in zip(asked, numbers.limits[loop.joints], strict=True)]
+    if loop.every > 1:
+        first, held = at.take(STATE, len(torques))
+        torques = _in_own_ticks(loop, given, held, torques)
+        changes += _at(STATE, first, torques)
+    return torques, changes, maths
+
+
+def _in_own_ticks(loop: LoopCode, given: _Given, before: Sequence[Value], after: Sequence[Value]) -> list[Value]:
+    """Return what changes in the ticks of a loop alone."""
+    if loop.every == 1:
+        return list(after)
+    return [select(less(0.5, given.due), new, old) for new, old in zip(after, before, strict=True)]
+
+
+def _at(space: str, first: int, values: Sequence[Any]) -> list[tuple[str, int, Any]]:
+    return [(space, first + index, value) for index, value in enumerate(values)]
+
+
+def _clip(torque: Value, limit: Value) -> Value:
+    """Return a torque within a limit; NaN stays."""
+    below = select(less(limit, torque), limit, torque)
+    return select(less(below, -limit), -limit, below)

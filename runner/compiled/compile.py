@@ -1,0 +1,91 @@
+"""What of a closed loop is compiled, as its config decides."""
+
+import sys
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
+
+from runner.compiled.closed_loop import CompiledCommands, Whole
+from runner.compiled.commands import Commands, LoopCode
+from runner.compiled.engine import evaluator
+from runner.compiled.motion import CompiledStep
+from runner.compiled.structure import CannotCompileError
+from runner.config.timing import Timing
+from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.torque_law import TorqueLaw
+from runner.guard.controller import WatchedController
+from runner.plants.motion import Motion
+from runner.robots.model import RobotModel
+from runner.robots.robot import Robot
+from runner.sensing import EncoderNoise
+
+MOST_JOINTS = 12
+"""Above this the code grows as the cube of the joints, and Pinocchio is as quick."""
+
+
+def find_commands(
+    robot: Robot, parallel: bool, loops: Sequence[Loop], tick: float, noise: EncoderNoise, limits: FloatArray
+) -> Commands | None:
+    """Return control loops as they are compiled; None where one of them is no torque law.
+
+    Args:
+        robot: The robot that they command.
+        parallel: Whether its riding stages keep the orientation of home.
+        loops: The loops.
+        tick: Time between two ticks, in s.
+        noise: Noise, bias and steps of the joints.
+        limits: Torque limits, shape (nq,), in N m; infinite where there is none.
+    """
+    laws = [_law(loop.controller) for loop in loops]
+    if not evaluator() or not all(isinstance(law, TorqueLaw) for law in laws):
+        return None
+    if len(limits) > MOST_JOINTS:
+        _tell(f"the arm has {len(limits)} joints, and code is made for {MOST_JOINTS} or fewer: laws are not compiled")
+        return None
+    joints = range(len(limits))
+    codes = [
+        LoopCode(law, slice(*loop.joints.indices(len(joints))), round(loop.period / tick), loop.period)
+        for law, loop in zip(laws, loops, strict=True)
+    ]
+    watched = any(isinstance(loop.controller, WatchedController) for loop in loops)
+    return Commands(robot, parallel, tuple(codes), noise, limits, watched)
+
+
+def compile_commands(commands: Commands | None) -> CompiledCommands | None:
+    """Return loops that command a plant, compiled; None where they cannot be, of which the user is told the reason."""
+    if commands is None:
+        return None
+    try:
+        return CompiledCommands(commands)
+    except CannotCompileError as error:
+        _tell(str(error))
+        return None
+
+
+def compile_whole(commands: Commands | None, motion: Motion, timing: Timing) -> Whole | None:
+    """Return a closed loop compiled as a whole, with what moves; None where it cannot be."""
+    if commands is None:
+        return None
+    whole = Whole(commands, motion, timing.tick, timing.step, timing.steps_per_tick, timing.delay)
+    try:
+        whole.program(1)
+    except CannotCompileError:
+        return None  # the commands alone have no compiled form either, and say why
+    return whole
+
+
+def compile_motion(model: RobotModel, step: float) -> CompiledStep | None:
+    """Return a compiled Runge-Kutta step of an arm, in s; None where there is none."""
+    if not evaluator() or model.nq > MOST_JOINTS:
+        return None
+    return CompiledStep(model, step)
+
+
+def _law(controller: Any) -> Any:
+    return controller.watched if isinstance(controller, WatchedController) else controller
+
+
+@lru_cache(maxsize=64)
+def _tell(text: str) -> None:
+    """Say something once in a process."""
+    print(f"runner: {text}", file=sys.stderr)

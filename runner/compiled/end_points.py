@@ -1,0 +1,48 @@
+"""End points of a robot's stages as code; see end_points of runner/robots/robot.py."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from runner.compiled.algebra import ArmAlgebra
+from runner.compiled.arm import ArmConstants, constants_of
+from runner.compiled.expression import Value
+from runner.compiled.vectors import Matrix, Vector, add, product
+from runner.robots.robot import Robot, StageBase
+
+
+class PointScalars(NamedTuple):
+    """What an end point follows from.
+
+    Attributes:
+        arm: The arm that ends there.
+        first: Its first joint.
+        rotation: Where its base stands on the end point before without turning: that base's rotation, shape (3, 3).
+    """
+
+    arm: ArmConstants
+    first: int
+    rotation: Matrix | None
+
+
+def point_scalars(robot: Robot, parallel: bool, number: Callable[[float], Any]) -> tuple[PointScalars, ...]:
+    """Return what the end points of all stages follow from, as scalars."""
+    riding, still = robot.stages[1:], [0.0] * 3
+    if not (riding and parallel):
+        frames = [*(str(stage.base_frame) for stage in riding), None]
+        return tuple(PointScalars(constants_of(robot.model, number, still, frame), 0, None) for frame in frames)
+    found = [PointScalars(constants_of(robot.model, number, still, str(riding[0].base_frame)), 0, None)]
+    for index, stage in enumerate(riding, start=1):
+        rotation = StageBase(robot, index, parallel=True).rotation.tolist()
+        turned = [[number(value) for value in row] for row in rotation]
+        found.append(PointScalars(constants_of(stage.model, number, still), stage.joints.start, turned))
+    return tuple(found)
+
+
+def expressed_points(points: tuple[PointScalars, ...], q: Vector) -> list[Value]:
+    """Return the end points in the robot's base frame, three numbers for each stage, from the joint positions."""
+    found: list[Vector] = []
+    for point in points:
+        own = q[point.first : point.first + len(point.arm.bodies)]
+        x = ArmAlgebra(point.arm).tip(own, [0.0] * len(own))[0]
+        found.append(x if point.rotation is None else add(found[-1], product(point.rotation, x)))
+    return [value for point in found for value in point]

@@ -1,0 +1,104 @@
+"""A torque law over expressions."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from runner.compiled.algebra import ArmAlgebra
+from runner.compiled.arm import ArmConstants, constants_of
+from runner.compiled.expression import Value
+from runner.compiled.maths import Expressions
+from runner.compiled.structure import CannotCompileError, scalars
+from runner.compiled.vectors import as_array
+from runner.controllers.maths import Array
+from runner.controllers.torque_law import Tip, TorqueLaw
+
+
+class LawScalars(NamedTuple):
+    """The numbers of a law at its ticks.
+
+    Attributes:
+        period: Time between its ticks, in s.
+        numbers: Its law's.
+        arms: The arms that the law believes in.
+    """
+
+    period: Value
+    numbers: Any
+    arms: tuple[ArmConstants, ...]
+
+
+def law_scalars(law: TorqueLaw[Any], period: float, number: Callable[[float], Any]) -> LawScalars:
+    """Return the numbers of a law whose ticks are a period apart, in s, as scalars; as `number` makes them."""
+    still = [0.0] * 3
+    arms = tuple(
+        constants_of(model, number, [number(g) for g in model.gravity.tolist()] if law.gravity_compensation else still)
+        for model in law.models
+    )
+    return LawScalars(number(period), scalars(law.numbers, number), arms)
+
+
+class ExpressedArm:
+    """An arm over expressions; see Arm.
+
+    Args:
+        algebra: Its kinematics and dynamics.
+        maths: The functions over expressions.
+        has_weight: Whether gravity acts on it.
+    """
+
+    def __init__(self, algebra: ArmAlgebra, maths: Expressions, has_weight: bool) -> None:
+        self._algebra, self.maths, self._has_weight = algebra, maths, has_weight
+
+    def tip(self, q: Array, dq: Array) -> Tip:
+        """Return the tip's motion; see Arm."""
+        return Tip(*(as_array(part) for part in self._algebra.tip(q.tolist(), dq.tolist())))
+
+    def place(self, q: Array) -> tuple[Array, Array]:
+        """Return where the tip is; see Arm."""
+        tip = self.tip(q, np.zeros(len(q)))
+        return tip.x, tip.R
+
+    def motion(self, q: Array, dq: Array) -> tuple[Array, Array, Array]:
+        """Return where the tip is and its velocity; see Arm."""
+        tip = self.tip(q, dq)
+        return tip.x, tip.R, tip.J.dot(dq)
+
+    def mass_matrix(self, q: Array) -> Array:
+        """Return M(q); see Arm."""
+        return np.asarray(as_array(self._algebra.mass_matrix(q.tolist())))
+
+    def inverse_dynamics(self, q: Array, dq: Array, ddq: Array, gravity: Array | None = None) -> Array:
+        """Return the torques of an acceleration; see Arm."""
+        given = None if gravity is None or not self._has_weight else gravity.tolist()
+        return np.asarray(as_array(self._algebra.inverse_dynamics(q.tolist(), dq.tolist(), ddq.tolist(), given)))
+
+
+def expressed_torque(
+    law: TorqueLaw[Any], own: LawScalars, time: Value, q: Any, dq: Any, reference: Array, memory: Any
+) -> tuple[list[Value], list[Value], Expressions]:
+    """Return a law's torques and memory as expressions, and what may go wrong.
+
+    Args:
+        law: The law.
+        own: Its numbers.
+        time: As in TorqueLaw.evaluate, and so are the others.
+        q: Likewise.
+        dq: Likewise.
+        reference: Likewise.
+        memory: Likewise.
+
+    Raises:
+        CannotCompileError: where the law asks for what expressions cannot do.
+    """
+    maths = Expressions()
+    arms = [ExpressedArm(ArmAlgebra(constants), maths, law.gravity_compensation) for constants in own.arms]
+    try:
+        torque, after = law.evaluate(arms, own.numbers, time, as_array(q), as_array(dq), reference, as_array(memory))
+    except Exception as error:
+        reason = f"its `evaluate` does what expressions cannot do: {error}"
+        raise CannotCompileError(
+            f"{type(law).__name__} is not compiled, and runs through Pinocchio: {reason}"
+        ) from error
+    return list(np.asarray(torque).tolist()), list(np.asarray(after).tolist()), maths

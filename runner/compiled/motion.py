@@ -1,0 +1,269 @@
+"""How arms move between two ticks, as code: the classical Runge-Kutta scheme under held torques, less friction."""
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import Any, NamedTuple
+
+from runner.compiled.algebra import ArmAlgebra, Factors
+from runner.compiled.arm import ArmConstants, constants_of, known
+from runner.compiled.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repeat
+from runner.compiled.expression import Value, absolute, both, equal, less, places, select
+from runner.compiled.places import Places
+from runner.compiled.program import Expressed, FloatArray, Frame, program
+from runner.compiled.structure import Values, any_number, arm_pattern
+from runner.compiled.vectors import Matrix, Vector, add, product, scale, subtract, transpose
+from runner.plants.motion import Motion
+from runner.robots.model import RobotModel
+from runner.robots.robot import StageBase
+
+_PIVOTS, _ROUNDING = 100, 1e-12  # as in runner/plants/friction.py
+
+
+class ArmScalars(NamedTuple):
+    """The numbers of an arm that moves by its own dynamics.
+
+    Attributes:
+        constants: Its bodies.
+        viscous: Torque per speed in its joints, shape (n,).
+        coulomb: Torque against any motion, shape (n,).
+        base: What carries it, up to its base; None where that does not turn.
+    """
+
+    constants: ArmConstants
+    viscous: Vector
+    coulomb: Vector
+    base: ArmConstants | None
+
+
+class MotionScalars(NamedTuple):
+    """The numbers of a motion.
+
+    Attributes:
+        step: Integration step, in s.
+        tick: Time for which torques are held, in s.
+        gravity: In the robot's base frame, shape (3,), in m/s^2.
+        arms: The arms; a constant gravity of their own stands in the constants of those whose base does not turn.
+    """
+
+    step: Value
+    tick: Value
+    gravity: Vector
+    arms: tuple[ArmScalars, ...]
+
+
+def motion_scalars(motion: Motion, step: float, tick: float, number: Callable[[float], Any]) -> MotionScalars:
+    """Return the numbers of a motion as scalars.
+
+    Args:
+        motion: What moves.
+        step: Integration step, in s.
+        tick: Time for which torques are held, in s.
+        number: Makes the scalar that stands for a number; it is not asked for 0, 1 and -1.
+    """
+    robot = motion.robot
+    gravity = [number(value) for value in robot.model.gravity.tolist()]
+    arms = []
+    for index, arm in enumerate(motion.arms):
+        own, base = gravity, None
+        if index and motion.parallel:
+            fixed = StageBase(robot, index, parallel=True).rotation.T.dot(robot.model.gravity)
+            own = [number(value) for value in fixed.tolist()]
+        elif index:
+            base = constants_of(robot.model, number, [0.0] * 3, str(robot.stages[index].base_frame))
+        constants = constants_of(arm.model, number, own)
+        arms.append(ArmScalars(constants, known(arm.viscous, number), known(arm.coulomb, number), base))
+    return MotionScalars(number(step), number(tick), gravity, tuple(arms))
+
+
+def motion_pattern(motion: Motion) -> str:
+    """Return a text that is the same for two motions whose code is the same."""
+    return repr((motion_scalars(motion, 0.5, 0.5, any_number), [arm.joints for arm in motion.arms]))
+
+
+def expressed_motion(motion: Motion, numbers: MotionScalars, at: Places, torques: Sequence[Value]) -> list[Part]:
+    """Return what leads from the state of one tick to that of the next.
+
+    Args:
+        motion: What moves.
+        numbers: Its numbers.
+        at: Gives places; the state begins with joint positions and velocities, shapes (nq,).
+        torques: The torques that act, shape (nq,).
+    """
+    nq = motion.robot.model.nq
+    bases: list[Part] = []
+    arms: list[Part] = []
+    for arm, own in zip(motion.arms, numbers.arms, strict=True):
+        constants = own.constants
+        if own.base is not None:
+            # A rider feels gravity as its base is turned when the tick begins.
+            whole = ArmAlgebra(own.base).tip(places(STATE, 0, nq), [0.0] * nq)
+            first, gravity = at.take(SCRATCH, 3)
+            bases.append(_put(SCRATCH, first, product(transpose(whole[1]), numbers.gravity)))
+            constants = constants._replace(gravity=gravity)
+        joint, count = arm.joints.start, arm.model.nq
+        mover = _Mover(ArmAlgebra(constants), joint, nq, count, at)
+        acting: Vector = torques[joint : joint + count]
+        if arm.viscous.any() or arm.coulomb.any():
+            acting = mover.brake(acting, own.viscous, own.coulomb, numbers.tick, arms)
+        mover.move(acting, numbers.step, arms)
+    return [*bases, *arms]
+
+
+class _Mover:
+    """Moves one arm.
+
+    Args:
+        algebra: The arm.
+        joint: Its first joint among those of the robot.
+        nq: Number of the robot's joints.
+        count: Number of its own.
+        at: Gives places.
+    """
+
+    def __init__(self, algebra: ArmAlgebra, joint: int, nq: int, count: int, at: Places) -> None:
+        self._algebra, self._count, self._at = algebra, count, at
+        self._first = joint, nq + joint
+        self._q, self._v = (places(STATE, first, count) for first in self._first)
+
+    def move(self, acting: Vector, h: Value, parts: list[Part]) -> None:
+        r"""Add the steps of a tick.
+
+        .. math::
+
+            q^+ = q + h v + \tfrac{h^2}{6} (a_1 + a_2 + a_3), \qquad v^+ = v + \tfrac{h}{6} (a_1 + 2 a_2 + 2 a_3 + a_4)
+
+        With dq/dt = v the slopes of the positions are the intermediate velocities, so that four accelerations suffice.
+        """
+        n, q, v = self._count, self._q, self._v
+        first, scratch = self._at.take(SCRATCH, 4 * n)
+        q_i, v_i, one, two = (scratch[part * n : (part + 1) * n] for part in range(4))
+        ahead, weight_one, weight_two = places(TABLE, 0, 3)
+        a_i = self._acceleration(q_i, v_i, acting)
+        stage = [
+            *add(q, scale(ahead * h, v_i)),
+            *add(v, scale(ahead * h, a_i)),
+            *add(one, scale(weight_one, a_i)),
+            *add(two, scale(weight_two, a_i)),
+        ]
+        sixth = h / 6.0
+        begin = _put(SCRATCH, first, [*q, *v, *[0.0] * (2 * n)])
+        stages = Repeat([_put(SCRATCH, first, stage)], 4, tabled=True)
+        ends = zip(self._first, (add(q, scale(h, v), scale(h * sixth, one)), add(v, scale(sixth, two))), strict=True)
+        end = Block([(STATE, place_ + index, value) for place_, values in ends for index, value in enumerate(values)])
+        parts.append(Repeat([begin, stages, end], "steps"))
+
+    def _acceleration(self, q: Vector, v: Vector, tau: Vector) -> Vector:
+        bias = self._algebra.inverse_dynamics(q, v, [0.0] * len(q))
+        return Factors(self._algebra.mass_matrix(q)).solve(subtract(tau, bias))
+
+    def brake(self, acting: Vector, viscous: Vector, coulomb: Vector, h: Value, parts: list[Part]) -> Vector:
+        """Add friction of a tick by backward Euler, and return the torques less it; see runner/plants/friction.py."""
+        n, q, v = self._count, self._q, self._v
+        M = self._algebra.mass_matrix(q)
+        bias = self._algebra.inverse_dynamics(q, v, [0.0] * n)
+        pushed = add(product(M, v), scale(h, subtract(acting, bias)))
+        braked = [[M[i][j] + h * viscous[i] if i == j else M[i][j] for j in range(n)] for i in range(n)]
+        factors = Factors(braked)
+        columns = [factors.solve([h if i == j else 0.0 for i in range(n)]) for j in range(n)]
+        first, scratch = self._at.take(SCRATCH, n + n * n + n + 1)
+        speed, yields = scratch[:n], scratch[n : n + n * n]
+        mu: Vector = scratch[n + n * n : 2 * n + n * n]
+        A = [yields[i * n : (i + 1) * n] for i in range(n)]
+        found = [*factors.solve(pushed), *(columns[j][i] for i in range(n) for j in range(n))]
+        parts.append(_put(SCRATCH, first, found))
+        if any(value != 0.0 for value in coulomb):
+            self._pivot(A, speed, mu, coulomb, first + n + n * n, parts)
+        else:
+            mu = [0.0] * n
+        braked_speed = subtract(speed, product(A, mu))
+        first, less_friction = self._at.take(SCRATCH, n)
+        drag = [b * w for b, w in zip(viscous, braked_speed, strict=True)]
+        parts.append(_put(SCRATCH, first, subtract(subtract(acting, drag), mu)))
+        return less_friction
+
+    def _pivot(self, A: Matrix, speed: Vector, mu: Vector, limit: Vector, first: int, parts: list[Part]) -> None:
+        """Add the search for the torques that stop joints; see `stopping_torques` of runner/plants/friction.py."""
+        n = self._count
+        state, slides = self._at.take(STATE, n)
+        held = [equal(side, 0.0) for side in slides]
+        sliding = [side * c for side, c in zip(slides, limit, strict=True)]
+        left = subtract(speed, product(A, sliding))
+        # The joints that slide stand in the system with a one on the diagonal and nothing else.
+        system = [
+            [
+                select(held[i], A[i][i], 1.0) if i == j else select(both(held[i], held[j]), A[i][j], 0.0)
+                for j in range(n)
+            ]
+            for i in range(n)
+        ]
+        stopping = Factors(system).solve([select(held[i], left[i], 0.0) for i in range(n)])
+        now = [select(held[i], stopping[i], sliding[i]) for i in range(n)]
+        left = subtract(speed, product(A, now))
+        wrong, sides = [], []
+        for i in range(n):
+            too_much = select(held[i], absolute(now[i]) - limit[i], -left[i] * slides[i] / A[i][i])
+            wrong.append(less(_ROUNDING * (limit[i] + absolute(speed[i]) / A[i][i]), too_much))
+            sides.append(select(held[i], select(less(now[i], 0.0), -1.0, 1.0), 0.0))
+        outputs: list[tuple[str, int, Any]] = []
+        open_: Value = 1.0  # whether no joint before is on the wrong side
+        for i in range(n):
+            outputs.append(
+                (STATE, state + i, select(wrong[i], select(equal(open_, 1.0), sides[i], slides[i]), slides[i]))
+            )
+            open_ = select(wrong[i], 0.0, open_)
+            clipped = select(less(limit[i], now[i]), limit[i], select(less(now[i], -limit[i]), -limit[i], now[i]))
+            outputs.append((SCRATCH, first + i, clipped))
+        outputs.append((SCRATCH, first + n, 1.0 - open_))
+        parts.append(Repeat([Block(outputs)], _PIVOTS, until_zero=first + n))
+
+
+def _put(space: str, first: int, values: Vector) -> Block:
+    return Block([(space, first + index, value) for index, value in enumerate(values)])
+
+
+class CompiledStep:
+    """The steps of one arm without friction, as compiled code.
+
+    Args:
+        model: The arm.
+        step: Integration step, in s.
+    """
+
+    def __init__(self, model: RobotModel, step: float) -> None:
+        self._model, self._step = model.copy(), step
+
+    @cached_property
+    def _frame(self) -> Frame:
+        """The code with its arrays, compiled when the first step is taken."""
+        model, n = self._model, self._model.nq
+
+        def express() -> Expressed:
+            at, parts = Places(), list[Part]()
+            gravity, h, constants = _step_scalars(model, self._step, at.number)
+            at.take(STATE, 2 * n)
+            algebra = ArmAlgebra(constants._replace(gravity=gravity))
+            _Mover(algebra, 0, n, n, at).move(at.take(ROWS, n)[1], h, parts)
+            return Expressed([], parts, at.widths, [])
+
+        values = Values()
+        _step_scalars(model, self._step, values.number)
+        frame = program(f"step {arm_pattern(model)}", f"the motion of {n} joints", express, 1).frame(1, last=-1)
+        frame.pars[:, 0] = values.values
+        return frame
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector in the base frame, shape (3,), in m/s^2."""
+        self._frame.pars[:3, 0] = gravity
+
+    def advance(self, q: FloatArray, v: FloatArray, tau: FloatArray, steps: int) -> None:
+        """Go on by some steps under held torques, in place: shapes (nq,), in rad, rad/s and N m."""
+        frame, n = self._frame, len(q)
+        state = frame.state[:, 0]
+        state[:n], state[n:], frame.rows[0, :, 0], frame.steps[0] = q, v, tau, steps
+        frame.call()
+        q[:], v[:] = state[:n], state[n:]
+
+
+def _step_scalars(model: RobotModel, step: float, number: Callable[[float], Any]) -> tuple[Vector, Value, ArmConstants]:
+    gravity = [number(value) for value in model.gravity.tolist()]
+    return gravity, number(step), constants_of(model, number, [0.0] * 3)

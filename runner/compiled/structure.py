@@ -1,0 +1,83 @@
+"""What of a law and an arm is compiled into code, and what is a parameter of that code."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from runner.compiled.arm import constants_of, known
+from runner.compiled.vectors import Scalar, as_array
+from runner.controllers.torque_law import TorqueLaw
+from runner.errors import RunnerError
+from runner.robots.model import RobotModel
+
+
+class CannotCompileError(RunnerError):
+    """A law has no compiled form; its text says why."""
+
+
+class Values:
+    """The values of the parameters of a program, in the order in which they are asked for."""
+
+    def __init__(self) -> None:
+        self.values: list[float] = []
+
+    def number(self, value: float) -> float:
+        """Take the next one."""
+        self.values.append(value)
+        return value
+
+
+def scalars(numbers: Any, number: Callable[[float], Scalar]) -> Any:
+    """Return a law's numbers as scalars, nested as they are: 0, 1 and -1 as floats, others as `number` makes them."""
+    if isinstance(numbers, tuple):
+        inner = [scalars(value, number) for value in numbers]
+        return type(numbers)(*inner) if hasattr(numbers, "_fields") else tuple(inner)
+    if isinstance(numbers, np.ndarray):
+        flat = [known(value, number) for value in numbers.ravel()]
+        return as_array(flat).reshape(numbers.shape)
+    return known(numbers, number)
+
+
+def pattern_of(law: TorqueLaw[Any]) -> str:
+    """Return a text that is the same for two laws whose code is the same.
+
+    Raises:
+        CannotCompileError: where the law has kept what cannot be compared.
+    """
+    kind = type(law)
+    return repr(
+        (
+            f"{kind.__module__}.{kind.__qualname__}",
+            law.gravity_compensation,
+            _structure("", law.structure()),
+            scalars(law.numbers, any_number),
+            [arm_pattern(model) for model in law.models],
+        )
+    )
+
+
+def arm_pattern(model: RobotModel) -> str:
+    """Return a text that is the same for two arms with the same zeros and ones among their constants."""
+    return repr(constants_of(model, any_number))
+
+
+def any_number(_: float) -> str:
+    """Return what stands for any number that is not known."""
+    return "x"
+
+
+def _structure(name: str, value: Any) -> Any:
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    if isinstance(value, np.ndarray) and value.dtype != object:
+        return value.dtype.str, value.shape, value.tobytes()
+    if isinstance(value, (tuple, list)):
+        return [_structure(name, entry) for entry in value]
+    if isinstance(value, Mapping):
+        return {str(key): _structure(str(key), entry) for key, entry in value.items()}
+    if callable(value) or not hasattr(value, "__dict__"):
+        raise CannotCompileError(f"a law that keeps {name}, {type(value).__name__}, of which nobody knows what it does")
+    kind = type(value)
+    kept = {key: entry for key, entry in vars(value).items() if key != "numbers"}
+    return f"{kind.__module__}.{kind.__qualname__}", _structure(name, kept)

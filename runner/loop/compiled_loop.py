@@ -1,0 +1,75 @@
+"""Runs by compiled code: all that the loops of a tick ask, or a whole run at once."""
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+from runner.compiled.closed_loop import CompiledCommands, Whole, run_all
+from runner.errors import SimulationError
+from runner.loop.closed_loop import ClosedLoop
+from runner.loop.contact import Contact
+from runner.loop.drive import make_drive
+from runner.loop.failures import find_failure
+from runner.loop.recorder import CHECK_EVERY, Recorder
+from runner.sensing import JointEncoders
+
+
+def run_commands(
+    compiled: CompiledCommands,
+    closed: ClosedLoop,
+    encoders: Sequence[JointEncoders],
+    contact: Contact | None,
+    recorder: Recorder,
+) -> None:
+    """Run a closed loop of which all is compiled that its control loops ask.
+
+    Args:
+        compiled: Their code.
+        closed: The closed loop.
+        encoders: The joint measurement of each loop.
+        contact: What the tip feels; None where there is nothing to feel.
+        recorder: Holds times and reference, and takes the rows.
+    """
+    run = compiled.begin(recorder.times, recorder.desired, [each.errors for each in encoders], closed.q_start)
+    recorder.q, recorder.dq, recorder.commands, recorder.end_points = run.q, run.dq, run.torque, run.end_points
+    drive, plant, tick, clock, now = make_drive(closed, recorder), closed.plant, run.tick, recorder.clock, recorder.now
+    load, k = None, 0
+    plant.reset(closed.q_start, np.zeros_like(closed.q_start))
+    try:
+        for k in range(closed.ticks + 1):
+            clock[k] = now()
+            q, dq = plant.q, plant.dq
+            if contact is not None:
+                load = contact.update(k, recorder.times[k], q, dq)
+            tick(k, q, dq)
+            if k % CHECK_EVERY == 0:
+                recorder.check_divergence(k)
+            if k < closed.ticks:
+                drive.advance(k, load)
+        recorder.check_divergence(closed.ticks)
+    except (np.linalg.LinAlgError, SimulationError) as error:
+        recorder.stop(k, error)
+
+
+def run_whole(whole: Whole, closed: ClosedLoop, encoders: Sequence[JointEncoders], recorder: Recorder) -> None:
+    """Run a closed loop that is compiled as a whole.
+
+    Args:
+        whole: Its code.
+        closed: The closed loop.
+        encoders: The joint measurement of each loop.
+        recorder: Holds times and reference, and takes the rows.
+    """
+    began, commands, errors = time.perf_counter_ns(), whole.commands, [each.errors for each in encoders]
+    signals = run_all(
+        whole,
+        whole.values[None],
+        commands.shared(recorder.times, recorder.desired),
+        [wrong[None] for wrong in errors],
+        commands.start(closed.q_start[None], [wrong[:1] for wrong in errors]),
+    )
+    recorder.clock[:] = np.linspace(began, time.perf_counter_ns(), len(recorder.times))
+    recorder.q, recorder.dq, recorder.commands = signals.q[0], signals.dq[0], signals.torque[0]
+    recorder.end_points = signals.end_points[:, 0]
+    recorder.end(find_failure(signals, 0, recorder.times, closed.robot.model))

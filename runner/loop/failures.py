@@ -1,0 +1,56 @@
+"""Why a run ended early: divergence, or a law that had no answer."""
+
+import numpy as np
+
+from runner.compiled.closed_loop import Signals
+from runner.errors import SimulationError
+from runner.robots.model import RobotModel
+from runner.trace import Failure, FloatArray
+
+# Above this the equations still hold but no arm does: a run that gets there has diverged.
+DIVERGED_SPEED = 1e6  # rad/s, or m/s of a joint that slides
+
+
+def find_divergence(q: FloatArray, dq: FloatArray, times: FloatArray, model: RobotModel) -> Failure | None:
+    """Return the first row with a joint that is not finite, or faster than any arm's; None where all are well.
+
+    Args:
+        q: Joint positions, shape (T, nq), in rad.
+        dq: Joint velocities, shape (T, nq), in rad/s.
+        times: Time of each row, shape (T,), in s.
+        model: The arm, for the names of its joints.
+    """
+    wild = ~(np.isfinite(q) & (np.abs(dq) < DIVERGED_SPEED))
+    if not wild.any():
+        return None
+    row = int(np.argmax(wild.any(axis=1)))
+    joint = int(np.argmax(wild[row]))
+    reason = f"diverged: not finite or above {DIVERGED_SPEED:g} {model.joint_units[joint]}/s"
+    return Failure(reason, float(times[row]), model.joint_names[joint])
+
+
+def ended_well(signals: Signals) -> np.ndarray:
+    """Tell of each of some runs that were compiled as a whole whether nothing went wrong in it, shape (runs,)."""
+    finite = np.isfinite(signals.q).all(axis=(1, 2)) & np.isfinite(signals.torque).all(axis=(1, 2))
+    slow = np.abs(signals.dq).max(axis=(1, 2)) < DIVERGED_SPEED
+    well: np.ndarray = finite & slow & ~signals.fault.any(axis=1)
+    return well
+
+
+def find_failure(signals: Signals, run: int, times: FloatArray, model: RobotModel) -> Failure | None:
+    """Return why one of some runs that were compiled as a whole ended early; None where it did not.
+
+    Args:
+        signals: What the runs left behind.
+        run: Which of them.
+        times: Time of each of its rows, shape (T,), in s; it may have fewer than there are.
+        model: The arm.
+    """
+    rows = len(times)
+    fault = signals.first_fault(run, times)
+    last = rows if fault is None else fault[0] + 1
+    diverged = find_divergence(signals.q[run, :last], signals.dq[run, :last], times[:last], model)
+    if diverged is not None or fault is None:
+        return diverged
+    row, error = fault
+    return Failure(error.reason if isinstance(error, SimulationError) else str(error), float(times[row]))

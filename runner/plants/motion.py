@@ -1,0 +1,82 @@
+"""What moves when torques act: arms with friction in their joints, each on the ground or on the one before."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from runner.config.per_joint import expand
+from runner.errors import ConfigError
+from runner.plants.plant import FloatArray
+from runner.robots.model import RobotModel
+from runner.robots.robot import Robot
+
+if TYPE_CHECKING:
+    from runner.plants.decoupled import TorquePlantConfig
+
+
+@dataclass(frozen=True)
+class ArmMotion:
+    """An arm that moves by its own dynamics.
+
+    Attributes:
+        urdf: Its URDF's text.
+        model: Its model.
+        joints: Its joints among those of the robot.
+        viscous: Torque per speed in its joints, shape (n,), in N m s/rad.
+        coulomb: Torque against any motion, shape (n,), in N m.
+    """
+
+    urdf: str
+    model: RobotModel
+    joints: slice
+    viscous: FloatArray
+    coulomb: FloatArray
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The arms of a robot.
+
+    Attributes:
+        robot: The robot.
+        arms: One for the whole robot; or one for each of its stages, which ride on each other without feeling it.
+        parallel: Whether riders' bases keep their orientation of home.
+    """
+
+    robot: Robot
+    arms: tuple[ArmMotion, ...]
+    parallel: bool
+
+
+def find_motion(robot: Robot, config: "TorquePlantConfig") -> Motion:
+    """Return what moves of a robot; one stage has nothing to couple.
+
+    Args:
+        robot: The robot.
+        config: Says whether stages act on each other (dynamics), whether a carrier turns its rider (wrist_rotation),
+            and what friction there is in the joints.
+
+    Raises:
+        ConfigError: for coupled dynamics with a base that does not turn, which no rigid body can do, or a list of
+            another length than the robot has joints.
+    """
+    names = robot.model.joint_names
+    viscous = np.array(expand("plant.friction.viscous", config.friction.viscous, names))
+    coulomb = np.array(expand("plant.friction.coulomb", config.friction.coulomb, names))
+    parallel = config.wrist_rotation == "parallel"
+    if len(robot.stages) == 1 or config.dynamics == "coupled":
+        if parallel and len(robot.stages) > 1:
+            raise ConfigError(
+                [
+                    "plant.wrist_rotation: parallel leaves the rider's base unturned, which coupled rigid bodies "
+                    "cannot; set plant.dynamics=decoupled, or plant.wrist_rotation=real"
+                ]
+            )
+        arms = [ArmMotion(robot.urdf, robot.model, slice(0, robot.model.nq), viscous, coulomb)]
+    else:
+        arms = [
+            ArmMotion(stage.urdf, stage.model, stage.joints, viscous[stage.joints], coulomb[stage.joints])
+            for stage in robot.stages
+        ]
+    return Motion(robot, tuple(arms), parallel)

@@ -1,0 +1,107 @@
+"""Compiled code in the user's cache folder: found again, and not where others can write."""
+
+import os
+import stat
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from runner.compiled import cache, program
+from runner.compiled.motion import CompiledStep
+from runner.robots import RobotModel, find_urdf, read_urdf
+
+MACRO = RobotModel(read_urdf(find_urdf("macro.urdf"), {}), "tip")
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    program._program.cache_clear()
+    return cache.folder()
+
+
+@pytest.fixture
+def compilations(monkeypatch):
+    """How often something is compiled."""
+    counted, compile_ = [], program.machine_code
+    monkeypatch.setattr(program, "machine_code", lambda text: counted.append(1) or compile_(text))
+    return counted
+
+
+def stepped():
+    q, v = np.array([0.3, 0.5, -0.4]), np.array([1.0, 0.5, -0.5])
+    CompiledStep(MACRO, 0.01).advance(q, v, np.array([5.0, -3.0, 2.0]), 3)
+    return np.concatenate([q, v])
+
+
+def test_code_is_compiled_once_and_found_by_the_next_process(place, compilations):
+    first = stepped()
+    (file,) = place.iterdir()
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600
+    program._program.cache_clear()  # as in a process of its own
+    np.testing.assert_array_equal(stepped(), first)
+    assert len(compilations) == 1
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda code: code[:-1],
+        lambda code: b"",
+        lambda code: b"{}\n" + code[70:],
+        lambda code: code.replace(b'"state": 6', b'"state": 5'),
+    ],
+)
+def test_damaged_code_is_compiled_again(place, damage, compilations):
+    first = stepped()
+    (file,) = place.iterdir()
+    whole = file.read_bytes()
+    assert damage(whole) != whole
+    file.write_bytes(damage(whole))
+    program._program.cache_clear()
+    np.testing.assert_array_equal(stepped(), first)
+    assert len(compilations) == 2
+
+
+def test_who_waits_at_a_terminal_is_told(place, capsys, monkeypatch):
+    stepped()
+    assert capsys.readouterr().err == ""
+    program._program.cache_clear()
+    next(place.iterdir()).unlink()
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    stepped()
+    assert "compiling the motion of 3 joints" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("mode", [0o770, 0o707, 0o1777])
+def test_a_folder_that_others_can_write_is_not_used(place, mode):
+    place.chmod(mode)
+    assert cache.folder() is None
+    place.chmod(0o700)
+    assert cache.folder() == place
+    place.parent.chmod(0o777)
+    assert cache.folder() is None
+    assert cache.read("any") is None
+    cache.write("any", b"code", {})
+    place.parent.chmod(0o700)
+    assert list(place.iterdir()) == []
+
+
+def test_a_folder_or_a_file_of_somebody_else_is_not_used(place, monkeypatch):
+    cache.write("key", b"code", {"errors": ["text"]})
+    assert cache.read("key") == (b"code", {"errors": ["text"]})
+    monkeypatch.setattr(os, "getuid", lambda: 12345)
+    assert cache.folder() is None
+    assert cache.read("key") is None
+
+
+def test_without_a_folder_code_is_kept_in_the_process_alone(tmp_path, monkeypatch):
+    file = tmp_path / "file"
+    file.write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(file))
+    program._program.cache_clear()
+    assert cache.folder() is None
+    assert np.isfinite(stepped()).all()
+    assert Path(file).read_text() == ""

@@ -1,0 +1,252 @@
+"""Compiled torque laws: the torques of Pinocchio's evaluation, memory, errors, and what cannot be compiled."""
+
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+import strangers
+
+from runner.compiled import compile, program
+from runner.compiled.closed_loop import CompiledCommands
+from runner.compiled.commands import Commands, LoopCode
+from runner.compiled.structure import CannotCompileError, pattern_of
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.controllers import Loop
+from runner.controllers.torque_law import TorqueLaw
+from runner.errors import SimulationError
+from runner.guard.controller import WatchedController
+from runner.sensing import EncoderNoise
+
+CASES = [
+    *((robot, "operational_space") for robot in ("macro", "mini", "xarm7", "meca500", "crane", "planar_two")),
+    ("combined", "whole_body"),
+    *((robot, "computed_torque") for robot in ("macro", "xarm7", "mixed")),
+]
+
+
+def configured(robot, controller, *overrides):
+    chosen = f"controller={controller}", "trajectory=goal", *overrides
+    if robot in strangers.STRANGERS:
+        return strangers.config(robot, *chosen)
+    return validate(compose([f"robot={robot}", *chosen]).resolved)
+
+
+def law_of(robot, controller, *overrides):
+    (loop,) = configured(robot, controller, *overrides).loops
+    return loop.controller
+
+
+def smallest(model, q, rows):
+    return np.linalg.svd(model.tip_jacobian(q)[:rows], compute_uv=False)[-1] / model.reach
+
+
+def states(model, home, rows=3, wide=1.0, count=12, near=False):
+    """Measurements with references, away from singular postures or near one."""
+    generator, found, directions = np.random.default_rng(3), [], min(rows, model.nq)
+    while len(found) < count:
+        q = home + wide * generator.normal(size=model.nq)
+        if directions < 3 or (smallest(model, q, rows) < 0.08) == near:
+            reference = generator.normal(size=(3, 3))
+            reference[0] = model.tip_position(q) + 0.05 * model.reach * generator.normal(size=3)
+            found.append((q, generator.normal(size=model.nq), reference))
+    return found
+
+
+def compiled_torques(law, measured):
+    """Return the torques of a law's compiled form in a row of measurements."""
+    n = law.models[0].nq
+    robot = SimpleNamespace(model=law.models[0], stages=(None,))
+    exact = EncoderNoise(*np.zeros((3, n)), "none", "exact")
+    commands = Commands(robot, False, (LoopCode(law, slice(0, n), 1, 0.01),), exact, np.full(n, np.inf))
+    references = np.array([reference for _, _, reference in measured])
+    run = CompiledCommands(commands).begin(
+        0.01 * np.arange(len(measured)), references, [np.zeros((len(measured), n))], measured[0][0]
+    )
+    for tick, (q, dq, _) in enumerate(measured):
+        run.tick(tick, q, dq)
+    return run.torque
+
+
+def assert_agree(law, ours, measured, tolerance=1e-12):
+    """Compare the torques of a law by Pinocchio with those of another one's compiled form."""
+    law.reset()
+    found = compiled_torques(ours, measured)
+    for tick, (q, dq, reference) in enumerate(measured):
+        expected = law.torque(0.01 * tick, q, dq, reference)
+        np.testing.assert_allclose(found[tick], expected, rtol=0.0, atol=tolerance * np.abs(expected).max())
+
+
+@pytest.mark.parametrize(("robot", "controller"), CASES)
+def test_torques_are_those_of_pinocchio(robot, controller):
+    config = configured(robot, controller)
+    (loop,) = config.loops
+    assert_agree(loop.controller, loop.controller, states(config.arm.model, config.arm.home))
+
+
+@pytest.mark.parametrize("controller", ["operational_space", "computed_torque"])
+def test_torques_of_a_pose_are_those_of_pinocchio(controller):
+    config = configured("xarm7", controller, "controller.task=pose")
+    (loop,) = config.loops
+    ours, measured = loop.controller, states(config.arm.model, config.arm.home, rows=6, wide=0.2)
+    # A mobility of six rows has a condition number of some 1e4.
+    assert_agree(loop.controller, ours, measured, 1e-11)
+
+
+@pytest.mark.parametrize(("robot", "controller"), [("macro", "operational_space"), ("xarm7", "operational_space")])
+def test_damping_near_a_singular_posture_is_that_of_pinocchio(robot, controller):
+    config = configured(robot, controller)
+    (loop,) = config.loops
+    assert_agree(loop.controller, loop.controller, states(config.arm.model, config.arm.home, near=True), 1e-9)
+
+
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        ("controller.gravity_compensation=false",),
+        ("controller.feedforward=false",),
+        ("controller.singularity_damping=0",),
+        ("controller.null_space_frequency=0",),
+    ],
+)
+def test_what_the_config_leaves_out_is_left_out(overrides):
+    config = configured("xarm7", "operational_space", *overrides)
+    (loop,) = config.loops
+    assert_agree(loop.controller, loop.controller, states(config.arm.model, config.arm.home, count=4))
+
+
+def test_a_speed_limit_bounds_the_pull():
+    config = configured("combined", "whole_body", "controller.max_tip_speed=0.05")
+    (loop,) = config.loops
+    assert_agree(loop.controller, loop.controller, states(config.arm.model, config.arm.home, wide=0.4))
+
+
+def test_memory_goes_on_from_tick_to_tick_until_it_is_reset():
+    config = configured("macro", "computed_torque", "controller.integral_gain=500")
+    (loop,) = config.loops
+    measured = states(config.arm.model, config.arm.home, count=40)
+    assert_agree(loop.controller, loop.controller, measured)
+    assert_agree(
+        loop.controller, loop.controller, measured[::-1]
+    )  # it starts anew where this measurement finds the arm
+
+
+def test_numbers_are_parameters_and_zeros_are_not(monkeypatch):
+    law, other = (law_of("macro", "operational_space", f"controller.natural_frequency={w}") for w in (12.0, 25.0))
+    still = law_of("macro", "operational_space", "controller.feedforward=false")
+    assert pattern_of(law) == pattern_of(other) != pattern_of(still)
+    config = configured("macro", "operational_space", "controller.natural_frequency=25.0")
+    measured = states(config.arm.model, config.arm.home)
+    compiled_torques(law, measured)
+    monkeypatch.setattr("runner.compiled.closed_loop.Expressed", None)  # nothing is expressed any more
+    assert_agree(other, other, measured)
+
+
+def test_a_singular_posture_without_damping_is_the_same_error():
+    law = law_of("macro", "operational_space", "controller.singularity_damping=0")
+    folded, reference = np.array([0.0, 0.0, np.pi / 2]), np.array([[0.1, 0.2, 0.3], [0.0] * 3, [0.0] * 3])
+    with pytest.raises(np.linalg.LinAlgError, match="the tip's Jacobian is singular"):
+        law.torque(0.0, folded, np.zeros(3), reference)
+    with pytest.raises(np.linalg.LinAlgError, match="the tip's Jacobian is singular"):
+        compiled_torques(law, [(folded, np.zeros(3), reference)])
+
+
+class Gains(NamedTuple):
+    stiffness: Any
+    damping: Any
+
+
+class Transposed(TorqueLaw[Gains]):
+    """A law of a user's: a spring to the goal, with a term that a test can change."""
+
+    bias = 1.0
+
+    def evaluate(self, arms, numbers, time, q, dq, reference, memory):
+        (arm,) = arms
+        tip = arm.tip(q, dq)
+        pull = numbers.stiffness * (reference[0] - tip.x)
+        return self.bias * tip.J[:3].T.dot(pull) - numbers.damping * dq + arm.inverse_dynamics(
+            q, 0.0 * dq, 0.0 * dq
+        ), memory
+
+
+class Mutated(Transposed):
+    bias = 1.001
+
+
+class Stubborn(Transposed):
+    def evaluate(self, arms, numbers, time, q, dq, reference, memory):
+        return np.array([float(entry) for entry in q]), memory
+
+
+def users_law(kind):
+    config = configured("macro", "operational_space")
+    return kind([config.arm.model], True, Gains(120.0, 7.0)), states(config.arm.model, config.arm.home)
+
+
+def test_a_law_of_a_user_s_is_compiled():
+    law, measured = users_law(Transposed)
+    assert_agree(law, law, measured)
+
+
+def found(controller, joints=3):
+    """Return what is compiled of a loop with a controller."""
+    law = controller.watched if isinstance(controller, WatchedController) else controller
+    robot = SimpleNamespace(model=law.models[0], stages=(None,))
+    exact = EncoderNoise(*np.zeros((3, joints)), "none", "exact")
+    loop = Loop("whole", slice(0, joints), 0.01, controller)
+    return compile.find_commands(robot, False, [loop], 0.01, exact, np.full(joints, np.inf))
+
+
+def test_a_watched_law_of_a_user_s_is_compiled_and_watched_and_its_code_is_not_kept(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    program._program.cache_clear()
+    law, _ = users_law(Transposed)
+    run = compile.compile_commands(found(WatchedController(law, 3))).begin(
+        np.zeros(1), np.zeros((1, 3, 3)), [np.zeros((1, 3))], np.zeros(3)
+    )
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
+    with pytest.raises(SimulationError, match=r"Transposed.evaluate .* gave nan at index \[0\]; it must be finite"):
+        run.tick(0, np.full(3, np.nan), np.zeros(3))
+
+
+def test_a_mutated_term_is_caught():
+    (law, measured), (other, _) = users_law(Transposed), users_law(Mutated)
+    with pytest.raises(AssertionError):
+        assert_agree(law, other, measured)
+
+
+def test_a_law_that_cannot_be_compiled_says_why_once_and_runs_as_it_is(capsys):
+    law, measured = users_law(Stubborn)
+    compile._tell.cache_clear()
+    with pytest.raises(CannotCompileError, match="does what expressions cannot do"):
+        compiled_torques(law, measured)
+    assert [compile.compile_commands(found(law)) for _ in range(2)] == [None, None]
+    said = capsys.readouterr().err.splitlines()
+    assert [line for line in said if "not compiled" in line] == [
+        line for line in said if line.startswith("runner: Stubborn is not compiled, and runs through Pinocchio: ")
+    ]
+    assert sum("not compiled" in line for line in said) == 1
+
+
+def test_a_law_that_keeps_something_unknown_is_not_compiled():
+    law, measured = users_law(Transposed)
+    law.helper = print
+    with pytest.raises(CannotCompileError, match="keeps helper"):
+        compiled_torques(law, measured)
+
+
+def test_arms_of_many_joints_run_through_pinocchio(capsys):
+    compile._tell.cache_clear()
+    law = law_of("snake", "operational_space")
+    assert found(law, 30) is None
+    assert compile.compile_motion(law.models[0], 0.01) is None
+    assert "the arm has 30 joints" in capsys.readouterr().err
+
+
+def test_without_the_library_laws_run_as_they_are(monkeypatch):
+    monkeypatch.setattr(compile, "evaluator", dict)
+    law = law_of("macro", "operational_space")
+    assert found(law) is None
+    assert compile.compile_motion(law.models[0], 0.01) is None
