@@ -1,6 +1,7 @@
-"""What one closed-loop run leaves behind: every signal at every control tick."""
+"""What closed-loop runs leave behind: every signal at every control tick."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,8 +94,150 @@ class Trace:
         desired[:, 0] -= self.offsets[index]
         return replace(self, end_points=self.end_points[index : index + 1], desired=desired)
 
+    def ended(self, failure: Failure) -> "Trace":
+        """Return the trace of a run under torques up to the time of a failure."""
+        rows = int(np.searchsorted(self.t, failure.time)) + 1
+        return replace(
+            self,
+            t=self.t[:rows],
+            q=self.q[:rows],
+            dq=self.dq[:rows],
+            tau=self.tau[:rows],
+            end_points=self.end_points[:, :rows],
+            desired=self.desired[:rows],
+            tick_seconds=self.tick_seconds[: rows - 1],
+            failure=failure,
+        )
+
     @property
     def error(self) -> FloatArray:
         """Tip error, desired minus actual, shape (T, 3), in m."""
         difference: FloatArray = self.desired[:, 0] - self.tip
         return difference
+
+
+@dataclass(frozen=True)
+class Traces:
+    """Signals of several runs, none of which failed, that have ticks, path, arm and band in common; see Trace.
+
+    A run's results are the same to the last bit in whatever company, so that what looks at several runs reduces by rows
+    that lie in one piece.
+
+    Attributes:
+        t: Times, shape (T,), in s.
+        q: Joint positions, shape (runs, T, nq), in rad.
+        dq: Joint velocities, likewise, in rad/s.
+        tau: Torques after the limit, held until the next row, likewise, in N m.
+        end_points: End point of each stage, shape (stages, runs, T, 3), in m; the last is the tip.
+        offsets: Offset of the tip at home from each stage's end point, shape (stages, 3), in m.
+        stage_names: Names of the stages.
+        desired: Desired tip position, velocity, acceleration, shape (T, 3, 3) for all alike or (runs, T, 3, 3).
+        limits: Torque limit of each joint, shape (runs, nq), in N m.
+        joint_names: Names of the joints.
+        joint_units: Unit of each joint's position.
+        tick_seconds: Wall-clock time of each tick, of one run, shape (T - 1,), in s.
+        q_command: Joint positions commanded, shape (runs, T, nq), in rad; None under torques.
+        contact: What the tip of a single run felt; None where there was nothing to feel.
+    """
+
+    t: FloatArray
+    q: FloatArray
+    dq: FloatArray
+    tau: FloatArray
+    end_points: FloatArray
+    offsets: FloatArray
+    stage_names: tuple[str, ...]
+    desired: FloatArray
+    limits: FloatArray
+    joint_names: tuple[str, ...]
+    joint_units: tuple[str, ...]
+    tick_seconds: FloatArray
+    q_command: FloatArray | None = None
+    contact: ContactSignals | None = None
+
+    @classmethod
+    def of(cls, trace: Trace) -> "Traces":
+        """Return one run that did not fail as a batch of one."""
+        return cls(
+            t=trace.t,
+            q=trace.q[None],
+            dq=trace.dq[None],
+            tau=trace.tau[None],
+            end_points=trace.end_points[:, None],
+            offsets=trace.offsets,
+            stage_names=trace.stage_names,
+            desired=trace.desired,
+            limits=trace.limits[None],
+            joint_names=trace.joint_names,
+            joint_units=trace.joint_units,
+            tick_seconds=trace.tick_seconds,
+            q_command=None if trace.q_command is None else trace.q_command[None],
+            contact=trace.contact,
+        )
+
+    @property
+    def runs(self) -> int:
+        """Number of runs."""
+        return len(self.q)
+
+    def run(self, index: int) -> Trace:
+        """Return the trace of one run."""
+        return Trace(
+            t=self.t,
+            q=self.q[index],
+            dq=self.dq[index],
+            tau=self.tau[index],
+            end_points=self.end_points[:, index],
+            offsets=self.offsets,
+            stage_names=self.stage_names,
+            desired=self.desired if self.desired.ndim == 3 else self.desired[index],
+            limits=self.limits[index],
+            joint_names=self.joint_names,
+            joint_units=self.joint_units,
+            tick_seconds=self.tick_seconds,
+            q_command=None if self.q_command is None else self.q_command[index],
+            contact=self.contact,
+        )
+
+    def part(self, own: slice | list[int]) -> "Traces":
+        """Return some of the runs."""
+        return replace(
+            self,
+            q=self.q[own],
+            dq=self.dq[own],
+            tau=self.tau[own],
+            end_points=self.end_points[:, own],
+            desired=self.desired if self.desired.ndim == 3 else self.desired[own],
+            limits=self.limits[own],
+            q_command=None if self.q_command is None else self.q_command[own],
+        )
+
+    def at_stage(self, index: int) -> "Traces":
+        """Return the runs with a stage's end point in the tip's place; see Trace."""
+        desired = self.desired.copy()
+        desired[..., 0, :] -= self.offsets[index]
+        return replace(self, end_points=self.end_points[index : index + 1], desired=desired)
+
+    @cached_property
+    def tip(self) -> FloatArray:
+        """Tip positions by axes, shape (runs, 3, T), in m; rows of ticks in one piece."""
+        return by_rows(self.end_points[-1])
+
+    @cached_property
+    def target(self) -> FloatArray:
+        """Desired tip positions by axes, shape (3, T) for all alike or (runs, 3, T), in m."""
+        return by_rows(self.desired[..., 0, :])
+
+    @cached_property
+    def error(self) -> FloatArray:
+        """Tip error, desired minus actual, by axes, shape (runs, 3, T), in m."""
+        difference: FloatArray = self.target - self.tip
+        return difference
+
+
+def by_rows(values: FloatArray) -> FloatArray:
+    """Return signals of several runs with the ticks last, in one piece, shapes (..., T, n) to (..., n, T).
+
+    Sums and largest values over ticks are then quick, and rounded by the number of ticks alone.
+    """
+    return np.ascontiguousarray(values.swapaxes(-1, -2))

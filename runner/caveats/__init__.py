@@ -4,6 +4,16 @@ from runner.caveats.caveat import Caveat, Found
 from runner.caveats.setting import Setting, setting_of
 from runner.caveats.signals import Signals, signals_of
 from runner.caveats.today import changes_since
-from runner.caveats.watch import Watch
+from runner.caveats.watch import Watch, look_together
 
-__all__ = ["Caveat", "Found", "Setting", "Signals", "Watch", "changes_since", "setting_of", "signals_of"]
+__all__ = [
+    "Caveat",
+    "Found",
+    "Setting",
+    "Signals",
+    "Watch",
+    "changes_since",
+    "look_together",
+    "setting_of",
+    "signals_of",
+]

@@ -1,5 +1,7 @@
 """Rules on what the arm carries."""
 
+import math
+
 import numpy as np
 
 from runner.caveats.rule import SettingRule
@@ -21,7 +23,7 @@ def _tell_overload(value: float, setting: Setting) -> str:
 
 def _lifted(setting: Setting) -> float | None:
     """Return the payload, in kg, where a joint has no torque limit."""
-    return None if np.isfinite(setting.torque_limits).all() else setting.robot.payload.mass
+    return None if all(map(math.isfinite, setting.torque_limits.tolist())) else setting.robot.payload.mass
 
 
 def _tell_lifted(value: float, setting: Setting) -> str:

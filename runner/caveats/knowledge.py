@@ -11,8 +11,8 @@ def _noise_beside_exact(setting: Setting) -> float | None:
     noise = setting.noise
     if noise.velocity != "exact" or not setting.torques:  # laws that command positions take no velocities
         return None
-    drawn = 0.0 if noise.distribution == "none" else float(noise.position.max())
-    return max(drawn, float(noise.resolution.max()))
+    drawn = 0.0 if noise.distribution == "none" else max(noise.position.tolist())
+    return float(max(drawn, *noise.resolution.tolist()))
 
 
 def _tell_noise(value: float, setting: Setting) -> str:

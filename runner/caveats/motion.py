@@ -5,9 +5,8 @@ import numpy as np
 from runner.caveats.rule import TraceRule, called, percent
 from runner.caveats.setting import Setting
 from runner.caveats.signals import Signals
-from runner.trace import FloatArray
+from runner.trace import FloatArray, by_rows
 
-_ONES = np.ones(3)
 _SIZED = 60  # rows, the last one included, from which the size of a motion is told
 _END = 10  # of a motion to a goal the last tenth is looked at
 
@@ -19,7 +18,7 @@ def _unfollowed(signals: Signals, setting: Setting) -> FloatArray:
     begins at that size, the last tenth counts. An arm that is to stay, or to give way, has nothing to follow.
     """
     if setting.yields:
-        return np.zeros(1)
+        return np.zeros((*signals.q.shape[:-2], 1))
     desired, tip, start = signals.desired, signals.tip, signals.tip[..., :1, :]
     if not setting.tracked:
         last = tip.shape[-2] // _END + 1
@@ -33,7 +32,10 @@ def _unfollowed(signals: Signals, setting: Setting) -> FloatArray:
 
 def _longest(vectors: FloatArray) -> FloatArray:
     """Return the largest norm among rows of vectors, shapes (..., T, 3) to (...)."""
-    longest: FloatArray = np.sqrt(((vectors * vectors) @ _ONES).max(axis=-1))
+    squares = vectors * vectors
+    squared = squares[..., 0] + squares[..., 1]
+    squared += squares[..., 2]
+    longest: FloatArray = np.sqrt(squared.max(axis=-1))
     return longest
 
 
@@ -46,7 +48,7 @@ def _tell_unfollowed(value: float, joint: int, setting: Setting) -> str:
 def _beyond(signals: Signals, setting: Setting) -> FloatArray:
     """Return how far each joint goes beyond a position limit, shape (..., nq), in rad; below 0 where it does not."""
     lower, upper = setting.position_limits
-    q = np.ascontiguousarray(signals.q.swapaxes(-1, -2))  # (..., nq, T): quicker by rows
+    q = by_rows(signals.q)
     excess: FloatArray = np.maximum(lower - q.min(axis=-1), q.max(axis=-1) - upper)
     return excess
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +14,7 @@ if TYPE_CHECKING:  # the store knows caveats, and is to be imported without rigi
     from runner.config.robot import RobotConfig
     from runner.config.run import RunConfig
     from runner.robots.mismatch import MismatchConfig
+    from runner.robots.model import RobotModel
     from runner.sensing import EncoderNoise
     from runner.servo_contact import ServoContact
 
@@ -66,6 +68,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
     from runner.assembly import servo_contact
 
     model = config.arm.model
+    units, position_limits, mass = _of_model(model)
     ticks = np.ones(model.nq, dtype=np.intp)
     if config.commands == "torque":
         for loop in config.loops:
@@ -74,8 +77,8 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         repetitions=config.settings.repetitions,
         robot=config.robot,
         joint_names=model.joint_names,
-        joint_units=model.joint_units,
-        position_limits=model.position_limits,
+        joint_units=units,
+        position_limits=position_limits,
         torque_limits=config.torque_limits,
         plant=config.plant.kind,
         torques=config.commands == "torque",
@@ -84,6 +87,12 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         yields=config.environment.kind != "free" and any(loop.feels for loop in config.loops),
         noise=config.noise,
         mismatch=config.mismatch,
-        mass=model.mass,
+        mass=mass,
         contact=None if q_start is None else servo_contact(config, q_start),
     )
+
+
+@lru_cache(maxsize=8)  # as the runs of a sweep share their arm
+def _of_model(model: "RobotModel") -> tuple[Sequence[str], FloatArray, float]:
+    """Return joint units, position limits and mass of an arm."""
+    return model.joint_units, model.position_limits, model.mass

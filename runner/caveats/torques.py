@@ -33,13 +33,13 @@ def _chatter(signals: Signals, setting: Setting) -> FloatArray:
     """Return the share of its loop's ticks at which each joint jumps from limit to opposite limit, shape (..., nq)."""
     if setting.plant == _IDEAL:
         return np.zeros_like(signals.saturation)
-    if not signals.saturation.any():
+    often = np.flatnonzero(signals.saturation.reshape(-1, signals.saturation.shape[-1]).any(axis=0))
+    if not len(often):
         return signals.saturation
     share: FloatArray = np.zeros_like(signals.saturation)
-    often = np.flatnonzero(signals.saturation.reshape(-1, share.shape[-1]).any(axis=0))
     tau = np.ascontiguousarray(signals.tau.swapaxes(-1, -2)[..., often, :])  # a row for each joint: quicker
-    leap = 2.0 * _AT_LIMIT * setting.torque_limits[often][:, None]  # no torque can change by more
-    jumps = np.count_nonzero(np.abs(tau[..., 1:] - tau[..., :-1]) >= leap, axis=-1)
+    leap = 2.0 * _AT_LIMIT * signals.limits[..., often, None]  # no torque can change by more
+    jumps = (np.abs(tau[..., 1:] - tau[..., :-1]) >= leap).sum(axis=-1)
     share[..., often] = jumps * setting.ticks_per_torque[often] / tau.shape[-1]
     return np.minimum(share, 1.0)
 

@@ -1,15 +1,28 @@
 """The rules at work: every repetition is looked at, and the worst is told."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from itertools import accumulate
+from operator import attrgetter
 
 import numpy as np
 
 from runner.caveats.caveat import Caveat, Found
 from runner.caveats.registry import SETTING_RULES, TRACE_RULES, rules_digest
-from runner.caveats.rule import SettingRule, TraceRule
+from runner.caveats.rule import TraceRule
 from runner.caveats.setting import Setting
 from runner.caveats.signals import Signals
 from runner.config.caveats import CaveatsConfig
+from runner.config.memory import Memory
+from runner.trace import FloatArray
+
+_RULES = {rule.name: rule.key for rule in TRACE_RULES} | {rule.name: rule.key for rule in SETTING_RULES}
+_KEYS = {name: _RULES[name] for name in CaveatsConfig.model_fields}
+_values = attrgetter(*(f"{name}.{key}" for name, key in _KEYS.items()))
+
+_MEMORY = Memory(64)  # runs of a sweep share their setting
+_BLOCK = 64  # runs at a time: what caches hold
 
 
 @dataclass
@@ -30,41 +43,77 @@ class Watch:
     """
 
     def __init__(self, setting: Setting, thresholds: CaveatsConfig) -> None:
-        self._setting, self._thresholds = setting, thresholds
-        self._limits = [(rule, _threshold(rule, thresholds)) for rule in TRACE_RULES]
-        self._worst = {rule.name: _Worst() for rule in TRACE_RULES}
+        self._setting = setting
+        self._thresholds, self._limits = _by_rule(_values(thresholds))
+        self._worst: dict[str, _Worst] = {}
         self._seen = 0
 
     def look(self, signals: Signals) -> None:
         """Look at the signals of one repetition, or of several that have an axis in front."""
-        runs = signals.runs
-        self._seen += runs
-        for rule, threshold in self._limits:
-            values = rule.measure(signals, self._setting)
-            value, worst = float(values.max()), self._worst[rule.name]
-            if value > threshold:
-                worst.sprung += 1 if runs == 1 else int(np.count_nonzero(values.max(axis=-1) > threshold))
-                if value > worst.value:
-                    worst.value, worst.joint = value, int(np.argmax(values)) % values.shape[-1]
+        look_together([self], signals)
 
     def found(self) -> Found:
         """Return what was found; of a run without a repetition that ended well only what its config says."""
         caveats = [
             Caveat(rule.name, self._told(rule, worst), worst.value, worst.sprung)
             for rule in TRACE_RULES
-            if (worst := self._worst[rule.name]).sprung
+            if (worst := self._worst.get(rule.name))
         ]
-        for of_config in SETTING_RULES:
-            value = of_config.measure(self._setting)
-            if value is not None and value > _threshold(of_config, self._thresholds):
-                text = of_config.tell(value, self._setting)
-                caveats.append(Caveat(of_config.name, text, value, self._setting.repetitions))
-        return Found(caveats, rules_digest(), self._thresholds.model_dump())
+        caveats += _MEMORY.recall(_of_setting, self._setting, self._thresholds)
+        return Found(caveats, rules_digest(), self._thresholds)
+
+    def _note(self, rule: TraceRule, values: FloatArray, sprung: int) -> None:
+        """Note what a rule measured, shape (repetitions, n), and in how many of these it was sprung."""
+        worst = self._worst.setdefault(rule.name, _Worst())
+        worst.sprung += sprung
+        largest = int(values.argmax())
+        value = float(values.flat[largest])
+        if value > worst.value:
+            worst.value, worst.joint = value, largest % values.shape[-1]
 
     def _told(self, rule: TraceRule, worst: _Worst) -> str:
         text = rule.tell(worst.value, worst.joint, self._setting)
         return text if self._setting.repetitions == 1 else f"{text}, in {worst.sprung} of {self._seen} repetitions"
 
 
-def _threshold(rule: TraceRule | SettingRule, thresholds: CaveatsConfig) -> float:
-    return float(getattr(getattr(thresholds, rule.name), rule.key))
+def _of_setting(setting: Setting, thresholds: Mapping[str, Mapping[str, float]]) -> list[Caveat]:
+    """Return what the config of a run says."""
+    caveats = []
+    for rule in SETTING_RULES:
+        value = rule.measure(setting)
+        if value is not None and value > thresholds[rule.name][rule.key]:
+            caveats.append(Caveat(rule.name, rule.tell(value, setting), value, setting.repetitions))
+    return caveats
+
+
+def look_together(watches: Sequence[Watch], signals: Signals) -> None:
+    """Look at the signals of several runs at once, each with a watch of its own.
+
+    Args:
+        watches: The watch of each run. Their settings may differ in numbers of the config, not in what acts: plant,
+            commands, periods, kind of path, environment and settling band are those of the first.
+        signals: Those of all runs, which stand on the first axis, or of one; repetitions may stand on the next.
+    """
+    if len(watches) > _BLOCK:
+        for first in range(0, len(watches), _BLOCK):
+            last = first + _BLOCK
+            look_together(watches[first:last], signals.part(first, last))
+        return
+    measured = [rule.measure(signals, watches[0]._setting) for rule in TRACE_RULES]
+    firsts = [0, *accumulate(values.shape[-1] for values in measured[:-1])]
+    worst = np.maximum.reduceat(np.concatenate(measured, axis=-1), firsts, axis=-1)
+    worst = worst.reshape(len(watches), -1, len(TRACE_RULES))
+    limits = np.array([watch._limits for watch in watches])
+    sprung = (worst > limits[:, None]).sum(axis=1)
+    for watch in watches:
+        watch._seen += worst.shape[1]
+    for run, number in zip(*sprung.nonzero(), strict=True):
+        values = measured[number].reshape(*worst.shape[:2], -1)[run]
+        watches[run]._note(TRACE_RULES[number], values, int(sprung[run, number]))
+
+
+@lru_cache(maxsize=8)  # as the runs of a sweep share their thresholds
+def _by_rule(values: tuple[float, ...]) -> tuple[Mapping[str, Mapping[str, float]], Sequence[float]]:
+    """Return thresholds by rule and key, as they are stored, and those of the rules on signals in their order."""
+    thresholds = {name: {key: value} for (name, key), value in zip(_KEYS.items(), values, strict=True)}
+    return thresholds, [thresholds[rule.name][rule.key] for rule in TRACE_RULES]

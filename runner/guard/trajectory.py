@@ -47,7 +47,9 @@ class WatchedTrajectory:
         return checked(ask(part, 0.0, read_only(times)), (len(times), 3, 3), part, 0.0)
 
     def distance_to_path(self, points: FloatArray) -> FloatArray:
-        """Return the distances of points; see Trajectory."""
+        """Return the distances of points; see Trajectory. Those of several runs are asked for run by run."""
+        if points.ndim > 2:
+            return np.stack([self.distance_to_path(np.ascontiguousarray(own)) for own in points])
         part = self._trajectory.distance_to_path
         return checked(ask(part, 0.0, read_only(points)), (len(points),), part, 0.0)
 

@@ -1,9 +1,12 @@
 """What a motion asks of the joints."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runner.metrics.context import MetricContext
-from runner.trace import Trace
+from runner.trace import FloatArray, Traces, by_rows
+
+_AT_LIMIT = 1.0 - 1e-12
 
 UNITS = {
     "peak_torque": "N m",
@@ -19,7 +22,7 @@ UNITS = {
 }
 
 
-def evaluate(trace: Trace, context: MetricContext) -> dict[str, float | None]:
+def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
     """Return torques, speeds, saturation, energy and effort, over the torques that were held (all rows but the last).
 
     - peak_torque: largest magnitude of a joint's torque; over all that turn, and per joint, as peak_torque_q1.
@@ -31,30 +34,56 @@ def evaluate(trace: Trace, context: MetricContext) -> dict[str, float | None]:
     - control_effort: integral of sum tau^2; over the joints that turn.
     - force_effort: the same over those that slide, where there are any.
     """
-    tau, speed = trace.tau[:-1], np.abs(trace.dq)
-    saturated = np.abs(tau) >= trace.limits * (1.0 - 1e-12)
-    slides = np.array([unit == "m" for unit in trace.joint_units])
-    result: dict[str, float | None] = {}
+    held, ticks = by_rows(traces.tau[:, :-1]), traces.tau.shape[1] - 1
+    squares, size = (held * held).sum(axis=2), np.abs(held)
+    peaks, speeds = size.max(axis=2), np.abs(by_rows(traces.dq)).max(axis=2)
+    work = np.abs(held * np.diff(by_rows(traces.q), axis=2)).sum(axis=2)
+    slides = np.array([unit == "m" for unit in traces.joint_units])
+    result: dict[str, FloatArray] = {}
     for peak, rms, fastest, chosen in (
         ("peak_torque", "rms_torque", "peak_joint_speed", ~slides),
         ("peak_joint_force", "rms_joint_force", "peak_sliding_speed", slides),
     ):
-        if chosen.any():
-            own, rates = np.ascontiguousarray(tau[:, chosen]), speed[:, chosen]
-            result |= _over_joints(peak, np.abs(own).max(), np.abs(own).max(axis=0), chosen)
-            result |= _over_joints(rms, np.sqrt((own**2).mean()), np.sqrt((own**2).mean(axis=0)), chosen)
-            result |= _over_joints(fastest, rates.max(), rates.max(axis=0), chosen)
-    everywhere = np.ones_like(slides)
-    result |= _over_joints("saturation_fraction", saturated.any(axis=1).mean(), saturated.mean(axis=0), everywhere)
-    result["energy"] = float(np.abs(tau * np.diff(trace.q, axis=0)).sum())
+        joints = np.flatnonzero(chosen)
+        if len(joints):
+            result |= _over_joints(peak, peaks.max(axis=1, where=chosen, initial=0.0), peaks, joints)
+            overall = np.sqrt(_over(squares, joints) / (ticks * len(joints)))
+            result |= _over_joints(rms, overall, np.sqrt(squares / ticks), joints)
+            result |= _over_joints(fastest, speeds.max(axis=1, where=chosen, initial=0.0), speeds, joints)
+    share, shares = _saturation(size, peaks, traces.limits * _AT_LIMIT)
+    result |= _over_joints("saturation_fraction", share, shares, np.arange(len(slides)))
+    result["energy"] = _over(work, np.arange(len(slides)))
     for effort, chosen in (("control_effort", ~slides), ("force_effort", slides)):
         if chosen.any():
-            result[effort] = float((np.ascontiguousarray(tau[:, chosen]) ** 2).sum() * context.period)
+            result[effort] = _over(squares, np.flatnonzero(chosen)) * context.period
     return result
 
 
-def _over_joints(name: str, overall: float, values: np.ndarray, chosen: np.ndarray) -> dict[str, float | None]:
+def _saturation(size: FloatArray, peaks: FloatArray, limits: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the share of ticks with any joint at its limit, shape (runs,), and of those with each, (runs, nq).
+
+    Args:
+        size: Magnitudes of the torques, shape (runs, nq, ticks), in N m.
+        peaks: The largest of each joint, shape (runs, nq).
+        limits: From where on a torque is at its limit, shape (runs, nq).
+    """
+    share, shares = np.zeros(len(peaks)), np.zeros_like(peaks)
+    some = np.flatnonzero((peaks >= limits).any(axis=1))
+    if len(some):
+        saturated = size[some] >= limits[some][:, :, None]
+        share[some] = np.count_nonzero(saturated.any(axis=1), axis=1) / size.shape[2]
+        shares[some] = np.count_nonzero(saturated, axis=2) / size.shape[2]
+    return share, shares
+
+
+def _over(values: FloatArray, joints: NDArray[np.intp]) -> FloatArray:
+    """Return the sum over some joints, one after another, shapes (runs, nq) to (runs,)."""
+    total = values[:, joints[0]].copy()
+    for joint in joints[1:]:
+        total += values[:, joint]
+    return total
+
+
+def _over_joints(name: str, overall: FloatArray, values: FloatArray, joints: NDArray[np.intp]) -> dict[str, FloatArray]:
     """Return a metric over the chosen joints, and of each, by name."""
-    joints = [f"q{index + 1}" for index in np.flatnonzero(chosen)]
-    each = {f"{name}_{joint}": float(value) for joint, value in zip(joints, values, strict=True)}
-    return {name: float(overall), **each}
+    return {name: overall, **{f"{name}_q{joint + 1}": values[:, joint] for joint in joints}}

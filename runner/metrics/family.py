@@ -4,12 +4,25 @@ from collections.abc import Mapping
 from typing import Protocol, runtime_checkable
 
 from runner.metrics.context import MetricContext
-from runner.trace import Trace
+from runner.trace import FloatArray, Trace, Traces
+
+
+class OwnFamily(Protocol):
+    """Metrics of ours that belong together, of several runs at once."""
+
+    @property
+    def UNITS(self) -> Mapping[str, str]:  # noqa: N802 - a constant of the module
+        """Unit of each metric by name, without the suffixes of joints and axes."""
+        ...
+
+    def evaluate(self, traces: Traces, context: MetricContext) -> Mapping[str, FloatArray]:
+        """Return the metrics by name, each of shape (runs,); NaN for a run that has no value."""
+        ...
 
 
 @runtime_checkable
 class MetricFamily(Protocol):
-    """Metrics that belong together."""
+    """Metrics of a plug-in that belong together."""
 
     __name__: str
 

@@ -3,13 +3,14 @@
 import numpy as np
 
 from runner.metrics.context import MetricContext
-from runner.trace import Trace
+from runner.trace import FloatArray, Traces
+from runner.trajectories.vectors import component
 
 UNITS = {"settling_time": "s", "steady_state_error": "m", "overshoot": "m"}
 _STEADY_WINDOW = 0.5  # s, at the end of the run
 
 
-def evaluate(trace: Trace, context: MetricContext) -> dict[str, float | None]:
+def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
     """Return settling time, steady-state error and overshoot.
 
     - settling_time: first tick after the last one with any axis error beyond the band; 0 if never beyond, None if
@@ -19,33 +20,38 @@ def evaluate(trace: Trace, context: MetricContext) -> dict[str, float | None]:
     - overshoot: largest distance past the goal along the direction from start to goal, less how far the desired motion
       itself goes there; None without a goal.
     """
-    worst = np.abs(trace.error).max(axis=1)
-    goal = context.trajectory.goal
+    worst = np.abs(traces.error).max(axis=1)
+    goal, none = context.trajectory.goal, np.full(traces.runs, np.nan)
     return {
-        "settling_time": _settling_time(trace.t, worst > context.settling_band),
-        "steady_state_error": None if goal is None else _steady_state_error(trace, worst, context.trajectory.duration),
-        "overshoot": None if goal is None else _overshoot(trace, context.trajectory.start, goal),
+        "settling_time": _settling_time(traces.t, worst > context.settling_band),
+        "steady_state_error": (
+            none if goal is None else _steady_state_error(traces.t, worst, context.trajectory.duration)
+        ),
+        "overshoot": none if goal is None else _overshoot(traces, context.trajectory.start, goal),
     }
 
 
-def _settling_time(t: np.ndarray, beyond: np.ndarray) -> float | None:
-    rows = np.flatnonzero(beyond)
-    if len(rows) == 0:
-        return 0.0
-    return None if rows[-1] == len(t) - 1 else float(t[rows[-1] + 1])
+def _settling_time(t: FloatArray, beyond: np.ndarray) -> FloatArray:
+    after = len(t) - np.argmax(beyond[:, ::-1], axis=1)  # the tick after the last one beyond
+    settled = np.append(t, np.nan)[after]
+    return np.where(beyond.any(axis=1), settled, 0.0)
 
 
-def _steady_state_error(trace: Trace, worst: np.ndarray, t_f: float) -> float | None:
-    first = trace.t[-1] - _STEADY_WINDOW
+def _steady_state_error(t: FloatArray, worst: FloatArray, t_f: float) -> FloatArray:
+    first = t[-1] - _STEADY_WINDOW
     if first < t_f - 1e-9:
-        return None
-    return float(worst[trace.t >= first - 1e-9].max())
+        return np.full(len(worst), np.nan)
+    steady: FloatArray = worst[:, np.searchsorted(t, first - 1e-9) :].max(axis=1)
+    return steady
 
 
-def _overshoot(trace: Trace, start: np.ndarray, goal: np.ndarray) -> float:
+def _overshoot(traces: Traces, start: FloatArray, goal: FloatArray) -> FloatArray:
     distance = float(np.linalg.norm(goal - start))
     if distance == 0.0:
-        return 0.0
+        return np.zeros(traces.runs)
     along = (goal - start) / distance
-    past, wanted = (float(((points - goal) @ along).max()) for points in (trace.tip, trace.desired[:, 0]))
-    return max(0.0, past - max(0.0, wanted))
+    past, wanted = (
+        component(points.swapaxes(-1, -2) - goal, along).max(axis=-1) for points in (traces.tip, traces.target)
+    )
+    overshoot: FloatArray = np.maximum(past - np.maximum(wanted, 0.0), 0.0) + 0.0  # no -0.0
+    return overshoot

@@ -3,17 +3,18 @@
 import numpy as np
 
 from runner.metrics.context import MetricContext
-from runner.trace import Trace
+from runner.trace import FloatArray, Traces
 
 UNITS = {"reach_loss_fraction": "1"}
 
 
-def evaluate(trace: Trace, context: MetricContext) -> dict[str, float | None]:
+def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
     """Return what a riding arm could not follow; absent for a robot of one stage.
 
     - reach_loss_fraction: share of ticks at which x_d is out of the last stage's reach.
     """
-    if context.reach is None or len(trace.stage_names) < 2:
+    if context.reach is None or len(traces.stage_names) < 2:
         return {}
-    rest = np.linalg.norm(trace.desired[:, 0] - trace.end_points[-2], axis=1)
-    return {"reach_loss_fraction": float((rest > context.reach).mean())}
+    way = traces.desired[..., 0, :] - traces.end_points[-2]
+    rest = np.sqrt(way[..., 0] ** 2 + way[..., 1] ** 2 + way[..., 2] ** 2)
+    return {"reach_loss_fraction": np.count_nonzero(rest > context.reach, axis=1) / len(traces.t)}

@@ -1,20 +1,23 @@
-"""Metrics of one run, and over its repetitions."""
+"""Metrics of runs, and over the repetitions of one."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from statistics import median
+from functools import lru_cache
+
+import numpy as np
 
 from runner.errors import ConfigError
 from runner.guard import watch_metrics
 from runner.metrics import contact, effort, positioning, reaching, tracking
 from runner.metrics.context import MetricContext
-from runner.metrics.family import MetricFamily
+from runner.metrics.family import MetricFamily, OwnFamily
 from runner.plugins import added, load
-from runner.trace import Trace
+from runner.trace import FloatArray, Trace, Traces
 from runner.trajectories.shifted import Shifted
 
-_FAMILIES: tuple[MetricFamily, ...] = (positioning, tracking, effort, reaching, contact)
+_FAMILIES: tuple[OwnFamily, ...] = (positioning, tracking, effort, reaching, contact)
+_BLOCK = 80_000  # values of a signal, of as many runs as give so many at a time: what caches hold
 
 
 @dataclass(frozen=True)
@@ -36,13 +39,17 @@ class Summary:
     max: float | None
 
 
-def families() -> tuple[MetricFamily, ...]:
-    """Return the metric families, those of the user's included.
+def families() -> tuple[OwnFamily | MetricFamily, ...]:
+    """Return the metric families, ours and then those of the user's.
 
     Raises:
         ConfigError: where one of these cannot be imported, or has no UNITS or `evaluate`.
     """
-    return (*_FAMILIES, *(_load_family(point.name, point.value) for point in added("metric")))
+    return (*_FAMILIES, *_added())
+
+
+def _added() -> Sequence[MetricFamily]:
+    return [_load_family(point.name, point.value) for point in added("metric")]
 
 
 def _load_family(name: str, place: str) -> MetricFamily:
@@ -58,10 +65,7 @@ def units() -> dict[str, str]:
 
 
 def evaluate(trace: Trace, context: MetricContext, notices: list[str] | None = None) -> dict[str, float | None]:
-    """Return all metrics of one run; a run that failed has none.
-
-    Where stages ride on each other, the positioning and tracking of a carrier's end point against x_d less the home
-    offset of what rides on it stand beside the tip's, with the stage's name in front: `macro_settling_time`.
+    """Return all metrics of one run; a run that failed has none. See `measure` for ours.
 
     Args:
         trace: The run's trace.
@@ -74,30 +78,98 @@ def evaluate(trace: Trace, context: MetricContext, notices: list[str] | None = N
     if trace.failure is not None:
         return {}
     told = [] if notices is None else notices
+    return of_run(measure(Traces.of(trace), context), 0) | evaluate_added(trace, context, told)
+
+
+def evaluate_added(trace: Trace, context: MetricContext, notices: list[str]) -> dict[str, float | None]:
+    """Return the metrics of one run that families of the user's give; see `evaluate`."""
     values: dict[str, float | None] = {}
-    for family in families():
-        ours = family in _FAMILIES
-        values |= family.evaluate(trace, context) if ours else watch_metrics(family, trace, context, told)
-    for index, stage in enumerate(trace.stage_names[:-1]):
-        carrier = replace(context, trajectory=Shifted(context.trajectory, trace.offsets[index]))
+    for family in _added():
+        values |= watch_metrics(family, trace, context, notices)
+    return values
+
+
+def measure(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
+    """Return our metrics of several runs, each of shape (runs,), NaN where a run has no value.
+
+    Where stages ride on each other, the positioning and tracking of a carrier's end point against x_d less the home
+    offset of what rides on it stand beside the tip's, with the stage's name in front: `macro_settling_time`.
+
+    A run's values are the same to the last bit in whatever company.
+
+    Raises:
+        SimulationError: where a trajectory of the user's goes wrong; which run that was tells `evaluate`.
+    """
+    rows, joints = traces.q.shape[1:]
+    block = max(1, _BLOCK // (rows * joints))
+    parts = [
+        _measure_block(traces.part(slice(first, first + block)), context) for first in range(0, traces.runs, block)
+    ]
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def _measure_block(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
+    values: dict[str, FloatArray] = {}
+    for family in _FAMILIES:
+        values |= family.evaluate(traces, context)
+    for index, stage in enumerate(traces.stage_names[:-1]):
+        carrier = replace(context, trajectory=Shifted(context.trajectory, traces.offsets[index]))
+        at_stage = traces.at_stage(index)
         for family in (positioning, tracking):
-            of_stage = family.evaluate(trace.at_stage(index), carrier)
+            of_stage = family.evaluate(at_stage, carrier)
             values |= {f"{stage}_{name}": value for name, value in of_stage.items()}
     return values
 
 
+def of_run(measured: Mapping[str, FloatArray], run: int) -> dict[str, float | None]:
+    """Return the metrics of one of the runs that `measure` has measured, by its number; None for no value."""
+    values = {name: float(value[run]) for name, value in measured.items()}
+    return {name: _present(value) for name, value in values.items()}
+
+
 def summarize(repetitions: Sequence[Mapping[str, float | None]]) -> dict[str, Summary]:
     """Summarize the metrics of a job's repetitions, given in order."""
-    names = list(dict.fromkeys(name for values in repetitions for name in values))
-    known = units()
-    summaries = {}
-    for name in names:
-        values = [values.get(name) for values in repetitions]
-        numbers = [math.inf if value is None else value for value in values]
-        unit = known[_base(name, known)]
-        middle, low, high = median(numbers), min(numbers), max(numbers)
-        summaries[name] = Summary(unit, values, *(x if math.isfinite(x) else None for x in (middle, low, high)))
-    return summaries
+    names = tuple(dict.fromkeys(name for values in repetitions for name in values))
+    rows = [[values.get(name) for name in names] for values in repetitions]
+    values = np.array(rows, dtype=np.float64)  # None is NaN
+    return summarize_arrays(names, values.reshape(len(repetitions), len(names)))
+
+
+def summarize_arrays(names: tuple[str, ...], values: FloatArray) -> dict[str, Summary]:
+    """Summarize the metrics of a job's repetitions, given as an array of shape (repetitions, names), NaN for none."""
+    return {
+        name: Summary(unit, [_present(value) for value in row], *map(_present, ends))
+        for name, unit, row, ends in zip(
+            names, units_of(names), values.T.tolist(), over_repetitions(values.T).tolist(), strict=True
+        )
+    }
+
+
+def _present(value: float) -> float | None:
+    return None if math.isnan(value) else value
+
+
+def over_repetitions(values: FloatArray) -> FloatArray:
+    """Return median, smallest and largest over the repetitions, shapes (..., repetitions) to (..., 3).
+
+    A missing value is NaN, and counts as beyond every number; what is beyond every number is NaN.
+    """
+    ordered = np.sort(np.where(np.isnan(values), np.inf, values), axis=-1)
+    half = values.shape[-1] // 2
+    middle = ordered[..., half] if values.shape[-1] % 2 else (ordered[..., half - 1] + ordered[..., half]) / 2.0
+    ends = np.stack([middle, ordered[..., 0], ordered[..., -1]], axis=-1)
+    return np.where(np.isfinite(ends), ends, np.nan)
+
+
+def units_of(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the units of metrics, whose names may carry a stage in front and a joint or axis behind."""
+    return _units_among(names, tuple(units().items()))
+
+
+@lru_cache(maxsize=64)
+def _units_among(names: tuple[str, ...], known: tuple[tuple[str, str], ...]) -> tuple[str, ...]:
+    by_name = dict(known)
+    return tuple(by_name[_base(name, by_name)] for name in names)
 
 
 def unit_of(name: str) -> str | None:

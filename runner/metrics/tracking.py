@@ -3,26 +3,29 @@
 import numpy as np
 
 from runner.metrics.context import MetricContext
-from runner.trace import Trace
+from runner.trace import FloatArray, Traces
 
 UNITS = {"max_tracking_error": "m", "rms_tracking_error": "m", "cross_track_error": "m"}
 
 
-def evaluate(trace: Trace, context: MetricContext) -> dict[str, float | None]:
+def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
     """Return the tracking errors; those over 0..t_f are absent for a goal.
 
     - max_tracking_error, and _x, _y, _z: largest axis error over 0..t_f.
     - rms_tracking_error: root mean square of the error's norm over 0..t_f.
     - cross_track_error: largest distance to the path taken as a curve, over the whole run.
     """
-    cross_track = {"cross_track_error": float(context.trajectory.distance_to_path(trace.tip).max())}
+    distance = context.trajectory.distance_to_path(traces.tip.swapaxes(-1, -2))
+    cross_track: dict[str, FloatArray] = {"cross_track_error": distance.max(axis=-1)}
     if not context.trajectory.tracked:
-        return dict(cross_track)
-    error = trace.error[trace.t <= context.trajectory.duration + 1e-9]
-    axes = np.abs(error).max(axis=0)
+        return cross_track
+    ticks = int(np.searchsorted(traces.t, context.trajectory.duration + 1e-9, side="right"))
+    error = traces.error[:, :, :ticks]
+    axes = np.abs(error).max(axis=2)
+    squared = error[:, 0] ** 2 + error[:, 1] ** 2 + error[:, 2] ** 2
     return {
-        "max_tracking_error": float(axes.max()),
-        **{f"max_tracking_error_{axis}": float(value) for axis, value in zip("xyz", axes, strict=True)},
-        "rms_tracking_error": float(np.sqrt((error**2).sum(axis=1).mean())),
+        "max_tracking_error": axes.max(axis=1),
+        **{f"max_tracking_error_{axis}": axes[:, index] for index, axis in enumerate("xyz")},
+        "rms_tracking_error": np.sqrt(squared.sum(axis=1) / ticks),
         **cross_track,
     }

@@ -1,10 +1,13 @@
 """Joint encoders: joint positions noisy, biased and in steps, and velocities exact or differenced."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
+from runner.sensing.streams import generators
 
 FloatArray = NDArray[np.float64]
 
@@ -42,15 +45,8 @@ class JointEncoders:
     """
 
     def __init__(self, ticks: int, period: float, noise: EncoderNoise, generator: np.random.Generator) -> None:
-        shape = (ticks, len(noise.position))
-        if noise.distribution == "none":
-            self._error = np.zeros(shape)
-        elif noise.distribution == "uniform":
-            self._error = noise.position * generator.uniform(-1.0, 1.0, shape)
-        else:
-            self._error = noise.position * generator.standard_normal(shape)
-        if noise.bias.any():
-            self._error += noise.bias
+        self.errors: FloatArray = _errors([noise], ticks, [generator])[0]
+        """Noise and bias of the joint positions at each tick, shape (ticks, nq), in rad."""
         self._rounded = noise.resolution > 0.0
         self._resolution = noise.resolution[self._rounded]
         self._period = period
@@ -63,7 +59,7 @@ class JointEncoders:
         A differenced velocity starts from the first measurement: it is zero there, as the arm starts at rest. So
         a bias is not in it.
         """
-        measured = q + self._error[tick]
+        measured = q + self.errors[tick]
         if len(self._resolution):
             measured[self._rounded] = np.round(measured[self._rounded] / self._resolution) * self._resolution
         if not self._differenced:
@@ -71,3 +67,45 @@ class JointEncoders:
         velocity = np.zeros_like(q) if self._last is None else (measured - self._last) / self._period
         self._last = measured
         return measured, velocity
+
+
+def encoder_errors(noises: Sequence[EncoderNoise], seeds: Sequence[Sequence[int]], ticks: int) -> FloatArray:
+    """Return the errors of the measured positions of many runs, before they are rounded to steps.
+
+    They are those of `JointEncoders` with the generator `np.random.default_rng(seed)`, to the last bit.
+
+    Args:
+        noises: Noise of each run's encoders, all of as many joints.
+        seeds: Seed of each run's draws: seed, repetition and place of the control loop.
+        ticks: Number of measurements of a run.
+
+    Returns:
+        Shape (runs, ticks, nq), in rad.
+    """
+    return _errors(noises, ticks, generators(seeds))
+
+
+def _errors(noises: Sequence[EncoderNoise], ticks: int, generators: Iterable[np.random.Generator]) -> FloatArray:
+    nq = len(noises[0].position)
+    errors = np.empty((len(noises), ticks * nq))
+    rows: dict[int, tuple[FloatArray, FloatArray | None]] = {}  # of a noise, which many runs may share
+    for noise, error, generator in zip(noises, errors, generators, strict=True):
+        if id(noise) not in rows:
+            rows[id(noise)] = (
+                np.tile(noise.position, ticks),
+                np.tile(noise.bias, ticks) if noise.bias.any() else None,
+            )
+        width, bias = rows[id(noise)]
+        if noise.distribution == "none":
+            error[:] = 0.0
+        elif noise.distribution == "uniform":
+            generator.random(out=error)
+            error *= 2.0  # together with the next line exact, as `uniform(-1, 1)` is
+            error -= 1.0
+            error *= width
+        else:
+            generator.standard_normal(out=error)
+            error *= width
+        if bias is not None:
+            error += bias
+    return errors.reshape(len(noises), ticks, nq)

@@ -1,7 +1,7 @@
 """Writing a run: its config, its first trace, and last of all the metrics, whose presence means done."""
 
 import io
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -11,11 +11,13 @@ import yaml
 
 from runner.caveats import Found
 from runner.errors import StoreError
-from runner.metrics import Summary
+from runner.metrics.summary import Summary, over_repetitions, units_of
 from runner.store.atomic import write_atomically
+from runner.store.columns import float_column
+from runner.store.json_texts import JsonTexts, encode_finite
 from runner.store.run import Run
 from runner.store.stored import write_job
-from runner.trace import Failure, Trace
+from runner.trace import Failure, FloatArray, Trace
 
 
 @dataclass(frozen=True)
@@ -92,6 +94,67 @@ def make_record(result: RunResult) -> dict[str, Any]:
     return record
 
 
+def record_texts(
+    metrics: Mapping[str, FloatArray],
+    found: Sequence[Found],
+    timing: Mapping[str, float | None],
+    provenances: Sequence[Mapping[str, Any]],
+    texts: JsonTexts,
+) -> list[str]:
+    """Return the records of runs that ended well, as `make_record` gives them, as JSON.
+
+    Args:
+        metrics: Values in each repetition of each run, shape (runs, repetitions), by name; NaN for none.
+        found: Caveats of each run.
+        timing: What a clock measured, of each run alike.
+        provenances: Where each run comes from.
+        texts: Keeps the texts of what runs have in common.
+
+    Raises:
+        ValueError: if a value is infinite.
+    """
+    repetitions = next(iter(metrics.values())).shape[1]
+    measured, clocked = _metric_texts(metrics), encode_finite(timing)
+    records = []
+    for own, caveats, provenance in zip(measured, found, provenances, strict=True):
+        rules = texts.of({"digest": caveats.digest, "thresholds": caveats.thresholds})
+        records.append(
+            f'{{"status": "ok", "repetitions": {repetitions}, '
+            f'"caveats": {encode_finite([vars(caveat) for caveat in caveats.caveats])}, "caveat_rules": {rules}, '
+            f'"metrics": {own}, "timing": {clocked}, "provenance": {texts.of(provenance)}}}'
+        )
+    return records
+
+
+def _metric_texts(metrics: Mapping[str, FloatArray]) -> Iterator[str]:
+    """Yield what stands under "metrics" in the record of each run."""
+    names = tuple(metrics)
+    heads = [
+        f'{encode_finite(name)}: {{"unit": {encode_finite(unit)}, "values": ['
+        for name, unit in zip(names, units_of(names), strict=True)
+    ]
+    values = np.stack(list(metrics.values()), axis=1)  # runs, metrics, repetitions
+    if np.isinf(values).any():
+        raise ValueError("a metric is infinite, which is no number in JSON")
+    repetitions = values.shape[2]
+    for own in values:
+        each = _numbers(own.ravel().tolist())
+        lists = middle = low = high = each
+        if repetitions > 1:
+            lists = [", ".join(each[first : first + repetitions]) for first in range(0, len(each), repetitions)]
+            middle, low, high = (_numbers(end.tolist()) for end in over_repetitions(own).T)
+        entries = [
+            f'{head}{values}], "median": {median}, "min": {least}, "max": {largest}}}'
+            for head, values, median, least, largest in zip(heads, lists, middle, low, high, strict=True)
+        ]
+        yield "{" + ", ".join(entries) + "}"
+
+
+def _numbers(values: Sequence[float]) -> list[str]:
+    """Return numbers as JSON writes them; null for NaN, which alone is no equal of itself."""
+    return [repr(value) if value == value else "null" for value in values]
+
+
 def cut_short_record(reason: str, repetitions: int, provenance: Mapping[str, Any]) -> dict[str, Any]:
     """Return what is stored of a run that something else than its physics ended."""
     failure = {"reason": reason, "time": None, "joint": None, "repetition": None}
@@ -140,13 +203,7 @@ def _parquet(trace: Trace) -> bytes:
     schema = pyarrow.schema(
         [pyarrow.field(name, pyarrow.float64(), metadata={"unit": unit}) for name, unit, _ in columns]
     )
-    # Arrays made from their buffers: any other way asks pandas about them, whose import takes half a second.
-    arrays = [
-        pyarrow.Array.from_buffers(
-            pyarrow.float64(), len(values), [None, pyarrow.py_buffer(np.ascontiguousarray(values, dtype=np.float64))]
-        )
-        for *_, values in columns
-    ]
+    arrays = [float_column(values) for *_, values in columns]
     table = pyarrow.Table.from_arrays(arrays, schema=schema)
     buffer = io.BytesIO()
     pyarrow.parquet.write_table(table, buffer, compression="zstd", use_dictionary=False, use_byte_stream_split=True)

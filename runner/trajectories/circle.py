@@ -9,7 +9,7 @@ from pydantic import PositiveFloat, PositiveInt
 from runner.registry import StrictModel
 from runner.trajectories.closed_figure import ClosedFigure, Easing
 from runner.trajectories.trajectory import FloatArray, Trajectory
-from runner.trajectories.vectors import Direction, InPlane, Point, plane_axes
+from runner.trajectories.vectors import Direction, InPlane, Point, component, plane_axes
 
 
 class CircleConfig(StrictModel):
@@ -71,10 +71,10 @@ class Circle:
         )
 
     def distance(self, points: FloatArray) -> FloatArray:
-        """Return each point's distance to the circle, shapes (T, 3) to (T,), in m."""
+        """Return each point's distance to the circle, shapes (..., 3) to (...), in m."""
         from_centre = points - self.start - self.radius * self.to_centre
-        height = from_centre @ np.cross(self.to_centre, self.along)
-        beyond = np.hypot(from_centre @ self.to_centre, from_centre @ self.along) - self.radius
+        height = component(from_centre, np.cross(self.to_centre, self.along))
+        beyond = np.hypot(component(from_centre, self.to_centre), component(from_centre, self.along)) - self.radius
         distance: FloatArray = np.hypot(height, beyond)
         return distance
 

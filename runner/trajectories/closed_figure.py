@@ -24,7 +24,7 @@ class ClosedCurve(Protocol):
         ...
 
     def distance(self, points: FloatArray) -> FloatArray:
-        """Return each point's distance to the curve, shapes (T, 3) to (T,), in m."""
+        """Return each point's distance to the curve, shapes (..., 3) to (...), in m."""
         ...
 
 

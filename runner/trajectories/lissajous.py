@@ -86,7 +86,7 @@ class Lissajous:
         )
 
     def distance(self, points: FloatArray) -> FloatArray:
-        """Return each point's distance to the figure, shapes (T, 3) to (T,), in m."""
+        """Return each point's distance to the figure, shapes (..., 3) to (...), in m."""
         samples = _SAMPLES * int(self.frequencies.max())
         return distance_to_curve(points, self.derivatives, np.linspace(0.0, 1.0, samples + 1))
 

@@ -6,41 +6,48 @@ import numpy as np
 
 from runner.trajectories.trajectory import FloatArray
 
-_TABLE = 500_000  # distances of points to samples at a time
+_TABLE = 50_000  # distances of points to samples at a time
 _MAX_STEPS = 60
 _CONVERGED = 1e-14  # share of the curve's range of parameters
 
 
 def distance_to_curve(points: FloatArray, curve: Callable[[FloatArray], FloatArray], samples: FloatArray) -> FloatArray:
-    """Return each point's distance to a curve, to rounding, shapes (T, 3) to (T,), in m.
+    """Return each point's distance to a curve, to rounding, shapes (..., 3) to (...), in m.
 
     Every sample that is nearer than its two neighbours starts a search between them for the place where the line to
     the point is perpendicular to the curve; the nearest place counts. Samples must lie so close that between two of
     them the distance has one minimum.
 
     Args:
-        points: The points, shape (T, 3), in m.
+        points: The points, shape (..., 3), in m.
         curve: From parameters, shape (N,), to point and first two derivatives, shape (N, 3, 3).
         samples: Ascending parameters, from the curve's start to its end, shape (M,).
     """
+    every = points.reshape(-1, 3)
     at_samples = curve(samples)[:, 0]
-    distance = np.empty(len(points))
+    distance = np.empty(len(every))
     rows = max(1, _TABLE // len(samples))
-    for first in range(0, len(points), rows):
+    for first in range(0, len(every), rows):
         chunk = slice(first, first + rows)
-        distance[chunk] = _nearest(points[chunk], curve, samples, at_samples)
-    return distance
+        distance[chunk] = _nearest(every[chunk], curve, samples, at_samples)
+    return distance.reshape(points.shape[:-1])
 
 
 def _nearest(
     points: FloatArray, curve: Callable[[FloatArray], FloatArray], samples: FloatArray, at_samples: FloatArray
 ) -> FloatArray:
-    squared = (at_samples**2).sum(axis=1) - 2.0 * points @ at_samples.T  # less the square of the point itself
+    squared = np.zeros((len(points), len(samples)))
+    for axis in range(3):  # not by a matrix product, which rounds a point by its place among the others
+        squared += (points[:, axis, None] - at_samples[:, axis]) ** 2
     beside = np.pad(squared, ((0, 0), (1, 1)), constant_values=np.inf)
     which, sample = np.nonzero((squared <= beside[:, :-2]) & (squared <= beside[:, 2:]))
     last = len(samples) - 1
     place = _perpendicular(
-        points[which], curve, samples[np.maximum(sample - 1, 0)], samples[np.minimum(sample + 1, last)]
+        points[which],
+        curve,
+        samples[np.maximum(sample - 1, 0)],
+        samples[np.minimum(sample + 1, last)],
+        _CONVERGED * abs(float(samples[-1])),
     )
     distance: FloatArray = np.linalg.norm(points - at_samples[squared.argmin(axis=1)], axis=1)
     np.minimum.at(distance, which, np.linalg.norm(curve(place)[:, 0] - points[which], axis=1))
@@ -48,14 +55,14 @@ def _nearest(
 
 
 def _perpendicular(
-    points: FloatArray, curve: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray
+    points: FloatArray, curve: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray, enough: float
 ) -> FloatArray:
     """Return parameters where g = (c - p) . c' vanishes, by Newton steps, or halving where they leave low..high.
 
-    The search starts in the middle: at a curve's end where the motion rests, c' and so g vanish for every point.
+    It ends with a step that is small enough. It starts in the middle: at a curve's end where the motion rests, c' and
+    so g vanish for every point.
     """
     place = 0.5 * (low + high)
-    enough = _CONVERGED * float(high.max(initial=0.0))
     searching = np.arange(len(points))
     for _ in range(_MAX_STEPS):
         here = place[searching]

@@ -41,5 +41,8 @@ class Trajectory(Protocol):
         ...
 
     def distance_to_path(self, points: FloatArray) -> FloatArray:
-        """Return each point's distance to the path taken as a curve, shapes (T, 3) to (T,), in m."""
+        """Return each point's distance to the path taken as a curve, shapes (T, 3) to (T,), in m.
+
+        Ours take points of any shape (..., 3) and give (...), each as if it were alone.
+        """
         ...

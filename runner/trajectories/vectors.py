@@ -40,6 +40,15 @@ InPlane = Annotated[Direction, AfterValidator(_check_in_plane)]
 """A direction in the plane of the field `normal`, which stands before it."""
 
 
+def component(points: FloatArray, direction: FloatArray) -> FloatArray:
+    """Return the scalar product of points with a direction, shapes (..., 3) and (3,) to (...).
+
+    A product of each point alone: BLAS, behind `@`, rounds a point by its place among the others.
+    """
+    product: FloatArray = points[..., 0] * direction[0] + points[..., 1] * direction[1] + points[..., 2] * direction[2]
+    return product
+
+
 def plane_axes(normal: list[float], direction: list[float]) -> tuple[FloatArray, FloatArray]:
     """Return two perpendicular unit vectors of a plane, each of shape (3,).
 

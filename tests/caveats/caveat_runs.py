@@ -13,12 +13,12 @@ def signals(q=None, tau=None, tip=None, desired=None, limits=(10.0, 10.0, 10.0))
     q, tau = np.zeros((rows, 3)) if q is None else q, np.zeros((rows - 1, 3)) if tau is None else tau
     tip = np.zeros((rows, 3)) if tip is None else tip
     saturation = (np.abs(tau) >= np.array(limits)).mean(axis=0)
-    return Signals(q, tau, tip, tip if desired is None else desired, saturation)
+    return Signals(q, tau, tip, tip if desired is None else desired, saturation, np.array(limits))
 
 
 def stacked(*runs):
     """Several runs as one, with an axis in front."""
-    names = ("q", "tau", "tip", "desired", "saturation")
+    names = ("q", "tau", "tip", "desired", "saturation", "limits")
     return Signals(*(np.array([getattr(run, name) for run in runs]) for name in names))
 
 

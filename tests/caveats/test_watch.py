@@ -2,15 +2,17 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from caveat_runs import signals, stacked
 
-from runner.caveats import Watch, changes_since, registry, setting_of
+from runner.caveats import Signals, Watch, changes_since, look_together, registry, setting_of, signals_of
 from runner.caveats.today import our_thresholds
 from runner.config.caveats import CaveatsConfig
 from runner.store import run_hash
+from runner.trace import Traces
 
 ROBOTS = ("macro", "mini", "combined", "macro_mini_mini", "xarm7", "xarm7_mini", "meca500", "meca500_r4")
 
@@ -48,6 +50,90 @@ def test_runs_side_by_side_are_judged_as_one_after_another(checked_config):
     found = one.found()
     assert found == several.found()
     assert {caveat.rule for caveat in found.caveats} == {rule.name for rule in registry.TRACE_RULES}
+
+
+def some_signals(limit, seed=0):
+    """Signals of a run that springs more rules the larger its seed."""
+    generator, spread = np.random.default_rng(seed), (0.1, 1.0, 5.0, 9.0, 40.0)[seed % 5]
+    limits = np.full(3, limit)
+    return signals(
+        tau=np.clip(generator.normal(0.0, spread, (100, 3)), -limits, limits),
+        tip=generator.normal(0.0, 0.1 * spread, (101, 3)),
+        q=generator.normal(0.0, 100.0 * spread, (101, 3)),
+        desired=np.linspace(0.0, 1.0, 101)[:, None] * np.ones(3),
+        limits=limits,
+    )
+
+
+@pytest.mark.parametrize("trajectory", ["quintic", "goal"])
+def test_runs_with_limits_and_thresholds_of_their_own_are_judged_as_each_alone(checked_config, trajectory):
+    config = checked_config("robot=macro", f"trajectory={trajectory}", "noise.position=1e-3")
+    limits = [2.0, np.inf, 10.0, 0.3, 8.0, 1.0, 20.0]
+    settings = [replace(setting_of(config), torque_limits=np.full(3, limit)) for limit in limits]
+    thresholds = [
+        config.caveats.model_copy(update={"saturation": config.caveats.saturation.model_copy(update={"share": share})})
+        for share in (0.1, 0.0, 0.9, 0.5, 0.1, 0.1, 0.1)
+    ]
+    runs = [some_signals(limit, seed) for seed, limit in enumerate(limits)]
+    alone = [Watch(*pair) for pair in zip(settings, thresholds, strict=True)]
+    for watch, run in zip(alone, runs, strict=True):
+        watch.look(run)
+    expected = [watch.found() for watch in alone]
+    for order in ([0, 1, 2, 3, 4, 5, 6], [6, 2, 0], [3], [1, 4]):
+        watches = [Watch(settings[run], thresholds[run]) for run in order]
+        look_together(watches, stacked(*(runs[run] for run in order)))
+        assert [watch.found() for watch in watches] == [expected[run] for run in order]
+    told = {caveat.rule for found in expected for caveat in found.caveats}
+    assert told >= {rule.name for rule in registry.TRACE_RULES}
+    assert len({len(found.caveats) for found in expected}) > 2
+
+
+def test_more_runs_than_caches_hold_are_looked_at_in_blocks(checked_config):
+    config = checked_config("robot=macro", "trajectory=quintic", "torque_limits.max=5")
+    runs = [some_signals(5.0, seed) for seed in range(140)]
+    alone, together = ([Watch(setting_of(config), config.caveats) for _ in runs] for _ in range(2))
+    for watch, run in zip(alone, runs, strict=True):
+        watch.look(run)
+    look_together(together, stacked(*runs))
+    assert [watch.found() for watch in together] == [watch.found() for watch in alone]
+
+
+def test_repetitions_of_many_runs_stand_behind_them(checked_config):
+    config = checked_config("robot=macro", "trajectory=quintic", "torque_limits.max=5", "repetitions=3")
+    each = [[some_signals(5.0, seed) for seed in seeds] for seeds in ((1, 2, 5), (0, 0, 10), (4, 0, 9))]
+    alone, together = ([Watch(setting_of(config), config.caveats) for _ in each] for _ in range(2))
+    for watch, repetitions in zip(alone, each, strict=True):
+        for run in repetitions:
+            watch.look(run)
+    names = vars(each[0][0])
+    look_together(together, Signals(*(np.array([[getattr(r, n) for r in own] for own in each]) for n in names)))
+    found = [watch.found() for watch in alone]
+    assert [watch.found() for watch in together] == found
+    assert {caveat.repetitions for own in found for caveat in own.caveats} == {1, 2, 3}
+
+
+def test_an_arm_that_gives_way_has_nothing_to_follow_among_others(checked_config):
+    config = checked_config("robot=macro", "trajectory=quintic")
+    watches = [Watch(replace(setting_of(config), yields=True), config.caveats) for _ in range(3)]
+    look_together(watches, stacked(*(some_signals(np.inf, 4) for _ in range(3))))
+    assert [[caveat.rule for caveat in watch.found().caveats] for watch in watches] == [["joint_limits"]] * 3
+
+
+def test_the_signals_of_many_traces_are_those_of_each(hand_made_trace):
+    t = np.arange(101) * 0.01
+    traces = [hand_made_trace(t, q=run, tau=2.0 * run, tip=0.1 * run, desired=run, limits=run) for run in range(1, 4)]
+    metrics = [{"saturation_fraction_q1": run / 10, "saturation_fraction_q2": run / 20} for run in range(3)]
+    each = [signals_of(*pair) for pair in zip(traces, metrics, strict=True)]
+    names = ("q", "dq", "tau", "limits", "desired")
+    own = {name: np.array([getattr(trace, name) for trace in traces]) for name in names}
+    end_points = np.array([trace.end_points for trace in traces]).swapaxes(0, 1)
+    batch = replace(Traces.of(traces[0]), **own, end_points=end_points)
+    arrays = {name: np.array([own[name] for own in metrics]) for name in metrics[0]}
+    found = signals_of(batch, arrays)
+    for name in vars(found):
+        np.testing.assert_array_equal(getattr(found, name), [getattr(own, name) for own in each], err_msg=name)
+    shared = signals_of(replace(batch, desired=traces[1].desired), arrays).desired
+    np.testing.assert_array_equal(shared, [each[1].desired] * 3)
 
 
 def test_they_are_told_stored_and_found_again(cli):

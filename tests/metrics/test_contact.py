@@ -4,11 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from one_run import of_one
 
-from runner.metrics import MetricContext
-from runner.metrics.contact import UNITS, evaluate
+from runner.metrics import MetricContext, contact
+from runner.metrics.contact import UNITS
 from runner.trace import ContactSignals
 from runner.trajectories.goal import Goal
+
+evaluate = of_one(contact)
 
 T = np.arange(101) * 0.01  # 1 s: the last half second is rows 50 to 100
 STEADY = np.arange(50, 101)

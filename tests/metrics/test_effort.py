@@ -1,10 +1,12 @@
 import numpy as np
 import pytest
+from one_run import of_one
 
-from runner.metrics import MetricContext
-from runner.metrics.effort import evaluate
+from runner.metrics import MetricContext, effort
 from runner.metrics.summary import unit_of
 from runner.trajectories.goal import Goal
+
+evaluate = of_one(effort)
 
 T = np.arange(401) * 0.01
 CONTEXT = MetricContext(Goal(np.zeros(3), np.ones(3)), 0.02, 0.01)

@@ -2,11 +2,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from one_run import of_one
 
-from runner.metrics import MetricContext
-from runner.metrics.positioning import UNITS, evaluate
+from runner.metrics import MetricContext, positioning
+from runner.metrics.positioning import UNITS
 from runner.trajectories.goal import Goal
 from runner.trajectories.quintic import Quintic
+
+evaluate = of_one(positioning)
 
 START, GOAL = np.zeros(3), np.array([1.0, 0.0, 0.0])
 PERIODIC = SimpleNamespace(start=START, goal=None, duration=1.0, tracked=True)

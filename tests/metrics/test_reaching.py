@@ -4,10 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from one_run import of_one
 
-from runner.metrics import MetricContext
-from runner.metrics.reaching import UNITS, evaluate
+from runner.metrics import MetricContext, reaching
+from runner.metrics.reaching import UNITS
 from runner.trajectories.goal import Goal
+
+evaluate = of_one(reaching)
 
 REACH = 0.2
 T = np.arange(10) * 0.01

@@ -1,10 +1,12 @@
 import numpy as np
 import pytest
+from one_run import of_one
 
-from runner.metrics import MetricContext
-from runner.metrics.tracking import evaluate
+from runner.metrics import MetricContext, tracking
 from runner.trajectories.goal import Goal
 from runner.trajectories.quintic import Quintic
+
+evaluate = of_one(tracking)
 
 START, END = np.zeros(3), np.array([1.0, 0.0, 0.0])
 T = np.arange(401) * 0.01

@@ -1,0 +1,100 @@
+"""Records of many runs as texts, against those of each run alone."""
+
+import json
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from runner.caveats import Caveat, Found
+from runner.metrics import of_run, summarize, unit_of
+from runner.store import Finished, Outcome
+from runner.store.json_texts import JsonTexts
+from runner.store.record import find_faults
+from runner.store.shards import ShardRow, ShardRun, read_columns, read_outcomes, shard_name, write_shard
+from runner.store.writing import make_record, record_texts
+
+NAMES = ("settling_time", "peak_torque_q1", "macro_overshoot", "energy", "saturation_fraction")
+TIMING = {"tick_time_median": None, "tick_time_p99": 1e-6, "wall_s": 0.25, "cpu_s": 0.5}
+SHARED = {"versions": {"python": "3.11"}, "machine": "Prüfstand", "commit": None, "warnings": [], "plant_step": 0.01}
+THRESHOLDS = {"chatter": {"share": 0.05}}
+
+
+def some_runs(runs, repetitions):
+    draw = np.random.default_rng(runs)
+    metrics = {name: 10.0 ** draw.uniform(-9.0, 9.0, (runs, repetitions)) for name in NAMES}
+    metrics["settling_time"][draw.random((runs, repetitions)) < 0.4] = np.nan
+    metrics["saturation_fraction"][:] = 0.0
+    caveats = [Caveat("chatter", 'it "chatters"', 0.5 + run, 1) for run in range(runs)]
+    found = [Found(caveats[: run % 3], "abc", THRESHOLDS) for run in range(runs)]
+    provenances = [
+        {"date": "2026-01-01", "command": f"runner seed={run}", "seed": run, **SHARED} for run in range(runs)
+    ]
+    return metrics, found, provenances
+
+
+def record_alone(metrics, run, found, provenance):
+    repetitions = len(next(iter(metrics.values()))[run])
+    each = [of_run({name: values[run] for name, values in metrics.items()}, place) for place in range(repetitions)]
+    result = SimpleNamespace(
+        failure=None, repetitions=repetitions, caveats=found, metrics=summarize(each), timing=TIMING,
+        provenance=provenance,
+    )  # fmt: skip
+    return make_record(result)
+
+
+@pytest.mark.parametrize("repetitions", [1, 2, 5])
+def test_the_records_of_many_runs_are_those_of_each_alone(repetitions):
+    metrics, found, provenances = some_runs(7, repetitions)
+    texts = record_texts(metrics, found, TIMING, provenances, JsonTexts())
+    for run, text in enumerate(texts):
+        alone = record_alone(metrics, run, found[run], provenances[run])
+        assert text == json.dumps(alone)
+        assert not find_faults(json.loads(text))
+
+
+def test_an_infinite_metric_is_refused_as_in_a_run_alone():
+    metrics, found, provenances = some_runs(3, 1)
+    metrics["energy"][1] = np.inf
+    with pytest.raises(ValueError, match="infinite"):
+        record_texts(metrics, found, TIMING, provenances, JsonTexts())
+
+
+def test_rows_of_texts_stand_in_a_shard_beside_runs(tmp_path):
+    metrics, found, provenances = some_runs(4, 1)
+    texts, config = JsonTexts(), {"seed": 3, "noise": {"position": 1e-4}}
+    records = record_texts(metrics, found, TIMING, provenances, texts)
+    names = [f"a{run}" for run in range(4)]
+    of_metrics = tuple((metric, unit_of(metric)) for metric in metrics)
+    rows = [
+        ShardRow(
+            Outcome(name, "", False, len(found[run].caveats)),
+            texts.of(config),
+            "<robot/>",
+            records[run],
+            of_metrics,
+            np.stack([values[run] for values in metrics.values()], axis=1),
+        )
+        for run, name in enumerate(names)
+    ]
+    alone = record_alone(metrics, 3, found[3], provenances[3])
+    path = write_shard(
+        tmp_path, shard_name(1, 1), [*rows[:3], ShardRun(tmp_path / "runs" / "a3", config, alone, "<robot/>")]
+    )
+    assert list(read_outcomes(path)) == [row.outcome for row in rows]
+    columns = read_columns(path, ["run"])
+    for metric, values in metrics.items():
+        expected = [[None if np.isnan(value) else value for value in own] for own in values]
+        assert columns[f"metric {metric}"].to_pylist() == expected
+    for name, record in zip(names, records, strict=True):
+        run = Finished(tmp_path).open(name)
+        assert (run.record, run.config, run.urdf) == (json.loads(record), config, "<robot/>")
+
+
+def test_what_configs_have_in_common_is_written_as_if_each_were_alone():
+    shared = {"k": [1, 2.5, None, True, "é\n"], "inner": {"a": {}}}
+    texts, start = JsonTexts(), {"seed": 0, "shared": shared, "list": [1.0], "none": None, "inf": float("inf")}
+    for seed in range(3):
+        config = {**start, "seed": seed, "own": {"gain": 10.0**-seed}, "list": [float(seed)]}
+        assert texts.of(config) == json.dumps(config)
+    assert texts.of({}) == "{}"
