@@ -8,8 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from runner import provenance, store
+from runner import store
 from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
+from runner.batch import Batcher
+from runner.batch_jobs import simulate_together
 from runner.caveats import Watch, setting_of, signals_of
 from runner.config.compose import Composed, compose
 from runner.config.limits import check_cpu_time
@@ -17,6 +19,7 @@ from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.errors import SimulationError
 from runner.metrics import MetricContext, evaluate, summarize
+from runner.provenance import job_provenance
 from runner.simulation import ClosedLoop, simulate
 from runner.store.writing import timing
 from runner.trace import Failure, Trace
@@ -85,6 +88,11 @@ def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
     Raises:
         ConfigError: where the start of the trajectory cannot be reached, or a part refuses its config.
     """
+    batcher = Batcher()
+    runs = batcher.repetitions(config)
+    if runs is not None:
+        ((run,),) = simulate_together([(config, composed)], [runs], batcher)
+        return run.result()
     wall, cpu = time.perf_counter(), time.process_time()
     loop = assemble(config)
     context = metric_context(config)
@@ -143,18 +151,3 @@ def _simulate(closed: ClosedLoop, config: RunConfig, repetition: int) -> tuple[T
     trace = simulate(closed, make_encoders(closed, config.noise, seed, repetition), wrist)
     told = [notice for loop in closed.loops if loop.feeling is not None for notice in loop.feeling.notices()]
     return trace, told + ([] if wrist is None else wrist.overloads())
-
-
-def job_provenance(config: RunConfig, composed: Composed, notices: Sequence[str] = ()) -> dict[str, object]:
-    """Return where a run comes from: what made it, choices, time steps, seed, warnings."""
-    return {
-        **provenance.made(composed),
-        "choices": dict(composed.choices),
-        "plant_step": config.timing.step,
-        "steps_per_tick": config.timing.steps_per_tick,
-        "tip_frame": config.arm.model.tip_name,
-        "stages": {stage.name: stage.base_frame for stage in config.arm.stages},
-        "joints": list(config.arm.model.joint_names),
-        "seed": config.settings.seed,
-        "warnings": [*config.warnings, *notices],
-    }

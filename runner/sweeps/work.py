@@ -5,75 +5,34 @@ import signal
 import threading
 import time
 import traceback
-from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, TypeVar
+from typing import TypeVar
 
 from runner import store
+from runner.batch_jobs import Job
 from runner.calibration_job import CALIBRATION, carry_out
 from runner.config.calibration import validate_calibration
 from runner.config.compose import Composed, quiet_environment
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.errors import RunnerError, StoreError, user_place
-from runner.execution import job_provenance, simulate_job
+from runner.execution import simulate_job
 from runner.plugins import use_plugins
-from runner.store.atomic import write_atomically
+from runner.provenance import job_provenance
 from runner.store.shards import ShardRun, find_shards, outcome, read_outcomes, write_shard
-from runner.store.writing import cut_short_record, make_record
+from runner.store.writing import cut_short_record
+from runner.sweeps.block import Part
 from runner.sweeps.deadline import TimeLimitError, deadline
-
-TraceKeeping = Literal["all", "sample", "failed", "never"]
+from runner.sweeps.rules import Rules
+from runner.sweeps.shelf import Shelf, without_trace, write_failure, write_log
+from runner.sweeps.together import make_together
 
 Made = TypeVar("Made")
 
-_SAMPLE = 100  # one run in so many
 _one_at_a_time = threading.Lock()  # should a worker have several threads
-
-
-@dataclass(frozen=True)
-class Rules:
-    """How the runs of a sweep are made and kept.
-
-    Attributes:
-        plugins: The user's parts that the command line named.
-        outputs: The outputs folder, absolute: every worker must see it.
-        sweep: The sweep's folder, absolute.
-        trace: Which runs keep their trace.
-        accept_failed: Whether a stored run that failed counts as done.
-        accept_cut_short: Whether one does that was cut short.
-        stop_at_failure: Whether the first failed run ends the sweep.
-        attempts: How often a run is tried that is cut short.
-        time_limit: Longest wall-clock time of a run, in s; None for no limit.
-    """
-
-    plugins: Sequence[str]
-    outputs: Path
-    sweep: Path
-    trace: TraceKeeping
-    accept_failed: bool
-    accept_cut_short: bool
-    stop_at_failure: bool
-    attempts: int
-    time_limit: float | None
-
-    def keeps_trace(self, name: str, failed: bool) -> bool:
-        """Tell whether a run keeps its trace, and with it a folder of its own."""
-        if self.trace == "sample":
-            return failed or int(name, 16) % _SAMPLE == 0
-        return self.trace == "all" or (failed and self.trace == "failed")
-
-    def log(self, name: str) -> Path:
-        """Return the file that says why a run without a folder of its own failed."""
-        return self.sweep / "logs" / f"{name}.txt"
-
-    def accepts(self, end: store.Outcome | None) -> bool:
-        """Tell whether a stored run counts as done."""
-        if end is None or not end.failure:
-            return end is not None
-        return self.accept_failed and (self.accept_cut_short or not end.cut_short)
 
 
 @dataclass(frozen=True)
@@ -83,12 +42,22 @@ class Chunk:
     Attributes:
         name: Name of its shard.
         rules: How they are made and kept.
-        jobs: Hash and composed config of each.
+        parts: The jobs, those together that differ in nothing but the seed.
     """
 
     name: str
     rules: Rules
-    jobs: Sequence[tuple[str, Composed]]
+    parts: Sequence[Part]
+
+    @property
+    def names(self) -> list[str]:
+        """Hash of each job."""
+        return [name for part in self.parts for name in part.names]
+
+    @property
+    def jobs(self) -> list[tuple[str, Composed]]:
+        """Hash and composed config of each."""
+        return [job for part in self.parts for job in zip(part.names, part.configs, strict=True)]
 
 
 @dataclass(frozen=True)
@@ -128,32 +97,23 @@ def work(chunk: Chunk) -> Report:
 
 
 def _make_all(chunk: Chunk, disk: Executor, outcomes: list[store.Outcome]) -> None:
-    """Make what a chunk asks for; while a run is simulated, the one before is written, as the disk takes its time."""
+    """Make what a chunk asks for: together what can be, then one by one."""
     rules, known = chunk.rules, find_stored(chunk)
-    traceless: list[ShardRun] = []
-    written: Future[store.Run] | None = None
-    for name, composed in chunk.jobs:
-        if name in known:
-            end: store.Outcome | None = known[name]
-        elif composed.root == CALIBRATION:
-            end = _calibrate(name, composed, rules)
-        else:
-            made, end = _make(name, composed, rules), None
-            if isinstance(made, ShardRun):
-                traceless.append(made)
-                end = outcome(made)
-            else:
-                if written is not None:
-                    outcomes.append(outcome(written.result()))
-                written = disk.submit(store.write_run, rules.outputs, name, made)
-        if end is not None:
-            outcomes.append(end)
-        if rules.stop_at_failure and (end.failure if end is not None else made.failure):
+    outcomes += known.values()
+    shelf = Shelf(chunk.name, rules, disk, outcomes)
+    parts = [[job for job in zip(part.names, part.configs, strict=True) if job[0] not in known] for part in chunk.parts]
+    left = [job for part in parts for job in part]
+    jobs = list(_checked_runs(parts))
+    made, failed = make_together(jobs, rules, shelf) if len(jobs) > 1 else (set(), False)
+    for name, composed in left:
+        if failed and rules.stop_at_failure:
             break
-    if written is not None:
-        outcomes.append(outcome(written.result()))
-    if traceless:
-        write_shard(rules.outputs, chunk.name, traceless)
+        if composed.root == CALIBRATION:
+            outcomes.append(_calibrate(name, composed, rules))
+            failed = bool(outcomes[-1].failure)
+        elif name not in made:
+            failed = shelf.put(name, _make(name, composed, rules))
+    shelf.close()
 
 
 def find_stored(chunk: Chunk) -> dict[str, store.Outcome]:
@@ -162,11 +122,13 @@ def find_stored(chunk: Chunk) -> dict[str, store.Outcome]:
     What is damaged is none of them.
     """
     found, outputs = {}, chunk.rules.outputs
-    for name, composed in chunk.jobs:
-        with contextlib.suppress(store.DamagedError):
-            end = find_calibrated(outputs, name) if composed.root == CALIBRATION else store.find_outcome(outputs, name)
-            if chunk.rules.accepts(end) and end is not None:
-                found[name] = end
+    for part in chunk.parts:
+        find = find_calibrated if part.configs[0].root == CALIBRATION else store.find_outcome
+        for name in part.names:
+            with contextlib.suppress(store.DamagedError):
+                end = find(outputs, name)
+                if chunk.rules.accepts(end) and end is not None:
+                    found[name] = end
     for shard in find_shards(outputs, chunk.name):
         with contextlib.suppress(store.DamagedError):
             found |= {end.name: end for end in read_outcomes(shard)}
@@ -189,18 +151,37 @@ def _check_folder(rules: Rules) -> None:
 
 def _make(name: str, composed: Composed, rules: Rules) -> store.RunResult | ShardRun:
     """Simulate one run; return what is to be stored, in a folder of its own or in a shard."""
+    config = _checked(name, composed)
+    result, reason, details = _try(lambda: simulate_job(config, composed), rules)
+    if result is not None:
+        return without_trace(name, result, rules)
+    run = cut_short(name, config, composed, rules, reason)
+    write_failure(run, details, rules)
+    return run
+
+
+def _checked_runs(parts: Sequence[Sequence[tuple[str, Composed]]]) -> Iterator[tuple[str, Job]]:
+    """Yield the runs among some jobs with their checked configs; those that differ in the seed alone are checked once.
+
+    The command has checked them all, and a worker with other source code shows in each.
+    """
+    known: dict[tuple[object, ...], RunConfig] = {}
+    for part in parts:
+        if not part or part[0][1].root == CALIBRATION:
+            continue
+        name, first = part[0]
+        shared = tuple((key, id(group)) for key, group in first.resolved.items() if key != "seed")
+        checked = known.get(shared)
+        if checked is None:
+            checked = known[shared] = _checked(name, first)
+        for name, composed in part:
+            yield name, (checked.with_seed(composed.resolved), composed)
+
+
+def _checked(name: str, composed: Composed) -> RunConfig:
     config = validate(composed.resolved, composed.config_dirs)
     _check_name(name, composed.resolved, config.arm.urdf)
-    result, reason, details = _try(lambda: simulate_job(config, composed), rules)
-    if result is None:
-        run = cut_short(name, config, composed, rules, reason)
-    elif rules.keeps_trace(name, result.failure is not None):
-        return result
-    else:
-        run = ShardRun(rules.outputs / "runs" / name, composed.resolved, make_record(result), config.arm.urdf)
-    if run.failure:
-        write_log(run.hash, f"{run.provenance['command']}\n{run.failure_text}\n{details}", rules)
-    return run
+    return config
 
 
 def _calibrate(name: str, composed: Composed, rules: Rules) -> store.Outcome:
@@ -238,13 +219,13 @@ def _try(make: Callable[[], Made], rules: Rules) -> tuple[Made | None, str, str]
 
 def give_up(chunk: Chunk, reason: str) -> Report:
     """Store that the one job of a chunk was cut short, as it brings every worker down."""
-    (name, composed), rules = chunk.jobs[0], chunk.rules
+    ((name, composed),), rules = chunk.jobs, chunk.rules
     if composed.root == CALIBRATION:
         write_log(name, reason, rules)
         return Report([store.Outcome(name, f"cut short: {reason}", cut_short=True)], "", 0.0)
     config = validate(composed.resolved, composed.config_dirs)
     run = cut_short(name, config, composed, rules, reason)
-    write_log(name, f"{run.provenance['command']}\n{run.failure_text}\n", rules)
+    write_failure(run, "", rules)
     write_shard(rules.outputs, chunk.name, [run])
     return Report([outcome(run)], "", 0.0)
 
@@ -253,12 +234,3 @@ def cut_short(name: str, config: RunConfig, composed: Composed, rules: Rules, re
     """Return what is stored of a run that something else than its physics ended."""
     record = cut_short_record(reason, config.settings.repetitions, job_provenance(config, composed))
     return ShardRun(rules.outputs / "runs" / name, composed.resolved, record, config.arm.urdf)
-
-
-def write_log(name: str, text: str, rules: Rules) -> None:
-    """Write down why a job without a folder of its own failed.
-
-    Raises:
-        StoreError: if the disk does not take it.
-    """
-    write_atomically(rules.log(name), text.encode())

@@ -1,0 +1,237 @@
+"""Runs that are compiled as a whole, simulated together: repetitions of one, or runs that differ in numbers alone.
+
+Each has the results that it has alone, to the last bit.
+"""
+
+import math
+import time
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+
+from runner.assembly import assemble_whole, metric_context
+from runner.compiled.closed_loop import Signals, Whole, run_all
+from runner.config.memory import Memory
+from runner.config.run import RunConfig
+from runner.controllers import ControllerConfig
+from runner.controllers.kinds import FollowsWithinReach
+from runner.loop.failures import ended_well, find_failure
+from runner.metrics import MetricContext
+from runner.plugins import added
+from runner.robots.robot import end_points
+from runner.sensing.encoders import encoder_errors
+from runner.trace import FloatArray, Trace, Traces
+
+_MOST_BYTES = 32e6  # of the signals of runs that are simulated together
+_GROWTH = math.log(1.25)  # of the longest run over the shortest that are simulated together
+_MOST_KEPT = 2000
+_MEMORY = Memory(4096)  # the controllers of runs
+
+Found = TypeVar("Found")
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """A repetition of a run.
+
+    Attributes:
+        config: The run's checked config.
+        repetition: Number of the repetition.
+        whole: Its closed loop.
+        q_start: Where the arm starts, shape (nq,), in rad.
+    """
+
+    config: RunConfig
+    repetition: int
+    whole: Whole
+    q_start: FloatArray
+
+    @property
+    def rows(self) -> int:
+        """Number of rows of its trace."""
+        return self.config.timing.ticks + 1
+
+    @property
+    def code(self) -> Hashable:
+        """What runs have in common that are simulated together."""
+        whole = self.whole
+        every = tuple(loop.every for loop in whole.commands.loops)
+        return whole.pattern, every, whole.delay, whole.steps, whole.tick, int(math.log(self.rows) / _GROWTH)
+
+    @property
+    def scene(self) -> Hashable:
+        """What runs have in common that are measured together."""
+        config = self.config
+        reach = _MEMORY.recall(_reach, config.controller)
+        return id(config.arm), id(config.path), self.rows, config.robot.settling_band, reach
+
+
+@dataclass(frozen=True)
+class Together:
+    """Runs that ended well and are measured together.
+
+    Attributes:
+        places: Which they are among those that were asked for.
+        traces: Their traces.
+        context: What their metrics need to know.
+    """
+
+    places: Sequence[int]
+    traces: Traces
+    context: MetricContext
+
+
+class Batcher:
+    """Simulates runs together; it keeps what runs have in common, as long as their configs share the same objects."""
+
+    def __init__(self) -> None:
+        self._kept: dict[Hashable, tuple[object, object]] = {}
+
+    def repetitions(self, config: RunConfig) -> list[Wanted] | None:
+        """Return all repetitions of a run as they can be simulated together; None where they cannot be.
+
+        Raises:
+            ConfigError: see assemble.
+        """
+        if added("metric"):  # they look at one trace
+            return None
+        found = []
+        for repetition in range(config.settings.repetitions):
+            run = self._wanted(config, repetition)
+            if run is None:
+                return None
+            found.append(run)
+        return found
+
+    def _wanted(self, config: RunConfig, repetition: int) -> Wanted | None:
+        # Beliefs are drawn for each repetition; all else follows from these parts.
+        drawn = (config.settings.seed, repetition) if config.mismatch.spread > 0.0 else None
+        parts = (
+            *(config.arm, config.loops, config.plant, config.controller, config.noise, config.torque_limits),
+            *(config.path, config.mismatch, config.robot, config.environment),
+        )
+        found = self.known("whole", parts, (config.timing, drawn), lambda: assemble_whole(config, repetition))
+        return None if found is None else Wanted(config, repetition, *found)
+
+    def simulate(self, runs: Sequence[Wanted]) -> Iterator[Together | tuple[int, Trace]]:
+        """Simulate runs; yield those that ended well, many at a time, and the place and trace of each that failed."""
+        for places in _grouped(range(len(runs)), lambda place: runs[place].code):
+            first = runs[places[0]]
+            signals = 4 * len(first.q_start) + 3 * len(first.config.arm.stages) + 1
+            most = max(1, int(_MOST_BYTES / (8 * signals * first.rows)))
+            for begin in range(0, len(places), most):
+                part = places[begin : begin + most]
+                for found in self._simulate([runs[place] for place in part]):
+                    if isinstance(found, Together):
+                        yield replace(found, places=[part[index] for index in found.places])
+                    else:
+                        yield part[found[0]], found[1]
+
+    def _simulate(self, runs: Sequence[Wanted]) -> Iterator[Together | tuple[int, Trace]]:
+        """Simulate runs that share their code; places are those in this sequence."""
+        began, rows, whole = time.perf_counter(), max(run.rows for run in runs), runs[0].whole
+        times = np.arange(rows, dtype=np.float64) * whole.tick
+        paths = [self._desired(run, times) for run in runs]
+        alike = all(path is paths[0] for path in paths)
+        errors = [
+            encoder_errors(
+                [run.config.noise for run in runs],
+                [(run.config.settings.seed, run.repetition, number) for run in runs],
+                (rows - 1) // loop.every + 1,
+            )
+            for number, loop in enumerate(whole.commands.loops)
+        ]
+        signals = run_all(
+            whole,
+            np.array([run.whole.values for run in runs]),
+            whole.commands.shared(times, paths[0] if alike else np.array(paths)),
+            errors,
+            _start(runs, [wrong[:, 0] for wrong in errors]),
+        )
+        seconds, well = (time.perf_counter() - began) / (len(runs) * rows), ended_well(signals)
+        for places in _grouped(range(len(runs)), lambda place: runs[place].scene):
+            one = runs[places[0]]
+            traces = self._traces(signals, runs, places, paths[places[0]], times, seconds)
+            good = []
+            for index, place in enumerate(places):
+                failure = None
+                if not well[place]:
+                    failure = find_failure(signals, place, traces.t, one.config.arm.model)
+                if failure is None:
+                    good.append(index)
+                else:
+                    yield place, traces.run(index).ended(failure)
+            if good:
+                kept = traces if len(good) == len(places) else traces.part(good)
+                yield Together([places[index] for index in good], kept, metric_context(one.config))
+
+    def _desired(self, run: Wanted, times: FloatArray) -> FloatArray:
+        path = run.config.path
+        return self.known("desired", (path,), (len(times), run.whole.tick), lambda: path.sample(times))
+
+    def _traces(
+        self,
+        signals: Signals,
+        runs: Sequence[Wanted],
+        places: Sequence[int],
+        desired: FloatArray,
+        times: FloatArray,
+        seconds: float,
+    ) -> Traces:
+        """Return the traces of runs that have their scene in common."""
+        one = runs[places[0]]
+        config, own = one.config, slice(None) if len(places) == len(runs) else list(places)
+        t = times[: one.rows]
+        acted = np.maximum(np.arange(len(t)) - one.whole.delay, 0) if one.whole.delay else slice(len(t))
+        arm, model = config.arm, config.arm.model
+        home = self.known(
+            "home", (arm,), config.parallel, lambda: end_points(arm, arm.home[None], config.parallel)[:, 0]
+        )
+        return Traces(
+            t=t,
+            q=signals.q[own, : len(t)],
+            dq=signals.dq[own, : len(t)],
+            tau=signals.torque[own][:, acted],
+            end_points=signals.end_points[:, own, : len(t)],
+            offsets=home[-1] - home,
+            stage_names=arm.stage_names,
+            desired=desired[: len(t)],
+            limits=np.array([runs[place].config.torque_limits for place in places]),
+            joint_names=model.joint_names,
+            joint_units=model.joint_units,
+            tick_seconds=np.full(len(t) - 1, seconds),
+        )
+
+    def known(self, kind: str, parts: tuple[object, ...], more: Hashable, make: Callable[[], Found]) -> Found:
+        """Return what follows from some parts, which are known again as the same objects, and from more."""
+        key = (kind, *map(id, parts), more)
+        if key not in self._kept:
+            if len(self._kept) >= _MOST_KEPT:
+                self._kept.clear()
+            self._kept[key] = parts, make()  # with the parts, so that nothing else takes their place in memory
+        return self._kept[key][1]  # type: ignore[return-value]
+
+
+def _start(runs: Sequence[Wanted], errors: Sequence[FloatArray]) -> FloatArray:
+    """Return the state in which each run begins, as its own loops have it; see Commands.start."""
+    states: dict[int, FloatArray] = {}
+    for own in _grouped(range(len(runs)), lambda place: id(runs[place].whole)):
+        q = np.array([runs[place].q_start for place in own])
+        found = runs[own[0]].whole.commands.start(q, [wrong[own] for wrong in errors])
+        states |= dict(zip(own, found, strict=True))
+    return np.array([states[place] for place in range(len(runs))])
+
+
+def _reach(controller: ControllerConfig) -> float | None:
+    """Return up to where a riding stage follows the target, in m; None where it always does."""
+    return controller.reach if isinstance(controller, FollowsWithinReach) else None
+
+
+def _grouped(places: Sequence[int], key: Callable[[int], Hashable]) -> list[list[int]]:
+    """Return places that have a key in common, each group in order."""
+    groups: dict[Hashable, list[int]] = {}
+    for place in places:
+        groups.setdefault(key(place), []).append(place)
+    return list(groups.values())

@@ -1,0 +1,86 @@
+"""Runs of a chunk that are simulated together."""
+
+from collections.abc import Iterable, Iterator, Sequence
+
+import numpy as np
+
+from runner import store
+from runner.batch import Batcher
+from runner.batch_jobs import Job, Simulated, simulate_together
+from runner.errors import StoreError
+from runner.metrics.summary import units_of
+from runner.provenance import command, job_provenance
+from runner.store.json_texts import JsonTexts
+from runner.store.shards import ShardRow
+from runner.store.writing import record_texts
+from runner.sweeps.deadline import TimeLimitError, deadline
+from runner.sweeps.rules import Rules
+from runner.sweeps.shelf import Shelf, without_trace
+
+Named = tuple[str, Simulated]
+
+
+def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, shelf: Shelf) -> tuple[set[str], bool]:
+    """Simulate those of some runs that can be simulated together; return which are made, and whether one failed.
+
+    Where anything goes wrong with them all, as a part of the user's may do, the rest is left to be made one by one,
+    which tells whose fault it is.
+
+    Args:
+        jobs: Name and checked config of each.
+        rules: How they are made and kept; the limit of a run's time holds for all together.
+        shelf: Takes what is made.
+
+    Raises:
+        StoreError: if the disk does not take it.
+    """
+    batcher, texts, made, failed = Batcher(), JsonTexts(), set[str](), False
+    try:
+        with deadline(rules.time_limit):
+            found = [(name, job, batcher.repetitions(job[0])) for name, job in jobs]
+            chosen = [(name, job, runs) for name, job, runs in found if runs is not None]
+            for complete in simulate_together([job for _, job, _ in chosen], [runs for *_, runs in chosen], batcher):
+                traceless = []
+                for run in complete:
+                    name, ended_early = chosen[run.place][0], run.failure is not None
+                    failed = failed or ended_early
+                    made.add(name)
+                    if ended_early or rules.keeps_trace(name, False):
+                        shelf.put(name, without_trace(name, run.result(), rules))
+                    else:
+                        traceless.append((name, run))
+                shelf.put_rows(list(_rows(traceless, texts, batcher)))
+    except StoreError:
+        raise
+    except (Exception, TimeLimitError):
+        return made, failed
+    return made, failed
+
+
+def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: Batcher) -> Iterator[ShardRow]:
+    """Yield runs that ended well as rows of a shard."""
+    alike: dict[tuple[object, ...], list[Named]] = {}
+    for name, run in runs:
+        alike.setdefault((run.names, len(run.values)), []).append((name, run))
+    for some in alike.values():
+        names, values = some[0][1].names, np.array([run.values for _, run in some])  # runs, repetitions, metrics
+        metrics = tuple(zip(names, units_of(names), strict=True))
+        records = record_texts(
+            {metric: values[:, :, index] for index, metric in enumerate(names)},
+            [run.caveats for _, run in some],
+            some[0][1].timing,
+            [_provenance(run.job, batcher) for _, run in some],
+            texts,
+        )
+        for (name, run), record in zip(some, records, strict=True):
+            config, composed = run.job
+            end = store.Outcome(name, "", False, len(run.caveats.caveats))
+            yield ShardRow(end, texts.of(composed.resolved), config.arm.urdf, record, metrics, run.values)
+
+
+def _provenance(job: Job, batcher: Batcher) -> dict[str, object]:
+    """Return where a run comes from, which is much the same for runs that share their parts."""
+    config, composed = job
+    parts = config.arm, config.plant, config.timing, composed.choices
+    common = batcher.known("provenance", parts, config.commands, lambda: job_provenance(config, composed))
+    return {**common, "command": command(composed), "seed": config.settings.seed}

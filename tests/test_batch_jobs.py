@@ -1,0 +1,69 @@
+"""What is stored of runs that are simulated together, against the same runs one by one."""
+
+import pytest
+
+from runner.batch import Batcher
+from runner.batch_jobs import simulate_together
+from runner.compiled.engine import evaluator
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.execution import simulate_job
+from runner.store.writing import make_record
+
+pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a whole by llvmlite")
+SCENE = "robot=macro", "plant=rk4", "controller=operational_space", "noise=thesis", "torque_limits=thesis"
+TIMED = ("timing", "provenance")
+
+
+def job(*overrides):
+    composed = compose([*SCENE, *overrides])
+    return validate(composed.resolved), composed
+
+
+def record(result):
+    return {key: value for key, value in make_record(result).items() if key not in TIMED}
+
+
+def one_by_one(monkeypatch, *given):
+    with monkeypatch.context() as apart:
+        apart.setattr(Batcher, "repetitions", lambda *_: None)
+        return simulate_job(*given)
+
+
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        ("trajectory=quintic", "duration=3", "repetitions=7"),
+        ("trajectory=circle", "duration=1"),
+        ("trajectory=goal", "duration=1", "repetitions=3", "noise.position=3", "controller.natural_frequency=90"),
+        ("robot=combined", "controller=macro_mini", "duration=0.3", "repetitions=2"),
+    ],
+)
+def test_a_run_s_record_is_the_same_together_and_one_by_one(monkeypatch, overrides):
+    given = job(*overrides)
+    assert record(simulate_job(*given)) == record(one_by_one(monkeypatch, *given))
+
+
+def test_runs_are_complete_once_all_their_repetitions_have_ended(monkeypatch):
+    jobs = [
+        job("duration=0.5", "repetitions=3"),
+        job(
+            "duration=0.5",
+            "repetitions=2",
+            "trajectory=goal",
+            "controller.natural_frequency=900",
+            "torque_limits=none",
+        ),
+        job("duration=0.5", "seed=9"),
+        job("duration=2"),
+    ]
+    batcher = Batcher()
+    runs = [batcher.repetitions(config) for config, _ in jobs]
+    found = {run.place: run for some in simulate_together(jobs, runs, batcher) for run in some}
+    assert sorted(found) == [0, 1, 2, 3]
+    for place, given in enumerate(jobs):
+        ours = found[place].result()
+        assert record(ours) == record(one_by_one(monkeypatch, *given))
+        assert ours.provenance["command"] == f"runner {' '.join(given[1].overrides)}"
+        assert ours.timing["wall_s"] > 0.0
+    assert found[1].failure[0] == 0
