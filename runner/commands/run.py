@@ -122,10 +122,9 @@ def _tell_sweep(ended: "Ended") -> int:
         print(aligned([["run", "why", "more in"], *rows]), file=sys.stderr)
         if len(ended.failures) > len(rows):
             print(f"  and {len(ended.failures) - len(rows)} more", file=sys.stderr)
-    counts = [ended.ends[name].caveats for name in ended.names if name in ended.ends]
-    if any(counts):
-        with_some = sum(count > 0 for count in counts)
-        told = f"{with_some} of {len(counts)} cells have caveats, {max(counts)} at most"
+    counts = ended.ends.caveats
+    if counts.any():
+        told = f"{(counts > 0).sum()} of {len(counts)} cells have caveats, {counts.max()} at most"
         print(f"runner: {told}; `runner table {ended.folder}` says which", file=sys.stderr)
     if ended.left:
         print(f"runner: stopped at a failure; {ended.left} runs are left", file=sys.stderr)

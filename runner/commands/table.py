@@ -16,16 +16,16 @@ def main(arguments: Sequence[str]) -> int:
     quiet_environment()
     from runner import store
     from runner.sweeps.differing import in_words
-    from runner.sweeps.measurements import measure
+    from runner.sweeps.measurements import measure_sweep
     from runner.sweeps.table import write_table
 
     sweep = store.open_sweep(options.folder)
-    measurements = measure(sweep.overrides, sweep.runs())
-    frame = write_table(measurements, options.folder)
-    failed = int((frame["status"] != "ok").sum())
-    doubted = int((frame["caveats"] > 0).sum())
-    count = f"{len(frame)} cells, {failed} of them failed, {doubted} with caveats"
-    print(f"{count}; {len(frame.columns)} columns: table.parquet, table.csv")
+    measurements = measure_sweep(sweep)
+    columns = write_table(measurements, options.folder)
+    failed = sum(status != "ok" for status in measurements.statuses)
+    doubted = sum(map(bool, measurements.caveats))
+    count = f"{len(measurements.hashes)} cells, {failed} of them failed, {doubted} with caveats"
+    print(f"{count}; {columns} columns: table.parquet, table.csv")
     also = in_words(measurements.differences)
     if also:
         print(one_line(f"{also}; `runner report {options.folder}` lists their values"))

@@ -11,7 +11,7 @@ from runner.calibration import Tool
 from runner.calibration.procedures import CALIBRATIONS, Bench, Procedure
 from runner.config.arms import build_robot
 from runner.config.compose import Composed
-from runner.config.parsing import parse, parse_group, parse_kind, parse_robot
+from runner.config.parsing import group_of, parse, parse_kind, parse_robot
 from runner.config.problems import Problems, sure
 from runner.config.robot import RobotConfig
 from runner.errors import ConfigError, nearest
@@ -70,9 +70,11 @@ def validate_calibration(composed: Composed) -> CalibrationConfig:
     resolved = {key: value for key, value in composed.resolved.items() if key in _KEYS}
     root = {key: resolved.get(key) for key in CalibrationSettings.model_fields}
     settings = problems.attempt(parse, "", CalibrationSettings, root)
-    robot = problems.attempt(parse_robot, resolved)
-    sensor = problems.attempt(parse_group, "wrist_sensor", ForceTorqueConfig, resolved)
-    calibration = cast("KindConfig | None", problems.attempt(parse_kind, CALIBRATIONS, resolved))
+    robot = problems.attempt(parse_robot, problems.attempt(group_of, "robot", resolved))
+    keys = problems.attempt(group_of, "wrist_sensor", resolved)
+    sensor = problems.attempt(parse, "wrist_sensor", ForceTorqueConfig, keys)
+    keys = problems.attempt(group_of, CALIBRATIONS.group, resolved)
+    calibration = cast("KindConfig | None", problems.attempt(parse_kind, CALIBRATIONS, keys))
     arm = problems.attempt(
         lambda robot, settings: build_robot(robot, settings.gravity, composed.config_dirs, sensor), robot, settings
     )

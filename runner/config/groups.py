@@ -2,12 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import cast
+from typing import TypeVar, cast
 
 from runner.config.caveats import CaveatsConfig
 from runner.config.limits import LimitsConfig
 from runner.config.noise import NoiseConfig
-from runner.config.parsing import parse, parse_group, parse_kind, parse_robot
+from runner.config.parsing import group_of, parse, parse_kind, parse_robot
 from runner.config.preset import PresetConfig
 from runner.config.problems import Problems
 from runner.config.robot import OneArmConfig, RobotConfig
@@ -22,6 +22,8 @@ from runner.registry import KindConfig, Kinds, StrictModel
 from runner.robots.mismatch import MismatchConfig
 from runner.sensing import ForceTorqueConfig
 from runner.trajectories import TRAJECTORIES
+
+M = TypeVar("M", bound=StrictModel)
 
 GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
     **{kinds.group: kinds for kinds in (PLANTS, CONTROLLERS, TRAJECTORIES, ENVIRONMENTS)},
@@ -74,29 +76,36 @@ class Groups:
 
 
 def read_groups(resolved: Mapping[str, object], problems: Problems) -> Groups:
-    """Return the groups of a config.
+    """Return the groups of a config; one that was read before, the same object, is not read again.
 
     Args:
         resolved: The config as plain data, interpolations resolved.
         problems: Takes what is wrong.
     """
+
+    def read(model: type[M], group: str) -> M | None:
+        return problems.recall(parse, group, model, problems.attempt(group_of, group, resolved))
+
+    def read_kind(kinds: Kinds) -> StrictModel | None:
+        return problems.recall(parse_kind, kinds, problems.attempt(group_of, kinds.group, resolved))
+
     problems.attempt(_check_keys, resolved)
     settings = {key: resolved.get(key) for key in _SETTINGS}
-    problems.attempt(parse_group, "preset", PresetConfig, resolved)  # its values have been taken by other groups
+    read(PresetConfig, "preset")  # its values have been taken by other groups
     return Groups(
         settings=problems.attempt(parse, "", RunSettings, settings),
-        plant=cast("PlantConfig | None", problems.attempt(parse_kind, PLANTS, resolved)),
-        controller=cast("ControllerConfig | None", problems.attempt(parse_kind, CONTROLLERS, resolved)),
-        trajectory=cast("KindConfig | None", problems.attempt(parse_kind, TRAJECTORIES, resolved)),
-        environment=cast("KindConfig | None", problems.attempt(parse_kind, ENVIRONMENTS, resolved)),
-        noise=problems.attempt(parse_group, "noise", NoiseConfig, resolved),
-        torque_limits=problems.attempt(parse_group, "torque_limits", TorqueLimitsConfig, resolved),
-        wrist_sensor=problems.attempt(parse_group, "wrist_sensor", ForceTorqueConfig, resolved),
-        mismatch=problems.attempt(parse_group, "mismatch", MismatchConfig, resolved),
-        robot=problems.attempt(parse_robot, resolved),
-        sweep=problems.attempt(parse_group, "sweep", SweepConfig, resolved),
-        limits=problems.attempt(parse_group, "limits", LimitsConfig, resolved),
-        caveats=problems.attempt(parse_group, "caveats", CaveatsConfig, resolved),
+        plant=cast("PlantConfig | None", read_kind(PLANTS)),
+        controller=cast("ControllerConfig | None", read_kind(CONTROLLERS)),
+        trajectory=cast("KindConfig | None", read_kind(TRAJECTORIES)),
+        environment=cast("KindConfig | None", read_kind(ENVIRONMENTS)),
+        noise=read(NoiseConfig, "noise"),
+        torque_limits=read(TorqueLimitsConfig, "torque_limits"),
+        wrist_sensor=read(ForceTorqueConfig, "wrist_sensor"),
+        mismatch=read(MismatchConfig, "mismatch"),
+        robot=problems.recall(parse_robot, problems.attempt(group_of, "robot", resolved)),
+        sweep=read(SweepConfig, "sweep"),
+        limits=read(LimitsConfig, "limits"),
+        caveats=read(CaveatsConfig, "caveats"),
     )
 
 

@@ -10,7 +10,8 @@ LARGEST = 1e12
 """Largest magnitude of a number, in SI units: that of a stiff material's modulus."""
 SMALLEST = 1e-12
 """Smallest magnitude of a number that is not 0, unless it is one of a list, as a coordinate off by rounding."""
-_LARGEST_WHOLE = 10**18 - 1
+LARGEST_WHOLE = 10**18 - 1
+"""Largest whole number, in magnitude."""
 _TEXT = 4096
 
 
@@ -34,7 +35,7 @@ def _beyond(value: Any, in_list: bool) -> Iterator[str]:
         if len(value) > _TEXT:
             yield f": must have at most {_TEXT} characters; found {quoted(value)}"
     elif isinstance(value, int):
-        if abs(value) > _LARGEST_WHOLE:
+        if abs(value) > LARGEST_WHOLE:
             yield f": must be a whole number of at most 18 digits; found {quoted(value)}"
     elif isinstance(value, dict):
         for name, item in value.items():

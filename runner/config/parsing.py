@@ -15,51 +15,40 @@ from runner.texts import quoted
 M = TypeVar("M", bound=StrictModel)
 
 
-def parse_group(group: str, model: type[M], resolved: Mapping[str, object]) -> M:
-    """Return a group of a config, checked.
-
-    Args:
-        group: Its name.
-        model: The model that it has.
-        resolved: The config as plain data.
+def group_of(group: str, resolved: Mapping[str, object]) -> Mapping[str, object]:
+    """Return the keys of a group of a config.
 
     Raises:
-        ConfigError: with every problem of the group.
+        ConfigError: if it is missing, or no group.
     """
-    return parse(group, model, _keys(group, resolved))
+    value = resolved.get(group)
+    if not isinstance(value, Mapping):
+        raise ConfigError([f"{group}: must be a group of keys; found {quoted(value)}"])
+    return value
 
 
-def parse_kind(kinds: Kinds, resolved: Mapping[str, object]) -> StrictModel:
+def parse_kind(kinds: Kinds, value: Mapping[str, object]) -> StrictModel:
     """Return a group whose `kind` says which model it has, checked.
 
     Args:
         kinds: The kinds that it may have.
-        resolved: The config as plain data.
+        value: Its keys.
 
     Raises:
         ConfigError: with every problem of the group.
     """
-    value = _keys(kinds.group, resolved)
     if "kind" not in value:
         raise ConfigError([f"{kinds.group}.kind: missing; known: {', '.join(kinds.names())}"])
     return parse(kinds.group, kinds.config_model(str(value["kind"])), value)
 
 
-def parse_robot(resolved: Mapping[str, object]) -> RobotConfig:
+def parse_robot(value: Mapping[str, object]) -> RobotConfig:
     """Return the group of the robot, of one arm or of several stages, checked.
 
     Raises:
         ConfigError: with every problem of the group.
     """
-    value = _keys("robot", resolved)
     return parse("robot", StagedRobotConfig, value) if "stages" in value else parse("robot", OneArmConfig, value)
-
-
-def _keys(group: str, resolved: Mapping[str, object]) -> Mapping[str, object]:
-    value = resolved.get(group)
-    if not isinstance(value, Mapping):
-        raise ConfigError([f"{group}: must be a group of keys; found {quoted(value)}"])
-    return value
 
 
 def parse(group: str, model: type[M], value: Mapping[str, object]) -> M:

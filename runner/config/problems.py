@@ -1,8 +1,9 @@
 """Gathering the problems that checks find, so that all of them are reported at once."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TypeVar, overload
 
+from runner.config.memory import Memory
 from runner.errors import ConfigError
 
 A = TypeVar("A")
@@ -15,12 +16,16 @@ T = TypeVar("T")
 class Problems:
     """What checks have found wrong so far.
 
+    Args:
+        memory: What checks gave for the same parts before, so that they need not be made again; None to make them all.
+
     Attributes:
         found: A text for each problem.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, memory: Memory | None = None) -> None:
         self.found: list[str] = []
+        self._memory = memory
 
     @overload
     def attempt(self, check: Callable[[], T], /) -> T | None: ...
@@ -39,11 +44,18 @@ class Problems:
         """Return what a check makes of some parts; None where one of these is None, or it finds a problem."""
         if any(part is None for part in parts):
             return None
-        try:
-            return check(*parts)
-        except ConfigError as error:
-            self.found += error.problems
-            return None
+        value, problems = _made(check, *parts)
+        self.found += problems
+        return value
+
+    def recall(self, check: Callable[..., T], /, *parts: object) -> T | None:
+        """Return the same of a check that gives for the same parts what it gave before; see Memory.recall."""
+        for part in parts:
+            if part is None:
+                return None
+        value, problems = _made(check, *parts) if self._memory is None else self._memory.recall(_made, check, *parts)
+        self.found += problems
+        return value
 
     def report(self) -> None:
         """End the checks.
@@ -53,6 +65,14 @@ class Problems:
         """
         if self.found:
             raise ConfigError(self.found)
+
+
+def _made(check: Callable[..., T], *parts: object) -> tuple[T | None, Sequence[str]]:
+    """Return what a check makes of some parts, and the problems that it finds."""
+    try:
+        return check(*parts), ()
+    except ConfigError as error:
+        return None, error.problems
 
 
 def sure(value: T | None) -> T:

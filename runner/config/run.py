@@ -1,7 +1,7 @@
 """A checked config, with what the checks already had to work out."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from runner.config.caveats import CaveatsConfig
 from runner.config.limits import LimitsConfig
@@ -64,6 +64,10 @@ class RunConfig:
     limits: LimitsConfig
     caveats: CaveatsConfig
     resolved: Mapping[str, object]
+
+    def with_seed(self, resolved: Mapping[str, object]) -> "RunConfig":
+        """Return the same run with the seed of another config, from which it differs in nothing else."""
+        return replace(self, settings=self.settings.model_copy(update={"seed": resolved["seed"]}), resolved=resolved)
 
     @property
     def feels(self) -> bool:

@@ -12,7 +12,8 @@ class SweepConfig(StrictModel):
 
     Attributes:
         trace: Which runs keep their trace, and with it a folder of their own: all, the failed ones and one in a
-            hundred (sample), the failed ones, or none; auto is all up to some thousand runs, sample above.
+            hundred, some 200 at most (sample), the failed ones, or none; auto is all up to some thousand runs, sample
+            above.
         retry: Whether runs that failed in an earlier sweep are simulated again.
         on_failure: What the first failed run does to the rest of the sweep.
         attempts: How often a run is tried that was cut short: by its time limit, an error, or a worker's death.

@@ -8,6 +8,7 @@ import numpy as np
 from runner.config.arms import build_robot
 from runner.config.groups import read_groups
 from runner.config.limits import check_memory
+from runner.config.memory import Memory
 from runner.config.noise import NoiseConfig
 from runner.config.problems import Problems, sure
 from runner.config.reach import check_path, check_points
@@ -26,9 +27,14 @@ from runner.robots.robot import Robot, end_points
 from runner.trajectories import TRAJECTORIES, Trajectory
 from runner.trajectories.kinds import HasStart
 
+_MEMORY = Memory(4096)
+
 
 def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -> RunConfig:
     """Check a composed config.
+
+    What the groups of a config give is kept for others that share them, as the cells of a sweep do: they must not be
+    changed.
 
     Args:
         resolved: The config as plain data, interpolations resolved.
@@ -37,24 +43,27 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     Raises:
         ConfigError: with every problem found: dotted key, value found, values allowed, nearest valid name.
     """
-    problems = Problems()
+    problems = Problems(_MEMORY)
     groups = read_groups(resolved, problems)
-    problems.attempt(_check_payload, groups.robot, groups.mismatch)
+    problems.recall(_check_payload, groups.robot, groups.mismatch)
     gravity = STANDARD_GRAVITY if groups.settings is None else groups.settings.gravity
     sensor = groups.wrist_sensor
-    arm = problems.attempt(lambda robot: build_robot(robot, gravity, config_dirs, sensor), groups.robot)
-    noise = problems.attempt(NoiseConfig.by_joint, groups.noise, arm)
-    torque_limits = problems.attempt(TorqueLimitsConfig.by_joint, groups.torque_limits, arm)
-    problems.attempt(check_points, arm, groups.trajectory)
-    problems.attempt(_check_commands, groups.plant, groups.controller)
-    steps = problems.attempt(count_steps, arm, groups.plant, groups.controller)
-    delay = problems.attempt(count_delay, groups.plant, steps)
+    borne = () if sensor is None else (sensor,)
+    arm = problems.recall(build_robot, groups.robot, gravity, config_dirs, *borne)
+    noise = problems.recall(NoiseConfig.by_joint, groups.noise, arm)
+    torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.torque_limits, arm)
+    problems.recall(check_points, arm, groups.trajectory)
+    problems.recall(_check_commands, groups.plant, groups.controller)
+    steps = problems.recall(count_steps, arm, groups.plant, groups.controller)
+    delay = problems.recall(count_delay, groups.plant, steps)
     problems.report()
-    # What follows is made from parts that are sound, each for itself.
-    loops = problems.attempt(CONTROLLERS.build, groups.controller, arm)
-    parallel = problems.attempt(_is_parallel, arm, groups.plant)
-    path = problems.attempt(_build_path, arm, groups.trajectory, parallel)
-    problems.attempt(check_path, arm, path)
+    # What follows is made from parts that are sound, each for itself. Parts of the user's may remember other runs.
+    build_loops = problems.recall if CONTROLLERS.is_ours(sure(groups.controller).kind) else problems.attempt
+    build_path = problems.recall if TRAJECTORIES.is_ours(sure(groups.trajectory).kind) else problems.attempt
+    loops = build_loops(CONTROLLERS.build, groups.controller, arm)
+    parallel = problems.recall(_is_parallel, arm, groups.plant)
+    path = build_path(_build_path, arm, groups.trajectory, parallel)
+    build_path(check_path, arm, path)
     ticks = problems.attempt(count_ticks, groups.settings, steps, path)
     problems.report()
     config = RunConfig(

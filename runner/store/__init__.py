@@ -2,11 +2,11 @@
 
 from runner.store.calibration import Calibration, find_calibration, open_calibration, write_calibration
 from runner.store.finished import Finished, find_outcome, find_run
-from runner.store.identity import run_hash, simulated_part
+from runner.store.identity import run_hash, run_hashes, simulated_part
 from runner.store.run import Run, is_run, open_run
 from runner.store.seal import DamagedError
 from runner.store.shards import Outcome
-from runner.store.sweep import Sweep, is_sweep, open_runs, open_sweep, write_sweep
+from runner.store.sweep import Sweep, is_sweep, open_runs, open_sweep, write_grid, write_sweep
 from runner.store.writing import RunResult, prepare, write_run
 
 __all__ = [
@@ -28,8 +28,10 @@ __all__ = [
     "open_sweep",
     "prepare",
     "run_hash",
+    "run_hashes",
     "simulated_part",
     "write_calibration",
+    "write_grid",
     "write_run",
     "write_sweep",
 ]

@@ -4,7 +4,9 @@ import contextlib
 import os
 import socket
 import time
+from collections.abc import Iterator
 from pathlib import Path
+from typing import BinaryIO
 
 from runner.errors import StoreError
 
@@ -22,11 +24,22 @@ def write_atomically(path: Path, content: bytes, flush: bool = True) -> None:
     Raises:
         StoreError: if the folder or disk does not take it; what stood there before is untouched.
     """
+    with open_atomically(path, flush) as file:
+        file.write(content)
+
+
+@contextlib.contextmanager
+def open_atomically(path: Path, flush: bool = True) -> Iterator[BinaryIO]:
+    """Open a file to write it part by part; see write_atomically. It is there once all is written without error.
+
+    Raises:
+        StoreError: if the folder or disk does not take it; what stood there before is untouched.
+    """
     temporary = path.with_name(f".{path.name}.{socket.gethostname()}.{os.getpid()}.tmp")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with temporary.open("wb") as file:
-            file.write(content)
+            yield file
             if flush:
                 file.flush()
                 os.fsync(file.fileno())

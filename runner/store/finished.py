@@ -1,11 +1,17 @@
 """The finished runs of an outputs folder, in folders of their own and in shards."""
 
+import os
+from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from runner.errors import StoreError
+from runner.store.names import Names, best_of_each, look_up
 from runner.store.run import Run, open_run
 from runner.store.seal import DamagedError
-from runner.store.shards import Outcome, open_row, outcome, read_outcomes, shard_files
+from runner.store.shards import Outcome, Outcomes, open_row, outcome, read_outcomes, shard_files
 from runner.store.stored import check_job
 
 
@@ -28,9 +34,9 @@ def find_outcome(outputs: Path, name: str) -> Outcome | None:
     Raises:
         DamagedError: if it is damaged.
     """
-    folder = outputs / "runs" / name
-    if not (folder / "metrics.json").exists():
+    if not os.path.exists(f"{outputs}/runs/{name}/metrics.json"):  # noqa: PTH110 - asked of each run of a sweep
         return None
+    folder = outputs / "runs" / name
     run = Run(folder, {}, check_job(folder, "metrics.json"))
     return outcome(run if run.sealed else open_run(folder))
 
@@ -46,22 +52,53 @@ class Finished:
 
     Attributes:
         damage: What is damaged of what was looked at, a text for each file; it counts as not there.
+        names: Names of the runs in shards, ascending, shape (n,).
+        rank: Rank of the outcome of each, shape (n,); see Outcome.
+        caveats: Number of caveats of each, shape (n,).
+        shard: Number of the shard that holds each, shape (n,); see `shard_of`.
+        row: Its row there, shape (n,).
     """
 
     def __init__(self, outputs: Path) -> None:
         self._outputs = outputs
         runs = outputs / "runs"
-        self._folders = {entry.name for entry in runs.iterdir()} if runs.is_dir() else set()
-        self._found: dict[str, tuple[Path, int, Outcome]] = {}
+        self._folders = {entry.name for entry in os.scandir(runs)} if runs.is_dir() else set()
+        self._shards: list[Path] = []
         self.damage: list[str] = []
+        parts: list[Outcomes] = []
         for path in shard_files(outputs):
             try:
-                for row, end in enumerate(read_outcomes(path)):
-                    known = self._found.get(end.name)
-                    if known is None or end.rank <= known[2].rank:
-                        self._found[end.name] = (path, row, end)
+                parts.append(read_outcomes(path))
+                self._shards.append(path)
             except DamagedError as error:
                 self.damage.append(str(error))
+        self._take(parts)
+
+    def _take(self, parts: Sequence[Outcomes]) -> None:
+        """Keep the better outcome of each run, by ascending name."""
+        sizes = [len(part) for part in parts]
+        names = np.concatenate([part.names for part in parts] or [np.zeros(0, dtype="S1")])
+        rank = np.concatenate([part.rank for part in parts] or [np.zeros(0, dtype=np.int8)])
+        kept = best_of_each(names, rank, -np.arange(len(names)))
+        starts = np.cumsum([0, *sizes])
+        self.names, self.rank = names[kept], rank[kept]
+        self.shard = np.searchsorted(starts, kept, side="right") - 1
+        self.row = kept - starts[self.shard]
+        self.caveats = np.concatenate([part.caveats for part in parts] or [np.zeros(0, dtype=np.int32)])[kept]
+        self._failures = {(shard, row): text for shard, part in enumerate(parts) for row, text in part.failures.items()}
+
+    def folders(self, names: Names) -> set[str]:
+        """Return those of some runs that may have a folder of their own."""
+        return self._folders.intersection(names) if self._folders else set()
+
+    def places(self, names: Names) -> NDArray[np.intp]:
+        """Return the places in `names` of those of some runs that are in shards, ascending."""
+        found = np.unique(self.places_of(names))
+        return found[found >= 0]
+
+    def places_of(self, names: Names) -> NDArray[np.intp]:
+        """Return the place in `names` of each of some runs, shape (n,); -1 for one that is in no shard."""
+        return look_up(names.texts, self.names)
 
     def in_folder(self, name: str) -> Outcome | None:
         """Return how the run in a folder of its own ended, or None when there is none."""
@@ -75,8 +112,17 @@ class Finished:
 
     def in_shard(self, name: str) -> Outcome | None:
         """Return how the run in a shard ended, or None when there is none."""
-        found = self._found.get(name)
-        return None if found is None else found[2]
+        place = int(look_up(Names.of([name]).texts, self.names)[0])
+        return None if place < 0 else self.outcome_at(place)
+
+    def outcome_at(self, place: int) -> Outcome:
+        """Return how the run at a place of `names` ended."""
+        failure = self._failures.get((int(self.shard[place]), int(self.row[place])), "")
+        return Outcome(self.names[place].decode(), failure, bool(self.rank[place] == 2), int(self.caveats[place]))
+
+    def shard_of(self, place: int) -> Path:
+        """Return the shard that holds the run at a place of `names`."""
+        return self._shards[int(self.shard[place])]
 
     def outcome(self, name: str) -> Outcome | None:
         """Return how a run ended, or None when it is not finished."""
@@ -89,8 +135,8 @@ class Finished:
         Raises:
             StoreError: if it is not finished, or damaged; tells damaged shards, in which it may be.
         """
-        shard = self._found.get(name)
-        if shard is None:
+        place = int(look_up(Names.of([name]).texts, self.names)[0])
+        if place < 0:
             try:
                 return open_run(self._outputs / "runs" / name)
             except DamagedError:
@@ -98,6 +144,6 @@ class Finished:
             except StoreError as error:
                 raise StoreError("; ".join([str(error), *self.damage])) from error
         end = self.in_folder(name)
-        if end is not None and end.rank <= shard[2].rank:
+        if end is not None and end.rank <= self.rank[place]:
             return open_run(self._outputs / "runs" / name)
-        return open_row(*shard[:2])
+        return open_row(self.shard_of(place), int(self.row[place]))

@@ -2,22 +2,29 @@
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, lru_cache
 from importlib.metadata import version
 from typing import Any
 
+from runner.compiled.engine import evaluator
+from runner.config.memory import Memory
 from runner.paths import package_dir
 from runner.plugins import GROUPS, added, source_files
+from runner.store.names import Names
 
 # These say where and under which name a run is kept, and what is told of it, not what is simulated.
 _LEFT_OUT = ("caveats", "limits", "outputs", "preset", "sweep")
 # The rooms and modules of the physics: what a run's result follows from. All others leave it as it is.
 _PHYSICS = (
-    "assembly.py", "calibration", "calibration_job.py", "config", "controllers", "environments", "execution.py",
-    "feasibility.py", "guard", "interaction.py", "loop", "metrics", "plants", "registry.py", "robots", "sensing",
-    "simulation.py", "trace.py", "trajectories",
+    "assembly.py", "batch.py", "batch_jobs.py", "calibration", "calibration_job.py", "compiled", "config",
+    "controllers", "environments", "execution.py", "feasibility.py", "guard", "interaction.py", "loop", "metrics",
+    "plants", "registry.py", "robots", "sensing", "simulation.py", "trace.py", "trajectories",
 )  # fmt: skip
+
+
+_MEMORY = Memory(4096)  # what the groups of configs give: texts, and the kinds that they name
+_PLACES = 12  # bytes of a digest that make a name
 
 
 def run_hash(resolved: Mapping[str, Any], urdf: str) -> str:
@@ -25,16 +32,47 @@ def run_hash(resolved: Mapping[str, Any], urdf: str) -> str:
 
     That is the resolved config (without outputs, sweep, limits, caveats, and preset, whose values the groups have
     taken), the URDF's text, the source of the physics and of the user's parts that it uses, and the versions of
-    PyBullet and Pinocchio.
+    PyBullet, Pinocchio and what evaluates compiled laws. It is hashed as JSON with sorted keys; the text of a group is
+    kept for others that share it, which must not be changed.
     """
-    content = {
-        "config": simulated_part(resolved),
-        "urdf": urdf,
-        "source": source_digest(),
-        "parts": _parts_digest(tuple(sorted(_parts(resolved)))),
-        "engines": _engines(),
-    }
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:24]
+    return hashlib.sha256("".join(_content(resolved, urdf)).encode()).digest()[:_PLACES].hex()
+
+
+def run_hashes(resolved: Mapping[str, Any], urdf: str, seeds: Sequence[int]) -> Names:
+    """Return the names of runs that differ in nothing but their seed; see run_hash."""
+    texts = list(_content(resolved, urdf))
+    place = sorted(simulated_part(resolved)).index("seed")
+    start, end = texts[place].removesuffix(json_text(resolved["seed"])), "".join(texts[place + 1 :]).encode()
+    begun = hashlib.sha256("".join([*texts[:place], start]).encode())
+
+    def packed(seed: int) -> bytes:
+        digest = begun.copy()
+        digest.update(b"%d%b" % (seed, end))
+        return digest.digest()[:_PLACES]
+
+    return Names.unpacked(b"".join(map(packed, seeds)))
+
+
+def _content(resolved: Mapping[str, Any], urdf: str) -> Iterator[str]:
+    """Yield the text that is hashed, JSON with sorted keys, in parts: one begins with each key of the config."""
+    config = simulated_part(resolved)
+    before = '{"config": {'
+    for key in sorted(config):
+        yield f"{before}{_key_text(key)}: {json_text(config[key])}"
+        before = ", "
+    yield "}" if config else f"{before}}}"
+    parts = _parts_digest(tuple(sorted(_parts(resolved))))
+    yield f', "engines": {json_text(_engines())}, "parts": "{parts}", "source": "{source_digest()}"'
+    yield f', "urdf": {_MEMORY.recall(_sorted_text, urdf)}}}'
+
+
+def json_text(value: object) -> str:
+    """Return a value of a config as JSON with sorted keys; that of a group is kept, which must not be changed."""
+    return _MEMORY.recall(_sorted_text, value) if isinstance(value, Mapping) else _sorted_text(value)
+
+
+_sorted_text = json.JSONEncoder(sort_keys=True).encode
+_key_text = lru_cache(maxsize=256)(_sorted_text)
 
 
 def simulated_part(resolved: Mapping[str, Any]) -> dict[str, Any]:
@@ -44,20 +82,25 @@ def simulated_part(resolved: Mapping[str, Any]) -> dict[str, Any]:
 
 def _parts(resolved: Mapping[str, Any]) -> set[str]:
     """Return the modules of the user's parts that a run uses: those whose kinds its config names, and all metrics."""
-    kinds = set(_kinds(resolved))
-    return {point.value for group in GROUPS for point in added(group) if group == "metric" or point.name in kinds}
+    points = [(group, point) for group in GROUPS for point in added(group)]
+    if not points:
+        return set()
+    kinds = {str(resolved["kind"])} if "kind" in resolved else set()
+    for value in resolved.values():
+        if isinstance(value, Mapping):
+            kinds |= _MEMORY.recall(_kinds, value)
+    return {point.value for group, point in points if group == "metric" or point.name in kinds}
 
 
-def _kinds(value: object) -> Iterator[str]:
-    """Yield every `kind` that a config names, at whatever depth."""
-    if isinstance(value, Mapping):
-        for key, inner in value.items():
-            yield from [str(inner)] if key == "kind" else _kinds(inner)
+def _kinds(group: Mapping[str, Any]) -> frozenset[str]:
+    """Return every `kind` that a group of a config names, at whatever depth."""
+    inner = (_kinds(value) for key, value in group.items() if isinstance(value, Mapping) and key != "kind")
+    return frozenset([str(group["kind"])] if "kind" in group else []).union(*inner)
 
 
 @cache
 def _engines() -> dict[str, str]:
-    return {name: version(name) for name in ("pybullet", "pin")}
+    return {name: version(name) for name in ("pybullet", "pin")} | evaluator()
 
 
 @cache

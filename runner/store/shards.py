@@ -1,27 +1,40 @@
 """Shards: finished runs of large sweeps that kept no trace, some hundred to a file.
 
 `outputs/shards/NUMBER-PLACE.DIGEST.parquet` has a row for each run: its hash, what went wrong, the number of its
-caveats, and config, URDF and record as a run's folder holds them. A shard is written once and whole, and its name holds
-its content's digest. The numbers count the commands that wrote shards, so that the later of two is known without a
-clock.
+caveats, config, URDF and record as a run's folder holds them, and the values of each metric. A shard is written once
+and whole, and its name holds its content's digest. The numbers count the commands that wrote shards, so that the later
+of two is known without a clock.
 """
 
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from runner.errors import StoreError
 from runner.store.atomic import write_atomically
+from runner.store.columns import list_column, text_column, truth_column, whole_column
+from runner.store.json_texts import encode_finite
+from runner.store.names import Names
 from runner.store.record import find_faults
 from runner.store.run import Run, describe_failure
 from runner.store.seal import SCHEMA, DamagedError, digest
 
+FloatArray = NDArray[np.float64]
+
 _COLUMNS = ("run", "failure", "cut_short", "config", "urdf", "record")
+_SHARED = ["failure", "urdf"]  # columns of which many rows are the same
 _CAVEATS = "caveats"  # a column that shards from before there were any lack
+_CUT_SHORT = 2  # the rank of that
+METRIC = "metric "
+"""What the name of a metric's column begins with; shards from before there were any lack them."""
+
 _HEX = 24  # digits of the digest in a name
 _MEND = "remove it, and the sweep's command makes its runs again"
 
@@ -45,7 +58,7 @@ class Outcome:
     @property
     def rank(self) -> int:
         """Which of two outcomes of one run counts, the lower: 0 for a good one, 1 for a failed, 2 for a cut short."""
-        return 2 if self.cut_short else 1 if self.failure else 0
+        return _CUT_SHORT if self.cut_short else 1 if self.failure else 0
 
 
 @dataclass(frozen=True)
@@ -74,6 +87,27 @@ class ShardRun(Run):
     def _table(self) -> Any:
         command = self.provenance["command"]
         raise StoreError(f"run {self.hash} kept no trace (sweep.trace); this simulates it again with one: {command}")
+
+
+@dataclass(frozen=True)
+class ShardRow:
+    """A run without trace as the row of a shard.
+
+    Attributes:
+        outcome: How it ended.
+        config: Its resolved config, as JSON.
+        urdf: The URDF's text.
+        record: Its record, as JSON.
+        metrics: Names and units of its metrics.
+        values: Their values, shape (repetitions, metrics), NaN for none.
+    """
+
+    outcome: Outcome
+    config: str
+    urdf: str
+    record: str
+    metrics: tuple[tuple[str, str], ...]
+    values: FloatArray
 
 
 def outcome(run: Run) -> Outcome:
@@ -105,7 +139,14 @@ def find_shards(outputs: Path, name: str) -> list[Path]:
     return sorted((outputs / "shards").glob(f"{name}.*parquet"))
 
 
-def write_shard(outputs: Path, name: str, runs: Sequence[ShardRun]) -> Path:
+def _row_of(run: ShardRun) -> ShardRow:
+    metrics = tuple((name, str(metric["unit"])) for name, metric in run.metrics.items())
+    values = np.array([metric["values"] for metric in run.metrics.values()], dtype=np.float64)  # None is NaN
+    values = values.T if metrics else np.zeros((0, 0))
+    return ShardRow(outcome(run), json.dumps(run.config), run.urdf, encode_finite(run.record), metrics, values)
+
+
+def write_shard(outputs: Path, name: str, runs: Sequence[ShardRun | ShardRow]) -> Path:
     """Store runs without trace in one file, and return it.
 
     Raises:
@@ -114,39 +155,79 @@ def write_shard(outputs: Path, name: str, runs: Sequence[ShardRun]) -> Path:
     import pyarrow
     import pyarrow.parquet
 
-    ends = [outcome(run) for run in runs]
+    rows = [_row_of(run) if isinstance(run, ShardRun) else run for run in runs]
+    ends = [row.outcome for row in rows]
     columns = {
-        "run": [end.name for end in ends],
-        "failure": [end.failure for end in ends],
-        "cut_short": [end.cut_short for end in ends],
-        "config": [json.dumps(run.config) for run in runs],
-        "urdf": [run.urdf for run in runs],
-        "record": [json.dumps(run.record, allow_nan=False) for run in runs],
-        _CAVEATS: [end.caveats for end in ends],
+        "run": text_column([end.name for end in ends]),
+        "failure": text_column([end.failure for end in ends]),
+        "cut_short": truth_column([end.cut_short for end in ends]),
+        "config": text_column([row.config for row in rows]),
+        "urdf": text_column([row.urdf for row in rows]),
+        "record": text_column([row.record for row in rows]),
+        _CAVEATS: whole_column([end.caveats for end in ends]),
     }
-    kinds = {"cut_short": pyarrow.bool_(), _CAVEATS: pyarrow.int32()}
-    arrays = [
-        pyarrow.array(values, kinds.get(name, pyarrow.string()), from_pandas=False) for name, values in columns.items()
-    ]
-    table = pyarrow.Table.from_arrays(arrays, names=list(columns)).replace_schema_metadata({"schema": str(SCHEMA)})
+    fields = [pyarrow.field(name, column.type) for name, column in columns.items()]
+    measured = list(metric_columns([(row.metrics, row.values) for row in rows]))
+    table = pyarrow.Table.from_arrays(
+        [*columns.values(), *(column for _, column in measured)],
+        schema=pyarrow.schema([*fields, *(field for field, _ in measured)], {"schema": str(SCHEMA)}),
+    )
     buffer = io.BytesIO()
-    pyarrow.parquet.write_table(table, buffer, compression="zstd")
+    pyarrow.parquet.write_table(table, buffer, compression="zstd", use_dictionary=_SHARED, write_statistics=False)
     content = buffer.getvalue()
     path = outputs / "shards" / f"{name}.{digest(content)[:_HEX]}.parquet"
     write_atomically(path, content)
     return path
 
 
-def read_outcomes(path: Path) -> list[Outcome]:
-    """Return how the runs of a shard ended, row by row.
+class Outcomes(Sequence[Outcome]):
+    """How the runs of a shard ended, row by row.
+
+    Args:
+        names: Name of each.
+        failures: When, where and why each failed; empty for a good one.
+        cut_short: Whether something else than its physics ended it.
+        caveats: Number of its caveats.
+
+    Attributes:
+        names: Name of each, shape (n,).
+        rank: Rank of each, shape (n,); see Outcome.
+        caveats: As given, shape (n,).
+        failures: As given, of the rows that failed.
+    """
+
+    def __init__(
+        self, names: Sequence[str], failures: Sequence[str], cut_short: Sequence[bool], caveats: Sequence[int]
+    ) -> None:
+        self.names = Names.of(names).texts
+        self.failures = {row: text for row, text in enumerate(failures) if text}
+        self.rank = np.where(cut_short, _CUT_SHORT, np.array(failures, dtype=object) != "").astype(np.int8)
+        self.caveats = np.array(caveats, dtype=np.int32)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __getitem__(self, row: Any) -> Any:
+        if isinstance(row, slice):
+            return [self[each] for each in range(*row.indices(len(self)))]
+        row = range(len(self))[row]
+        failure, name = self.failures.get(row, ""), self.names[row].decode()
+        return Outcome(name, failure, bool(self.rank[row] == _CUT_SHORT), int(self.caveats[row]))
+
+
+def read_outcomes(path: Path) -> Outcomes:
+    """Return how the runs of a shard ended.
 
     Raises:
         DamagedError: if it cannot be read, or is not as it was written.
     """
     table = _read(path, _COLUMNS[:3], _CAVEATS)
     counts = table[_CAVEATS].to_pylist() if _CAVEATS in table.column_names else [0] * len(table)
-    rows = zip(*(table[name].to_pylist() for name in _COLUMNS[:3]), counts, strict=True)
-    return [Outcome(*row) for row in rows]
+    names, failures, cut_short = (table[name].to_pylist() for name in _COLUMNS[:3])
+    try:
+        return Outcomes(names, failures, cut_short, counts)
+    except (AttributeError, TypeError, ValueError) as error:
+        raise DamagedError(f"cannot read {path}: it is no shard: {error}; {_MEND}") from error
 
 
 def open_row(path: Path, row: int) -> ShardRun:
@@ -172,13 +253,47 @@ def is_sealed_shard(path: Path) -> bool:
     return path.name.count(".") > 1
 
 
+def metric_columns(runs: Sequence[tuple[tuple[tuple[str, str], ...], FloatArray]]) -> Iterator[tuple[Any, Any]]:
+    """Yield a column of values for each metric, which are read faster than the records: its field and the values.
+
+    Args:
+        runs: Names and units of the metrics of each run, and their values, shape (repetitions, metrics), NaN for none.
+    """
+    import pyarrow
+
+    sets: dict[tuple[tuple[str, str], ...], int] = {}
+    which = np.array([sets.setdefault(metrics, len(sets)) for metrics, _ in runs])
+    sizes = np.array([len(values) for _, values in runs])
+    of_value = np.repeat(which, sizes)
+    parts = [
+        np.concatenate([runs[row][1] for row in np.flatnonzero(which == place).tolist()]) for place in range(len(sets))
+    ]
+    for metric in dict.fromkeys(metric for metrics in sets for metric in metrics):
+        flat = np.full(len(of_value), np.nan)
+        for place, metrics in enumerate(sets):
+            if metric in metrics:
+                flat[of_value == place] = parts[place][:, metrics.index(metric)]
+        has = np.array([metric in metrics for metrics in sets])
+        column = list_column(flat[has[of_value]], np.where(has[which], sizes, 0), has[which])
+        yield pyarrow.field(METRIC + metric[0], column.type, metadata={"unit": metric[1]}), column
+
+
+def read_columns(path: Path, columns: Sequence[str]) -> Any:
+    """Return some columns of a shard, and those of the metrics where it has them, as a pyarrow.Table.
+
+    Raises:
+        DamagedError: if it cannot be read, or is not as it was written.
+    """
+    return _read(path, columns, METRIC)
+
+
 @lru_cache(maxsize=4)  # runs are read in order, which is nearly the order of the shards
 def _read_rows(path: Path) -> Any:
     return _read(path, _COLUMNS)
 
 
-def _read(path: Path, columns: Sequence[str], newer: str = "") -> Any:
-    """Return columns of a shard, and one that older shards lack where it is there."""
+def _read(path: Path, columns: Sequence[str], newer: str | None = None) -> Any:
+    """Return columns of a shard, and those, beginning with a text, that older shards lack where they are there."""
     import pyarrow
     import pyarrow.parquet
 
@@ -189,7 +304,7 @@ def _read(path: Path, columns: Sequence[str], newer: str = "") -> Any:
         file = pyarrow.parquet.ParquetFile(pyarrow.BufferReader(content))
         if not is_sealed_shard(path) and b"schema" in (file.schema_arrow.metadata or {}):
             raise DamagedError(f"cannot read {path}: its name has lost its digest; {_MEND}")
-        wanted = [*columns, *(name for name in file.schema_arrow.names if name == newer)]
+        wanted = [*columns, *(name for name in file.schema_arrow.names if newer and name.startswith(newer))]
         table = file.read(wanted)
     except (OSError, pyarrow.ArrowException) as error:
         raise DamagedError(f"cannot read {path}: {str(error).splitlines()[0]}; {_MEND}") from error

@@ -2,17 +2,26 @@
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from runner.errors import StoreError
 from runner.store.atomic import write_atomically
+from runner.store.axes import Counted, GridOverrides, read_axes
 from runner.store.finished import Finished
+from runner.store.names import Names
 from runner.store.run import Run, open_run
-from runner.store.seal import DamagedError, head, is_sealed, read_json, sealed
+from runner.store.seal import DamagedError, digest, head, is_sealed, read_file, read_json, sealed
 
 _FILE = "sweep.json"
+_RUNS = "runs.bin"  # of a grid: the hash of each cell's run, 12 bytes each
+_AT_ONCE = 10_000  # rows
 _MEND = "the sweep's command writes it again"
 
 
@@ -39,6 +48,24 @@ class Sweep:
         """The outputs folder that holds its runs."""
         return self.folder.parent.parent
 
+    def found(self) -> Iterator["tuple[int, Run] | InShard"]:
+        """Find the run of each cell: yield the cell with its run, or many cells with the shard that holds their runs.
+
+        Raises:
+            StoreError: if one is missing or damaged.
+        """
+        finished, names = Finished(self.outputs), Names.of(self.hashes)
+        places = finished.places_of(names)
+        of_folder = finished.folders(names)
+        places[[cell for cell, name in enumerate(names) if name in of_folder] if of_folder else []] = -1
+        for cell in np.flatnonzero(places < 0).tolist():
+            yield cell, self._open(finished, names[cell])
+        shards = finished.shard[places] if len(finished.names) else places
+        order = np.argsort(shards, kind="stable")
+        order = order[places[order] >= 0]
+        for cells in np.split(order, np.flatnonzero(np.diff(shards[order])) + 1) if len(order) else ():
+            yield InShard(finished.shard_of(int(places[cells[0]])), finished.row[places[cells]], cells)
+
     def runs(self) -> Iterator[Run]:
         """Open its runs, one after the other, in the order of the jobs.
 
@@ -47,14 +74,32 @@ class Sweep:
         """
         finished = Finished(self.outputs)
         for name in self.hashes:
-            try:
-                yield finished.open(name)
-            except StoreError as error:
-                raise StoreError(f"{error}; `runner status {self.folder}` says what is left of the sweep") from error
+            yield self._open(finished, name)
+
+    def _open(self, finished: Finished, name: str) -> Run:
+        try:
+            return finished.open(name)
+        except StoreError as error:
+            raise StoreError(f"{error}; `runner status {self.folder}` says what is left of the sweep") from error
+
+
+@dataclass(frozen=True)
+class InShard:
+    """Cells of a sweep whose runs one shard holds.
+
+    Attributes:
+        path: The shard.
+        rows: Row of the run of each cell there, shape (n,).
+        cells: Numbers of the cells, ascending, shape (n,).
+    """
+
+    path: Path
+    rows: NDArray[np.intp]
+    cells: NDArray[np.intp]
 
 
 def write_sweep(outputs: Path, jobs: Sequence[tuple[Sequence[str], str]], command: str) -> Path:
-    """Store which overrides lead to which run, and return the sweep's folder.
+    """Store which overrides lead to which run, job by job, and return the sweep's folder.
 
     Args:
         outputs: The outputs folder.
@@ -64,15 +109,35 @@ def write_sweep(outputs: Path, jobs: Sequence[tuple[Sequence[str], str]], comman
     Raises:
         StoreError: if the disk does not take it.
     """
-    rows = _rows(jobs)
+    rows = list(_rows(jobs))
     folder = outputs / "sweeps" / _name(rows)
     write_atomically(folder / _FILE, _sealed_sweep(rows, command))
     return folder
 
 
+def write_grid(outputs: Path, axes: GridOverrides, names: Names, command: str) -> Path:
+    """Store a sweep over a grid by its axes, with the runs' names in a file beside, and return the sweep's folder.
+
+    Args:
+        outputs: The outputs folder.
+        axes: Overrides of each cell.
+        names: Hash of each cell's run.
+        command: The command that makes the sweep; no part of its name.
+
+    Raises:
+        StoreError: if the disk does not take it.
+    """
+    folder = outputs / "sweeps" / _name(_grid_rows(axes, names))
+    runs = names.packed()
+    write_atomically(folder / _RUNS, runs)
+    content = {**head(), "command": command, "axes": axes.content(), "cells": len(names), "runs": digest(runs)}
+    write_atomically(folder / _FILE, sealed(json.dumps(content, indent=1) + "\n"))
+    return folder
+
+
 def write_jobs(folder: Path, jobs: Sequence[tuple[Sequence[str], str]], command: str) -> None:
     """Store which overrides lead to which run in a folder of another kind, such as a tuning's: see write_sweep."""
-    write_atomically(folder / _FILE, _sealed_sweep(_rows(jobs), command))
+    write_atomically(folder / _FILE, _sealed_sweep(list(_rows(jobs)), command))
 
 
 def _sealed_sweep(rows: Sequence[str], command: str) -> bytes:
@@ -80,12 +145,46 @@ def _sealed_sweep(rows: Sequence[str], command: str) -> bytes:
     return sealed(f'{start}, "jobs": [\n' + ",\n".join(rows) + "\n]}\n")
 
 
-def _rows(jobs: Iterable[tuple[Sequence[str], str]]) -> list[str]:
-    return [json.dumps({"overrides": list(overrides), "run": name}) for overrides, name in jobs]
+def _rows(jobs: Iterable[tuple[Sequence[str], str]]) -> Iterator[str]:
+    return (json.dumps({"overrides": list(overrides), "run": name}) for overrides, name in jobs)
 
 
-def _name(rows: Sequence[str]) -> str:
-    return hashlib.sha256("\n".join(rows).encode()).hexdigest()[:24]
+def _grid_rows(axes: GridOverrides, names: Names) -> Iterator[str]:
+    """Yield what `_rows` does of the cells of a grid, in which most of their texts are the same."""
+    overrides = _joined(axes.axes)
+    for first in range(0, len(names), _AT_ONCE):
+        for name, texts in zip(names.texts[first : first + _AT_ONCE].astype(str).tolist(), overrides, strict=False):
+            yield f'{{"overrides": [{texts}], "run": "{name}"}}'
+
+
+def _joined(axes: Sequence[Sequence[str]]) -> Iterator[str]:
+    """Yield the overrides of each cell of a grid as JSON, without brackets; the last axis changes fastest."""
+    if not axes:
+        yield ""
+        return
+    *others, last = axes
+    kept = list(_encoded(last)) if len(last) <= _AT_ONCE else None
+    for before in _joined(others):
+        start = f"{before}, " if before else ""
+        for text in kept or _encoded(last):
+            yield f"{start}{text}" if text else before
+
+
+def _encoded(axis: Sequence[str]) -> Iterator[str]:
+    """Yield the overrides of an axis as JSON; nothing of an empty one."""
+    if isinstance(axis, Counted):
+        start = json.dumps(axis.start)[:-1]
+        return (f'{start}{number}"' for number in axis.numbers)
+    return (json.dumps(text) if text else "" for text in axis)
+
+
+def _name(rows: Iterable[str]) -> str:
+    """Return the name of a sweep's folder: a digest over the rows of its jobs, however it is stored."""
+    found, left, between = hashlib.sha256(), iter(rows), ""
+    while some := list(islice(left, _AT_ONCE)):
+        found.update((between + "\n".join(some)).encode())
+        between = "\n"
+    return found.hexdigest()[:24]
 
 
 def is_sweep(folder: Path) -> bool:
@@ -106,14 +205,37 @@ def open_sweep(folder: Path) -> Sweep:
             f"{folder} is no sweep: it has no {_FILE}; `runner -m OVERRIDES` makes one, and prints its folder"
         )
     content = read_json(path, _MEND)
+    command = content.get("command", "")
+    if not isinstance(command, str):
+        raise DamagedError(f"cannot read {path}: its command is no text; {_MEND}")
+    read = _read_grid if "axes" in content else _read_jobs
+    overrides, hashes, rows = read(path, content)
+    place = folder.resolve()
+    if place.parent.name == "sweeps" and _name(rows) != place.name:
+        raise DamagedError(f"cannot read {path}: it is of another sweep than its folder is named after; {_MEND}")
+    return Sweep(folder, overrides, hashes, command, is_sealed(content))
+
+
+def _read_jobs(path: Path, content: Mapping[str, Any]) -> tuple[Sequence[Sequence[str]], Sequence[str], Iterator[str]]:
+    """Return overrides and hashes of jobs that are stored one by one, and the rows that name the sweep."""
     jobs = content.get("jobs")
-    if not (isinstance(jobs, list) and all(map(_is_job, jobs)) and isinstance(content.get("command", ""), str)):
+    if not (isinstance(jobs, list) and all(map(_is_job, jobs))):
         raise DamagedError(f"cannot read {path}: it is no sweep's: it needs jobs with overrides and run each; {_MEND}")
     overrides, hashes = [tuple(job["overrides"]) for job in jobs], [job["run"] for job in jobs]
-    place = folder.resolve()
-    if place.parent.name == "sweeps" and _name(_rows(zip(overrides, hashes, strict=True))) != place.name:
-        raise DamagedError(f"cannot read {path}: it is of another sweep than its folder is named after; {_MEND}")
-    return Sweep(folder, overrides, hashes, content.get("command", ""), is_sealed(content))
+    return overrides, hashes, _rows(zip(overrides, hashes, strict=True))
+
+
+def _read_grid(path: Path, content: Mapping[str, Any]) -> tuple[Sequence[Sequence[str]], Sequence[str], Iterator[str]]:
+    """Return overrides and hashes of the cells of a grid, and the rows that name the sweep."""
+    names = Names.unpacked(read_file(path.with_name(_RUNS), {_RUNS: str(content.get("runs"))}, _MEND))
+    try:
+        axes = read_axes(content["axes"])
+    except StoreError as error:
+        raise DamagedError(f"cannot read {path}: {error}; {_MEND}") from error
+    if not len(axes) == len(names) == content.get("cells"):
+        count = f"its axes have {len(axes)} cells, and {len(names)} runs stand beside"
+        raise DamagedError(f"cannot read {path}: {count}; {_MEND}")
+    return axes, names, _grid_rows(axes, names)
 
 
 def _is_job(job: object) -> bool:

@@ -12,10 +12,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.config.memory import Memory
 from runner.store import simulated_part
 
 if TYPE_CHECKING:
     from runner.sweeps.measurements import Axis
+
+Codes = NDArray[np.int32]
+Levels = NDArray[np.intp]
 
 _NAMES = ("kind", "name")  # of the option that an axis chooses
 # Of a robot: what acts by itself. All else is the arm, or what it proposes to other groups, where it is found.
@@ -46,32 +50,51 @@ class Resolved:
         self._first: Mapping[str, Any] = {}
         self._cells = 0
         self._given: set[str] = set()
-        self._codes: dict[str, list[int]] = {}  # number of each cell's text, of those keys that differ so far
+        self._codes: dict[str, Codes] = {}  # number of each cell's text, of those keys that differ so far
         self._texts: dict[str, dict[str | None, int]] = {}  # numbers of a key's texts, from that of the first cell on
+        self._memory = Memory(1024)
 
-    def add(self, config: Mapping[str, Any], overrides: Sequence[str] = ()) -> None:
-        """Take the config of the next cell; keys that say where and how a run is made are left out.
+    def add(
+        self, config: Mapping[str, Any], overrides: Sequence[str] = (), cells: "range | Levels | None" = None
+    ) -> None:
+        """Take the config of one or more cells; keys that say where and how a run is made are left out.
 
         Args:
-            config: Its resolved config.
+            config: The resolved config; a group that is one object in several configs must not be changed.
             overrides: What gave it: the keys of these are axes, or the same in all cells, and take no memory (but for
                 those that hold other keys' values).
+            cells: Numbers of the cells, shape (n,) where they are an array; None for the next one.
         """
+        cells = range(self._cells, self._cells + 1) if cells is None else cells
         part = simulated_part(config)
         self._given.update(text.lstrip("+").partition("=")[0] for text in overrides if "${" not in text)
         self._first = self._first or part
         # Most groups are the same in all cells, and are not looked at.
-        changed = [name for name in {**self._first, **part} if self._first.get(name) != part.get(name)]
-        before, now = (_flat({name: some[name] for name in changed if name in some}) for some in (self._first, part))
+        changed = [name for name in {**self._first, **part} if not _is_same(self._first.get(name), part.get(name))]
+        before, now = (self._entries(some, changed) for some in (self._first, part))
+        self._cells = max(self._cells, max(cells[0], cells[-1]) + 1)
         for key in dict.fromkeys([*before, *now]):
             if key in self._given:
                 continue
-            if key in self._codes or before.get(key) != now.get(key):
+            if before.get(key) != now.get(key):
                 texts = self._texts.setdefault(key, {before.get(key): 0})
-                codes = self._codes.setdefault(key, [])
-                codes.extend([0] * (self._cells - len(codes)))
-                codes.append(texts.setdefault(now.get(key), len(texts)))
-        self._cells += 1
+                self._put(key, cells, texts.setdefault(now.get(key), len(texts)))
+
+    def _entries(self, config: Mapping[str, Any], names: Sequence[str]) -> dict[str, str]:
+        """Return the keys and texts of some groups of a config."""
+        found: dict[str, str] = {}
+        for name in names:
+            if name in config:
+                found |= self._memory.recall(_flat, name, config[name])
+        return found
+
+    def _put(self, key: str, cells: "range | Levels", code: int) -> None:
+        codes = self._codes.get(key)
+        if codes is None or len(codes) < self._cells:
+            longer = np.zeros(max(64, 2 * self._cells), dtype=np.int32)
+            longer[: 0 if codes is None else len(codes)] = () if codes is None else codes
+            codes = self._codes[key] = longer
+        codes[slice(cells.start, cells.stop, cells.step) if isinstance(cells, range) else cells] = code
 
     def differences(self, axes: Sequence["Axis"]) -> list[Difference]:
         """Return what differs beyond the axes, in the order in which cells show it."""
@@ -80,7 +103,9 @@ class Resolved:
             if key in self._given:
                 continue
             texts = list(self._texts[key])
-            codes = np.array(some + [0] * (self._cells - len(some)), dtype=np.intp)
+            codes = np.zeros(self._cells, dtype=np.intp)
+            count = min(len(some), self._cells)
+            codes[:count] = some[:count]
             group = key.partition(".")[0]
             of_option = any(axis.name == group != key for axis in axes)
             if any(key == axis.name or (key.startswith(f"{axis.name}.") and axis.name != group) for axis in axes):
@@ -89,7 +114,7 @@ class Resolved:
                 continue
             # What one option has and another has not is what they are.
             present = codes != texts.index(None) if of_option and None in texts else np.ones(len(codes), dtype=bool)
-            if np.unique(codes[present]).size > 1:
+            if np.any(codes[present] != codes[present][:1]):
                 found.append(_difference(key, codes, texts, present, axes))
         return found
 
@@ -129,19 +154,34 @@ def _is_option(key: str) -> bool:
 
 
 def _difference(
-    key: str, codes: NDArray[np.intp], texts: Sequence[str | None], present: NDArray[np.bool_], axes: Sequence["Axis"]
+    key: str, codes: Levels, texts: Sequence[str | None], present: NDArray[np.bool_], axes: Sequence["Axis"]
 ) -> Difference:
+    codes = codes[present]
     for count in range(1, min(len(axes), _MOST_TOGETHER) + 1):
         for some in itertools.combinations(axes, count):
-            pairs = np.unique(np.column_stack([*(axis.level for axis in some), codes])[present], axis=0)
-            if len(np.unique(pairs[:, :-1], axis=0)) == len(pairs):
+            places = [axis.level[present] for axis in some]
+            together = _numbered(places, [len(axis.values) for axis in some])
+            one = np.zeros(int(together.max()) + 1, dtype=np.intp)
+            one[together] = codes
+            if np.array_equal(one[together], codes):
+                first = np.unique(together, return_index=True)[1]
                 levels: dict[str, list[str]] = {}
-                for *places, code in pairs.tolist():
-                    name = " and ".join(_name(axis, place) for axis, place in zip(some, places, strict=True))
-                    levels.setdefault(texts[code] or "–", []).append(name)
+                for cell in first.tolist():
+                    name = " and ".join(_name(axis, int(place[cell])) for axis, place in zip(some, places, strict=True))
+                    levels.setdefault(texts[codes[cell]] or "–", []).append(name)
                 values = [(", ".join(names), text) for text, names in levels.items()]
                 return Difference(key, tuple(axis.name for axis in some), values)
-    return Difference(key, (), [("", texts[code] or "–") for code in np.unique(codes[present]).tolist()])
+    return Difference(key, (), [("", texts[code] or "–") for code in np.unique(codes).tolist()])
+
+
+def _numbered(levels: Sequence[Levels], counts: Sequence[int]) -> Levels:
+    """Return one number for each combination of levels that occurs, shape (cells,), in the order of the levels."""
+    together = levels[0]
+    for level, count in zip(levels[1:], counts[1:], strict=True):
+        together = together * count + level
+    if int(together.max()) < 4 * len(together) + 64:
+        return together
+    return np.asarray(np.unique(together, return_inverse=True)[1])
 
 
 def _name(axis: "Axis", level: int) -> str:
@@ -149,8 +189,12 @@ def _name(axis: "Axis", level: int) -> str:
     return value if isinstance(value, str) else f"{value:g}"
 
 
-def _flat(config: Mapping[str, Any]) -> dict[str, str]:
-    return dict(_entries(config, ""))
+def _is_same(one: Any, other: Any) -> bool:
+    return one is other or bool(one == other)
+
+
+def _flat(name: str, value: Any) -> dict[str, str]:
+    return dict(_entries({name: value}, ""))
 
 
 def _entries(config: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, str]]:

@@ -1,12 +1,13 @@
 """Runs and calibrations given one by one, as the plan of a published work."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from runner.config.compose import Composed
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.options import groups
 from runner.config.overrides import force
+from runner.sweeps.block import Block
 from runner.sweeps.loading import Loader
 from runner.sweeps.swept import SweptKey, parse_sweep
 from runner.sweeps.template import Template
@@ -45,8 +46,11 @@ class Listed:
         self._items = tuple(items.values())
         self._keys = [self._parse(item, shared) for item in self._items]
         self._shared: dict[tuple[object, ...], list[int]] = {}
+        self._places: list[int] = []  # of each cell among those composed with it
         for cell, keys in enumerate(self._keys):
-            self._shared.setdefault(self._group(cell, keys), []).append(cell)
+            together = self._shared.setdefault(self._group(cell, keys), [])
+            self._places.append(len(together))
+            together.append(cell)
         self._templates: dict[tuple[object, ...], Template] = {}
 
     def __len__(self) -> int:
@@ -56,12 +60,23 @@ class Listed:
         """Return the overrides of a cell; see Plan."""
         return self._items[cell].overrides
 
+    def axes(self) -> None:
+        """Return None: they are no grid; see Plan."""
+
+    def blocks(self) -> Iterator[Block]:
+        """Yield the cells one by one; see Plan."""
+        return (Block(range(cell, cell + 1)) for cell in range(len(self)))
+
+    def alike(self, cells: Sequence[int]) -> Iterator[tuple[Sequence[int], Sequence[Composed]]]:
+        """Yield the cells one by one, with their configs; see Plan."""
+        return (([cell], [self.composed(cell)]) for cell in cells)
+
     def composed(self, cell: int) -> Composed:
         """Return the composed config of a cell; see Plan."""
         group = self._group(cell, self._keys[cell])
         if group not in self._templates:
             self._templates[group] = self._compose(group)
-        template, place = self._templates[group], self._shared[group].index(cell)
+        template, place = self._templates[group], self._places[cell]
         values = [key for key in self._keys[cell] if not key.option]
         resolved = template.resolve([place] * len(values))
         item = self._items[cell]

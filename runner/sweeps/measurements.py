@@ -1,6 +1,5 @@
 """All that a sweep measured, cell by cell: swept axes, status, and every metric in every repetition."""
 
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -8,10 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.caveats import changes_since
-from runner.store import Run
+from runner.store import Run, Sweep
+from runner.store.axes import GridOverrides
+from runner.store.sweep import InShard
 from runner.sweeps.differing import Difference, Resolved
-from runner.sweeps.resolved import Resolver
+from runner.sweeps.gathering import Gathered
 from runner.sweeps.swept import is_simulated
 
 FloatArray = NDArray[np.float64]
@@ -34,7 +34,8 @@ class Axis:
     @property
     def numbers(self) -> FloatArray | None:
         """Its values as numbers, shape (levels,), or None where they are texts."""
-        return None if any(isinstance(value, str) for value in self.values) else np.array(self.values, dtype=float)
+        texts = len(self.values) > 0 and isinstance(self.values[0], str)
+        return None if texts else np.array(self.values, dtype=float)
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ class Measurements:
     provenance: Mapping[str, Sequence[str]]
     caveats: Sequence[Sequence[Mapping[str, Any]]] = ()
     caveat_changes: Mapping[str, int] = field(default_factory=dict)
-    seeds: Sequence[int] = ()
+    seeds: Sequence[int] | NDArray[np.int64] = ()
     differences: Sequence[Difference] = ()
 
     @property
@@ -92,16 +93,22 @@ class Measurements:
 
     def medians(self, metric: str) -> FloatArray:
         """Return the median of a metric in each cell, shape (cells,): infinite or NaN as its values."""
-        ordered = np.sort(self.values[metric], axis=1)  # NaN, which is no repetition, comes last
-        count = np.sum(~np.isnan(ordered), axis=1)
-        cells = np.arange(len(ordered))
-        low, high = ordered[cells, np.maximum(count - 1, 0) // 2], ordered[cells, count // 2]
-        medians: FloatArray = (low + high) / 2
-        return medians
+        return medians(np.sort(self.values[metric], axis=1))  # NaN, which is no repetition, comes last
+
+
+def medians(ordered: FloatArray) -> FloatArray:
+    """Return the median of each row of values, shape (cells, repetitions), ascending, NaN last: shape (cells,)."""
+    if ordered.shape[1] == 1:
+        return ordered[:, 0].copy()
+    count = np.sum(~np.isnan(ordered), axis=1)
+    cells = np.arange(len(ordered))
+    low, high = ordered[cells, np.maximum(count - 1, 0) // 2], ordered[cells, count // 2]
+    found: FloatArray = (low + high) / 2
+    return found
 
 
 def measure(overrides: Sequence[Sequence[str]], runs: Iterable[Run]) -> Measurements:
-    """Read the runs of a sweep, one at a time.
+    """Take runs, one by one.
 
     Args:
         overrides: Overrides of each job, as typed.
@@ -110,92 +117,100 @@ def measure(overrides: Sequence[Sequence[str]], runs: Iterable[Run]) -> Measurem
     Raises:
         StoreError: If a run is missing or damaged.
     """
-    hashes: list[str] = []
-    statuses: list[str] = []
-    failures: list[str] = []
-    units: dict[str, str] = {}
-    provenance: dict[str, dict[str, None]] = {}
-    rows: list[Mapping[str, FloatArray]] = []
-    caveats: list[Sequence[Mapping[str, Any]]] = []
-    changes: Counter[str] = Counter()
-    seeds: list[int] = []
-    resolver, resolved = Resolver(), Resolved()
-    for run, given in zip(runs, overrides, strict=True):
-        resolved.add(resolver.resolve(run), given)
-        seeds.append(int(run.provenance["seed"]))
-        hashes.append(run.hash)
-        statuses.append(run.status)
-        failures.append(run.failure_text)
-        units |= {name: str(metric["unit"]) for name, metric in run.metrics.items()}
-        rows.append(_values(run))
-        caveats.append(run.caveats)
-        changes.update(changes_since(run.caveat_rules))
-        for key, text in _made_by(run):
-            provenance.setdefault(key, {})[text] = None
+    gathered = Gathered(len(overrides))
+    for cell, (run, _) in enumerate(zip(runs, overrides, strict=True)):
+        gathered.add_run(cell, run)
+    return _measured(overrides, gathered)
+
+
+def measure_sweep(sweep: Sweep) -> Measurements:
+    """Read the runs of a sweep, those in shards a shard at once.
+
+    Raises:
+        StoreError: If a run is missing or damaged.
+    """
+    gathered = Gathered(len(sweep.hashes))
+    for found in sweep.found():
+        if isinstance(found, InShard):
+            gathered.add_shard(found.path, found.rows, found.cells)
+        else:
+            gathered.add_run(*found)
+    return _measured(sweep.overrides, gathered)
+
+
+def _measured(overrides: Sequence[Sequence[str]], gathered: Gathered) -> Measurements:
     axes, fixed = axes_of(overrides)
-    width = max((len(values) for row in rows for values in row.values()), default=1)
-    values = {name: np.full((len(rows), width), np.nan) for name in units}
-    for cell, row in enumerate(rows):
-        # A run of which no repetition ended stores no metric at all.
-        lost = {} if row or statuses[cell] == "ok" else {name: np.full(width, np.inf) for name in units}
-        for name, found in (row or lost).items():
-            values[name][cell, : len(found)] = found
-    made_by = {key: sorted(texts) for key, texts in provenance.items()}
+    keys = [axis.name for axis in axes] + [text.partition("=")[0] for text in fixed]
+    resolved = Resolved()
+    for config, members in gathered.configs:
+        cells = np.concatenate(members)
+        for some in [cells] if "seed" in keys else _by_seed(cells, gathered.seeds):
+            resolved.add({**config, "seed": int(gathered.seeds[some[0]])}, overrides[int(cells[0])], some)
+    provenance = gathered.provenance
+    if "seed" in provenance:
+        provenance["seed"] = dict.fromkeys(map(str, np.unique(gathered.seeds).tolist()))
     return Measurements(
         axes,
         fixed,
-        hashes,
-        statuses,
-        failures,
-        units,
-        values,
-        made_by,
-        caveats,
-        changes,
-        seeds,
+        gathered.hashes,
+        ["failed" if failure else "ok" for failure in gathered.failures],
+        gathered.failures,
+        gathered.units,
+        gathered.values(),
+        {key: sorted(texts) for key, texts in provenance.items()},
+        gathered.caveats,
+        gathered.changes,
+        gathered.seeds,
         resolved.differences(axes),
     )
 
 
-def _made_by(run: Run) -> Iterator[tuple[str, str]]:
-    record = run.provenance
-    yield "plant", f"{run.config['plant']['kind']}, step {record['plant_step']:g} s"
-    yield "commit", str(record["commit"] or "none (installed package)")
-    yield "seed", str(record["seed"])
-    yield "machine", str(record["machine"])
-    yield from ((name, str(version)) for name, version in record["versions"].items())
-    yield "made on", str(record["date"])
-    if not run.sealed:
-        yield "unsealed", "runs without digests: damage to them is not found"
-
-
-def _values(run: Run) -> dict[str, FloatArray]:
-    return {
-        name: np.array([np.inf if value is None else value for value in metric["values"]], dtype=float)
-        for name, metric in run.metrics.items()
-    }
+def _by_seed(cells: NDArray[np.intp], seeds: NDArray[np.int64]) -> list[NDArray[np.intp]]:
+    """Return some cells, parted by their seeds."""
+    return [cells[seeds[cells] == seed] for seed in np.unique(seeds[cells])]
 
 
 def axes_of(overrides: Sequence[Sequence[str]]) -> tuple[list[Axis], list[str]]:
     """Return the keys whose values differ between jobs as axes, and the other overrides."""
-    given = [dict(override.lstrip("+").partition("=")[::2] for override in job) for job in overrides]
-    keys = list(dict.fromkeys(key for job in given for key in job if is_simulated(key)))
     axes, fixed = [], []
-    for key in keys:
-        texts = [job.get(key, "") for job in given]
+    columns = _of_grid(overrides) if isinstance(overrides, GridOverrides) else _of_jobs(overrides)
+    for key, texts, times in columns:
         if len(set(texts)) == 1:
             fixed.append(f"{key}={texts[0]}")
             continue
-        distinct = list(dict.fromkeys(texts))
-        numbers = [_number(text) for text in distinct]
-        if None not in numbers:
-            values: Sequence[float] | Sequence[str] = sorted({number for number in numbers if number is not None})
-            place = {text: values.index(number) for text, number in zip(distinct, numbers, strict=True)}
-        else:
-            values = [text.strip("'\"") for text in distinct]
-            place = {text: index for index, text in enumerate(distinct)}
-        axes.append(Axis(key, values, np.array([place[text] for text in texts], dtype=np.intp)))
+        values, level = _levels(texts)
+        axes.append(Axis(key, values, np.resize(np.repeat(level, times), len(overrides))))
     return axes, fixed
+
+
+def _of_grid(overrides: GridOverrides) -> Iterator[tuple[str, Sequence[str], int]]:
+    """Yield keys and their values in turn, and for how many cells each stands."""
+    times = len(overrides)
+    for axis in overrides.axes:
+        times //= len(axis)
+        if axis[0]:
+            yield axis[0].lstrip("+").partition("=")[0], [text.partition("=")[2] for text in axis], times
+
+
+def _of_jobs(overrides: Sequence[Sequence[str]]) -> Iterator[tuple[str, Sequence[str], int]]:
+    """Yield keys and their values job by job."""
+    given = [dict(override.lstrip("+").partition("=")[::2] for override in job) for job in overrides]
+    for key in dict.fromkeys(key for job in given for key in job if is_simulated(key)):
+        yield key, [job.get(key, "") for job in given], 1
+
+
+def _levels(texts: Sequence[str]) -> tuple[Sequence[float] | Sequence[str], NDArray[np.intp]]:
+    """Return the distinct values behind some texts, and the place of each among them, shape (n,)."""
+    distinct = list(dict.fromkeys(texts))
+    numbers = [_number(text) for text in distinct]
+    if None not in numbers:
+        values: Sequence[float] | Sequence[str] = sorted({number for number in numbers if number is not None})
+        places = {value: place for place, value in enumerate(values)}
+        place = {text: places[number] for text, number in zip(distinct, numbers, strict=True)}
+    else:
+        values = [text.strip("'\"") for text in distinct]
+        place = {text: index for index, text in enumerate(distinct)}
+    return values, np.array([place[text] for text in texts], dtype=np.intp)
 
 
 def _number(text: str) -> float | None:

@@ -1,12 +1,12 @@
 """What is to be made: cells, each with its config; composed, checked and named before anything starts."""
 
-import itertools
-import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import NoReturn, Protocol
 
+import numpy as np
+from numpy.typing import NDArray
 from tqdm import tqdm
 
 from runner import store
@@ -19,6 +19,10 @@ from runner.config.run import RunConfig
 from runner.config.sweep import SweepConfig
 from runner.config.validation import validate
 from runner.errors import ConfigError
+from runner.store.axes import GridOverrides
+from runner.store.identity import json_text
+from runner.store.names import Names, Texts
+from runner.sweeps.block import Block
 from runner.sweeps.differing import Resolved
 from runner.sweeps.resolved import is_one_arm, resolve
 
@@ -38,11 +42,23 @@ class Plan(Protocol):
         ...
 
     def composed(self, cell: int) -> Composed:
-        """Return the composed config of a cell.
+        """Return the composed config of a cell, of which cells that share a group share the object.
 
         Raises:
             ConfigError: if it does not compose.
         """
+        ...
+
+    def axes(self) -> GridOverrides | None:
+        """Return the axes of a grid, whose cells have every combination of their overrides; None of no grid."""
+        ...
+
+    def blocks(self) -> Iterator[Block]:
+        """Yield all cells, in blocks that differ in nothing but the seed."""
+        ...
+
+    def alike(self, cells: Sequence[int]) -> Iterator[tuple[Sequence[int], Sequence[Composed]]]:
+        """Yield those of some cells whose configs differ in nothing but the seed, with their configs."""
         ...
 
 
@@ -52,7 +68,7 @@ class Checked:
 
     Attributes:
         names: Hash of each cell's run or calibration.
-        costs: Ticks of all its repetitions together.
+        costs: Ticks of all its repetitions together, shape (cells,).
         calibrations: The cells that are calibrations, not runs.
         outputs: Folder in which they are stored.
         settings: How the runs are made.
@@ -60,8 +76,8 @@ class Checked:
         resolved: What differs between the configs of the runs.
     """
 
-    names: Sequence[str]
-    costs: Sequence[int]
+    names: Names
+    costs: NDArray[np.int64]
     calibrations: frozenset[int]
     outputs: Path
     settings: SweepConfig
@@ -75,40 +91,71 @@ def check(plan: Plan) -> Checked:
     Raises:
         ConfigError: telling each problem once, with the first cell that has it.
     """
-    names: list[str] = []
-    costs: list[int] = []
+    names, costs = np.empty(len(plan), dtype="S24"), np.empty(len(plan), dtype=np.int64)
     calibrations: set[int] = set()
-    problems: dict[str, list[int]] = {}
+    problems = _Problems()
     first: RunConfig | None = None
     resolved = Resolved()
-    assembled: dict[str, ConfigError | None] = {}
-    for cell in tqdm(range(len(plan)), desc="checking", unit="run", delay=1.0, disable=None):
-        try:
-            composed = plan.composed(cell)
-            if composed.root == CALIBRATION:
-                calibrations.add(cell)
-                name, cost = _check_calibration(composed)
-            else:
+    assembled: dict[tuple[str, bytes], ConfigError | None] = {}
+    with tqdm(total=len(plan), desc="checking", unit="run", delay=1.0, disable=None) as bar:
+        for block in plan.blocks():
+            bar.update(len(block.cells))
+            cells = slice(block.cells.start, block.cells.stop, block.cells.step)
+            try:
+                composed = plan.composed(block.cells[0])
+                if composed.root == CALIBRATION:
+                    calibrations.add(block.cells[0])
+                    names[cells], costs[cells] = _check_calibration(composed)
+                    continue
                 config = validate(composed.resolved, composed.config_dirs)
                 first = first or config
                 _check_alike(first, config)
                 _check_assembly(composed, config, assembled)
-                name = store.run_hash(composed.resolved, config.arm.urdf)
-                cost = config.timing.ticks * config.settings.repetitions
+                names[cells] = _names(composed, config, block)
+                costs[cells] = config.timing.ticks * config.settings.repetitions
                 start = config.path.start.tolist() if is_one_arm(composed.resolved) else None
-                resolved.add(resolve(composed.resolved, config.timing.step, start), composed.overrides)
-            names.append(name)
-            costs.append(cost)
-        except ConfigError as error:
-            for problem in error.problems:
-                problems.setdefault(problem, []).append(cell)
+                described = resolve(composed.resolved, config.timing.step, start)
+                resolved.add(described, composed.overrides, block.cells)
+            except ConfigError as error:
+                problems.add(error, block)
     if problems or first is None:
-        shown = itertools.islice(problems.items(), _PROBLEMS_SHOWN)
-        more = len(problems) - _PROBLEMS_SHOWN
-        hint = "  nothing was started" if more <= 0 else f"  and {more} more problems; nothing was started"
-        raise ConfigError([_describe(plan, *item) for item in shown], hint)
+        problems.report(plan)
     outputs = Path(first.settings.outputs)
-    return Checked(names, costs, frozenset(calibrations), outputs, first.sweep, first.limits, resolved)
+    return Checked(Names(names), costs, frozenset(calibrations), outputs, first.sweep, first.limits, resolved)
+
+
+class _Problems:
+    """What is wrong: each problem with its first cell and the number of cells that have it."""
+
+    def __init__(self) -> None:
+        self._found: dict[str, tuple[int, int]] = {}
+
+    def __bool__(self) -> bool:
+        return bool(self._found)
+
+    def add(self, error: ConfigError, block: Block) -> None:
+        """Take the problems of the cells of a block."""
+        for problem in error.problems:
+            first, count = self._found.get(problem, (block.cells[0], 0))
+            self._found[problem] = min(first, block.cells[0]), count + len(block.cells)
+
+    def report(self, plan: Plan) -> NoReturn:
+        """End the check, with the problems in the order of the cells.
+
+        Raises:
+            ConfigError: always.
+        """
+        found = sorted(self._found.items(), key=lambda item: item[1][0])
+        more = len(found) - _PROBLEMS_SHOWN
+        hint = "  nothing was started" if more <= 0 else f"  and {more} more problems; nothing was started"
+        raise ConfigError([_describe(plan, problem, *where) for problem, where in found[:_PROBLEMS_SHOWN]], hint)
+
+
+def _names(composed: Composed, config: RunConfig, block: Block) -> Texts:
+    """Return the names of the runs of a block, shape (n,)."""
+    if block.seeds is None:
+        return Names.of([store.run_hash(composed.resolved, config.arm.urdf)]).texts
+    return store.run_hashes(composed.resolved, config.arm.urdf, block.seeds).texts
 
 
 def _check_calibration(composed: Composed) -> tuple[str, int]:
@@ -128,10 +175,12 @@ def _shared(config: RunConfig) -> tuple[object, ...]:
     return config.settings.outputs, config.sweep, config.limits, config.caveats
 
 
-def _check_assembly(composed: Composed, config: RunConfig, assembled: dict[str, ConfigError | None]) -> None:
+def _check_assembly(
+    composed: Composed, config: RunConfig, assembled: dict[tuple[str, bytes], ConfigError | None]
+) -> None:
     """Assemble each robot on each plant from each start once: some problems show only there."""
-    parts = [composed.resolved[group] for group in ("robot", "plant")]
-    key = json.dumps([*parts, config.path.start.tolist()])
+    parts = [json_text(composed.resolved[group]) for group in ("robot", "plant")]
+    key = ", ".join(parts), config.path.start.tobytes()
     if key not in assembled:
         assembled[key] = None
         try:
@@ -143,6 +192,6 @@ def _check_assembly(composed: Composed, config: RunConfig, assembled: dict[str, 
         raise problem
 
 
-def _describe(plan: Plan, problem: str, cells: Sequence[int]) -> str:
-    others = f" and {len(cells) - 1} other cells:" if len(cells) > 1 else ""
-    return f"[{' '.join(plan.overrides(cells[0]))}]{others} {problem}"
+def _describe(plan: Plan, problem: str, cell: int, count: int) -> str:
+    others = f" and {count - 1} other cells:" if count > 1 else ""
+    return f"[{' '.join(plan.overrides(cell))}]{others} {problem}"

@@ -2,13 +2,15 @@
 
 import sys
 import time
-from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Self
 
+import numpy as np
+from numpy.typing import NDArray
 from tqdm import tqdm
 
-from runner import store
+from runner.batch import Batcher
+from runner.batch_jobs import simulate_together
 from runner.config.compose import Composed
 from runner.config.validation import validate
 from runner.execution import seconds_per_tick
@@ -22,6 +24,8 @@ _EVERY = 2.0  # s between two notes of the progress
 _PROBES = 3  # cells that the first estimate is made from
 _PROBED_WITHIN = 2.0  # s; what takes longer is told when its run is made
 _FIXED = 0.010  # s that a job takes beside its ticks
+_FIXED_TOGETHER = 0.0002  # s, of runs that are simulated together and keep no trace
+_TICKS_TOGETHER = 20_000  # of runs that are simulated together for the first estimate
 
 
 class Progress:
@@ -31,20 +35,19 @@ class Progress:
         folder: The sweep's folder.
         jobs: Number of jobs to make.
         ticks: What they cost together.
-        cost: Gives what one of them costs, by name.
     """
 
-    def __init__(self, folder: Path, jobs: int, ticks: int, cost: Callable[[str], int]) -> None:
-        self._folder, self._cost = folder, cost
+    def __init__(self, folder: Path, jobs: int, ticks: int) -> None:
+        self._folder = folder
         self._made, self._jobs = 0, jobs
         self._bar = tqdm(total=ticks, unit="tick", unit_scale=True, desc="running", disable=None, file=sys.stderr)
         self._began = self._noted = time.monotonic()
 
-    def add(self, outcomes: Sequence[store.Outcome]) -> None:
-        """Take note of jobs that ended."""
-        self._made += len(outcomes)
+    def add(self, jobs: int, ticks: int) -> None:
+        """Take note of a number of jobs that ended, and of what all of them so far cost, in ticks."""
+        self._made += jobs
         self._bar.set_postfix_str(f"{self._made} of {self._jobs}", refresh=False)
-        self._bar.update(sum(self._cost(end.name) for end in outcomes))
+        self._bar.update(ticks - self._bar.n)
         now = time.monotonic()
         if self._made and now - self._noted > _EVERY:
             self._noted = now
@@ -57,29 +60,41 @@ class Progress:
         self._bar.close()
 
 
-def estimate(plan: Plan, checked: Checked, cells: Sequence[int], ticks: int) -> float:
+def estimate(plan: Plan, checked: Checked, cells: NDArray[np.intp], ticks: int, kept: float) -> float:
     """Return the CPU time that some cells will take, in s, from a few ticks of a few of their runs.
 
     Args:
         plan: The plan.
         checked: What its check gave.
-        cells: The cells; in a tuning, one for each trial.
+        cells: The cells, shape (n,); in a tuning, one for each trial.
         ticks: What they cost together.
+        kept: Share of the runs that keep their trace.
     """
-    runs = [cell for cell in cells if cell not in checked.calibrations]
-    chosen = sorted({runs[len(runs) * part // _PROBES] for part in range(_PROBES)}) if runs else []
-    probed = [_probe(plan.composed(cell), checked.costs[cell]) for cell in chosen]
-    per_tick = sum(probed) / len(probed) if probed else 0.0
-    return _FIXED * len(cells) + per_tick * ticks
+    runs = np.setdiff1d(cells, list(checked.calibrations), assume_unique=True) if checked.calibrations else cells
+    chosen = sorted({int(runs[len(runs) * part // _PROBES]) for part in range(_PROBES)}) if len(runs) else []
+    probed = [_probe(plan.composed(cell), int(checked.costs[cell])) for cell in chosen]
+    per_tick, together = np.mean(probed, axis=0).tolist() if probed else (0.0, 0.0)
+    in_shards = together * (1.0 - kept) * len(runs)
+    return _FIXED * (len(cells) - in_shards) + _FIXED_TOGETHER * in_shards + per_tick * ticks
 
 
-def _probe(composed: Composed, ticks: int) -> float:
-    """Return the time for a tick of a run, in s."""
+def _probe(composed: Composed, ticks: int) -> tuple[float, bool]:
+    """Return the time for a tick of a run, in s, and whether it can be simulated together with others."""
     config = validate(composed.resolved, composed.config_dirs)
+    together = False
     try:
         with deadline(_PROBED_WITHIN):
-            return seconds_per_tick(config)
+            batcher = Batcher()
+            runs = batcher.repetitions(config)
+            if runs is None:
+                return seconds_per_tick(config), False
+            together, copies, start = True, max(1, _TICKS_TOGETHER // ticks), 0.0
+            for _ in range(2):  # the first time warms up
+                start = time.perf_counter()
+                for _ in simulate_together([(config, composed)] * copies, [runs] * copies, batcher):
+                    pass
+            return (time.perf_counter() - start) / (copies * ticks), True
     except TimeLimitError:
-        return (config.sweep.time_limit or _PROBED_WITHIN) / ticks
+        return (config.sweep.time_limit or _PROBED_WITHIN) / ticks, together
     except Exception:  # an error of a part is stored when its run is made
-        return 0.0
+        return 0.0, together

@@ -4,70 +4,95 @@ from collections import deque
 from collections.abc import Iterable, Sequence
 from typing import Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from runner import store
 from runner.config.compose import Composed
 from runner.store.shards import next_number, shard_name
-from runner.sweeps.work import Chunk, Report, Rules, find_stored
+from runner.sweeps.block import Part
+from runner.sweeps.rules import Rules
+from runner.sweeps.work import Chunk, Report, find_stored
 
 _SECONDS_PER_CHUNK = 1.0  # long against the 5 ms that a chunk costs, short against a sweep
-_LARGEST = 500
+_MOST_CHUNKS = 2000  # that take as many jobs each as it needs, however slow these are: a chunk may be a file
+_LARGEST = 2000  # jobs; of longer chunks much would be lost with their worker
 _SHORTEST_TICK = 1e-7  # s; what was found stored takes none
 
 
 class Cells(Protocol):
     """What gives the cells of a queue, such as a plan."""
 
-    def composed(self, cell: int) -> Composed:
-        """Return the composed config of a cell."""
+    def alike(self, cells: Sequence[int]) -> Iterable[tuple[Sequence[int], Sequence[Composed]]]:
+        """Yield those of some cells whose configs differ in nothing but the seed, with their configs."""
 
 
 class Queue:
-    """Chunks that take about a second each, single jobs at first and again when few are left; suspects come last.
+    """Chunks that take about a second each, or more where there would be too many; suspects come last.
+
+    They are single jobs at first, until it is known how long one takes.
 
     Args:
         cells_of: Gives their configs: the sweep's plan.
         names: Hash of each cell's run or calibration.
         costs: What each cell costs, in ticks.
-        cells: The cells to do, in their order.
+        cells: The cells to do, in their order, shape (n,).
         rules: How they are made and kept.
+
+    Attributes:
+        rules: As given.
+        ticks_done: What the jobs cost that have ended, in ticks.
     """
 
     def __init__(
-        self, cells_of: Cells, names: Sequence[str], costs: Sequence[int], cells: Iterable[int], rules: Rules
+        self,
+        cells_of: Cells,
+        names: Sequence[str],
+        costs: "Sequence[int] | NDArray[np.int64]",
+        cells: NDArray[np.intp],
+        rules: Rules,
     ) -> None:
-        self.rules = rules
+        self.rules, self.ticks_done = rules, 0
         self._cells_of, self._names, self._costs = cells_of, names, costs
-        self._left, self._suspects = deque(cells), deque[int]()
-        self._cell_of = {names[cell]: cell for cell in self._left}
+        self._cells, self._next = cells, 0
+        of_each = np.asarray(costs, dtype=np.int64)[cells]
+        self._ticks = np.concatenate([[0], np.cumsum(of_each)])  # of all cells before each that is to do
+        self._fewest = -(-len(names) // _MOST_CHUNKS)
+        self._under_way: dict[str, int] = {}
+        self._suspects = deque[int]()
         self._number = next_number(rules.outputs)
         self._handed_out = 0
         self._seconds_per_tick: float | None = None
 
-    def cost(self, name: str) -> int:
-        """Return what a run or calibration of the queue costs, in ticks."""
-        return self._costs[self._cell_of[name]]
+    def put(self, cell: int) -> None:
+        """Put one more cell at the end."""
+        self._cells = np.append(self._cells[self._next :], cell)
+        self._ticks = np.append(self._ticks[self._next :], self._ticks[-1] + self._costs[cell])
+        self._next = 0
 
     def take(self, workers: int) -> Chunk | None:
         """Return the next chunk, or None when none is left; `workers` share what is left."""
-        if not self._left:
+        start, ticks = self._next, self._ticks
+        if start == len(self._cells):
             return None
-        cells = [self._left.popleft()]
+        stop = start + 1
         if self._seconds_per_tick is not None:
-            fair = sum(self._costs[cell] for cell in self._left) / (2 * workers)
-            budget = min(_SECONDS_PER_CHUNK / self._seconds_per_tick, fair) - self._costs[cells[0]]
-            while self._left and len(cells) < _LARGEST and self._costs[self._left[0]] <= budget:
-                budget -= self._costs[self._left[0]]
-                cells.append(self._left.popleft())
-        return self._chunk(cells)
+            fair = (ticks[-1] - ticks[stop]) / (2 * workers)
+            budget = min(_SECONDS_PER_CHUNK / self._seconds_per_tick, fair)
+            affordable = int(np.searchsorted(ticks, ticks[start] + budget, side="right")) - 1
+            stop = min(max(affordable, start + self._fewest, stop), start + _LARGEST, len(self._cells))
+        self._next = stop
+        return self._chunk(self._cells[start:stop].tolist())
 
     def take_suspect(self) -> Chunk | None:
         """Return the next run whose workers died, as a chunk; made alone, it shows whether it is the cause."""
         return self._chunk([self._suspects.popleft()]) if self._suspects else None
 
     def learn(self, report: Report) -> None:
-        """Take note of how long a chunk took."""
-        ticks = sum(self.cost(end.name) for end in report.outcomes)
-        if ticks:
+        """Take note of what ended, and of how long it took."""
+        ticks = sum(int(self._costs[self._under_way.pop(end.name)]) for end in report.outcomes)
+        self.ticks_done += ticks
+        if ticks and report.seconds:
             seconds = max(report.seconds / ticks, _SHORTEST_TICK)
             known = self._seconds_per_tick
             self._seconds_per_tick = seconds if known is None else 0.5 * (known + seconds)
@@ -76,14 +101,18 @@ class Queue:
         """Take back a chunk whose workers died: its runs are suspects; return how those ended that are stored."""
         done = []
         known = find_stored(chunk)
-        for name, _ in chunk.jobs:
+        for name in chunk.names:
             if name in known:
                 done.append(known[name])
             else:
-                self._suspects.append(self._cell_of[name])
+                self._suspects.append(self._under_way.pop(name))
         return done
 
     def _chunk(self, cells: Sequence[int]) -> Chunk:
         self._handed_out += 1
-        jobs = [(self._names[cell], self._cells_of.composed(cell)) for cell in cells]
-        return Chunk(shard_name(self._number, self._handed_out), self.rules, jobs)
+        parts = []
+        for own, configs in self._cells_of.alike(cells):
+            names = [self._names[cell] for cell in own]
+            self._under_way |= dict(zip(names, own, strict=True))
+            parts.append(Part(names, configs))
+        return Chunk(shard_name(self._number, self._handed_out), self.rules, parts)

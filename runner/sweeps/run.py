@@ -1,10 +1,14 @@
 """A whole sweep: from its plan to its stored runs."""
 
+import os
 import shutil
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
 
 from runner import store
 from runner.config.limits import check_cpu_time
@@ -12,14 +16,17 @@ from runner.config.sweep import SweepConfig
 from runner.errors import ConfigError, StoreError
 from runner.plugins import in_use
 from runner.store.atomic import remove_leftovers
+from runner.store.names import Names
 from runner.sweeps.differing import Resolved
+from runner.sweeps.ends import Ends
 from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
 from runner.sweeps.lock import at_work
 from runner.sweeps.plan import Checked, Plan, check
 from runner.sweeps.progress import Progress, estimate
 from runner.sweeps.queue import Queue
+from runner.sweeps.rules import Rules, TraceKeeping, one_in
 from runner.sweeps.status import in_words
-from runner.sweeps.work import Report, Rules, TraceKeeping, find_calibrated
+from runner.sweeps.work import Report, find_calibrated
 
 _DAMAGE_SHOWN = 10
 _ALL_TRACES_UP_TO = 3000  # runs; with more, sweep.trace=auto is sample
@@ -58,8 +65,8 @@ class Ended:
 
     folder: Path
     outputs: Path
-    names: Sequence[str]
-    ends: Mapping[str, store.Outcome]
+    names: Names
+    ends: Ends
     failures: Sequence[tuple[Sequence[str], str, Path]]
     left: int
     resolved: Resolved = field(compare=False)
@@ -83,23 +90,30 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
     names, outputs = checked.names, checked.outputs
     store.prepare(outputs)
     with at_work(outputs):
-        runs = [(plan.overrides(i), name) for i, name in enumerate(names) if i not in checked.calibrations]
-        folder = store.write_sweep(outputs, runs, command)
+        folder = _write_sweep(plan, checked, command)
         rules = replace(make_rules(checked.settings, folder, len(names)), accept_cut_short=accept_cut_short)
         ends = _find_stored(checked, rules)
-        left = list({name: cell for cell, name in enumerate(names) if name not in ends}.values())
-        left.sort(key=lambda cell: -checked.costs[cell])
+        left = ends.left[np.argsort(-checked.costs[ends.left], kind="stable")]
         queue = Queue(plan, names, checked.costs, left, rules)
         for report in make_jobs(plan, checked, queue, left, engine, len(ends)):
-            ends |= {end.name: end for end in report.outcomes}
+            ends.add(report.outcomes)
             if report.trouble:
                 raise StoreError(f"{report.trouble}; finished runs are stored, the same command goes on from there")
             if rules.stop_at_failure and any(end.failure for end in report.outcomes):
                 break
-        clean(rules, set(names))
-    failed = [(cell, ends[name]) for cell, name in enumerate(names) if name in ends and ends[name].failure]
+        clean(rules, names)
+    failed = [(cell, ends[names[cell]]) for cell in ends.failed.tolist()]
     failures = [(plan.overrides(cell), end.failure, _where(end.name, outputs, folder)) for cell, end in failed]
-    return Ended(folder, outputs, names, ends, failures, len(set(names) - ends.keys()), checked.resolved)
+    return Ended(folder, outputs, names, ends, failures, len(ends.left), checked.resolved)
+
+
+def _write_sweep(plan: Plan, checked: Checked, command: str) -> Path:
+    """Store which overrides lead to which run, and return the sweep's folder."""
+    axes = plan.axes()
+    if axes is not None:
+        return store.write_grid(checked.outputs, axes, checked.names, command)
+    runs = [(plan.overrides(i), name) for i, name in enumerate(checked.names) if i not in checked.calibrations]
+    return store.write_sweep(checked.outputs, runs, command)
 
 
 def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
@@ -116,29 +130,38 @@ def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
         stop_at_failure=settings.on_failure == "stop",
         attempts=settings.attempts,
         time_limit=settings.time_limit,
+        one_in=one_in(runs),
     )
 
 
-def _find_stored(checked: Checked, rules: Rules) -> dict[str, store.Outcome]:
+def _find_stored(checked: Checked, rules: Rules) -> Ends:
     """Return how those jobs ended that count as done: a run that shall keep its trace only with it."""
     finished = store.Finished(rules.outputs)
-    found = {}
-    for cell, name in enumerate(checked.names):
-        if cell in checked.calibrations:
-            ends = [_find_calibrated(rules, name, finished.damage)]
-        else:
-            ends = [finished.in_folder(name)]
-            traceless = finished.in_shard(name)
-            if traceless is not None and (traceless.cut_short or not rules.keeps_trace(name, bool(traceless.failure))):
-                ends.append(traceless)
-        end = min((end for end in ends if end is not None), key=lambda end: end.rank, default=None)
+    ends = Ends(checked.names)
+    in_shards = finished.places(checked.names)
+    ends.add_stored(finished, in_shards[_counts(finished, in_shards, rules)])
+    found = [_find_calibrated(rules, checked.names[cell], finished.damage) for cell in sorted(checked.calibrations)]
+    found += [finished.in_folder(name) for name in finished.folders(checked.names)]
+    for end in found:
         if end is not None and rules.accepts(end):
-            found[name] = end
+            known = ends.get(end.name)
+            if known is None or end.rank <= known.rank:
+                ends.add([end])
     for damage in finished.damage[:_DAMAGE_SHOWN]:
         _tell(f"{damage}; it is made again")
     if len(finished.damage) > _DAMAGE_SHOWN:
         _tell(f"and {len(finished.damage) - _DAMAGE_SHOWN} more; `runner verify {rules.outputs}` names them all")
-    return found
+    return ends
+
+
+def _counts(finished: store.Finished, places: NDArray[np.intp], rules: Rules) -> NDArray[np.bool_]:
+    """Tell which of some runs in shards count as done: one that shall keep its trace does not."""
+    rank = finished.rank[places]
+    accepted = np.array([rules.accepts_rank(each) for each in range(3)])[rank]
+    pairs = zip(Names(finished.names[places]), rank.tolist(), strict=True)
+    traceless = [each == 2 or not rules.keeps_trace(name, each > 0) for name, each in pairs]
+    counts: NDArray[np.bool_] = accepted & np.array(traceless, dtype=bool)
+    return counts
 
 
 def _find_calibrated(rules: Rules, name: str, damage: list[str]) -> store.Outcome | None:
@@ -150,7 +173,7 @@ def _find_calibrated(rules: Rules, name: str, damage: list[str]) -> store.Outcom
 
 
 def make_jobs(
-    plan: Plan, checked: Checked, queue: Queue, cells: Sequence[int], engine: Engine, stored: int
+    plan: Plan, checked: Checked, queue: Queue, cells: NDArray[np.intp], engine: Engine, stored: int
 ) -> Iterator[Report]:
     """Make what is in a queue and show the progress; yield what became of each chunk.
 
@@ -158,7 +181,7 @@ def make_jobs(
         plan: The plan.
         checked: What its check gave.
         queue: The queue.
-        cells: Its cells; of a tuning, whose trials are chosen later, a cell like them for each.
+        cells: Its cells, shape (n,); of a tuning, whose trials are chosen later, a cell like them for each.
         engine: Where they are made.
         stored: Number of jobs that are stored already.
 
@@ -166,15 +189,15 @@ def make_jobs(
         ConfigError: if they would cost too much.
     """
     _tell(_count(checked, len(cells), stored))
-    if not cells:
+    if not len(cells):
         return
-    ticks = sum(checked.costs[cell] for cell in cells)
-    seconds = estimate(plan, checked, cells, ticks)
+    ticks = int(checked.costs[cells].sum())
+    seconds = estimate(plan, checked, cells, ticks, queue.rules.kept)
     check_cpu_time(checked.limits, seconds, len(cells))
-    progress = Progress(queue.rules.sweep, len(cells), ticks, queue.cost)
+    progress = Progress(queue.rules.sweep, len(cells), ticks)
     with progress:
         for report in _reports(queue, len(cells), engine, seconds):
-            progress.add(report.outcomes)
+            progress.add(len(report.outcomes), queue.ticks_done)
             yield report
 
 
@@ -211,17 +234,18 @@ def _scratch(rules: Rules) -> Path:
     return rules.sweep / "scratch"
 
 
-def clean(rules: Rules, names: Iterable[str]) -> None:
+def clean(rules: Rules, names: Sequence[str]) -> None:
     """Remove what killed processes left behind, now or earlier: temporary files, and folders without metrics."""
     shutil.rmtree(_scratch(rules), ignore_errors=True)
-    for folder in (rules.sweep, rules.sweep / "logs", rules.outputs / "shards", rules.outputs / "runs"):
+    runs = rules.outputs / "runs"
+    for folder in (rules.sweep, rules.sweep / "logs", rules.outputs / "shards", runs):
         remove_leftovers(folder)
-    for name in names:
-        folder = rules.outputs / "runs" / name
-        if folder.exists():
-            remove_leftovers(folder)
-            if not (folder / "metrics.json").exists():
-                shutil.rmtree(folder, ignore_errors=True)
+    there = {entry.name for entry in os.scandir(runs)} if runs.is_dir() else set()
+    for name in there.intersection(names):
+        folder = runs / name
+        remove_leftovers(folder)
+        if not (folder / "metrics.json").exists():
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def _where(name: str, outputs: Path, folder: Path) -> Path:

@@ -11,6 +11,7 @@ from hydra.core.override_parser.types import Override, RangeSweep, Transformer
 
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.errors import ConfigError
+from runner.store.axes import Counted
 
 _MOST_CELLS = 10_000_000  # of one sweep; their overrides alone would fill the memory of most machines
 
@@ -76,6 +77,10 @@ def is_simulated(key: str) -> bool:
 
 def _read(override: Override, groups: Sequence[str]) -> SweptKey:
     name = override.key_or_group
+    is_group = name in groups or "/" in name or override.package is not None
+    counted = _counted(override)
+    if counted is not None:
+        return SweptKey(name, Counted(f"{override.get_key_element()}=", counted), counted, is_group)
     if override.is_sweep_override():
         values = [Override._convert_value(value) for value in override.sweep_iterator(Transformer.identity)]
         encoded = override.sweep_string_iterator()
@@ -85,6 +90,14 @@ def _read(override: Override, groups: Sequence[str]) -> SweptKey:
     else:
         value: Any = override.value()
         values, overrides = [value], [override.input_line or ""]
-    is_group = name in groups or "/" in name or override.package is not None
     mapping = any(isinstance(value, dict) for value in values)
     return SweptKey(name, overrides, values, (is_group and not mapping) or override.is_delete())
+
+
+def _counted(override: Override) -> range | None:
+    """Return the values of a range of whole numbers in order, which may be a million; None of any other override."""
+    value = override.value()
+    if not isinstance(value, RangeSweep) or value.shuffle or value.tags:
+        return None
+    values = value.range()
+    return values if isinstance(values, range) else None

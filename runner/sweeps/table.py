@@ -1,26 +1,26 @@
 """A sweep as one tidy table, a row for each cell: Parquet and CSV, readable with pandas alone."""
 
-import io
-import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from runner.statistics import SMALLEST_SAMPLE, median_intervals
-from runner.store.atomic import write_atomically
-from runner.sweeps.measurements import FloatArray, Measurements
+from runner.store.atomic import open_atomically
+from runner.sweeps.measurements import FloatArray, Measurements, medians
 from runner.texts import table_cell
 
 if TYPE_CHECKING:
     import pandas as pd
 
+_ROWS = 50_000  # in memory together
+_TEXTS = ["status", "failure", "caveats.rules"]  # columns of which many rows are the same
 QUANTILES = (0.05, 0.25, 0.75, 0.95)
 
 
-def table(measurements: Measurements) -> "pd.DataFrame":
-    """Return the table of a sweep.
+def table(measurements: Measurements, rows: slice = slice(None)) -> "pd.DataFrame":
+    """Return the table of a sweep, or some of its rows.
 
     The columns are the swept axes under their keys; status, failure and hash; the number of caveats, and the
     rules that were sprung; and of every metric `NAME.median`;
@@ -32,51 +32,66 @@ def table(measurements: Measurements) -> "pd.DataFrame":
     """
     import pandas as pd
 
-    columns: dict[str, object] = {axis.name: [axis.values[level] for level in axis.level] for axis in measurements.axes}
-    columns |= {
-        "status": list(measurements.statuses),
-        "failure": list(measurements.failures),
-        "hash": list(measurements.hashes),
+    columns: dict[str, object] = {
+        axis.name: [axis.values[level] for level in axis.level[rows].tolist()] for axis in measurements.axes
     }
-    caveats = measurements.caveats or [()] * len(measurements.hashes)
+    columns |= {
+        "status": list(measurements.statuses[rows]),
+        "failure": list(measurements.failures[rows]),
+        "hash": list(measurements.hashes[rows]),
+    }
+    caveats = measurements.caveats[rows] or [()] * len(measurements.hashes[rows])
     columns["caveats"] = [len(found) for found in caveats]
     columns["caveats.rules"] = [" ".join(str(caveat["rule"]) for caveat in found) for found in caveats]
-    for name in measurements.values:
-        columns |= dict(_columns(measurements, name))
+    for name, values in measurements.values.items():
+        columns |= dict(_columns(name, values[rows]))
     return pd.DataFrame(columns)
 
 
-def write_table(measurements: Measurements, folder: Path) -> "pd.DataFrame":
-    """Write `table.parquet`, with the unit of each column in its metadata, and `table.csv`; return the table.
+def write_table(measurements: Measurements, folder: Path) -> int:
+    """Write `table.parquet`, with the unit of each column in its metadata, and `table.csv`, some rows at a time.
+
+    Returns:
+        The number of columns.
 
     Raises:
         StoreError: If the disk does not take them.
     """
-    import pyarrow
+    import pyarrow.csv
     import pyarrow.parquet
 
-    frame = table(measurements)
-    arrow = pyarrow.Table.from_pandas(frame, preserve_index=False)
-    schema = arrow.schema
-    for index, column in enumerate(frame.columns):
-        name, _, kind = str(column).rpartition(".")
-        unit = measurements.units.get(name)
-        if unit is not None and kind != "n":
-            schema = schema.set(index, schema.field(index).with_metadata({"unit": unit}))
-    buffer = io.BytesIO()
-    pyarrow.parquet.write_table(arrow.cast(schema), buffer, compression="zstd")
-    write_atomically(folder / "table.parquet", buffer.getvalue())
-    texts = frame.select_dtypes(exclude="number").columns
-    safe = frame.assign(**{name: frame[name].map(table_cell) for name in texts}).rename(columns=table_cell)
-    write_atomically(folder / "table.csv", safe.to_csv(index=False).encode())
-    return frame
+    schema = _with_units(pyarrow.Table.from_pandas(table(measurements, slice(0, 1))).schema, measurements.units)
+    named = pyarrow.schema([field.with_name(table_cell(field.name)) for field in schema])
+    unquoted = pyarrow.csv.WriteOptions(quoting_style="needed")
+    with (
+        open_atomically(folder / "table.parquet") as parquet_file,
+        open_atomically(folder / "table.csv") as csv_file,
+        pyarrow.parquet.ParquetWriter(parquet_file, schema, compression="zstd", use_dictionary=_TEXTS) as parquet,
+        pyarrow.csv.CSVWriter(csv_file, named, write_options=unquoted) as csv,
+    ):
+        for start in range(0, len(measurements.hashes), _ROWS):
+            frame = table(measurements, slice(start, start + _ROWS))
+            parquet.write_table(pyarrow.Table.from_pandas(frame, schema, preserve_index=False))
+            texts = [name for name in frame.select_dtypes(exclude="number").columns if name != "hash"]
+            cells = {name: frame[name].map({text: table_cell(text) for text in frame[name].unique()}) for name in texts}
+            safe = frame.assign(**cells).rename(columns=table_cell)
+            csv.write_table(pyarrow.Table.from_pandas(safe, named, preserve_index=False))
+    return len(schema)
 
 
-def _columns(measurements: Measurements, name: str) -> Iterator[tuple[str, FloatArray]]:
+def _with_units(schema: Any, units: Mapping[str, str]) -> Any:
+    for index, column in enumerate(schema.names):
+        name, _, kind = column.rpartition(".")
+        if name in units and kind != "n":
+            schema = schema.set(index, schema.field(index).with_metadata({"unit": units[name]}))
+    return schema
+
+
+def _columns(name: str, values: FloatArray) -> Iterator[tuple[str, FloatArray]]:
     """Yield the columns of one metric, each of shape (cells,)."""
-    ordered = np.sort(measurements.values[name], axis=1)  # NaN, which is no repetition, comes last
+    ordered = np.sort(values, axis=1)  # NaN, which is no repetition, comes last
     count = np.sum(~np.isnan(ordered), axis=1)
-    yield f"{name}.median", _finite(measurements.medians(name))
+    yield f"{name}.median", _finite(medians(ordered))
     low, high = np.full((2, len(ordered)), np.nan)
     for n in np.unique(count[count >= SMALLEST_SAMPLE]).tolist():
         cells = np.flatnonzero(count == n)
@@ -84,7 +99,7 @@ def _columns(measurements: Measurements, name: str) -> Iterator[tuple[str, Float
     yield f"{name}.low", _finite(low)
     yield f"{name}.high", _finite(high)
     for share in QUANTILES:
-        place = np.array([max(math.ceil(share * n - 1e-9) - 1, 0) for n in count.tolist()], dtype=np.intp)
+        place = np.maximum(np.ceil(share * count - 1e-9).astype(np.intp) - 1, 0)
         yield f"{name}.q{round(100 * share):02d}", _finite(ordered[np.arange(len(ordered)), place])
     yield f"{name}.n", np.sum(np.isfinite(ordered), axis=1)
 

@@ -1,8 +1,10 @@
 """The trials of a tuning, handed out to the engine of sweeps as they are chosen."""
 
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from runner import store
 from runner.config.compose import Composed
@@ -11,7 +13,8 @@ from runner.errors import ConfigError
 from runner.sweeps.grid import Grid
 from runner.sweeps.loading import Loader
 from runner.sweeps.queue import Queue
-from runner.sweeps.work import Chunk, Report, Rules
+from runner.sweeps.rules import Rules
+from runner.sweeps.work import Chunk, Report
 from runner.tuning.journal import Journal
 from runner.tuning.sampler import propose
 from runner.tuning.study import Study
@@ -44,8 +47,9 @@ class TrialQueue(Queue):
 
     def __init__(self, study: Study, journal: Journal, loader: Loader, rules: Rules, trials: int, seed: int) -> None:
         self._runs: list[str] = []
-        self._ticks: list[int] = []
-        super().__init__(self, self._runs, self._ticks, (), rules)
+        self._costs_of_runs: list[int] = []
+        self._cell_of: dict[str, int] = {}
+        super().__init__(self, self._runs, self._costs_of_runs, np.zeros(0, dtype=np.intp), rules)
         self._study, self._journal, self._loader = study, journal, loader
         self._trials, self._seed = trials, seed
         self._started = deque[_Started]()
@@ -57,9 +61,9 @@ class TrialQueue(Queue):
         """Number of trials that have not ended."""
         return max(0, self._trials - len(self._journal.trials))
 
-    def composed(self, cell: int) -> Composed:
-        """Return the composed config of a run that is to do; cells are counted as they are handed in."""
-        return self._configs[cell]
+    def alike(self, cells: Sequence[int]) -> Iterator[tuple[Sequence[int], Sequence[Composed]]]:
+        """Yield each run that is to do, and its composed config; cells are counted as they are handed in."""
+        return (([cell], [self._configs[cell]]) for cell in cells)
 
     def take(self, workers: int) -> Chunk | None:
         """Return the next runs, or None when others must end before more are chosen; see Queue."""
@@ -105,9 +109,9 @@ class TrialQueue(Queue):
         if run not in self._cell_of:
             cell = self._cell_of[run] = len(self._runs)
             self._runs.append(run)
-            self._ticks.append(config.timing.ticks * config.settings.repetitions)
+            self._costs_of_runs.append(config.timing.ticks * config.settings.repetitions)
             self._configs[cell] = composed
-            self._left.append(cell)
+            self.put(cell)
 
     def _settle(self) -> None:
         """Tell the journal of the trials that ended, up to the first that has not."""

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
+import numpy as np
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
 
@@ -13,6 +14,7 @@ from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.options import groups
 from runner.config.overrides import force
 from runner.errors import ConfigError, StoreError
+from runner.store.names import Names
 from runner.sweeps.grid import Grid
 from runner.sweeps.loading import Loader
 from runner.sweeps.lock import at_work
@@ -78,7 +80,7 @@ def tune(
 def _work_off(plan: Plan, checked: Checked, queue: TrialQueue, engine: Engine, ended: int) -> None:
     """Make all trials of a queue; once more where the last ones brought their workers down."""
     while queue.left:
-        for report in make_jobs(plan, checked, queue, [0] * queue.left, engine, ended):
+        for report in make_jobs(plan, checked, queue, np.zeros(queue.left, dtype=np.intp), engine, ended):
             if report.trouble:
                 raise StoreError(f"{report.trouble}; finished trials are stored, the same command goes on from there")
             queue.note(report.outcomes)
@@ -152,4 +154,4 @@ def _check_ranges(loader: Loader, shared: Sequence[str], keys: Sequence[Key]) ->
         raise ConfigError(problems, "  nothing was started")
     if checked.settings.trace not in ("auto", "all"):
         raise ConfigError([f"sweep.trace: a tuning keeps the trace of every run; found '{checked.settings.trace}'"])
-    return plan, replace(checked, names=names)
+    return plan, replace(checked, names=Names.of(names))

@@ -1,3 +1,4 @@
+import hashlib
 import json
 from importlib.metadata import EntryPoint
 
@@ -6,7 +7,7 @@ import pytest
 from runner.config.compose import compose
 from runner.paths import package_dir
 from runner.plugins import source_files
-from runner.store import identity, run_hash, simulated_part
+from runner.store import identity, run_hash, run_hashes, simulated_part
 
 CONFIG = {"seed": 0, "controller": {"period": 0.01, "kind": "a"}, "outputs": "x", "preset": {"feedforward": True}}
 
@@ -48,6 +49,23 @@ def test_neither_does_the_experiment_that_says_the_same():
     spelled_out = compose([*overrides, "repetitions=40", "controller.singularity_damping=0.0"]).resolved
     named = compose(["experiment=thesis/figure_3_9"]).resolved
     assert run_hash(named, "") == run_hash(spelled_out, "")
+
+
+def test_it_is_that_of_the_whole_as_json():
+    config = compose(["robot=macro", "noise=thesis", "torque_limits.max=[1,2,3]"]).resolved
+    urdf = '<robot name="é">\n</robot>'
+    content = {
+        "config": simulated_part(config),
+        "engines": identity._engines(),
+        "parts": identity._parts_digest(tuple(sorted(identity._parts(config)))),
+        "source": identity.source_digest(),
+        "urdf": urdf,
+    }
+    whole = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:24]
+    assert run_hash(config, urdf) == whole
+    seeds = [0, 17, 123456]
+    assert list(run_hashes(config, urdf, seeds)) == [run_hash({**config, "seed": seed}, urdf) for seed in seeds]
+    assert run_hashes(config, urdf, [config["seed"]])[0] == whole
 
 
 def test_the_robot_counts():

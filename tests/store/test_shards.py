@@ -8,7 +8,7 @@ from runner.errors import StoreError
 from runner.store import Finished, Outcome
 from runner.store.shards import ShardRun, find_shards, next_number, open_row, read_outcomes, shard_name, write_shard
 
-RECORD = {"status": "ok", "repetitions": 1, "metrics": {"energy": {"unit": "J", "median": 0.1}}}
+RECORD = {"status": "ok", "repetitions": 1, "metrics": {"energy": {"unit": "J", "values": [0.1], "median": 0.1}}}
 FAILURE = {"reason": "diverged", "time": 0.0, "joint": "q1", "repetition": 2}
 CUT_SHORT = {"reason": "too long", "time": None, "joint": None, "repetition": None}
 

@@ -45,7 +45,7 @@ def test_runs_and_calibrations_are_checked_and_weighed(listed, tmp_path):
     assert checked.names[0] == checked.names[2]
     assert len(set(checked.names)) == len(ITEMS) - 1
     assert checked.calibrations == {6}
-    assert checked.costs[:2] == [2 * 250, 2 * 300]  # t_f and a second of rest, at 10 ms
+    assert checked.costs[:2].tolist() == [2 * 250, 2 * 300]  # t_f and a second of rest, at 10 ms
     assert checked.outputs == tmp_path
 
 

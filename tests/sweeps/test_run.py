@@ -14,10 +14,13 @@ import numpy as np
 import pytest
 
 from runner import store
-from runner.controllers.operational_space import OperationalSpace
+from runner.compiled.closed_loop import CommandsRun
+from runner.compiled.engine import evaluator
 from runner.errors import ConfigError, RunnerError, StoreError
+from runner.loop.command import Command
 from runner.sweeps import work
 from runner.sweeps.grid import plan_sweep
+from runner.sweeps.rules import one_in
 from runner.sweeps.run import Engine
 
 DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "trajectory=quintic", "duration=1")
@@ -107,6 +110,24 @@ def test_one_in_a_hundred_is_sampled(tmp_path):
     assert all(rules.keeps_trace(f"{n:024x}", True) for n in range(20))
 
 
+@pytest.mark.parametrize(("runs", "expected"), [(1, 100), (20_000, 100), (20_001, 200), (10**6, 5000), (10**7, 50_000)])
+def test_the_sample_of_a_very_large_sweep_is_no_larger_than_that_of_a_large_one(runs, expected):
+    assert one_in(runs) == expected
+    assert runs / expected <= 200
+
+
+def test_the_sample_of_a_larger_sweep_is_part_of_that_of_a_smaller_one(tmp_path):
+    small, large = (
+        work.Rules((), tmp_path, tmp_path, "sample", True, True, False, 1, None, one_in(runs))
+        for runs in (10**4, 10**6)
+    )
+    names = [f"{number:024x}" for number in range(20_000)]
+    kept = [name for name in names if large.keeps_trace(name, False)]
+    assert len(kept) == 4
+    assert all(small.keeps_trace(name, False) for name in kept)
+    assert (small.kept, large.kept) == (0.01, 0.0002)
+
+
 def test_failures_in_shards_are_made_again_whatever_the_clock_says(sweep, simulated_runs, tmp_path):
     """The clock was ahead when the first shards were written; their names have nothing of it."""
     given = ("seed=1,2", "duration=10", "sweep.trace=never")  # long enough to be interrupted
@@ -151,10 +172,11 @@ def test_an_error_of_a_part_is_a_failed_run_with_its_traceback(sweep, monkeypatc
         calls.append(1)
         if len(calls) == 1:
             raise RuntimeError("a bug")
-        return torque(self, *_)
+        return update(self, *_)
 
-    torque = OperationalSpace.torque
-    monkeypatch.setattr(OperationalSpace, "torque", fall_over)
+    part, name = (CommandsRun, "tick") if evaluator() else (Command, "update")
+    update = getattr(part, name)
+    monkeypatch.setattr(part, name, fall_over)
     monkeypatch.setattr("runner.sweeps.run.estimate", lambda *_: 1.0)
     ended = sweep("seed=0,1")
     ((_, why, log),) = ended.failures

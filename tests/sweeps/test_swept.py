@@ -22,7 +22,7 @@ def keys(*arguments):
 )
 def test_values_are_read_as_hydra_reads_them(argument, values):
     (key,) = keys(argument)
-    assert key.values == values
+    assert list(key.values) == values
     assert not key.option
     assert [plan_sweep([text]).composed(0).resolved for text in key.overrides]
 

@@ -5,7 +5,8 @@ from short_runs import SHORT
 
 from runner import store
 from runner.sweeps.loading import Loader
-from runner.sweeps.work import Rules, work
+from runner.sweeps.rules import Rules
+from runner.sweeps.work import work
 from runner.tuning.journal import Journal
 from runner.tuning.key import Key
 from runner.tuning.objective import Objective

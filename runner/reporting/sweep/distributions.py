@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from runner.drawing.thinning import spaced
+from runner.drawing.thinning import POINTS, spaced
 from runner.reporting.document import Block, Curves, Panel, Section, Series
 from runner.reporting.metric_titles import title
-from runner.reporting.sweep.subject import QUANTILE_RULE, Subject, spans_decades, value_name
+from runner.reporting.sweep.subject import QUANTILE_RULE, Subject, grouped, spans_decades, value_name
 from runner.sweeps.measurements import Axis, FloatArray
 
 _MOST_LINES = 8
@@ -28,12 +28,15 @@ def section(subject: Subject) -> Section:
 
 def _shares(subject: Subject, metric: str, axis: Axis) -> Panel:
     values = subject.measurements.values[metric]
-    levels = spaced(len(axis.values), _MOST_LINES)
+    groups = grouped(axis)
     series = []
-    for level in levels:
-        pooled = values[axis.level == level]
+    for group in spaced(int(groups.max()) + 1, _MOST_LINES):
+        chosen = groups == group
+        pooled = values[chosen]
         x, y = _distribution(pooled[~np.isnan(pooled)])
-        series.append(Series(value_name(axis, level), x, y))
+        first, last = int(axis.level[chosen].min()), int(axis.level[chosen].max())
+        name = value_name(axis, first) + (f" to {value_name(axis, last)}" if last > first else "")
+        series.append(Series(name, x, y))
     title = f"by {axis.name}"
     return Panel(title, subject.label(metric), "share", series, x_log=spans_decades(values.ravel()), y_range=(0, 1.02))
 
@@ -49,6 +52,8 @@ def _distribution(values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def _in_order(subject: Subject, metric: str) -> Curves:
     ranked = subject.ranked
+    rank = np.array(spaced(len(ranked), POINTS), dtype=float) + 1.0
+    ranked = [ranked[place] for place in spaced(len(ranked), POINTS)]
     values = subject.measurements.values[metric]
     low, high = np.full(len(ranked), np.nan), np.full(len(ranked), np.nan)
     for place, cell in enumerate(ranked):
@@ -56,7 +61,6 @@ def _in_order(subject: Subject, metric: str) -> Curves:
         low[place], high[place] = np.quantile(present, (0.05, 0.95), method="inverted_cdf")
     low, high = (np.where(np.isfinite(edge), edge, np.nan) for edge in (low, high))
     medians = subject.medians[metric][ranked]
-    rank = np.arange(1, len(ranked) + 1, dtype=float)
     hints, runs = subject.hints(ranked), subject.hashes(ranked)
     series = Series("", rank, medians, "points_line", low, high, hints=hints, runs=runs)
     panel = Panel("", "cells from best to worst", subject.label(metric), [series], y_log=spans_decades(values.ravel()))

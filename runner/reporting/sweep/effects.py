@@ -2,19 +2,25 @@
 
 import numpy as np
 
+from runner.drawing.thinning import spaced
 from runner.quantities import number
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.intervals import axis_panel, cells_with_intervals, places
-from runner.reporting.sweep.subject import QUANTILE_RULE, Subject
+from runner.reporting.sweep.subject import MOST_GROUPS, QUANTILE_RULE, Subject
 from runner.statistics import PERMUTATIONS, EffectAnalysis
 from runner.sweeps.measurements import Axis
+
+_MOST_LEVELS = 200  # of an axis that are drawn, spread evenly
 
 
 def section(subject: Subject) -> Section:
     """Return what each axis does to each metric."""
     blocks: list[Block] = [_table(subject.effects), Text(_explained(subject.effects)), _main_effects(subject)]
+    many = [axis.name for axis in subject.axes if len(axis.values) > MOST_GROUPS]
+    if many:
+        blocks.insert(2, Text(literal(f"{', '.join(many)}: taken in {MOST_GROUPS} groups of neighbouring values.")))
     if len(subject.axes) <= 2:
         blocks += [
             figure for figure in (cells_with_intervals(subject, metric) for metric in subject.metrics[:2]) if figure
@@ -104,14 +110,15 @@ def _main_effects(subject: Subject) -> Curves:
 
 def _main_effect(subject: Subject, metric: str, axis: Axis) -> Panel:
     values = subject.measurements.values[metric]
-    quartiles = np.full((3, len(axis.values)), np.nan)
-    for level in range(len(axis.values)):
+    shown = spaced(len(axis.values), _MOST_LEVELS)
+    quartiles = np.full((3, len(shown)), np.nan)
+    for place, level in enumerate(shown):
         pooled = values[axis.level == level]
         pooled = pooled[~np.isnan(pooled)]
         if pooled.size:
-            quartiles[:, level] = np.quantile(pooled, (0.25, 0.5, 0.75), method="inverted_cdf")
+            quartiles[:, place] = np.quantile(pooled, (0.25, 0.5, 0.75), method="inverted_cdf")
     quartiles[~np.isfinite(quartiles)] = np.nan
-    x = places(axis)
+    x = places(axis)[shown]
     low, median, high = quartiles
     series = [Series("", x, median, "points_line", low, high, color=0)]
     if axis.numbers is None:  # between texts there is nothing that a line could stand for

@@ -16,6 +16,7 @@ from runner.sweeps.measurements import Axis, FloatArray
 _POOLED = "seed"  # the one axis over which maps take a median: its values mean nothing
 _FEWEST_FOR_CONTOURS = 3
 _MOST_MULTIPLES = 9
+_MOST_VALUES = 200  # of an axis of a map
 _MOST_POINTED = 5000  # cells that tell about themselves; a page with more would be slow
 
 
@@ -26,6 +27,11 @@ def section(subject: Subject) -> Section:
         _maps(subject, metric, x, y, others) for metric in subject.metrics if np.isfinite(subject.medians[metric]).any()
     ]
     return Section("Maps", [*blocks, *theory.explained([x, y])])
+
+
+def is_readable(subject: Subject) -> bool:
+    """Tell whether maps of a sweep can be read: over two axes or more, and of few enough values."""
+    return len(subject.axes) > 1 and all(len(axis.values) <= _MOST_VALUES for axis in _chosen(subject)[:2])
 
 
 def _chosen(subject: Subject) -> list[Axis]:

@@ -10,12 +10,14 @@ from runner.reporting.document import Document, Provenance, RunList, Section, Te
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep import axes, caveats, distributions, effects, extremes, failures, maps, pairs, tradeoff
-from runner.reporting.sweep.subject import Subject, choose, value_names
+from runner.reporting.sweep.subject import Subject, choose, value_name
 from runner.store import Sweep
-from runner.sweeps.measurements import measure
+from runner.sweeps.measurements import measure_sweep
 
 MOST_RUNS = 5000
 """Runs that the list of a report holds; of more, the best and the worst."""
+
+_MOST_VALUES = 100  # of what made the runs
 
 
 def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str = "") -> Document:
@@ -30,7 +32,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
         RunnerError: If a metric is none of the sweep's.
         StoreError: If a run is missing or damaged.
     """
-    subject = choose(measure(sweep.overrides, sweep.runs()), metrics)
+    subject = choose(measure_sweep(sweep), metrics)
     measurements = subject.measurements
     doubts = [caveats.section(subject)] if caveats.is_needed(subject) else []
     sections = [*doubts, axes.section(subject, sweep.command)]
@@ -39,7 +41,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
         sections.append(effects.section(subject))
         compared = pairs.section(subject)
         sections += [compared] if compared is not None else []
-    if subject.metrics and len(subject.axes) > 1:
+    if subject.metrics and maps.is_readable(subject):
         sections.append(maps.section(subject))
     traded = tradeoff.pair(subject) if subject.metrics else None
     if traded is not None:
@@ -95,10 +97,11 @@ def _all_runs(subject: Subject, sweep: Sweep, address: str) -> Section:
         shown.insert(len(subject.metrics), ("caveats", "1"))
     values = np.column_stack(medians) if medians else np.zeros((len(order), 0))
     cells = order.tolist()
-    levels = np.column_stack([axis.level[order] for axis in subject.axes] or [np.zeros((len(order), 0), dtype=np.intp)])
+    named = [(axis, *np.unique(axis.level[order], return_inverse=True)) for axis in subject.axes]
+    levels = np.column_stack([level for *_, level in named] or [np.zeros((len(order), 0), dtype=np.intp)])
     listing = RunList(
         caption,
-        [(axis.name, value_names(axis)) for axis in subject.axes],
+        [(axis.name, [value_name(axis, level) for level in some.tolist()]) for axis, some, _ in named],
         levels,
         shown,
         np.where(np.isfinite(values), values, np.nan),
@@ -115,8 +118,13 @@ def _all_runs(subject: Subject, sweep: Sweep, address: str) -> Section:
 
 
 def _made_by(subject: Subject, sweep: Sweep) -> list[tuple[str, str]]:
-    rows = [(name, ", ".join(values)) for name, values in subject.measurements.provenance.items()]
+    rows = [(name, ", ".join(_some(values))) for name, values in subject.measurements.provenance.items()]
     return [*rows, ("sweep", sweep.folder.name)]
+
+
+def _some(values: Sequence[str]) -> Sequence[str]:
+    """Return values, of very many the first and the last."""
+    return values if len(values) <= _MOST_VALUES else [*values[:3], f"... ({len(values)} values)", values[-1]]
 
 
 def _command(overrides: Sequence[str]) -> str:

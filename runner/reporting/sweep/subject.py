@@ -18,6 +18,9 @@ from runner.sweeps.measurements import Axis, FloatArray, Measurements
 MOST_METRICS = 4
 """Metrics that a report compares when nobody has named any."""
 
+MOST_GROUPS = 64
+"""An axis with more values is taken in so many groups of neighbours where effects are worked out."""
+
 QUANTILE_RULE = (
     "A quantile is the smallest value that so large a share of the repetitions does not exceed: the value of one of "
     "them, never one between two (NumPy's inverted_cdf)."
@@ -69,7 +72,7 @@ class Subject:
 
     def _analyse(self, values: FloatArray) -> EffectAnalysis:
         present = ~np.isnan(values).ravel()
-        levels = {axis.name: np.repeat(axis.level, values.shape[1])[present] for axis in self.axes}
+        levels = {axis.name: np.repeat(grouped(axis), values.shape[1])[present] for axis in self.axes}
         return axis_effects(levels, values.ravel()[present], self.measurements.draws.ravel()[present])
 
     @cached_property
@@ -115,6 +118,12 @@ class Subject:
     def hashes(self, cells: Sequence[int]) -> list[str]:
         """Return the hashes of some cells' runs."""
         return [self.measurements.hashes[cell] for cell in cells]
+
+
+def grouped(axis: Axis) -> NDArray[np.intp]:
+    """Return the level of each cell on an axis, shape (cells,): neighbours together where there are very many."""
+    count = len(axis.values)
+    return axis.level * MOST_GROUPS // count if count > MOST_GROUPS else axis.level
 
 
 def axis_label(axis: Axis) -> str:

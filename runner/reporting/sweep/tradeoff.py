@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from runner.drawing.thinning import spaced
+from runner.drawing.thinning import POINTS, spaced
 from runner.quantities import quantity
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal
@@ -46,7 +46,8 @@ def section(subject: Subject, metrics: tuple[str, str]) -> Section:
     """Return the trade-off between two metrics."""
     a, b = (subject.medians[metric] for metric in metrics)
     best = front(a, b)
-    shown = np.flatnonzero(np.isfinite(a) & np.isfinite(b)).tolist()
+    present = np.flatnonzero(np.isfinite(a) & np.isfinite(b)).tolist()
+    shown = [present[place] for place in spaced(len(present), POINTS)]
     panel = Panel(
         "",
         subject.label(metrics[0]),
@@ -58,7 +59,7 @@ def section(subject: Subject, metrics: tuple[str, str]) -> Section:
         spans_decades(a),
         spans_decades(b),
     )
-    text = f"The front has {len(best)} of {len(shown)} cells: along it one metric gets better and the other worse."
+    text = f"The front has {len(best)} of {len(present)} cells: along it one metric gets better and the other worse."
     if len(best) == 1:
         text = "One cell is best in both."
     blocks: list[Block] = [

@@ -14,7 +14,7 @@ from runner.reporting.metric_titles import title
 from runner.reporting.tuning import best_trials, front, history, keys
 from runner.reporting.tuning.subject import Subject, key_label, key_value
 from runner.store import Sweep, open_run
-from runner.sweeps.measurements import Measurements, measure
+from runner.sweeps.measurements import Measurements, measure_sweep
 from runner.tuning.study import Tuning
 
 _MOST_FAILURES = 40
@@ -34,7 +34,7 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
     made = [place for place, trial in enumerate(subject.trials) if trial.run]
     overrides = [tuning.study.trial_overrides(subject.trials[place]) for place in made]
     sweep = Sweep(tuning.folder, overrides, subject.runs(made), tuning.study.command)
-    measurements = measure(sweep.overrides, sweep.runs())
+    measurements = measure_sweep(sweep)
     sections = [_what(subject)]
     if subject.good:
         sections += [history.section(subject), keys.section(subject)]

@@ -1,0 +1,85 @@
+"""Columns of Parquet files, made from their buffers: any other way asks pandas, whose import takes half a second."""
+
+from collections.abc import Sequence
+from itertools import accumulate
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pyarrow
+
+_MOST_BYTES = 2**31 - 1  # of all texts of a column
+
+
+def text_column(values: Sequence[str]) -> "pyarrow.Array":
+    """Return a column of texts.
+
+    Raises:
+        ValueError: for more than 2 GB of them.
+    """
+    import pyarrow
+
+    encoded = [value.encode() for value in values]
+    ends = np.array([0, *accumulate(map(len, encoded))])
+    if ends[-1] > _MOST_BYTES:
+        raise ValueError("the texts of a column take more than 2 GB")
+    buffers = [None, pyarrow.py_buffer(ends.astype(np.int32)), pyarrow.py_buffer(b"".join(encoded))]
+    return pyarrow.Array.from_buffers(pyarrow.string(), len(values), buffers)
+
+
+def float_column(values: NDArray[np.float64]) -> "pyarrow.Array":
+    """Return a column of numbers, shape (n,); NaN stays NaN."""
+    import pyarrow
+
+    return _plain(pyarrow.float64(), np.ascontiguousarray(values, dtype=np.float64), len(values))
+
+
+def whole_column(values: Sequence[int]) -> "pyarrow.Array":
+    """Return a column of whole numbers of 32 bits."""
+    import pyarrow
+
+    return _plain(pyarrow.int32(), np.array(values, dtype=np.int32), len(values))
+
+
+def truth_column(values: Sequence[bool]) -> "pyarrow.Array":
+    """Return a column of true and false."""
+    import pyarrow
+
+    return _plain(pyarrow.bool_(), _bits(np.array(values, dtype=bool)), len(values))
+
+
+def list_column(values: NDArray[np.float64], sizes: NDArray[np.intp], present: NDArray[np.bool_]) -> "pyarrow.Array":
+    """Return a column of lists of numbers.
+
+    Args:
+        values: The numbers of all lists in order, shape (n,); NaN for none.
+        sizes: How many each list has, shape (rows,); 0 of one that is not present.
+        present: Whether there is a list, shape (rows,).
+    """
+    import pyarrow
+
+    there = ~np.isnan(values)
+    found = pyarrow.py_buffer(np.ascontiguousarray(values, dtype=np.float64))
+    numbers = pyarrow.Array.from_buffers(pyarrow.float64(), len(values), [_unless_all(there), found])
+    offsets = pyarrow.py_buffer(np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32))
+    kind = pyarrow.list_(pyarrow.float64())
+    return pyarrow.Array.from_buffers(kind, len(sizes), [_unless_all(present), offsets], children=[numbers])
+
+
+def _plain(kind: Any, values: NDArray[Any], count: int) -> "pyarrow.Array":
+    import pyarrow
+
+    return pyarrow.Array.from_buffers(kind, count, [None, pyarrow.py_buffer(values)])
+
+
+def _bits(values: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    return np.packbits(values, bitorder="little")
+
+
+def _unless_all(present: NDArray[np.bool_]) -> Any:
+    """Return which entries are present as Arrow holds it: nothing where all are."""
+    import pyarrow
+
+    return None if present.all() else pyarrow.py_buffer(_bits(present))

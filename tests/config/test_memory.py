@@ -1,0 +1,44 @@
+from runner.config.compose import compose
+from runner.config.memory import Memory
+from runner.config.validation import validate
+
+
+def test_a_function_is_called_once_for_the_same_arguments():
+    calls = []
+
+    def note(*parts):
+        calls.append(parts)
+        return len(calls)
+
+    memory, group = Memory(100), {"a": 1}
+    assert [memory.recall(note, group, 1.5, "x") for _ in range(3)] == [1, 1, 1]
+    assert memory.recall(note, group, 1.5, "y") == 2
+    assert memory.recall(note, dict(group), 1.5, "x") == 3  # equal, but another object
+    assert [memory.recall(note, value) for value in (1, 1.0, True)] == [4, 5, 6]
+
+
+def test_what_is_not_asked_for_is_forgotten_and_what_is_stays():
+    calls = []
+    memory, kept = Memory(20), object()
+    for number in range(200):
+        memory.recall(lambda part: calls.append(part), kept) if number == 0 else None
+        memory.recall(_double, number)
+        memory.recall(_double, 0)
+    assert len(memory._recent) + len(memory._older) <= 20
+    assert (_double, (int, 0)) in memory._recent
+
+
+def _double(number):
+    return 2 * number
+
+
+def test_what_groups_give_is_shared_by_configs_that_share_them():
+    resolved = compose(["robot=macro"]).resolved
+    one, two = validate({**resolved, "seed": 1}), validate({**resolved, "seed": 2})
+    assert (one.settings.seed, two.settings.seed) == (1, 2)
+    assert one.robot is two.robot
+    assert one.loops is two.loops
+    assert one.path is two.path
+    other = validate({**resolved, "noise": {**resolved["noise"], "position": 0.5}})
+    assert other.noise.position[0] == 0.5
+    assert other.loops is one.loops

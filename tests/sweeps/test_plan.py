@@ -1,0 +1,58 @@
+"""The check of a plan in blocks gives what each cell by itself does."""
+
+import pytest
+
+from runner.config.validation import validate
+from runner.errors import ConfigError
+from runner.store import run_hash
+from runner.sweeps.grid import plan_sweep
+from runner.sweeps.plan import check
+
+SHORT = ("robot=macro", "duration=0.05")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "blocks"),
+    [
+        ((*SHORT, "seed=range(0,4)", "noise.position=1e-4,1e-3"), 2),
+        (("duration=0.05", "robot=macro,mini", "seed=3,1,2", "repetitions=1,2"), 4),
+        ((*SHORT, "noise.position=1e-4,1e-3"), 2),
+        ((*SHORT, "seed=1,1"), 2),
+    ],
+)
+def test_cells_are_named_as_one_by_one(arguments, blocks):
+    plan = plan_sweep(arguments)
+    found = list(plan.blocks())
+    assert len(found) == blocks
+    assert sorted(cell for block in found for cell in block.cells) == [*range(len(plan))]
+    checked = check(plan)
+    for cell in range(len(plan)):
+        composed = plan.composed(cell)
+        config = validate(composed.resolved)
+        assert checked.names[cell] == run_hash(composed.resolved, config.arm.urdf)
+        assert checked.costs[cell] == config.timing.ticks * config.settings.repetitions
+
+
+def test_seeds_that_another_key_takes_make_no_block():
+    assert [block.seeds for block in plan_sweep([*SHORT, "seed=1,2", "+robot.note=${seed}"]).blocks()] == [None, None]
+
+
+def test_a_problem_names_its_first_cell_and_counts_all(tmp_path):
+    with pytest.raises(ConfigError) as raised:
+        check(plan_sweep([*SHORT, "seed=5,-1,-2", "noise.position=1e-4,-1", f"outputs={tmp_path}"]))
+    problems = list(raised.value.problems)
+    assert [problem.partition("]")[0] for problem in problems] == [
+        "[robot=macro duration=0.05 seed=5 noise.position=-1",
+        "[robot=macro duration=0.05 seed=-1 noise.position=0.0001",
+        "[robot=macro duration=0.05 seed=-2 noise.position=0.0001",
+    ]
+    assert "and 2 other cells: noise.position" in problems[0]
+    with pytest.raises(ConfigError, match=r"seed=0 noise.position=-1\] and 2 other cells: noise"):
+        check(plan_sweep([*SHORT, "seed=range(0,3)", "noise.position=1e-4,-1"]))
+
+
+def test_cells_that_share_a_group_share_the_object():
+    plan = plan_sweep([*SHORT, "noise.position=1e-4,1e-3", "seed=range(0,3)"])
+    cells = [plan.composed(cell).resolved for cell in range(len(plan))]
+    assert len({id(config["noise"]) for config in cells}) == 2
+    assert len({id(config["controller"]) for config in cells}) == 1

@@ -1,0 +1,64 @@
+"""How the jobs of a sweep are cut into chunks."""
+
+import numpy as np
+import pytest
+
+from runner.config.compose import Composed
+from runner.store import Outcome
+from runner.sweeps import queue as queues
+from runner.sweeps.queue import Queue
+from runner.sweeps.rules import Rules
+from runner.sweeps.work import Report
+
+
+class Cells:
+    def alike(self, cells):
+        return (([cell], [self.composed(cell)]) for cell in cells)
+
+    @staticmethod
+    def composed(cell):
+        return Composed({"seed": cell}, (), {}, ())
+
+
+def drain(tmp_path, costs, seconds_per_tick, workers=2):
+    """Return the cells of each chunk, as a worker of some speed would get them."""
+    rules = Rules((), tmp_path, tmp_path, "never", True, True, False, 1, None)
+    names = [f"{cell:024x}" for cell in range(len(costs))]
+    queue = Queue(Cells(), names, costs, np.arange(len(costs)), rules)
+    chunks = []
+    while (chunk := queue.take(workers)) is not None:
+        cells = [int(name, 16) for name, _ in chunk.jobs]
+        chunks.append(cells)
+        ends = [Outcome(name, "", False) for name, _ in chunk.jobs]
+        queue.learn(Report(ends, "", seconds_per_tick * sum(costs[cell] for cell in cells)))
+    assert queue.ticks_done == sum(costs)
+    return chunks
+
+
+def test_every_cell_is_handed_out_once_in_order(tmp_path):
+    chunks = drain(tmp_path, [100] * 1000, 1e-5)
+    assert [cell for cells in chunks for cell in cells] == [*range(1000)]
+    assert len(chunks[0]) == 1
+    assert len(chunks[1]) == pytest.approx(1000 / 4, abs=2)  # a fair share, which takes less than a second
+    assert max(map(len, chunks[-4:])) <= 2
+
+
+def test_chunks_take_about_a_second(tmp_path):
+    chunks = drain(tmp_path, [1000] * 1000, 1e-4)
+    assert {len(cells) for cells in chunks[1:-20]} == {10}
+
+
+def test_slow_jobs_of_a_large_sweep_make_no_more_chunks_than_allowed(tmp_path, monkeypatch):
+    monkeypatch.setattr(queues, "_MOST_CHUNKS", 20)
+    chunks = drain(tmp_path, [1000] * 1000, 1.0)
+    assert {len(cells) for cells in chunks[1:-1]} == {50}
+    assert len(chunks) == 21
+
+
+def test_fast_jobs_make_chunks_up_to_a_size(tmp_path, monkeypatch):
+    monkeypatch.setattr(queues, "_LARGEST", 30)
+    assert max(map(len, drain(tmp_path, [1] * 1000, 1e-7))) == 30
+
+
+def test_a_job_above_the_share_goes_alone(tmp_path):
+    assert [len(cells) for cells in drain(tmp_path, [10**6, 10**6, 10, 10], 1e-4)[:3]] == [1, 1, 1]
