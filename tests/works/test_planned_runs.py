@@ -55,7 +55,7 @@ SOME = {
 
 
 @pytest.mark.parametrize(
-    ("work", "runs", "calibrations"), [("thesis", 304, 0), ("xarm7", 115, 0), ("meca500", 242, 36)]
+    ("work", "runs", "calibrations"), [("thesis", 306, 0), ("xarm7", 115, 0), ("meca500", 242, 36)]
 )
 def test_a_work_has_its_runs(work, runs, calibrations):
     planned = load_work(work)

@@ -53,7 +53,7 @@ def test_the_cost_of_the_dynamics_is_refuted_by_a_slow_machine(
     assert cost.six.value == pytest.approx(slower * 0.3 * 6.0**power)
 
 
-@pytest.mark.parametrize("name", ["turns", "mass_ratio", "whole_body", "reference_velocity"])
+@pytest.mark.parametrize("name", ["turns", "mass_ratio", "whole_body", "reference_velocity", "folding"])
 def test_a_finding_on_failed_runs_alone_no_longer_holds(runs: Mapping[str, Run], name: str) -> None:
     document = _document(chapter("thesis", f"{name}.md")(every_run(runs)))
     assert [found.claim for _, found in findings(document) if found.holds] == []

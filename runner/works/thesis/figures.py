@@ -134,6 +134,24 @@ def diverges_at(runs: Mapping[str, Run], run: str, words: str) -> Measured:
     return Measured(words, (runs[run].failure or {}).get("time"), "s")
 
 
+def at_rest(run: Run) -> list[float]:
+    """Return the steady-state errors of the repetitions of a run that do not diverge, in m."""
+    values = run.metrics.get("steady_state_error", {}).get("values", ())
+    return [float(value) for value in values if value is not None]
+
+
+def of_repetitions(
+    runs: Mapping[str, Run], words: str, what: Callable[..., float | None], unit: str, *names: str
+) -> Measured:
+    """Return what a function gives for a run, or for two, of which repetitions may have diverged, by words."""
+    return Measured(words, what(*(runs[name] for name in names)), unit)
+
+
+def count_diverging(run: Run) -> int:
+    """Return how many repetitions of a run diverge."""
+    return int(run.config["repetitions"]) - len(at_rest(run))
+
+
 def mass_of(runs: Mapping[str, Run], name: str, words: str = "mass of the Mini") -> Measured:
     """Return the mass of a run's Mini."""
     masses = runs[name].config["robot"]["stages"]["mini"]["masses"]

@@ -1,0 +1,68 @@
+"""What the thesis' section on folding tells of repetitions of which some diverge, and of two draws that part."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from thin_plans import make_runs, stand_ins
+from work_plans import conditions_that_never_fail, thesis_moments
+
+from runner.store import Run
+from runner.works.thesis import figures, folding
+
+NAME = "folding/sound/tip_goal/quintic"
+
+
+@pytest.fixture(scope="module")
+def runs(shared_store: Path, thin: bool) -> dict[str, Run]:
+    """Every run of the plan, cut to a moment."""
+    return make_runs(shared_store, thesis_moments(), stand_ins(thesis_moments(), thin))
+
+
+def ending(run: Run, errors: Sequence[float | None]) -> Run:
+    """Return a run whose repetitions end with these steady-state errors, in m; one with None has diverged."""
+    there = {"steady_state_error": {"unit": "m", "values": list(errors)}} if any(errors) else {}
+    changed = replace(run, record={**run.record, "metrics": there})
+    changed.__dict__["config"] = {**run.config, "repetitions": len(errors)}
+    return changed
+
+
+@pytest.mark.parametrize(
+    ("errors", "diverging", "farthest", "spread", "text"),
+    [
+        ([0.016, None, 0.18], 1, 0.18, 0.164, "0.016 to 0.18 m"),
+        ([0.0001, 0.0001], 0, 0.0001, 0.0, "0.1 mm"),
+        ([5e-13, 7e-13], 0, 7e-13, 2e-13, "0 (rounding)"),
+        ([None, None], 2, None, None, "failed"),
+    ],
+)
+def test_repetitions_that_diverge_are_counted_and_the_others_told(
+    runs: Mapping[str, Run],
+    errors: list[float | None],
+    diverging: int,
+    farthest: float | None,
+    spread: float | None,
+    text: str,
+) -> None:
+    run = ending(runs[NAME], errors)
+    assert figures.count_diverging(run) == diverging
+    assert folding.farthest_at_rest(run) == farthest
+    assert folding.spread_at_rest(run) == pytest.approx(spread)
+    assert folding.at_rest_text(run) == text
+
+
+def test_two_draws_part_when_their_joints_are_a_radian_apart(runs: Mapping[str, Run]) -> None:
+    first, second = (replace(runs[NAME]) for _ in range(2))
+    second.__dict__["trace"] = first.trace.assign(q2=first.trace["q2"] + np.where(first.trace["t"] < 0.01, 1e-12, 2.0))
+    assert folding.parted_at(first, second) == pytest.approx(0.01)
+    assert folding.largest_parting(first, second) == pytest.approx(2.0)
+    assert folding.parted_at(first, first) is None
+    second.__dict__["trace"] = second.trace[:3]  # diverged
+    assert len(folding.parting(first, second)) == 3
+
+
+@pytest.mark.parametrize("file", ["folding.md", "mass_ratio.md", "whole_body.md"])
+def test_each_condition_on_chaotic_runs_can_fail(runs: Mapping[str, Run], file: str) -> None:
+    assert conditions_that_never_fail("thesis", file, runs) == []
