@@ -5,7 +5,19 @@ from importlib import import_module
 
 from runner.config.compose import quiet_environment
 
-NAMES = ("tick", "caveats", "cold_start", "reproduce", "sweep", "kills", "mutants", "fuzz")
+NAMES = (
+    "tick",
+    "laws",
+    "agreement",
+    "caveats",
+    "around",
+    "cold_start",
+    "reproduce",
+    "sweep",
+    "kills",
+    "mutants",
+    "fuzz",
+)
 
 chosen = sys.argv[1:] or NAMES
 if not set(chosen) <= set(NAMES):

@@ -78,7 +78,7 @@ def _trace(run: store.Run) -> object:
 
 
 def _shard(path: Path) -> object:
-    ends = read_outcomes(path)
+    ends = list(read_outcomes(path))
     return ends, [(_run(run), run.urdf) for run in (open_row(path, row) for row in range(len(ends)))]
 
 

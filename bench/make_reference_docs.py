@@ -16,6 +16,7 @@ from unittest.mock import patch
 import yaml
 
 from bench.allowed_values import describe
+from bench.compiled_table import compiled_section
 from runner.calibration.procedures import CALIBRATIONS
 from runner.cli import COMMANDS
 from runner.config.calibration import CalibrationSettings
@@ -74,6 +75,8 @@ def reference_text() -> str:
         _HEAD,
         "## Keys\n\n",
         *_keys(),
+        "## What is compiled\n\n",
+        *compiled_section(),
         "## Metrics\n\n",
         *_metrics(),
         "## In chapters\n\n",

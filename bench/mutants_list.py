@@ -41,8 +41,8 @@ MUTANTS = [
     *_of(
         "metrics/reaching.py",
         "metrics/test_reaching.py",
-        ("reach counted from the tip", "trace.end_points[-2]", "trace.end_points[-1]"),
-        ("reach counted from the first stage", "trace.end_points[-2]", "trace.end_points[0]"),
+        ("reach counted from the tip", "traces.end_points[-2]", "traces.end_points[-1]"),
+        ("reach counted from the first stage", "traces.end_points[-2]", "traces.end_points[0]"),
     ),
     *_of(
         "metrics/contact.py",
@@ -55,14 +55,28 @@ MUTANTS = [
     *_of(
         "metrics/positioning.py",
         "metrics/test_positioning.py",
-        ("overshoot of the desired motion counted", "past - max(0.0, wanted)", "past"),
-        ("overshoot of an arm that is ahead of its desired motion", "past - max(0.0, wanted)", "past - wanted"),
+        ("overshoot of the desired motion counted", "past - np.maximum(wanted, 0.0)", "past"),
+        ("overshoot of an arm that is ahead of its desired motion", "past - np.maximum(wanted, 0.0)", "past - wanted"),
     ),
     *_of(
         "metrics/summary.py",
         "metrics/test_summary.py",
-        ("the tip judged in its carrier's place", "trace.at_stage(index), carrier", "trace, carrier"),
-        ("a carrier's path not shifted", "Shifted(context.trajectory, trace.offsets[index])", "context.trajectory"),
+        ("the tip judged in its carrier's place", "evaluate(at_stage, carrier)", "evaluate(traces, carrier)"),
+        ("a carrier's path not shifted", "Shifted(context.trajectory, traces.offsets[index])", "context.trajectory"),
+    ),
+    *_of(
+        "metrics/summary.py",
+        "metrics/test_measure.py",
+        ("the last block of runs lost", "range(0, traces.runs, block)", "range(0, traces.runs - block, block)"),
+    ),
+    *_of(
+        "store/writing.py",
+        "store/test_batch_records.py",
+        (
+            "the largest for the least",
+            "for end in over_repetitions(own).T)",
+            "for end in over_repetitions(own).T[[0, 2, 1]])",
+        ),
     ),
     *_of(
         "metrics/tracking.py",
@@ -72,11 +86,11 @@ MUTANTS = [
     *_of(
         "metrics/effort.py",
         "metrics/test_effort.py",
-        ("a limit missed by rounding", "(1.0 - 1e-12)", "1.0"),
+        ("a limit missed by rounding", "1.0 - 1e-12", "1.0"),
         (
             "work that cancels",
-            "float(np.abs(tau * np.diff(trace.q, axis=0)).sum())",
-            "float((tau * np.diff(trace.q, axis=0)).sum())",
+            "np.abs(held * np.diff(by_rows(traces.q), axis=2)).sum(axis=2)",
+            "(held * np.diff(by_rows(traces.q), axis=2)).sum(axis=2)",
         ),
     ),
     *_of(
@@ -98,6 +112,11 @@ MUTANTS = [
             "wrench + self._bias[tick]\n",
             "wrench\n        self._noise[tick] += self._bias[tick]\n",
         ),
+    ),
+    *_of(
+        "sensing/streams.py",
+        "sensing/test_streams.py",
+        ("large seeds cut off", "for more in entropy[_POOL:]", "for more in entropy[:0]"),
     ),
     *_of(
         "sensing/encoders.py",
@@ -123,11 +142,15 @@ MUTANTS = [
     *_of(
         "controllers/stage_loops.py",
         "controllers/test_stage_loops.py",
-        ("later stages' offset added", "rest = reference[0] - self._later", "rest = reference[0] + self._later"),
-        ("the carrier adds it", "self._bases[0].position - self._later", "self._bases[0].position + self._later"),
-        ("the last rider's offset for that of all", "offset += base", "offset = base"),
-        ("the base's turn the other way round", "_cross(spin, rest)", "_cross(rest, spin)"),
-        ("gravity turned the wrong way", "set_gravity(R.T.dot(self._gravity))", "set_gravity(R.dot(self._gravity))"),
+        ("later stages' offset added", "way = reference[0] - numbers.later", "way = reference[0] + numbers.later"),
+        ("the carrier adds it", "bases[0][0] - numbers.later", "bases[0][0] + numbers.later"),
+        ("the last rider's offset for that of all", "target[0] -= R", "target[0] = reference[0] - R"),
+        ("the base's turn the other way round", "cross(moves[3:], way)", "cross(way, moves[3:])"),
+        (
+            "gravity turned the wrong way",
+            "return way, seen[:3], seen[3]",
+            "return way, seen[:3], R.dot(numbers.gravity)",
+        ),
     ),
     *_of(
         "plants/friction.py",

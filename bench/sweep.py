@@ -1,9 +1,11 @@
 """What a sweep costs beside simulating: CPU time per run, use of both cores, memory of the parent, and saving.
 
-`python -m bench sweep` makes 2,000 short Macro runs, each with its trace in a folder of its own, and 100,000 of the
-shortest kind, which go to shards. Start-up is what a sweep of two runs costs.
+`python -m bench sweep` makes 2,000 short Macro runs, each with its trace in a folder of its own; 100,000 of the
+shortest kind, which go to shards; and 10,000 of 400 ticks with encoder noise, which are simulated together. Start-up is
+what a sweep of two runs costs. `python -m bench.sweep --large` makes 100,000 of the last, start included.
 """
 
+import math
 import os
 import subprocess
 import sys
@@ -15,13 +17,17 @@ from pathlib import Path
 
 from runner import store
 from runner.assembly import assemble, make_encoders
-from runner.config.compose import compose
+from runner.config.compose import compose, quiet_environment
 from runner.config.validation import validate
 from runner.execution import simulate_job
 from runner.simulation import simulate
 
 _SHORT = ("robot=macro", "noise=thesis", "duration=1")
 _SHORTEST = ("robot=macro", "plant=rk4", "noise=thesis", "duration=0.05", "sweep.trace=never")
+_TOGETHER = (
+    *("robot=macro", "plant=rk4", "noise=thesis", "torque_limits=thesis", "trajectory=quintic"),
+    *("trajectory.duration=3.5", "duration=4", "controller.natural_frequency=8,10", "sweep.trace=never"),
+)
 _WORKERS = 2
 
 
@@ -34,8 +40,12 @@ class Cost:
     memory: float
 
 
-def main() -> bool:
-    """Measure and print; return whether every target is met."""
+def main(large: bool = False) -> bool:
+    """Measure and print; return whether every target is met.
+
+    Args:
+        large: Whether to make 100,000 runs of 400 ticks, too, which takes a minute.
+    """
     simulating, saving = _simulating(_SHORT), _saving(_SHORT)
     few, short, shortest = _sweep(_SHORT, 2), _sweep(_SHORT, 2000), _sweep(_SHORTEST, 100_000)
     overhead = (short.cpu - few.cpu) / 2000 - simulating
@@ -49,12 +59,21 @@ def main() -> bool:
         _judge("memory of the parent (MB)", max(short.memory, shortest.memory), 500.0),
         _judge("saving a run (ms of CPU)", saving * 1e3, 3.0),
     ]
+    start, together = _sweep(_TOGETHER, 2), _sweep(_TOGETHER, 10_000)
+    cost = (together.cpu - start.cpu) / 10_000
+    met.append(_judge("400 ticks, together (ms of CPU)", cost * 1e3, 0.6))
+    if large:
+        many = _sweep(_TOGETHER, 100_000)
+        met.append(_judge("100,000, start included (ms)", many.cpu / 100_000 * 1e3, 0.6))
+        met.append(_judge("their parent's memory (MB)", many.memory, 1500.0))
     return all(met)
 
 
 def _sweep(overrides: tuple[str, ...], runs: int) -> Cost:
+    """Make a sweep through the command line, of so many runs over seeds and what else is swept."""
+    seeds = runs // math.prod(text.count(",") + 1 for text in overrides)
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "runner", "-m", *overrides, f"seed=range(0,{runs})", f"outputs={folder}"]
+        command = [sys.executable, "-m", "runner", "-m", *overrides, f"seed=range(0,{seeds})", f"outputs={folder}"]
         start = time.perf_counter()
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         _, status, used = os.wait4(process.pid, 0)
@@ -89,3 +108,8 @@ def _cpu_time(work: Callable[[], object], times: int = 100) -> float:
 def _judge(what: str, value: float, target: float) -> bool:
     print(f"  {what:30} {value:7.2f}  target {target:g}: {'met' if value <= target else 'MISSED'}")
     return value <= target
+
+
+if __name__ == "__main__":
+    quiet_environment()
+    sys.exit(0 if main(large="--large" in sys.argv[1:]) else 1)

@@ -2,15 +2,14 @@
 
 F is the least that a PyBullet plant can cost: torque, step and read of the same arm, in a plain loop, under the same
 torques. What the runner adds to it is control, measurement, limits, log and tip positions. Both are measured in
-turns, a block of ticks each, so that whatever else the machine does falls on both; targets are ratios. Work beside it
-slows Python more than C, by caches, so the quieter half of the rounds is judged.
+turns, a block of ticks each; see bench/turns.py.
 """
 
 import os
-import time
 from collections.abc import Callable
 from statistics import median
 
+from bench.turns import ROUNDS, Block, measure, ratio
 from runner.assembly import assemble, make_encoders
 from runner.config.compose import compose
 from runner.config.run import RunConfig
@@ -23,7 +22,6 @@ with quiet_stderr():
     import pybullet
 
 TICKS = 2000
-ROUNDS = 40
 _SCENE = ("trajectory=quintic", "noise=thesis")
 _MACRO = ("robot=macro", "trajectory.duration=19")
 _CASES = {
@@ -41,9 +39,9 @@ def main() -> bool:
     for name, (config, loop) in loops.items():
         if isinstance(loop.plant, Bullet):
             torques = simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0)).tau[:-1].tolist()
-            blocks[f"F: {name}"] = _pybullet_alone(config, torques)
-        blocks[name] = _whole_run(config, loop)
-    times = _measure(blocks)
+            blocks[f"F: {name}"] = pybullet_alone(config, torques)
+        blocks[name] = whole_run(config, loop)
+    times = measure({name: Block(work, TICKS) for name, work in blocks.items()})
 
     F10, F1 = times["F: bullet, 10 substeps"], times["F: bullet, 1 substep"]
     bullet10, bullet1, rk4, combined = (times[name] for name in _CASES)
@@ -55,12 +53,12 @@ def main() -> bool:
     for name, values in times.items():
         print(f"  {name:26} {median(values):6.2f} us  (quickest round {min(values):.2f})")
     within = [
-        _judge("bullet, 10 substeps / F", _ratio(bullet10, F10), 1.5),
-        _judge("rk4 / F, 10 substeps", _ratio(rk4, F10), 0.9),
+        _judge("bullet, 10 substeps / F", ratio(bullet10, F10), 1.5),
+        _judge("rk4 / F, 10 substeps", ratio(rk4, F10), 0.9),
         _judge("bullet, 1 substep - F (us)", median(a - b for a, b in zip(bullet1, F1, strict=True)), 12.0),
-        _judge("combined: all but F / F", _ratio(combined, F6) - 1.0, 2.0),
+        _judge("combined: all but F / F", ratio(combined, F6) - 1.0, 2.0),
     ]
-    print(f"  {'bullet, 1 substep / F':28} {_ratio(bullet1, F1):5.2f}")
+    print(f"  {'bullet, 1 substep / F':28} {ratio(bullet1, F1):5.2f}")
     load = os.getloadavg()[0]
     if load > 1.3:
         print(
@@ -76,7 +74,9 @@ def _assemble(*overrides: str) -> tuple[RunConfig, ClosedLoop]:
     return config, loop
 
 
-def _whole_run(config: RunConfig, loop: ClosedLoop) -> Callable[[], None]:
+def whole_run(config: RunConfig, loop: ClosedLoop) -> Callable[[], None]:
+    """Return a whole run, draws of its noise included."""
+
     def block() -> None:
         trace = simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0))
         assert trace.failure is None
@@ -84,7 +84,7 @@ def _whole_run(config: RunConfig, loop: ClosedLoop) -> Callable[[], None]:
     return block
 
 
-def _pybullet_alone(config: RunConfig, torques: list[list[float]]) -> Callable[[], None]:
+def pybullet_alone(config: RunConfig, torques: list[list[float]]) -> Callable[[], None]:
     """Return a loop over the raw calls, on an arm of its own that was made as the plant makes it."""
     loop = assemble(config)
     plant = loop.plant
@@ -102,25 +102,6 @@ def _pybullet_alone(config: RunConfig, torques: list[list[float]]) -> Callable[[
             pybullet.getJointStates(body, joints, client)
 
     return block
-
-
-def _measure(blocks: dict[str, Callable[[], None]]) -> dict[str, list[float]]:
-    """Run all blocks in turns; return the CPU time per tick in the quieter half of the rounds, in us."""
-    for block in blocks.values():
-        block()  # caches filled, before anything counts
-    rounds = [{name: _cpu_time(block) for name, block in blocks.items()} for _ in range(ROUNDS)]
-    quieter = sorted(rounds, key=lambda times: sum(times.values()))[: ROUNDS // 2]
-    return {name: [times[name] for times in quieter] for name in blocks}
-
-
-def _cpu_time(block: Callable[[], None]) -> float:
-    start = time.process_time()
-    block()
-    return (time.process_time() - start) / TICKS * 1e6
-
-
-def _ratio(ours: list[float], theirs: list[float]) -> float:
-    return median(a / b for a, b in zip(ours, theirs, strict=True))
 
 
 def _judge(what: str, value: float, target: float) -> bool:

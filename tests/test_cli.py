@@ -14,6 +14,7 @@ from printed import without_caveats
 from runner import execution
 from runner.cli import COMMANDS, HELP
 from runner.config.options import group_options
+from runner.store import open_sweep
 
 SHORT = ("robot=macro", "duration=0.05")
 IN_PROCESS = ("hydra.sweeper.workers=0",)
@@ -93,14 +94,14 @@ def test_a_sweep_stores_every_combination_and_its_table(cli, tmp_path):
         (True, False),
         (False, True),
     ]
-    jobs = json.loads((ending.folder / "sweep.json").read_text())["jobs"]
-    assert [job["overrides"][:2] for job in jobs] == [
-        ["robot=macro", "noise.position=0"],
-        ["robot=macro", "noise.position=0.0001"],
-        ["robot=mini", "noise.position=0"],
-        ["robot=mini", "noise.position=0.0001"],
+    sweep = open_sweep(ending.folder)
+    assert [overrides[:2] for overrides in sweep.overrides] == [
+        ("robot=macro", "noise.position=0"),
+        ("robot=macro", "noise.position=0.0001"),
+        ("robot=mini", "noise.position=0"),
+        ("robot=mini", "noise.position=0.0001"),
     ]
-    assert sorted(job["run"] for job in jobs) == sorted(run.name for run in (tmp_path / "outputs/runs").iterdir())
+    assert sorted(sweep.hashes) == sorted(run.name for run in (tmp_path / "outputs/runs").iterdir())
     assert [entry.name for entry in tmp_path.iterdir()] == ["outputs"]
 
 
@@ -141,9 +142,8 @@ def test_an_experiment_may_bring_its_axes(cli, tmp_path):
         "# @package _global_\nduration: 0.05\nhydra: {sweeper: {params: {seed: '0,1', noise.position: '0,1e-4'}}}\n"
     )
     ending = cli("-m", "--config-dir", tmp_path / "own", *IN_PROCESS, "experiment=axes", "seed=3")
-    jobs = json.loads((ending.folder / "sweep.json").read_text())["jobs"]
-    assert [job["overrides"] for job in jobs] == [
-        ["seed=3", f"noise.position={value}", "experiment=axes"] for value in ("0", "0.0001")
+    assert open_sweep(ending.folder).overrides == [
+        ("seed=3", f"noise.position={value}", "experiment=axes") for value in ("0", "0.0001")
     ]
 
 

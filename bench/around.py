@@ -1,0 +1,105 @@
+"""CPU time of what stands around the ticks of many runs at once: encoder noise, metrics, caveats, records and a shard.
+
+`python -m bench around` takes 256 Macro runs of 400 ticks and one repetition, as a sweep has them, which all differ.
+"""
+
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from runner.assembly import assemble, make_encoders, metric_context
+from runner.caveats import Watch, look_together, setting_of, signals_of
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.metrics import measure
+from runner.metrics.summary import units_of
+from runner.provenance import job_provenance
+from runner.sensing import encoder_errors
+from runner.simulation import simulate
+from runner.store import Outcome
+from runner.store.json_texts import JsonTexts
+from runner.store.shards import ShardRow, shard_name, write_shard
+from runner.store.writing import record_texts, timing
+from runner.trace import Traces
+
+_RUNS, _TIMES = 256, 30
+_OVERRIDES = ("robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis", "torque_limits=thesis")
+
+
+def main() -> bool:
+    """Measure and print; return whether every target is met."""
+    composed = compose(_OVERRIDES)
+    config = validate(composed.resolved)
+    loop, context = assemble(config), metric_context(config)
+    trace = simulate(loop, make_encoders(loop, config.noise, 0, 0))
+    loop.close()
+    traces = _varied(Traces.of(trace))
+    clocked, provenance = timing(np.zeros(1), 0.0, 0.0), job_provenance(config, composed)
+    metrics = measure(traces, context)
+
+    def look() -> list[Watch]:
+        watches = [Watch(setting_of(config, loop.q_start), config.caveats) for _ in range(_RUNS)]
+        look_together(watches, signals_of(traces, metrics))
+        return watches
+
+    found = [watch.found() for watch in look()]
+
+    of_metrics = tuple(zip(metrics, units_of(tuple(metrics)), strict=True))
+    values = np.stack(list(metrics.values()), axis=1)
+
+    def store(outputs: Path) -> None:
+        texts = JsonTexts()
+        own = [{**provenance, "seed": run} for run in range(_RUNS)]
+        records = record_texts({name: of_all[:, None] for name, of_all in metrics.items()}, found, clocked, own, texts)
+        rows = [
+            ShardRow(
+                Outcome(f"{run:024x}", "", False, len(found[run].caveats)),
+                texts.of({**config.resolved, "seed": run}),
+                config.arm.urdf,
+                record,
+                of_metrics,
+                values[run : run + 1],
+            )
+            for run, record in enumerate(records)
+        ]
+        write_shard(outputs, shard_name(1, 1), rows)
+
+    print(f"CPU time a run of {len(trace.t) - 1} ticks, {_RUNS} at once, quickest of {_TIMES}")
+    with tempfile.TemporaryDirectory() as folder:
+        seeds = [[0, run, 0] for run in range(_RUNS)]
+        met = [
+            _judge("encoder noise", lambda: encoder_errors([config.noise] * _RUNS, seeds, len(trace.t)), 0.02),
+            _judge("metrics", lambda: measure(traces, context), 0.06),
+            _judge("caveats", lambda: [watch.found() for watch in look()], 0.03),
+            _judge("records and shard", lambda: store(Path(folder)), 0.12),
+        ]
+    return all(met)
+
+
+def _varied(one: Traces) -> Traces:
+    """Return many runs like one, each a little different."""
+    factor = 1.0 + 1e-3 * np.random.default_rng(0).normal(size=(_RUNS, 1, 1))
+    return replace(
+        one,
+        q=one.q * factor,
+        dq=one.dq * factor,
+        tau=one.tau * factor,
+        end_points=one.end_points * factor,
+        limits=np.repeat(one.limits, _RUNS, axis=0),
+    )
+
+
+def _judge(what: str, part: Callable[[], object], target: float) -> bool:
+    found = min(_clocked(part) for _ in range(_TIMES)) / _RUNS * 1e3
+    print(f"  {what:20} {found:.3f} ms  target {target:g}: {'met' if found <= target else 'MISSED'}")
+    return found <= target
+
+
+def _clocked(part: Callable[[], object]) -> float:
+    start = time.process_time()
+    part()
+    return time.process_time() - start

@@ -1,0 +1,30 @@
+"""Many runs at once on rk4, as compiled code alone: neither the draws of their noise nor their metrics are timed."""
+
+import numpy as np
+
+from bench.arms import Arm, assembled
+from bench.turns import Block
+from runner.assembly import make_encoders
+from runner.compiled.closed_loop import Whole, run_all
+
+SIZES = (1, 40, 1000)
+TICKS = 400
+
+
+def batches(arm: Arm, law: str) -> dict[int, Block]:
+    """Return batches of runs of a law by their size, each run with noise of its own; none where it is not compiled."""
+    config, closed = assembled(arm, law, "rk4", 1, TICKS)
+    whole = closed.compiled
+    if not isinstance(whole, Whole):
+        return {}
+    commands, times = whole.commands, np.arange(TICKS + 1, dtype=np.float64) * closed.tick
+    shared = commands.shared(times, closed.trajectory.sample(times))
+    runs = [make_encoders(closed, config.noise, config.settings.seed, run) for run in range(max(SIZES))]
+    errors = [np.array([encoder.errors for encoder in loop]) for loop in zip(*runs, strict=True)]
+    start = np.array([commands.start(closed.q_start, [each[run, 0] for each in errors]) for run in range(len(runs))])
+
+    def block(size: int) -> Block:
+        values, own = np.tile(whole.values, (size, 1)), [each[:size] for each in errors]
+        return Block(lambda: run_all(whole, values, shared, own, start[:size]), size * TICKS)
+
+    return {size: block(size) for size in SIZES}

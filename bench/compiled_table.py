@@ -1,0 +1,72 @@
+"""What is compiled, as a table for docs/reference.md: each case is assembled, and the code is asked."""
+
+from collections.abc import Iterator
+
+from runner.assembly import assemble
+from runner.compiled.closed_loop import Whole
+from runner.config.compose import compose
+from runner.config.validation import validate
+
+_LAWS = {
+    "operational_space": ("robot=macro", "controller=operational_space"),
+    "computed_torque": ("robot=macro", "controller=computed_torque"),
+    "whole_body": ("robot=combined", "controller=whole_body"),
+    "macro_mini": ("robot=combined", "controller=macro_mini"),
+    "differential_inverse_kinematics": ("robot=xarm7", "controller=differential_inverse_kinematics"),
+    "admittance": ("robot=meca500", "controller=admittance"),
+}
+_CASES = {
+    "encoders with noise, bias, steps, differenced velocity": (
+        "noise=thesis",
+        "noise.bias=1e-4",
+        "noise.resolution=1e-5",
+        "noise.velocity=finite_difference",
+    ),
+    "torque limits": ("torque_limits=thesis",),
+    "a command delay": ("plant.command_delay=0.02",),
+    "several steps a tick": ("plant.step=0.005",),
+    "viscous and dry friction": ("plant.friction.viscous=1", "plant.friction.coulomb=1"),
+    "a payload": ("robot.payload.mass=0.5",),
+    "beliefs drawn for each repetition": ("mismatch.mass=1.1", "mismatch.spread=0.1"),
+    "loops of several periods": (
+        "robot=combined",
+        "controller=macro_mini",
+        "controller.period={macro: 0.01, mini: 0.001}",
+    ),
+    "stages that do not feel each other": ("robot=combined", "controller=whole_body", "plant.dynamics=decoupled"),
+    "a push": ("environment=push",),
+    "a hand": ("environment=hand",),
+}
+_HEAD = """\
+On arms of up to 12 joints, where llvmlite is installed. A *whole run* is machine code from the first tick to the last,
+and advances together with others that differ in numbers alone: repetitions, seeds, gains, limits, noise, masses, goals,
+durations. *The law*: machine code gives the torques, in a loop of Python. *Python*: nothing is compiled. The config
+alone decides; where metrics of yours are installed, whole runs advance one by one. For laws and plants of yours see
+[controllers](controller.md) and [plants](plant.md).
+
+"""
+_BASE = ("robot=macro", "controller=operational_space", "trajectory=quintic")
+
+
+def compiled_section() -> Iterator[str]:
+    """Yield the section."""
+    yield _HEAD
+    plants = ("rk4", "bullet")
+    yield f"| Controller | {' | '.join(f'`plant={plant}`' for plant in plants)} |\n|---|---|---|\n"
+    for name, overrides in _LAWS.items():
+        yield f"| `{name}` | {' | '.join(_compiled(*overrides, f'plant={plant}') for plant in plants)} |\n"
+    yield "\n`operational_space` on `plant=rk4`, or what the line names, with\n\n| | |\n|---|---|\n"
+    for name, overrides in _CASES.items():
+        own = {text.partition("=")[0]: text for text in (*_BASE, "plant=rk4", *overrides)}
+        yield f"| {name} | {_compiled(*own.values())} |\n"
+    yield "\n"
+
+
+def _compiled(*overrides: str) -> str:
+    closed = assemble(validate(compose(overrides).resolved))
+    try:
+        if closed.compiled is None:
+            return "Python"
+        return "whole run" if isinstance(closed.compiled, Whole) else "the law"
+    finally:
+        closed.close()
