@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.errors import StoreError
+from runner.store.arrow_columns import list_column, text_column, truth_column, whole_column
 from runner.store.atomic import write_atomically
-from runner.store.columns import list_column, text_column, truth_column, whole_column
 from runner.store.json_texts import encode_finite
 from runner.store.names import Names
 from runner.store.record import find_faults

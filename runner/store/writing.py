@@ -12,8 +12,8 @@ import yaml
 from runner.caveats import Found
 from runner.errors import StoreError
 from runner.metrics.summary import Summary, over_repetitions, units_of
+from runner.store.arrow_columns import float_column
 from runner.store.atomic import write_atomically
-from runner.store.columns import float_column
 from runner.store.json_texts import JsonTexts, encode_finite
 from runner.store.run import Run
 from runner.store.stored import write_job
