@@ -21,7 +21,7 @@ def batches(arm: Arm, law: str) -> dict[int, Block]:
     shared = commands.shared(times, closed.trajectory.sample(times))
     runs = [make_encoders(closed, config.noise, config.settings.seed, run) for run in range(max(SIZES))]
     errors = [np.array([encoder.errors for encoder in loop]) for loop in zip(*runs, strict=True)]
-    start = np.array([commands.start(closed.q_start, [each[run, 0] for each in errors]) for run in range(len(runs))])
+    start = commands.start(np.tile(closed.q_start, (len(runs), 1)), [each[:, 0] for each in errors])
 
     def block(size: int) -> Block:
         values, own = np.tile(whole.values, (size, 1)), [each[:size] for each in errors]
