@@ -242,5 +242,10 @@ def make_wrist_sensor(
 
 def metric_context(config: RunConfig) -> MetricContext:
     """Return what the metrics need to know of a run beside its trace."""
-    reach = config.controller.reach if isinstance(config.controller, FollowsWithinReach) else None
+    reach = reach_of(config.controller)
     return MetricContext(config.path, config.robot.settling_band, config.timing.tick, reach)
+
+
+def reach_of(controller: ControllerConfig) -> float | None:
+    """Return up to where a riding stage follows its target, in m; None where no law has such a limit."""
+    return controller.reach if isinstance(controller, FollowsWithinReach) else None

@@ -6,21 +6,18 @@ Each has the results that it has alone, to the last bit.
 import math
 import time
 from collections.abc import Callable, Hashable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import TypeVar
+from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 
-from runner.assembly import assemble_whole, metric_context
+from runner.assembly import assemble_whole, metric_context, reach_of
 from runner.compiled.closed_loop import Signals, Whole, run_all
 from runner.config.memory import Memory
 from runner.config.run import RunConfig
-from runner.controllers import ControllerConfig
-from runner.controllers.kinds import FollowsWithinReach
 from runner.loop.failures import ended_well, find_failure
 from runner.metrics import MetricContext
 from runner.plugins import added
-from runner.robots.robot import end_points
+from runner.robots.robot import Robot, end_points
 from runner.sensing.encoders import encoder_errors
 from runner.trace import FloatArray, Trace, Traces
 
@@ -28,8 +25,6 @@ _MOST_BYTES = 32e6  # of the signals of runs that are simulated together
 _GROWTH = math.log(1.25)  # of the longest run over the shortest that are simulated together
 _MOST_KEPT = 2000
 _MEMORY = Memory(4096)  # the controllers of runs
-
-Found = TypeVar("Found")
 
 
 @dataclass(frozen=True)
@@ -64,7 +59,7 @@ class Wanted:
     def scene(self) -> Hashable:
         """What runs have in common that are measured together."""
         config = self.config
-        reach = _MEMORY.recall(_reach, config.controller)
+        reach = _MEMORY.recall(reach_of, config.controller)
         return id(config.arm), id(config.path), self.rows, config.robot.settling_band, reach
 
 
@@ -87,7 +82,8 @@ class Batcher:
     """Simulates runs together; it keeps what runs have in common, as long as their configs share the same objects."""
 
     def __init__(self) -> None:
-        self._kept: dict[Hashable, tuple[object, object]] = {}
+        self.memory = Memory(_MOST_KEPT)
+        """What follows from parts that runs share."""
 
     def repetitions(self, config: RunConfig) -> list[Wanted] | None:
         """Return all repetitions of a run as they can be simulated together; None where they cannot be.
@@ -107,12 +103,12 @@ class Batcher:
 
     def _wanted(self, config: RunConfig, repetition: int) -> Wanted | None:
         # Beliefs are drawn for each repetition; all else follows from these parts.
-        drawn = (config.settings.seed, repetition) if config.mismatch.spread > 0.0 else None
+        drawn = (config.settings.seed, repetition) if config.mismatch.spread > 0.0 else ()
         parts = (
-            *(config.arm, config.loops, config.plant, config.controller, config.noise, config.torque_limits),
-            *(config.path, config.mismatch, config.robot, config.environment),
+            *("whole", config.arm, config.loops, config.plant, config.controller, config.noise, config.torque_limits),
+            *(config.path, config.mismatch, config.robot, config.environment, *astuple(config.timing), *drawn),
         )
-        found = self.known("whole", parts, (config.timing, drawn), lambda: assemble_whole(config, repetition))
+        found = self.memory.known(parts, lambda: assemble_whole(config, repetition))
         return None if found is None else Wanted(config, repetition, *found)
 
     def simulate(self, runs: Sequence[Wanted]) -> Iterator[Together | tuple[int, Trace]]:
@@ -169,7 +165,7 @@ class Batcher:
 
     def _desired(self, run: Wanted, times: FloatArray) -> FloatArray:
         path = run.config.path
-        return self.known("desired", (path,), (len(times), run.whole.tick), lambda: path.sample(times))
+        return self.memory.known(("desired", path, len(times), run.whole.tick), lambda: path.sample(times))
 
     def _traces(
         self,
@@ -186,9 +182,7 @@ class Batcher:
         t = times[: one.rows]
         acted = np.maximum(np.arange(len(t)) - one.whole.delay, 0) if one.whole.delay else slice(len(t))
         arm, model = config.arm, config.arm.model
-        home = self.known(
-            "home", (arm,), config.parallel, lambda: end_points(arm, arm.home[None], config.parallel)[:, 0]
-        )
+        home = self.memory.recall(_home_points, arm, config.parallel)
         return Traces(
             t=t,
             q=signals.q[own, : len(t)],
@@ -204,15 +198,6 @@ class Batcher:
             tick_seconds=np.full(len(t) - 1, seconds),
         )
 
-    def known(self, kind: str, parts: tuple[object, ...], more: Hashable, make: Callable[[], Found]) -> Found:
-        """Return what follows from some parts, which are known again as the same objects, and from more."""
-        key = (kind, *map(id, parts), more)
-        if key not in self._kept:
-            if len(self._kept) >= _MOST_KEPT:
-                self._kept.clear()
-            self._kept[key] = parts, make()  # with the parts, so that nothing else takes their place in memory
-        return self._kept[key][1]  # type: ignore[return-value]
-
 
 def _start(runs: Sequence[Wanted], errors: Sequence[FloatArray]) -> FloatArray:
     """Return the state in which each run begins, as its own loops have it; see Commands.start."""
@@ -224,9 +209,9 @@ def _start(runs: Sequence[Wanted], errors: Sequence[FloatArray]) -> FloatArray:
     return np.array([states[place] for place in range(len(runs))])
 
 
-def _reach(controller: ControllerConfig) -> float | None:
-    """Return up to where a riding stage follows the target, in m; None where it always does."""
-    return controller.reach if isinstance(controller, FollowsWithinReach) else None
+def _home_points(arm: Robot, parallel: bool) -> FloatArray:
+    """Return the end point of each stage at home, shape (stages, 3), in m."""
+    return end_points(arm, arm.home[None], parallel)[:, 0]
 
 
 def _grouped(places: Sequence[int], key: Callable[[int], Hashable]) -> list[list[int]]:

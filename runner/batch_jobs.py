@@ -1,7 +1,7 @@
 """Runs that are simulated together, from their checked configs to what is stored of each."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 
@@ -102,11 +102,11 @@ class _Gathered:
 def _setting(config: RunConfig, q_start: FloatArray, batcher: Batcher) -> Setting:
     """Return the setting of a run, which those that differ in nothing but the seed share."""
     parts = (
-        *(config.arm, config.loops, config.plant, config.controller, config.noise, config.torque_limits, q_start),
-        *(config.path, config.mismatch, config.robot, config.environment, config.wrist_sensor, config.timing),
+        *("setting", config.arm, config.loops, config.plant, config.controller, config.noise, config.torque_limits),
+        *(q_start, config.path, config.mismatch, config.robot, config.environment, config.wrist_sensor),
+        *(*astuple(config.timing), config.commands, config.settings.repetitions),
     )
-    more = config.commands, config.settings.repetitions
-    return batcher.known("setting", parts, more, lambda: setting_of(config, q_start))
+    return batcher.memory.known(parts, lambda: setting_of(config, q_start))
 
 
 def simulate_together(

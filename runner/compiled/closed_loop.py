@@ -24,9 +24,6 @@ class CompiledCommands:
     Args:
         commands: The loops.
 
-    Attributes:
-        errors: Texts of what may go wrong, by their numbers less 1.
-
     Raises:
         CannotCompileError: where a law has no compiled form.
     """

@@ -107,7 +107,7 @@ class Commands:
         return None
 
     def shared(self, times: FloatArray, desired: FloatArray) -> FloatArray:
-        """Return what each tick is given of time and path, shape (..., T, entries): the first entries of `given`.
+        """Return what ticks are given of time and path, shape (..., T, entries): the space `given`'s first entries.
 
         Args:
             times: Time of each tick, shape (T,), in s.

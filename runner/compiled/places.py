@@ -18,5 +18,5 @@ class Places:
         return first, [place(space, first + index) for index in range(count)]
 
     def number(self, value: float) -> Expression:
-        """Return what stands for a number that may change from run to run: the next parameter; see Parameters."""
+        """Return what stands for a number that may change from run to run: the next parameter; see Values."""
         return self.take(PARS, 1)[1][0]

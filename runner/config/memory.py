@@ -26,10 +26,14 @@ class Memory:
 
     def recall(self, function: Callable[..., T], *parts: Any) -> T:
         """Return what a function gives for some arguments; one that raises is called again the next time."""
-        key = (function, *[(kind, part) if (kind := type(part)) in _BY_VALUE else id(part) for part in parts])
+        return self.known((function, *parts), lambda: function(*parts))
+
+    def known(self, parts: tuple[object, ...], make: Callable[[], T]) -> T:
+        """Return what follows from some parts alone, as `make` gives it where they are met for the first time."""
+        key = tuple([(kind, part) if (kind := type(part)) in _BY_VALUE else id(part) for part in parts])
         found = self._recent.get(key)
         if found is None:
-            found = self._older.get(key) or (parts, function(*parts))
+            found = self._older.get(key) or (parts, make())
             if len(self._recent) >= self._most:
                 self._older, self._recent = self._recent, {}
             self._recent[key] = found

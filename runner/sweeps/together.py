@@ -1,6 +1,7 @@
 """Runs of a chunk that are simulated together."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import astuple
 
 import numpy as np
 
@@ -28,7 +29,7 @@ def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, shelf: Shelf) -
 
     Args:
         jobs: Name and checked config of each.
-        rules: How they are made and kept; the limit of a run's time holds for all together.
+        rules: How they are made and kept; the limit of a run's time holds for those that end together.
         shelf: Takes what is made.
 
     Raises:
@@ -38,18 +39,22 @@ def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, shelf: Shelf) -
     try:
         with deadline(rules.time_limit):
             found = [(name, job, batcher.repetitions(job[0])) for name, job in jobs]
-            chosen = [(name, job, runs) for name, job, runs in found if runs is not None]
-            for complete in simulate_together([job for _, job, _ in chosen], [runs for *_, runs in chosen], batcher):
-                traceless = []
-                for run in complete:
-                    name, ended_early = chosen[run.place][0], run.failure is not None
-                    failed = failed or ended_early
-                    made.add(name)
-                    if ended_early or rules.keeps_trace(name, False):
-                        shelf.put(name, without_trace(name, run.result(), rules))
-                    else:
-                        traceless.append((name, run))
-                shelf.put_rows(list(_rows(traceless, texts, batcher)))
+        chosen = [(name, job, runs) for name, job, runs in found if runs is not None]
+        steps = simulate_together([job for _, job, _ in chosen], [runs for *_, runs in chosen], batcher)
+        while True:
+            with deadline(rules.time_limit):
+                complete = next(steps, None)
+            if complete is None:
+                break
+            named = [(chosen[run.place][0], run) for run in complete]
+            kept = [(n, run) for n, run in named if run.failure is not None or rules.keeps_trace(n, False)]
+            names = {name for name, _ in kept}
+            rows = list(_rows([(name, run) for name, run in named if name not in names], texts, batcher))
+            shelf.put_rows(rows)
+            made.update(row.outcome.name for row in rows)
+            for name, run in kept:
+                failed = shelf.put(name, without_trace(name, run.result(), rules)) or failed
+                made.add(name)
     except StoreError:
         raise
     except (Exception, TimeLimitError):
@@ -81,6 +86,6 @@ def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: Batcher) -> Iterator
 def _provenance(job: Job, batcher: Batcher) -> dict[str, object]:
     """Return where a run comes from, which is much the same for runs that share their parts."""
     config, composed = job
-    parts = config.arm, config.plant, config.timing, composed.choices
-    common = batcher.known("provenance", parts, config.commands, lambda: job_provenance(config, composed))
+    parts = ("provenance", config.arm, config.plant, *astuple(config.timing), composed.choices, config.commands)
+    common = batcher.memory.known(parts, lambda: job_provenance(config, composed))
     return {**common, "command": command(composed), "seed": config.settings.seed}

@@ -18,18 +18,27 @@ def test_a_function_is_called_once_for_the_same_arguments():
 
 
 def test_what_is_not_asked_for_is_forgotten_and_what_is_stays():
-    calls = []
-    memory, kept = Memory(20), object()
+    doubled = []
+
+    def double(number):
+        doubled.append(number)
+        return 2 * number
+
+    memory = Memory(20)
     for number in range(200):
-        memory.recall(lambda part: calls.append(part), kept) if number == 0 else None
-        memory.recall(_double, number)
-        memory.recall(_double, 0)
+        assert memory.recall(double, number) == 2 * number
+        assert memory.recall(double, 0) == 0
     assert len(memory._recent) + len(memory._older) <= 20
-    assert (_double, (int, 0)) in memory._recent
+    assert doubled == list(range(200))
+    assert memory.recall(double, 1) == 2
+    assert doubled[-1] == 1  # forgotten
 
 
-def _double(number):
-    return 2 * number
+def test_what_follows_from_parts_is_made_once_for_the_same_parts():
+    memory, path = Memory(100), object()
+    found = [memory.known(("desired", path, count), object) for count in (5, 5, 6)]
+    assert found[0] is found[1] is not found[2]
+    assert memory.known(("home", path, 5), object) is not found[0]
 
 
 def test_what_groups_give_is_shared_by_configs_that_share_them():

@@ -86,6 +86,18 @@ def test_failed_runs_keep_their_traces_when_asked(tmp_path):
     assert run.trace["t"].iloc[-1] == pytest.approx(run.failure["time"])
 
 
+def test_runs_that_cannot_be_stored_together_are_made_one_by_one(tmp_path, batches, monkeypatch):
+    def fall_over(*_):
+        raise ValueError("a metric is infinite")
+
+    monkeypatch.setattr("runner.sweeps.together.record_texts", fall_over)
+    chunk = whole_chunk(plan_sweep([*SHORT, "seed=range(0,5)", "sweep.trace=never", f"outputs={tmp_path}"]))
+    report = work.work(chunk)
+    assert batches[0] == 5
+    assert sorted(by_name(report.outcomes)) == sorted(chunk.names)
+    assert sorted(store.Finished(tmp_path).names.astype(str)) == sorted(chunk.names)
+
+
 def test_a_failure_stops_the_sweep_after_the_runs_that_were_made_with_it(sweep, batches):
     ended = sweep(*FAILING[:-1], "controller.natural_frequency=5,30", "seed=range(0,40)", "sweep.on_failure=stop")
     assert 1 <= len(ended.failures) < 40
