@@ -1,0 +1,159 @@
+"""MuJoCo as the plant: the composite-rigid-body algorithm, with a choice of integrators."""
+
+from typing import Literal
+
+import mujoco
+import numpy as np
+import pinocchio as pin
+from pydantic import Field
+
+from runner.errors import ConfigError
+from runner.plants.decoupled import TorquePlantConfig, assemble_plant
+from runner.plants.mujoco_model import FORCE, MOMENT, WALL, compiled, read_spec
+from runner.plants.plant import FloatArray, Plant
+from runner.robots.model import RobotModel
+from runner.robots.robot import Robot
+from runner.robots.tool_link import TOOL_MOUNT
+
+IMPLICIT_CONTACT = True  # a wall's spring and damper act in each step, from the velocity at its end
+_INTEGRATORS = {
+    "euler": mujoco.mjtIntegrator.mjINT_EULER,
+    "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
+    "rk4": mujoco.mjtIntegrator.mjINT_RK4,
+}
+_TOLERANCE = 1e-12  # of the search for contact forces
+_IMPEDANCE = 1e-4, 0.9999  # MuJoCo takes none outside
+
+
+class MujocoConfig(TorquePlantConfig):
+    """Config of the MuJoCo plant.
+
+    Attributes:
+        kind: Its name in the registry.
+        step: Integration step, in s; None is a tenth of the fastest controller period, a quarter with several stages.
+        integrator: Semi-implicit Euler; the same with what damps taken at the end of the step, which is no other where
+            nothing damps; the classical Runge-Kutta scheme.
+        least_inertia: MuJoCo takes no moving link without mass and inertia: one with less mass, or less of a principal
+            moment, gets this, in kg and kg m^2.
+    """
+
+    kind: Literal["mujoco"]
+    integrator: Literal["euler", "implicitfast", "rk4"]
+    least_inertia: float = Field(ge=1e-14, le=1e-3)
+
+
+class Mujoco:
+    """A serial arm in MuJoCo, torque-controlled, without damping or speed limit; a wall is all that it can touch.
+
+    Args:
+        urdf: The arm's URDF text.
+        model: The model built from it, for gravity and the names of the joints.
+        config: Integrator and least inertia.
+        step: Integration step, in s.
+        steps_per_tick: Integration steps for which the torques of one tick are held.
+
+    Raises:
+        ConfigError: if MuJoCo cannot load the URDF.
+    """
+
+    def __init__(self, urdf: str, model: RobotModel, config: MujocoConfig, step: float, steps_per_tick: int) -> None:
+        self._model = compiled(read_spec(urdf, config.least_inertia))
+        self._data = data = mujoco.MjData(self._model)
+        self._steps_per_tick = steps_per_tick
+        options = self._model.opt
+        options.timestep, options.integrator, options.tolerance = step, _INTEGRATORS[config.integrator], _TOLERANCE
+        # What diverges is told by the loop, not begun anew; there is nothing to touch until there is a wall.
+        options.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET | mujoco.mjtDisableBit.mjDSBL_CONTACT
+        self._set_names(model.joint_names)
+        self.q, self.dq, self._tau = data.qpos, data.qvel, data.qfrc_applied
+        self._wrench = np.zeros(6)
+        self.set_gravity(model.gravity)
+
+    def _set_names(self, names: tuple[str, ...]) -> None:
+        found = tuple(self._model.joint(index).name for index in range(self._model.njnt))
+        if found != names:
+            raise ConfigError([f"robot.urdf: MuJoCo has the joints {', '.join(found)}, not {', '.join(names)}"])
+
+    def reset(self, q: FloatArray, dq: FloatArray) -> None:
+        """Put the arm into a state; see Plant."""
+        mujoco.mj_resetData(self._model, self._data)
+        self.q[:], self.dq[:] = q, dq
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector; see Plant."""
+        self._model.opt.gravity[:] = gravity
+
+    def advance(self, tau: FloatArray) -> None:
+        """Hold the torques for one tick; see Plant."""
+        self._tau[:] = tau
+        mujoco.mj_step(self._model, self._data, self._steps_per_tick)
+
+    def add_wall(self, point: FloatArray, normal: FloatArray, stiffness: float, damping: float) -> None:
+        r"""Put up a wall for the links that have a collision shape; see ContactPlant.
+
+        Backward Euler on spring and damper, as Bullet has them, is MuJoCo's contact
+
+        .. math:: f = (a_{ref} - a) / R, \qquad 1 / R = h^2 k + h c, \qquad a_{ref} = -R \, (k \, r + (h k + c) \, v)
+
+        of a distance r with velocity v and acceleration a. It takes R as a share of the inverse mass A that it gives
+        the contact, R = (1 - d) A / d, and the rest as stiffness and damping of an acceleration.
+        """
+        model, h = self._model, self._model.opt.timestep
+        wall = model.geom(WALL).id
+        turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), normal)
+        model.geom_pos[wall], model.geom_quat[wall] = point, [turn.w, turn.x, turn.y, turn.z]
+        for pair in range(model.npair):
+            yields = model.body_invweight0[model.geom_bodyid[model.pair_geom2[pair]], 0]
+            added = yields * h * (h * stiffness + damping)
+            share = np.clip(added / (1.0 + added), *_IMPEDANCE)
+            model.pair_solimp[pair, :2] = share
+            model.pair_solref[pair] = -(1.0 - share) * yields * np.array([stiffness, h * stiffness + damping])
+        model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+
+    def contact_wrench(self) -> FloatArray:
+        """Return the wrench of the wall on the arm; see ContactPlant."""
+        wrench, data = np.zeros(6), self._data
+        for index, contact in enumerate(data.contact):
+            mujoco.mj_contactForce(self._model, data, index, self._wrench)
+            force = self._wrench[0] * contact.frame[:3]
+            wrench += np.concatenate([force, np.cross(contact.pos, force)])
+        return wrench
+
+    def tool_reaction(self) -> FloatArray | None:
+        """Return MuJoCo's own reading of what the tool puts on the flange in the last step; None without a tool.
+
+        Force in N and moment about the flange's origin in N m, along the base's axes, shape (6,).
+        """
+        if not self._model.nsensor:
+            return None
+        data = self._data
+        turned = data.site(TOOL_MOUNT).xmat.reshape(3, 3)
+        return np.concatenate([turned @ data.sensor(name).data for name in (FORCE, MOMENT)])
+
+    def mass_matrix(self, q: FloatArray) -> FloatArray:
+        """Return MuJoCo's joint-space mass matrix, shape (nq, nq), in kg m^2."""
+        data, M = mujoco.MjData(self._model), np.zeros((len(q), len(q)))
+        data.qpos[:] = q
+        mujoco.mj_fwdPosition(self._model, data)
+        mujoco.mj_fullM(self._model, data, M)
+        return M
+
+    def close(self) -> None:
+        """Hold nothing, release nothing."""
+
+
+CONFIG = MujocoConfig
+
+
+def build(config: MujocoConfig, robot: Robot, step: float, steps_per_tick: int) -> Plant:
+    """Make the plant that a config describes."""
+    tick = step * steps_per_tick
+    return assemble_plant(config, robot, tick, lambda urdf, model: Mujoco(urdf, model, config, step, steps_per_tick))
+
+
+def default_step(tick: float, stages: int) -> float:
+    """Return the step taken when the config names none, in s: that of PyBullet, to be compared with it.
+
+    It is a tenth of the fastest controller period, and a quarter where a fast arm rides on a slow one.
+    """
+    return tick / (10.0 if stages == 1 else 4.0)
