@@ -29,7 +29,7 @@ from runner.robots.robot import Robot, Stage  # noqa: E402
 from runner.simulation import ClosedLoop, simulate  # noqa: E402
 from runner.trace import Trace  # noqa: E402
 
-pytest_plugins = ("cost", "own_parts")
+pytest_plugins = ("cost", "engines", "own_parts")
 
 settings.register_profile("runner", derandomize=True, deadline=None, max_examples=40)
 settings.load_profile("runner")

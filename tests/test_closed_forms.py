@@ -23,7 +23,7 @@ def quintic(scale, t_f, rest=0.0):
 
 
 @pytest.mark.parametrize(("robot", "scale"), ARMS)
-@pytest.mark.parametrize("plant", ["bullet", "rk4"])
+@pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
 @pytest.mark.parametrize(("t_f", "tolerance"), [(2.0, 0.02), (3.0, 0.002), (4.0, 0.002), (6.0, 0.002)])
 def test_lag_without_feedforward(simulated, robot, scale, plant, t_f, tolerance):
     trace = simulated(f"robot={robot}", f"plant={plant}", "controller.feedforward=false", *quintic(scale, t_f))
@@ -49,7 +49,7 @@ def test_lag_grows_with_damping_and_falls_with_frequency(simulated, damping_rati
 
 
 @pytest.mark.parametrize(("robot", "scale"), ARMS)
-@pytest.mark.parametrize("plant", ["bullet", "rk4"])
+@pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
 @pytest.mark.parametrize("trajectory", ["goal", "quintic"])
 def test_sag_without_gravity_compensation(simulated, arms, robot, scale, plant, trajectory):
     motion = quintic(scale, 3.0, 2.0) if trajectory == "quintic" else (f"duration={5.0 * scale}",)
@@ -125,6 +125,7 @@ def assert_similar(simulated, plant, motion, limits, gravity):
             f"plant={plant}",
             f"torque_limits={limits}",
             f"gravity={g}",
+            *([f"plant.least_inertia={1e-9 * scale**3}"] if plant == "mujoco" else []),  # as m L^2 is
             *(quintic(scale, 2.0, 2.0) if motion == "quintic" else (f"duration={4.0 * scale}",)),
         )
         for (robot, scale), g in zip(ARMS, gravity, strict=True)
@@ -143,14 +144,14 @@ def assert_similar(simulated, plant, motion, limits, gravity):
     assert limited == (limits == "thesis")  # the limit is at work where there is one
 
 
-@pytest.mark.parametrize("plant", ["bullet", "rk4"])
+@pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
 @pytest.mark.parametrize("limits", ["none", "thesis"])
 @pytest.mark.parametrize("motion", ["goal", "quintic"])
 def test_without_gravity_the_arms_are_similar(simulated, plant, limits, motion):
     assert_similar(simulated, plant, motion, limits, (0.0, 0.0))
 
 
-@pytest.mark.parametrize("plant", ["bullet", "rk4"])
+@pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
 @pytest.mark.parametrize("limits", ["none", "thesis"])
 @pytest.mark.parametrize("motion", ["goal", "quintic"])
 def test_with_ten_times_the_gravity_the_mini_is_similar(simulated, plant, limits, motion):

@@ -160,7 +160,7 @@ def test_the_stored_run_tells_its_stages(cli):
 # The same again.
 
 
-@pytest.mark.parametrize("plant", ["bullet", "rk4"])
+@pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
 @pytest.mark.parametrize("controller", ["macro_mini", "whole_body"])
 def test_the_same_config_and_seed_are_bit_identical(simulated, plant, controller):
     overrides = ("robot=combined", f"controller={controller}", f"plant={plant}", "noise=thesis", "duration=0.2")
@@ -206,7 +206,7 @@ SINGULAR = {
 
 
 @pytest.mark.parametrize("damping", ["0", "0.3"])
-@pytest.mark.parametrize("plant", ["bullet", "rk4"])
+@pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
 @pytest.mark.parametrize("situation", SINGULAR)
 def test_a_singular_situation_is_a_result_and_never_a_crash(measured, situation, plant, damping):
     overrides = (f"plant={plant}", f"controller.singularity_damping={damping}", *SINGULAR[situation], "duration=2")
@@ -225,7 +225,7 @@ def test_a_singular_situation_is_a_result_and_never_a_crash(measured, situation,
     assert all(value is None or np.isfinite(value) for value in metrics.values())
 
 
-@pytest.mark.parametrize("plant", ["bullet", "rk4"])
+@pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
 @pytest.mark.parametrize("situation", ["Mini folded, tracking", "all stretched out", "on the base axis"])
 def test_the_whole_body_too_has_a_result_there(measured, situation, plant):
     changes = [change for change in SINGULAR[situation] if not change.startswith("controller.macro_target")]

@@ -95,7 +95,7 @@ def swings(plant, share, bound):
     return force[-third:], np.ptp(force[third : 2 * third])
 
 
-@pytest.mark.parametrize("plant", ["bullet", "rk4"])
+@pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
 def test_runs_bounce_beyond_the_bound_alone(plant):
     bound = stiffest_servo_wall(contact_of(f"plant={plant}"))
     last, before = swings(plant, 0.9, bound)

@@ -204,7 +204,7 @@ def test_noise_is_drawn_from_seed_and_repetition_alone(checked_config):
 # The same again.
 
 
-@pytest.mark.parametrize("plant", ["bullet", "rk4"])
+@pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
 def test_the_same_config_and_seed_are_bit_identical(simulated, plant):
     overrides = (*NOISY, f"plant={plant}", "torque_limits=thesis")
     first = fingerprint(simulated(*overrides))
@@ -212,7 +212,7 @@ def test_the_same_config_and_seed_are_bit_identical(simulated, plant):
     assert fingerprint(simulated(*overrides, "seed=1")) != first
 
 
-@pytest.mark.parametrize("plant", ["bullet", "rk4"])
+@pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
 def test_a_repetition_does_not_depend_on_those_before(checked_config, simulated, plant):
     overrides = (*NOISY, f"plant={plant}")
     config = checked_config(*overrides)
@@ -276,7 +276,7 @@ def test_a_speed_just_below_is_no_divergence(loop_of):
     assert simulate(loop, exact(loop)).failure is None
 
 
-@pytest.mark.parametrize("plant", ["bullet", "rk4"])
+@pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
 def test_an_unstable_sampled_loop_ends_as_a_failure(simulated, plant):
     trace = simulated(f"plant={plant}", "controller.period=0.05", "duration=20")  # wn h = 1.5
     assert trace.failure is not None

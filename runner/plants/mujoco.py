@@ -21,6 +21,7 @@ _INTEGRATORS = {
     "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
     "rk4": mujoco.mjtIntegrator.mjINT_RK4,
 }
+mujoco.set_mju_user_warning(lambda text: None)  # it would print what the loop tells, and write it to a file
 _TOLERANCE = 1e-12  # of the search for contact forces
 _IMPEDANCE = 1e-4, 0.9999  # MuJoCo takes none outside
 
@@ -102,6 +103,7 @@ class Mujoco:
         wall = model.geom(WALL).id
         turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), normal)
         model.geom_pos[wall], model.geom_quat[wall] = point, [turn.w, turn.x, turn.y, turn.z]
+        model.geom_sameframe[wall] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE  # it stands no more at the base's origin
         for pair in range(model.npair):
             yields = model.body_invweight0[model.geom_bodyid[model.pair_geom2[pair]], 0]
             added = yields * h * (h * stiffness + damping)
@@ -122,13 +124,14 @@ class Mujoco:
     def tool_reaction(self) -> FloatArray | None:
         """Return MuJoCo's own reading of what the tool puts on the flange in the last step; None without a tool.
 
-        Force in N and moment about the flange's origin in N m, along the base's axes, shape (6,).
+        Force in N and moment about the flange's origin in N m, along the base's axes, shape (6,). It is that of the
+        step's beginning, exact in motion.
         """
         if not self._model.nsensor:
             return None
         data = self._data
         turned = data.site(TOOL_MOUNT).xmat.reshape(3, 3)
-        return np.concatenate([turned @ data.sensor(name).data for name in (FORCE, MOMENT)])
+        return -np.concatenate([turned @ data.sensor(name).data for name in (FORCE, MOMENT)])
 
     def mass_matrix(self, q: FloatArray) -> FloatArray:
         """Return MuJoCo's joint-space mass matrix, shape (nq, nq), in kg m^2."""

@@ -11,7 +11,8 @@ from runner.errors import ConfigError
 from runner.robots.tool_link import TOOL_MOUNT
 
 # Links stay bodies of their own, so that a tool has a reaction in its mount.
-_COMPILER = {"fusestatic": "false", "discardvisual": "true", "inertiafromgeom": "false", "strippath": "true"}
+_COMPILER = {"fusestatic": "false", "discardvisual": "false", "inertiafromgeom": "false"}
+_LEFT_OUT = {"joint": "dynamics", "link": "visual"}
 _ROUNDING = 1e-15  # of a moment of inertia
 FORCE, MOMENT, WALL = "reaction_force", "reaction_moment", "wall"
 """Names of what is beside the arm: sensors of the reaction in a tool's mount, and a wall that its shapes can touch."""
@@ -32,9 +33,10 @@ def read_spec(urdf: str, least_inertia: float) -> Any:
     """
     root = ET.fromstring(urdf)  # noqa: S314 - our own text, checked when it was read
     ET.SubElement(ET.SubElement(root, "mujoco"), "compiler", _COMPILER)
-    for joint in root.iter("joint"):
-        for dynamics in joint.findall("dynamics"):
-            joint.remove(dynamics)
+    for whole, part in _LEFT_OUT.items():
+        for element in root.iter(whole):
+            for left_out in element.findall(part):
+                element.remove(left_out)
     try:
         spec = mujoco.MjSpec.from_string(ET.tostring(root, encoding="unicode"))
     except ValueError as error:

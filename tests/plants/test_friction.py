@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from engines import ENGINES
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runner.plants.bullet import Bullet
 from runner.plants.friction import Frictional, stopping_torques, with_friction
 from runner.plants.rk4 import Rk4
 from runner.robots import RobotModel
@@ -21,34 +21,37 @@ WHEEL = """
 """
 
 
-def turn(viscous=0.0, coulomb=0.0, speed=0.0, torque=0.0, tick=1e-3, ticks=1000, engine=Rk4):
-    """Turn the wheel about the vertical; return its speeds, the first included, and where it ends."""
-    model = RobotModel(WHEEL, "wheel")
-    plant = Rk4(model, tick, 1) if engine is Rk4 else Bullet(WHEEL, model, tick, 1)
-    plant = Frictional(plant, model, np.array([viscous]), np.array([coulomb]), tick)
-    plant.reset(np.zeros(1), np.array([speed]))
-    speeds = [speed]
-    for _ in range(ticks):
-        plant.advance(np.array([torque]))
-        speeds.append(float(plant.dq[0]))
-    plant.close()
-    return np.array(speeds), float(plant.q[0])
+@pytest.fixture(params=ENGINES)
+def turn(request, engine):
+    """Turn the wheel about the vertical, in every engine."""
+
+    def turn(viscous=0.0, coulomb=0.0, speed=0.0, torque=0.0, tick=1e-3, ticks=1000):
+        """Return its speeds, the first included, and where it ends."""
+        model = RobotModel(WHEEL, "wheel")
+        inner = engine(request.param, WHEEL, model, tick)
+        plant = Frictional(inner, model, np.array([viscous]), np.array([coulomb]), tick)
+        plant.reset(np.zeros(1), np.array([speed]))
+        speeds = [speed]
+        for _ in range(ticks):
+            plant.advance(np.array([torque]))
+            speeds.append(float(plant.dq[0]))
+        return np.array(speeds), float(plant.q[0])
+
+    return turn
 
 
-@pytest.mark.parametrize("engine", [Rk4, Bullet])
-def test_viscous_friction_lets_speed_decay_exponentially_first_order_in_the_tick(engine):
+def test_viscous_friction_lets_speed_decay_exponentially_first_order_in_the_tick(turn):
     def error(tick):
         ticks = round(1.0 / tick)
-        speeds, _ = turn(viscous=0.9, speed=2.0, tick=tick, ticks=ticks, engine=engine)
+        speeds, _ = turn(viscous=0.9, speed=2.0, tick=tick, ticks=ticks)
         return np.abs(speeds - 2.0 * np.exp(-0.9 * tick * np.arange(ticks + 1) / M)).max()
 
     assert error(1e-3) < 1e-3
     assert error(2e-3) / error(1e-3) == pytest.approx(2.0, rel=0.01)
 
 
-@pytest.mark.parametrize("engine", [Rk4, Bullet])
-def test_a_sliding_joint_stops_after_its_momentum_over_the_dry_friction_and_stays(engine):
-    speeds, way = turn(coulomb=1.5, speed=2.0, engine=engine)
+def test_a_sliding_joint_stops_after_its_momentum_over_the_dry_friction_and_stays(turn):
+    speeds, way = turn(coulomb=1.5, speed=2.0)
     stop = 2.0 * M / 1.5  # s
     assert np.flatnonzero(np.abs(speeds) < 1e-12)[0] == pytest.approx(stop / 1e-3, abs=1.0)
     np.testing.assert_allclose(speeds[:900], np.maximum(2.0 - 1.5 / M * np.arange(900) * 1e-3, 0.0), atol=1.5e-3 / M)
@@ -56,20 +59,18 @@ def test_a_sliding_joint_stops_after_its_momentum_over_the_dry_friction_and_stay
     assert way == pytest.approx(0.5 * 2.0 * stop, abs=2.0 * 1e-3)
 
 
-@pytest.mark.parametrize("engine", [Rk4, Bullet])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_a_joint_holds_below_the_dry_friction_and_slips_by_what_is_beyond(engine, sign):
-    speeds, way = turn(coulomb=1.5, torque=sign * 1.499, engine=engine)
+def test_a_joint_holds_below_the_dry_friction_and_slips_by_what_is_beyond(turn, sign):
+    speeds, way = turn(coulomb=1.5, torque=sign * 1.499)
     assert np.abs(speeds).max() < 1e-12
     assert abs(way) < 1e-12
-    speeds, _ = turn(coulomb=1.5, torque=sign * 1.6, engine=engine)
+    speeds, _ = turn(coulomb=1.5, torque=sign * 1.6)
     assert speeds[-1] == pytest.approx(sign * 0.1 / M, rel=1e-6)
 
 
-@pytest.mark.parametrize("engine", [Rk4, Bullet])
 @pytest.mark.parametrize("friction", [{"viscous": 1e7}, {"coulomb": 1e7}, {"viscous": 1e4, "coulomb": 1e4}])
-def test_no_friction_is_so_large_that_it_turns_the_motion_round(engine, friction):
-    speeds, _ = turn(**friction, speed=5.0, ticks=50, engine=engine)
+def test_no_friction_is_so_large_that_it_turns_the_motion_round(turn, friction):
+    speeds, _ = turn(**friction, speed=5.0, ticks=50)
     assert speeds.min() > -1e-12
     assert (np.diff(speeds) < 1e-12).all()
     assert speeds[-1] < 1e-3
@@ -148,23 +149,25 @@ def test_what_stops_the_joints_meets_the_conditions_of_dry_friction(joints, seed
     np.testing.assert_allclose(mu[slipping], (limit * np.sign(left))[slipping], atol=1e-12)
 
 
-def test_friction_of_a_contact_that_the_plant_makes(closed_loop):
-    """A tool pressed into PyBullet's wall, let go: dry friction holds it there, and without it the wall throws it."""
+@pytest.mark.parametrize("plant", ["bullet", "mujoco"])
+def test_friction_of_a_contact_that_the_plant_makes(closed_loop, plant):
+    """A tool pressed into an engine's wall, let go: dry friction holds it there; without it the wall throws it."""
 
     def moved(coulomb):
         closed = closed_loop(
             "robot=meca500",
             "controller=operational_space",
+            f"plant={plant}",
             "environment=wall",
             "environment.distance=-0.001",
             "environment.stiffness=3000",
             f"plant.friction.coulomb={coulomb}",
         )
-        plant, model, start = closed.plant, closed.robot.model, closed.q_start
-        plant.reset(start, np.zeros(6))
+        pressed, model, start = closed.plant, closed.robot.model, closed.q_start
+        pressed.reset(start, np.zeros(6))
         for _ in range(500):
-            plant.advance(model.gravity_torque(start))
-        return np.abs(plant.q - start).max()
+            pressed.advance(model.gravity_torque(start))
+        return np.abs(pressed.q - start).max()
 
     assert moved(0.0) > 1e-2
     assert moved(5.0) < 2e-4  # in the first tick, before there is a contact to hold against

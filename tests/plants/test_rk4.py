@@ -50,39 +50,6 @@ def test_agrees_with_an_adaptive_integrator(name, scale):
     np.testing.assert_allclose(final_state(name, scale, 400), reference_state(name, scale), atol=2e-10)
 
 
-@pytest.mark.parametrize(("name", "scale"), ARMS)
-def test_a_free_swing_keeps_its_energy(name, scale):
-    plant = make(name, 1e-3 * scale, 10)
-    model = RobotModel(read_urdf(find_urdf(f"{name}.urdf"), {}), "tip")
-    plant.reset(START[0], START[1] / scale)
-    start = model.energy(plant.q, plant.dq)
-    for _ in range(200):
-        plant.advance(np.zeros(3))
-    assert model.energy(plant.q, plant.dq) == pytest.approx(start, abs=1e-8 * model.energy(np.zeros(3), np.zeros(3)))
-    assert np.abs(plant.q - START[0]).max() > 0.5
-
-
-def test_the_step_and_the_ticks_split_alike():
-    whole, single = make("macro", 1e-3, 5), make("macro", 1e-3, 1)
-    for tau in TORQUES:
-        whole.advance(tau)
-        for _ in range(5):
-            single.advance(tau)
-    np.testing.assert_array_equal(whole.q, single.q)
-    np.testing.assert_array_equal(whole.dq, single.dq)
-
-
-def test_reset_makes_a_second_run_bit_identical():
-    plant = make("macro", 1e-2, 1)
-    runs = []
-    for _ in range(2):
-        plant.reset(*START)
-        for tau in TORQUES:
-            plant.advance(tau)
-        runs.append(np.concatenate([plant.q, plant.dq]))
-    np.testing.assert_array_equal(*runs)
-
-
 def test_reset_copies_its_arguments():
     plant = make("macro", 1e-2, 1)
     q, dq = START[0].copy(), START[1].copy()

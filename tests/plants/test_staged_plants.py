@@ -126,21 +126,18 @@ def test_bullet_converges_to_rk4_at_first_order(simulated, dynamics):
 # The decoupled one.
 
 
-@pytest.mark.parametrize("kind", ["bullet", "rk4"])
+@pytest.mark.parametrize("kind", ["bullet", "mujoco", "rk4"])
 @pytest.mark.parametrize("wrist_rotation", ["real", "parallel"])
-def test_the_macro_moves_as_the_macro_alone(make, combined, macro, macro_urdf, kind, wrist_rotation):
+def test_the_macro_moves_as_the_macro_alone(make, engine, macro, macro_urdf, kind, wrist_rotation):
     plant = make(kind, wrist_rotation=wrist_rotation, steps_per_tick=2)
-    alone = Rk4(macro, 1e-3, 2) if kind == "rk4" else Bullet(macro_urdf, macro, 1e-3, 2)
-    try:
-        plant.reset(*PRINTED)
-        alone.reset(PRINTED[0][:3], PRINTED[1][:3])
-        for tau in TORQUES:
-            plant.advance(tau)
-            alone.advance(tau[:3])
-            np.testing.assert_array_equal(plant.q[:3], alone.q)
-            np.testing.assert_array_equal(plant.dq[:3], alone.dq)
-    finally:
-        alone.close()
+    alone = engine("compiled rk4" if kind == "rk4" else kind, macro_urdf, macro, 1e-3, 2)
+    plant.reset(*PRINTED)
+    alone.reset(PRINTED[0][:3], PRINTED[1][:3])
+    for tau in TORQUES:
+        plant.advance(tau)
+        alone.advance(tau[:3])
+        np.testing.assert_array_equal(plant.q[:3], alone.q)
+        np.testing.assert_array_equal(plant.dq[:3], alone.dq)
     assert np.abs(plant.q[:3] - PRINTED[0][:3]).max() > 0.1
 
 
@@ -195,7 +192,7 @@ def test_another_gravity_reaches_both_arms(make):
     np.testing.assert_array_equal(moved[1], 0.0)
 
 
-@pytest.mark.parametrize("kind", ["bullet", "rk4"])
+@pytest.mark.parametrize("kind", ["bullet", "mujoco", "rk4"])
 @pytest.mark.parametrize("dynamics", ["coupled", "decoupled"])
 def test_reset_makes_a_second_run_bit_identical(make, kind, dynamics):
     plant, runs = make(kind, dynamics), []
@@ -235,7 +232,7 @@ def test_the_coupled_macro_converges_to_the_decoupled_one_in_proportion_to_the_m
     assert mini[2] > 0.01
 
 
-@pytest.mark.parametrize("kind", ["bullet", "rk4"])
+@pytest.mark.parametrize("kind", ["bullet", "mujoco", "rk4"])
 def test_a_coupled_base_that_does_not_turn_is_refused(make, cli, kind):
     with pytest.raises(ConfigError, match=r"plant\.wrist_rotation: parallel leaves the rider's base unturned"):
         make(kind, "coupled", "parallel")

@@ -1,0 +1,147 @@
+import re
+
+import numpy as np
+import pytest
+import strangers
+
+from runner.errors import ConfigError
+from runner.plants import ContactPlant, ToolReactionPlant, bullet
+from runner.plants.mujoco import Mujoco, build, default_step
+from runner.robots import RobotModel
+
+POINT = """
+<robot name="pendulum"><link name="base"/><link name="rod"><inertial><origin xyz="0 0 -0.5"/><mass value="2"/>
+  <inertia ixx="{across}" iyy="{across}" izz="{along}" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="q1" type="revolute"><parent link="base"/><child link="rod"/><axis xyz="0 1 0"/>{dynamics}
+  <limit lower="-1e9" upper="1e9" effort="1e9" velocity="1e9"/></joint></robot>
+"""
+
+
+def pendulum(across=0.0, along=0.0, dynamics=""):
+    return POINT.format(across=across, along=along, dynamics=dynamics)
+
+
+@pytest.fixture
+def make(checked_config):
+    """Make MuJoCo plants; the model may be of another text than MuJoCo reads."""
+
+    def make(urdf, tip, step=1e-4, steps=1, model=None, **changed):
+        config = checked_config("robot=macro", "plant=mujoco").plant.model_copy(update=changed)
+        return Mujoco(urdf, model or RobotModel(urdf, tip), config, step, steps)
+
+    return make
+
+
+@pytest.mark.parametrize("robot", ["macro", "mini", "combined", "xarm7", "meca500", *strangers.MADE])
+def test_masses_are_those_of_the_model(make, checked_config, robot):
+    config = strangers.config(robot) if robot in strangers.MADE else checked_config(f"robot={robot}")
+    arm, draw = config.arm, np.random.default_rng(0)
+    plant = make(arm.urdf, "", model=arm.model)
+    lower, upper = arm.model.usual_range
+    for q in 0.5 * (lower + upper) + 0.4 * (upper - lower) * draw.uniform(-1.0, 1.0, (10, arm.model.nq)):
+        M = arm.model.mass_matrix(q)
+        np.testing.assert_allclose(plant.mass_matrix(q), M, atol=1e-8 * np.abs(M).max() + 2e-12 * arm.model.nq)
+
+
+@pytest.mark.parametrize("floor", [1e-13, 1e-8, 1e-4])
+def test_a_link_without_inertia_gets_the_least_one_and_one_with_more_keeps_its_own(make, floor):
+    assert make(pendulum(), "rod", least_inertia=floor).mass_matrix(np.zeros(1))[0, 0] == pytest.approx(
+        2.0 * 0.5**2 + floor, rel=1e-15
+    )
+    heavy = make(pendulum(across=0.3, along=0.2), "rod", least_inertia=floor)
+    assert heavy.mass_matrix(np.zeros(1))[0, 0] == pytest.approx(0.5 + 0.3, rel=1e-14)
+
+
+@pytest.mark.parametrize("along", [0.6, 0.6 * (1.0 + 1e-15), 0.0])
+def test_discs_and_rods_are_taken_whatever_rounding_made_of_their_moments(make, along):
+    across = 0.3
+    assert make(pendulum(across, along), "rod").mass_matrix(np.zeros(1))[0, 0] == pytest.approx(0.5 + across)
+
+
+def test_damping_and_friction_of_the_file_are_left_out_as_in_the_other_engines(make):
+    plant = make(pendulum(0.1, 0.1, '<dynamics damping="5" friction="3"/>'), "rod", step=1e-3)
+    plant.set_gravity(np.zeros(3))
+    plant.reset(np.zeros(1), np.array([20.0]))
+    for _ in range(1000):
+        plant.advance(np.zeros(1))
+    assert plant.dq[0] == pytest.approx(20.0, rel=1e-12)
+    assert plant.q[0] == pytest.approx(20.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("speed", [1e3, 1e9])
+def test_no_speed_is_clamped_and_nothing_is_begun_anew(make, speed, capfd, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    plant = make(pendulum(0.1, 0.1), "rod", step=1e-3)
+    plant.set_gravity(np.zeros(3))
+    plant.reset(np.zeros(1), np.array([speed]))
+    plant.advance(np.array([1e12 * 0.6]))
+    assert plant.dq[0] == pytest.approx(speed + 1e9, rel=1e-9)
+    plant.advance(np.array([np.nan]))
+    assert np.isnan(plant.dq[0])
+    assert capfd.readouterr() == ("", "")  # MuJoCo prints warnings, and writes them to a file
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_urdf_that_mujoco_refuses_is_an_error_of_one_line(make):
+    with pytest.raises(
+        ConfigError,
+        match=r"robot\.urdf: MuJoCo does not take it as it is: Error: axis too small in joint Element name 'q1', id 0$",
+    ):
+        make(pendulum().replace('axis xyz="0 1 0"', 'axis xyz="0 0 0"'), "rod", model=RobotModel(pendulum(), "rod"))
+
+
+def test_joints_in_another_order_are_refused(make):
+    named = RobotModel(pendulum().replace('"q1"', '"hinge"'), "rod")
+    with pytest.raises(ConfigError, match=r"MuJoCo has the joints q1, not hinge"):
+        make(pendulum(), "rod", model=named)
+
+
+def test_it_makes_contacts_and_feels_tools(make):
+    plant = make(pendulum(), "rod")
+    assert isinstance(plant, ContactPlant)
+    assert isinstance(plant, ToolReactionPlant)
+    assert plant.tool_reaction() is None
+    assert not plant.contact_wrench().any()
+
+
+@pytest.mark.parametrize("integrator", ["euler", "implicitfast", "rk4"])
+@pytest.mark.parametrize("steps", [1, 4, 10])
+def test_a_wall_pushes_by_stiffness_times_depth_whatever_the_steps_of_a_tick(closed_loop, integrator, steps):
+    closed = closed_loop(
+        "robot=meca500",
+        "controller=operational_space",
+        "plant=mujoco",
+        f"plant.integrator={integrator}",
+        "environment=wall",
+        "environment.distance=-0.001",
+        "environment.stiffness=3000",
+        "environment.damping=0",
+        f"plant.step={1e-4 / steps}",
+        "controller.period=1e-4",
+    )
+    closed.plant.reset(closed.q_start, np.zeros(6))
+    closed.plant.advance(closed.robot.model.gravity_torque(closed.q_start))
+    wrench = closed.plant.contact_wrench()
+    assert wrench[0] == pytest.approx(-3.0, rel=0.01)  # it has moved by then
+    np.testing.assert_allclose(wrench[1:3], 0.0, atol=1e-12)
+
+
+def test_build_and_default_step(checked_config, macro_urdf, one_stage):
+    config = checked_config("robot=macro", "plant=mujoco").plant
+    assert isinstance(build(config, one_stage(macro_urdf, RobotModel(macro_urdf, "tip")), 1e-3, 10), Mujoco)
+    for tick, stages in ((0.01, 1), (0.001, 2)):
+        assert default_step(tick, stages) == bullet.default_step(tick, stages)
+
+
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("plant.integrator=leapfrog", "plant.integrator: found 'leapfrog'; allowed: euler, implicitfast, rk4"),
+        ("plant.least_inertia=0", "plant.least_inertia: must be 1e-14 or more; found 0"),
+        ("plant.mass=1", "plant.mass: unknown key"),
+    ],
+)
+def test_config_that_cannot_be(cli, override, message):
+    ending = cli("robot=macro", "plant=mujoco", override)
+    assert ending.code == 2
+    assert re.search(message, ending.err), ending.err
