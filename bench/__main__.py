@@ -8,6 +8,7 @@ from runner.config.compose import quiet_environment
 NAMES = (
     "tick",
     "laws",
+    "mujoco_tick",
     "agreement",
     "caveats",
     "around",

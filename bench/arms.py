@@ -82,18 +82,19 @@ ARMS = (
 )
 
 
-def assembled(arm: Arm, law: str, plant: str, substeps: int, ticks: int) -> tuple[RunConfig, ClosedLoop]:
+def assembled(arm: Arm, law: str, plant: str, substeps: int, ticks: int, *more: str) -> tuple[RunConfig, ClosedLoop]:
     """Return the closed loop of an arm under a law, and its config.
 
     Args:
         arm: The arm.
         law: One of its laws.
-        plant: "bullet" or "rk4".
+        plant: "bullet", "mujoco" or "rk4".
         substeps: Integration steps in a tick.
         ticks: Number of ticks.
+        more: Further overrides.
     """
     timing = (f"plant={plant}", f"plant.step={arm.tick / substeps:.12g}", f"duration={ticks * arm.tick:.12g}")
-    config = validate(compose([*_SCENE, *arm.scene, *arm.laws[law], *timing]).resolved)
+    config = validate(compose([*_SCENE, *arm.scene, *arm.laws[law], *timing, *more]).resolved)
     loop = assemble(config)
     assert loop.ticks == ticks, f"{arm.name}: {loop.ticks} ticks"
     return config, loop

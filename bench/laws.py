@@ -110,9 +110,6 @@ def _bounds(arm: Arm) -> dict[str, Row]:
         rows["L"] = Row(Block(run, TICKS))
     except MissingError as reason:
         print(f"  {arm.name}: no L: {reason}")
-    if peers.MISSING:
-        print(f"  {arm.name}: no MuJoCo; pip install -e '.[bench]'")
-        return rows
     for name, (run, log) in _peers(arm, loop).items():
         _check(name, run, log, lambda q: np.abs(model.tip_positions(q) - loop.desired[:, 0]).max(), _NEAR_PATH)
         rows[name] = Row(Block(run, TICKS), (_f(1), "L") if name == _RK4 else (_f(int(name.split()[2])),))

@@ -13,17 +13,12 @@ import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from typing import Any
 
+import mujoco
 import numpy as np
 import pinocchio as pin
 from scipy.linalg.lapack import dgesv
 
 from bench.tip_loop import FloatArray, TipLoop
-
-try:
-    import mujoco
-except ImportError:  # the extra `bench` brings it
-    mujoco = None
-MISSING = mujoco is None
 
 _EPSILON = "1e-9"  # kg and kg m^2 of links without mass, which MuJoCo does not take
 _COMPILER = {
