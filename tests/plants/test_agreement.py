@@ -1,5 +1,58 @@
 import numpy as np
 import pytest
+import strangers
+
+from runner.assembly import assemble, make_encoders
+from runner.simulation import simulate
+
+CLOSED = {
+    "macro": ("trajectory.goal=[0.3,0.9,1.2]", "trajectory.duration=1", "plant.step=0.001"),
+    "combined": ("trajectory.goal=[0.05,0.95,1.05]", "trajectory.duration=0.5", "plant.step=0.00025"),
+    "xarm7": ("controller=operational_space", "trajectory.duration=1", "plant.step=0.001"),
+    "meca500": ("controller=operational_space", "trajectory.duration=0.5", "plant.step=0.001"),
+    "kuka": ("trajectory.duration=1", "plant.step=0.001"),
+}
+"""Smooth motions without noise and saturation."""
+
+
+@pytest.fixture(scope="module")
+def followed(checked_config):
+    """Simulate one of CLOSED on a plant; return its trace."""
+
+    def simulate_on(robot, *plant):
+        overrides = ("trajectory=quintic", "duration=1", *CLOSED[robot], *plant)
+        config = (
+            strangers.config(robot, *overrides) if robot == "kuka" else checked_config(f"robot={robot}", *overrides)
+        )
+        closed = assemble(config)
+        try:
+            return simulate(closed, make_encoders(closed, config.noise, 0, 0), None)
+        finally:
+            closed.plant.close()
+
+    return simulate_on
+
+
+def largest_error(trace):
+    return np.linalg.norm(trace.tip - trace.desired[:, 0], axis=1).max()
+
+
+@pytest.mark.parametrize("robot", CLOSED)
+def test_runge_kutta_in_mujoco_is_that_of_rk4(followed, robot):
+    ours, theirs = followed(robot, "plant=rk4"), followed(robot, "plant=mujoco", "plant.integrator=rk4")
+    assert ours.failure is theirs.failure is None
+    assert np.ptp(ours.tip, axis=0).max() > 0.02
+    assert np.linalg.norm(ours.tip - theirs.tip, axis=1).max() < (1e-9 if robot == "combined" else 1e-11)
+
+
+@pytest.mark.parametrize("robot", CLOSED)
+@pytest.mark.parametrize("integrator", ["euler", "implicitfast"])
+def test_euler_in_mujoco_is_that_of_bullet(followed, robot, integrator):
+    bullet = followed(robot, "plant=bullet")
+    mujoco = followed(robot, "plant=mujoco", f"plant.integrator={integrator}")
+    assert largest_error(mujoco) == pytest.approx(largest_error(bullet), rel=1e-5)
+    exact = followed(robot, "plant=rk4")
+    assert np.abs(bullet.q - mujoco.q).max() < 1e-4 * np.abs(bullet.q - exact.q).max()
 
 
 @pytest.mark.parametrize(("robot", "scale"), [("macro", 1.0), ("mini", 0.1)])
