@@ -96,8 +96,8 @@ class Mujoco:
 
         .. math:: f = (a_{ref} - a) / R, \qquad 1 / R = h^2 k + h c, \qquad a_{ref} = -R \, (k \, r + (h k + c) \, v)
 
-        of a distance r with velocity v and acceleration a. It takes R as a share of the inverse mass A that it gives
-        the contact, R = (1 - d) A / d, and the rest as stiffness and damping of an acceleration.
+        of a distance r with velocity v and acceleration a. It takes R by an impedance d, R = (1 - d) A / d for its own
+        estimate A of the contact's inverse mass, and the rest as stiffness and damping of an acceleration.
         """
         model, h = self._model, self._model.opt.timestep
         wall = model.geom(WALL).id
@@ -107,9 +107,9 @@ class Mujoco:
         for pair in range(model.npair):
             yields = model.body_invweight0[model.geom_bodyid[model.pair_geom2[pair]], 0]
             added = yields * h * (h * stiffness + damping)
-            share = np.clip(added / (1.0 + added), *_IMPEDANCE)
-            model.pair_solimp[pair, :2] = share
-            model.pair_solref[pair] = -(1.0 - share) * yields * np.array([stiffness, h * stiffness + damping])
+            d = np.clip(added / (1.0 + added), *_IMPEDANCE)
+            model.pair_solimp[pair, :2] = d
+            model.pair_solref[pair] = -(1.0 - d) * yields * np.array([stiffness, h * stiffness + damping])
         model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
 
     def contact_wrench(self) -> FloatArray:

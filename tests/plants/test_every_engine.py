@@ -5,9 +5,20 @@ import pytest
 from engines import ENGINES, FIRST_ORDER, FOURTH_ORDER
 from scipy.integrate import solve_ivp
 
+from runner.robots import RobotModel
+
 START = np.array([0.3, 0.5, -0.4]), np.array([1.0, 0.5, -0.5])
 TORQUES = np.array([[5.0, -3.0, 2.0], [-8.0, 10.0, -4.0], [2.0, 15.0, -9.0], [0.0, 4.0, 1.0]])
 TICK = 0.1
+SLIDER = """
+<robot name="slider"><link name="base"><inertial><mass value="0"/>
+  <inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="ram"><inertial><mass value="2"/>
+  <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>
+  <collision><geometry><sphere radius="0.01"/></geometry></collision></link>
+<joint name="q1" type="prismatic"><parent link="base"/><child link="ram"/><axis xyz="1 0 0"/>
+  <limit lower="-10" upper="10" effort="1e9" velocity="1e9"/></joint></robot>
+"""
 LINE = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "duration=1.5")
 PRESSED = (  # with a push of 5 N or so against a wall 2 mm away, in the direction x
     *("robot=meca500", "controller=operational_space", "controller.natural_frequency=20", "environment=wall"),
@@ -162,6 +173,34 @@ def test_a_joint_stops_at_its_limit(engine, name, xarm7):
     for _ in range(200):
         plant.advance(push)
     assert plant.q[joint] == pytest.approx(lower, abs=0.02)
+
+
+@pytest.mark.parametrize("name", [name for name in ENGINES if name.startswith(("bullet", "mujoco"))])
+@pytest.mark.parametrize("damping", [0.0, 40.0])
+def test_a_mass_that_hits_a_wall_moves_as_on_a_spring_and_a_damper(engine, name, damping):
+    """Closed form: m x'' + c x' + k x = 0 from x = 0, x' = v, while the force pushes."""
+    m, k, v = 2.0, 8000.0, 0.5
+    decay, omega = damping / (2.0 * m), np.sqrt(k / m - (damping / (2.0 * m)) ** 2)
+    deepest = np.arctan2(omega, decay) / omega if decay else 0.5 * np.pi / omega
+    depth = v / omega * np.exp(-decay * deepest) * np.sin(omega * deepest)
+
+    def error(step):
+        plant = engine(name, SLIDER, RobotModel(SLIDER, "ram"), step)
+        plant.add_wall(np.array([0.03, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]), k, damping)
+        plant.reset(np.zeros(1), np.array([v]))
+        way = []
+        for _ in range(round(0.15 / step)):
+            plant.advance(np.zeros(1))
+            way.append(float(plant.q[0]) - 0.02)  # its ball touches at 20 mm
+        rebound = -float(plant.dq[0])
+        return abs(max(way) - depth) / depth, rebound
+
+    (coarse, _), (fine, rebound) = error(1e-4), error(2.5e-5)
+    assert fine < 0.4 * coarse  # first order; touching falls between two steps
+    assert fine < 2e-3
+    # The wall never pulls: they part where k x + c x' = 0, at omega t = pi - 2 arctan(decay / omega).
+    parted = (np.pi - 2.0 * np.arctan2(decay, omega)) / omega
+    assert rebound == pytest.approx(v * np.exp(-decay * parted), rel=5e-3)
 
 
 @pytest.mark.parametrize("name", ENGINES)
