@@ -32,6 +32,8 @@ def read_spec(urdf: str, least_inertia: float) -> Any:
         ConfigError: if MuJoCo cannot read the text.
     """
     root = ET.fromstring(urdf)  # noqa: S314 - our own text, checked when it was read
+    for own in root.findall("mujoco"):  # a file may say how MuJoCo is to read it
+        root.remove(own)
     ET.SubElement(ET.SubElement(root, "mujoco"), "compiler", _COMPILER)
     for whole, part in _LEFT_OUT.items():
         for element in root.iter(whole):

@@ -32,9 +32,9 @@ def make(checked_config):
     return make
 
 
-@pytest.mark.parametrize("robot", ["macro", "mini", "combined", "xarm7", "meca500", *strangers.MADE])
+@pytest.mark.parametrize("robot", ["macro", "mini", "combined", "xarm7", "meca500", *strangers.STRANGERS])
 def test_masses_are_those_of_the_model(make, checked_config, robot):
-    config = strangers.config(robot) if robot in strangers.MADE else checked_config(f"robot={robot}")
+    config = strangers.config(robot) if robot in strangers.STRANGERS else checked_config(f"robot={robot}")
     arm, draw = config.arm, np.random.default_rng(0)
     plant = make(arm.urdf, "", model=arm.model)
     lower, upper = arm.model.usual_range
@@ -80,6 +80,12 @@ def test_no_speed_is_clamped_and_nothing_is_begun_anew(make, speed, capfd, tmp_p
     assert np.isnan(plant.dq[0])
     assert capfd.readouterr() == ("", "")  # MuJoCo prints warnings, and writes them to a file
     assert not list(tmp_path.iterdir())
+
+
+def test_what_a_file_tells_mujoco_to_do_is_left_out(make):
+    told = '<mujoco><compiler settotalmass="50"/><option integrator="RK4"/></mujoco></robot>'
+    plain, telling = (make(text, "rod") for text in (pendulum(0.1), pendulum(0.1).replace("</robot>", told)))
+    np.testing.assert_array_equal(plain.mass_matrix(np.zeros(1)), telling.mass_matrix(np.zeros(1)))
 
 
 def test_an_urdf_that_mujoco_refuses_is_an_error_of_one_line(make):
