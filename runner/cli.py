@@ -34,7 +34,7 @@ runner: config-driven experiments for robot-arm control, with reports
   runner calibrate [OVERRIDES]                   calibrate tool or sensor against the truth: calibration=gravity
   runner audit URDF --tip FRAME --jacobian FILE  your own formulas against a robot; also --position, --mass-matrix,
                                                  --gravity
-  runner doctor ROBOT.urdf [--tip FRAME] [--write DIR] [--html DIR]
+  runner doctor FILE [--tip FRAME] [--write DIR] [--html DIR]
                                                  does a robot of yours fit, what to mend, and a config to start from
   runner list [robots|controllers|trajectories|experiments|plants|environments|wrist_sensors|mismatch|noise|presets|
                torque_limits|calibrations|metrics|claims|references|works]

@@ -2,6 +2,7 @@
 
 import re
 import unicodedata
+from collections.abc import Sequence
 
 VALUE = 200
 """Longest text quoted of a value, in characters."""
@@ -9,6 +10,7 @@ LINE = 2000
 """Longest line of a message, in characters."""
 LINES = 50
 """Most lines of a message."""
+_NAMES = 8
 _OVERRIDES = ("LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")
 _SPACE = re.compile(r"\s+")
 
@@ -43,6 +45,12 @@ def quoted(value: object) -> str:
         return one_line(repr(value), VALUE)
     except (ValueError, RecursionError):  # Python prints no whole number of more than some 4,300 digits
         return f"a value too large to show ({type(value).__name__})"
+
+
+def few(names: Sequence[str]) -> str:
+    """Return names as a list, of which the first eight stand for many."""
+    more = f" and {len(names) - _NAMES} more" if len(names) > _NAMES else ""
+    return ", ".join(names[:_NAMES]) + more
 
 
 def table_cell(text: str) -> str:

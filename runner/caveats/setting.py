@@ -1,6 +1,6 @@
 """What rules need to know of a run beside its signals."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -39,6 +39,7 @@ class Setting:
         mismatch: How what controllers believe of the robot differs from it.
         mass: Mass of all moving links, in kg.
         contact: Of an arm behind joint servos with a wall, under an admittance law; None where there is none.
+        left_out: What would change the motion and stands in the robot's MJCFs, in words, by the file's name.
     """
 
     repetitions: int
@@ -56,6 +57,7 @@ class Setting:
     mismatch: "MismatchConfig"
     mass: float
     contact: "ServoContact | None"
+    left_out: Mapping[str, Sequence[str]]
 
 
 def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Setting:
@@ -89,6 +91,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         mismatch=config.mismatch,
         mass=mass,
         contact=None if q_start is None else servo_contact(config, q_start),
+        left_out=config.arm.left_out,
     )
 
 

@@ -1,8 +1,9 @@
-"""`runner doctor ROBOT.urdf [--tip FRAME] [--write DIR] [--html DIR]`: does a robot of yours fit, and what to mend?
+"""`runner doctor FILE [--tip FRAME] [--write DIR] [--html DIR]`: does a robot of yours fit, and what to mend?
 
 It prints one line for each thing found, with the mend: `refused` bars the robot, a `finding` should be mended, a `note`
 is good to know. `--write` makes a config folder with a robot's YAML and a copy of the URDF, mended where that leaves no
-choice. Exit codes: 0 it fits, 1 findings, 2 it cannot be taken so.
+choice; an MJCF is copied as it is, or becomes a URDF where something is to be mended. Exit codes: 0 it fits, 1
+findings, 2 it cannot be taken so.
 """
 
 from collections.abc import Sequence
@@ -15,21 +16,21 @@ from runner.texts import one_line
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Examine one URDF; print what was found, and the folders made as the last lines."""
+    """Examine one file; print what was found, and the folders made as the last lines."""
     parser = Parser("doctor", __doc__)
-    parser.add_argument("urdf", type=Path, metavar="ROBOT.urdf", help="the file")
+    parser.add_argument("file", type=Path, metavar="FILE", help="a URDF or an MJCF")
     parser.add_argument("--tip", metavar="FRAME", help="link that is the tip; default: the last one")
     parser.add_argument("--write", type=Path, metavar="DIR", help="make a config folder to start from")
     parser.add_argument("--html", type=Path, metavar="DIR", help="write report.html there, with the robot drawn")
     options = parser.parse_args(arguments)
-    if not options.urdf.is_file():
-        raise RunnerError(f"no file {options.urdf}")
+    if not options.file.is_file():
+        raise RunnerError(f"no file {options.file}")
     quiet_environment()
     from runner.doctor.config_folder import robot_name, write_folder
     from runner.doctor.examination import examine
     from runner.doctor.finding import exit_code
 
-    found = examine(options.urdf, options.tip)
+    found = examine(options.file, options.tip)
     joints = "no arm" if found.model is None else f"{found.model.nq} joints"
     print(one_line(f"{found.name}: {joints}, tip '{found.tip}'"))
     for finding in found.findings:

@@ -1,6 +1,7 @@
 """From a robot's config to its rigid-body model: reading URDFs and mounting arms on each other."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -8,8 +9,9 @@ import numpy as np
 from runner.config.per_joint import expand
 from runner.config.robot import ArmConfig, RobotConfig, StageConfig
 from runner.errors import ConfigError
-from runner.robots.description import find_urdf, read_urdf
+from runner.robots.description import find_file, find_urdf, mjcf_of, read_urdf
 from runner.robots.inertials import Payload, set_file
+from runner.robots.mjcf_files import is_mjcf
 from runner.robots.model import FloatArray, RobotModel
 from runner.robots.mounting import Mount, mount
 from runner.robots.robot import Robot, Stage
@@ -29,15 +31,20 @@ def build_robot(
     Args:
         config: The robot's config.
         gravity: Magnitude of gravity along -z of the base, in m/s^2.
-        config_dirs: Config folders of the user's, in which URDFs are looked for.
+        config_dirs: Config folders of the user's, in which URDFs and MJCFs are looked for.
         sensor: Config of the force/torque sensor on the last arm's tip frame, whose mass it bears; None for none.
 
     Raises:
-        ConfigError: for a URDF that cannot be found or built, a frame or link that does not exist, a posture of the
+        ConfigError: for a file that cannot be found or built, a frame or link that does not exist, a posture of the
             wrong length or beyond the joints' limits, or names that clash between stages.
     """
-    paths = [find_urdf(arm.urdf, config_dirs) for arm in config.arms.values()]
-    files = [file for path in paths for file in (path, set_file(path)) if file.exists()]
+    paths = [_find(key, arm, config_dirs) for key, arm in _by_key(config)]
+    files = [
+        file
+        for path, arm in zip(paths, config.arms.values(), strict=True)
+        for file in (*(mjcf_of(path).files if arm.mjcf else [path]), set_file(path))
+        if file.exists()
+    ]
     key = (
         config.model_dump_json(),
         gravity,
@@ -55,15 +62,15 @@ def _build(config: RobotConfig, gravity: float, paths: Sequence[Path], sensor: F
     several = len(config.arms) > 1
     stages: list[Stage] = []
     whole, prefix, tip, first = "", "", "", 0
-    for path, (name, arm) in zip(paths, config.arms.items(), strict=True):
-        key = f"robot.stages.{name}" if several else "robot"
+    for path, name, (key, arm) in zip(paths, config.arms, _by_key(config), strict=True):
         outermost = len(stages) + 1 == len(config.arms)
         payloads = _payloads(config, arm.tip, sensor) if outermost else []
-        urdf = read_urdf(path, arm.masses, arm.rotor_inertia, arm.inertials, arm.velocity_limits, payloads)
-        own_tip = arm.tip
-        if outermost and config.tool is not None:
-            urdf, own_tip = mount_tool(urdf, arm.tip, ToolBody(**config.tool.model_dump())), TOOL_TIP
-        model = RobotModel(urdf, own_tip, gravity)
+        with _told_of(arm):
+            urdf = read_urdf(path, arm.masses, arm.rotor_inertia, arm.inertials, arm.velocity_limits, payloads)
+            own_tip = arm.tip
+            if outermost and config.tool is not None:
+                urdf, own_tip = mount_tool(urdf, arm.tip, ToolBody(**config.tool.model_dump())), TOOL_TIP
+            model = RobotModel(urdf, own_tip, gravity)
         base_frame = None
         if not stages:
             _refuse_mount(key, arm)
@@ -78,7 +85,39 @@ def _build(config: RobotConfig, gravity: float, paths: Sequence[Path], sensor: F
         stages.append(Stage(name, model, urdf, joints, home, base_frame))
         first = joints.stop
     flange = prefix + list(config.arms.values())[-1].tip
-    return Robot(whole, RobotModel(whole, tip, gravity) if several else stages[0].model, tuple(stages), flange)
+    mjcfs = [path for path, arm in zip(paths, config.arms.values(), strict=True) if arm.mjcf]
+    left_out = {path.name: motion for path in mjcfs if (motion := mjcf_of(path).left_out.motion)}
+    whole_model = RobotModel(whole, tip, gravity) if several else stages[0].model
+    return Robot(whole, whole_model, tuple(stages), flange, left_out)
+
+
+def _by_key(config: RobotConfig) -> list[tuple[str, ArmConfig]]:
+    """Return the arms of a robot, each with the key of its group."""
+    several = len(config.arms) > 1
+    return [(f"robot.stages.{name}" if several else "robot", arm) for name, arm in config.arms.items()]
+
+
+def _find(key: str, arm: ArmConfig, config_dirs: Sequence[Path]) -> Path:
+    """Return the file of an arm, which is of the format that its key says."""
+    if (arm.urdf is None) == (arm.mjcf is None):
+        found = "neither" if arm.urdf is None else f"both, '{arm.urdf}' and '{arm.mjcf}'"
+        raise ConfigError([f"{key}.urdf, {key}.mjcf: found {found}; give one file, and null for the other"])
+    path = find_urdf(arm.urdf, config_dirs) if arm.urdf else find_file("robot.mjcf", str(arm.mjcf), config_dirs)
+    if arm.urdf and is_mjcf(path):
+        raise ConfigError([f"{key}.urdf: {path} is an MJCF; name it at {key}.mjcf"])
+    return path
+
+
+@contextmanager
+def _told_of(arm: ArmConfig) -> Iterator[None]:
+    """Let messages on the URDF made of an MJCF name the key that the user has."""
+    try:
+        yield
+    except ConfigError as error:
+        if arm.mjcf is None:
+            raise
+        told = [problem.replace("robot.urdf:", "robot.mjcf:", 1) for problem in error.problems]
+        raise ConfigError(told, error.hint) from None
 
 
 def _check_home(key: str, model: RobotModel, home: FloatArray) -> None:

@@ -99,6 +99,16 @@ class UnstableContactThreshold(StrictModel):
     radius: PositiveFloat
 
 
+class MjcfThreshold(StrictModel):
+    """Threshold of the rule on what is not taken from an MJCF.
+
+    Attributes:
+        left_out: How many things that would change the motion may stand there and be left out.
+    """
+
+    left_out: NonNegativeFloat
+
+
 class CaveatsConfig(StrictModel):
     """When a run tells that its result may mislead; a rule each, which is sprung by what is above its threshold.
 
@@ -112,6 +122,7 @@ class CaveatsConfig(StrictModel):
         overload: A payload beyond the rating.
         no_effort_limit: A payload on an arm that lifts anything.
         unstable_contact: A wall too stiff for an admittance behind joint servos.
+        mjcf: What is not taken from the robot's MJCF.
     """
 
     saturation: SaturationThreshold
@@ -123,3 +134,4 @@ class CaveatsConfig(StrictModel):
     overload: OverloadThreshold
     no_effort_limit: NoEffortLimitThreshold
     unstable_contact: UnstableContactThreshold
+    mjcf: MjcfThreshold

@@ -10,23 +10,27 @@ from runner.registry import StrictModel
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 Name = Annotated[str, Field(min_length=1, max_length=200)]
+FileName = Annotated[str, Field(min_length=1)]
 
 
 class ArmConfig(StrictModel):
     """One arm.
 
     Attributes:
-        urdf: Its URDF: a file among ours, in a config folder of the user's, or an absolute path.
+        urdf: Its URDF: a file among ours, in a config folder of the user's, or an absolute path; None where it has an
+            MJCF.
+        mjcf: Its MJCF, MuJoCo's format, found likewise; None where it has a URDF.
         tip: Name of its tip frame.
         home: Joint positions at home, in rad.
         inertials: Set of masses, centres of mass and inertias, of those in `<urdf>.inertials.yaml`, in place of the
-            URDF's; None keeps these.
-        masses: Mass of links by name, in kg, in place of the URDF's or the set's.
+            file's; None keeps these.
+        masses: Mass of links by name, in kg, in place of the file's or the set's.
         rotor_inertia: Inertia added to each moving link about its joint's axis, in kg m^2.
-        velocity_limits: Largest speed of joints by name, in rad/s, in place of the URDF's.
+        velocity_limits: Largest speed of joints by name, in rad/s, in place of the file's; an MJCF has none.
     """
 
-    urdf: Annotated[str, Field(min_length=1)]
+    urdf: FileName | None
+    mjcf: FileName | None
     tip: Name
     home: list[float]
     inertials: Name | None

@@ -78,18 +78,19 @@ class RunConfig:
     def warnings(self) -> list[str]:
         """What is unusual in the config though it can be run."""
         model = self.arm.model
+        file = "robot.mjcf" if any(arm.mjcf for arm in self.robot.arms.values()) else "robot.urdf"
         found: list[str] = []
         if PLANTS.commands(self.plant.kind) == "torque":
-            found += _zero_limits("effort", model.effort_limits, "nothing pushes it", model)
+            found += _zero_limits(f"{file}: joint", "effort", model.effort_limits, "nothing pushes it", model)
         if self.commands == "position":
-            found += _zero_limits("velocity", model.velocity_limits, "it stands still", model)
+            found += _zero_limits(f"{file}: joint", "velocity", model.velocity_limits, "it stands still", model)
         return found
 
 
-def _zero_limits(kind: str, limits: FloatArray, so: str, model: RobotModel) -> list[str]:
+def _zero_limits(joint: str, kind: str, limits: FloatArray, so: str, model: RobotModel) -> list[str]:
     """Return a warning for each joint with a limit of zero: many programs write 0 where they know none."""
     return [
-        f"robot.urdf: joint '{name}' has the {kind} limit 0, and {so}; is its limit missing?"
+        f"{joint} '{name}' has the {kind} limit 0, and {so}; is its limit missing?"
         for name, limit in zip(model.joint_names, limits, strict=True)
         if limit == 0.0
     ]

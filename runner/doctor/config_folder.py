@@ -1,4 +1,4 @@
-"""A config folder to start from: a robot's YAML file and its mended URDF."""
+"""A config folder to start from: a robot's YAML file and its mended URDF, or its MJCF."""
 
 import re
 from pathlib import Path
@@ -18,7 +18,7 @@ defaults:
 
 robot:
   name: {name}
-  urdf: {name}.urdf
+  {format}: {file}
   tip: {tip}  # the frame that is controlled
   home: {home}  # {units}
   goal: {goal}  # m, tip position where quintic, line and goal go
@@ -34,7 +34,7 @@ def robot_name(examination: Examination) -> str:
 
 
 def write_folder(examination: Examination, folder: Path) -> list[Path]:
-    """Write `robot/NAME.yaml` and `robots/NAME.urdf`.
+    """Write `robot/NAME.yaml` and `robots/NAME.urdf`, or an MJCF as it is, with its files, where it needs no mending.
 
     Raises:
         RunnerError: if something bars the arm, one of the files is there already, or they cannot be written.
@@ -43,8 +43,11 @@ def write_folder(examination: Examination, folder: Path) -> list[Path]:
     if model is None or start is None:
         raise RunnerError("--write: nothing was written: first mend what is refused above")
     name = robot_name(examination)
+    format, arm = _arm_files(examination, name)
     text = _ROBOT.format(
         name=name,
+        format=format,
+        file=next(iter(arm)),
         joints=model.nq,
         source=" ".join(examination.source.name.split()),
         tip=yaml.safe_dump(examination.tip).removesuffix("...\n").strip(),
@@ -56,17 +59,28 @@ def write_folder(examination: Examination, folder: Path) -> list[Path]:
         natural_frequency=start.natural_frequency,
         settling_band=_digits(0.002 * model.reach),
     )  # fmt: skip
-    files = {folder / "robot" / f"{name}.yaml": text, folder / "robots" / f"{name}.urdf": examination.urdf + "\n"}
+    files = {folder / "robot" / f"{name}.yaml": text.encode()}
+    files |= {folder / "robots" / file: content for file, content in arm.items()}
     there = [str(path) for path in files if path.exists()]
     if there:
         raise RunnerError(f"--write: {', '.join(there)} is there already; choose another folder, or remove it")
     try:
         for path, content in files.items():
             path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(content, encoding="utf-8")
+            path.write_bytes(content)
     except OSError as error:
         raise RunnerError(f"--write: {error.filename} cannot be written: {error.strerror}") from error
     return list(files)
+
+
+def _arm_files(examination: Examination, name: str) -> tuple[str, dict[str, bytes]]:
+    """Return the key that names the arm's file, and its files by their place in `robots/`, the one named first."""
+    mjcf = examination.mjcf
+    if mjcf is None or any(finding.mended for finding in examination.findings):
+        return "urdf", {f"{name}.urdf": f"{examination.urdf}\n".encode()}
+    folder = examination.source.resolve().parent
+    files = [file.resolve() for file in mjcf.files]
+    return "mjcf", {file.relative_to(folder).as_posix(): file.read_bytes() for file in files}
 
 
 def _list(values: FloatArray) -> str:

@@ -1,4 +1,4 @@
-"""The whole examination of a stranger's URDF."""
+"""The whole examination of a stranger's URDF or MJCF."""
 
 import copy
 import xml.etree.ElementTree as ET
@@ -23,9 +23,11 @@ from runner.doctor.postures import (
 from runner.doctor.starting_point import StartingPoint, propose
 from runner.doctor.tip import choose_tip, frames_at_the_end
 from runner.errors import ConfigError
-from runner.robots.description import drop_meshes
+from runner.robots.description import drop_meshes, read_arm
+from runner.robots.mjcf import Mjcf, read_mjcf
+from runner.robots.mjcf_files import is_mjcf
 from runner.robots.model import RobotModel
-from runner.robots.tree import UrdfTree, read_tree
+from runner.robots.tree import UrdfTree
 
 _POSTURES = 300
 
@@ -37,15 +39,17 @@ class Examination:
     Attributes:
         name: The robot's own name.
         source: The file.
+        mjcf: What was read of it where it is an MJCF, else None.
         tip: The link that is its tip.
         findings: What there is to say, in the order of the examination.
-        urdf: The text mended as far as it can be without a choice, without meshes.
+        urdf: The text of the arm's URDF, mended as far as it can be without a choice, without meshes.
         model: The arm of that text; None where something bars it.
         start: Values to start with; None where there is no model.
     """
 
     name: str
     source: Path
+    mjcf: Mjcf | None
     tip: str
     findings: list[Finding]
     urdf: str
@@ -54,20 +58,22 @@ class Examination:
 
 
 def examine(path: Path, wanted_tip: str | None) -> Examination:
-    """Examine a URDF file.
+    """Examine a URDF, or an MJCF as the URDF of the same arm.
 
     Args:
         path: The file.
         wanted_tip: Name of the link that is to be the tip; None takes the last one.
 
     Raises:
-        RunnerError: if it is no URDF of one tree, or has no such tip.
+        RunnerError: if it is none of one tree, or has no such tip.
     """
-    original = read_tree(path)
+    mjcf = read_mjcf(path) if is_mjcf(path) else None
+    original = read_arm(path)
     tip = choose_tip(original, wanted_tip)
     tree = copy.deepcopy(original)
     findings = [*check_placements(tree), *check_meshes(tree, path)]
     findings += [*check_links(tree), *check_joints(tree, tip), _name_frames(original, tip)]
+    findings += [] if mjcf is None else _left_out(mjcf)
     drop_meshes(tree.links)
     name = tree.robot.get("name") or path.stem
     ET.indent(tree.robot)
@@ -83,18 +89,24 @@ def examine(path: Path, wanted_tip: str | None) -> Examination:
         findings.append(Finding("refused", "model", text))
         model = None
     if model is None:
-        return Examination(name, path, tip, findings, urdf, None, None)
+        return Examination(name, path, mjcf, tip, findings, urdf, None, None)
     generator, (lower, upper) = np.random.default_rng(0), model.usual_range
     postures = generator.uniform(lower, upper, (_POSTURES, model.nq))
     bars = [*check_mass_matrix(model, postures), *(f for f in check_tasks(model) if f.grade == "refused")]
     if bars:
-        return Examination(name, path, tip, [*findings, *bars], urdf, None, None)
+        return Examination(name, path, mjcf, tip, [*findings, *bars], urdf, None, None)
     findings += check_gravity(model, postures)
-    if not any(finding.grade == "refused" for finding in findings):
+    if mjcf is None and not any(finding.grade == "refused" for finding in findings):
         findings += compare_readings(path)
     findings += compare_engines(urdf, model, generator)
     findings += [*check_tasks(model), *describe_singular(model, postures), *describe_workspace(model, generator)]
-    return Examination(name, path, tip, findings, urdf, model, propose(model, postures))
+    return Examination(name, path, mjcf, tip, findings, urdf, model, propose(model, postures))
+
+
+def _left_out(mjcf: Mjcf) -> list[Finding]:
+    """Return what an MJCF holds beside bodies, joints and sites."""
+    moves = [Finding("note", "left out of the motion", text) for text in mjcf.left_out.motion]
+    return [*moves, *(Finding("note", "left out", text) for text in mjcf.left_out.rest)]
 
 
 def _name_frames(tree: UrdfTree, tip: str) -> Finding:

@@ -5,6 +5,7 @@ import math
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from runner.errors import ConfigError, nearest
 from runner.paths import robots_dir
@@ -17,35 +18,61 @@ from runner.robots.inertials import (
     replace_inertials,
     scale_inertial,
 )
-from runner.robots.tree import UrdfTree, moves, read_tree
+from runner.robots.mjcf_files import is_mjcf
+from runner.robots.tree import UrdfTree, make_tree, moves, read_tree
 from runner.robots.urdf_values import TENSOR, absurd_inertial, number, wrong_limits, wrong_places
+
+if TYPE_CHECKING:
+    from runner.robots.mjcf import Mjcf
 
 
 def find_urdf(name: str, config_dirs: Sequence[Path] = ()) -> Path:
-    """Return the file of a URDF: an absolute path, or a name in a config folder of the user's or among our robots.
+    """Return the file of a URDF, the value of `robot.urdf`; see find_file."""
+    return find_file("robot.urdf", name, config_dirs)
+
+
+def find_file(key: str, name: str, config_dirs: Sequence[Path] = ()) -> Path:
+    """Return the file of an arm: an absolute path, or a name in a config folder of the user's or among our robots.
 
     Args:
-        name: Value of `robot.urdf`.
+        key: The key that names it, `robot.urdf` or `robot.mjcf`.
+        name: Its value.
         config_dirs: Config folders of the user's; each is searched itself and in its sub-folder `robots`.
 
     Raises:
         ConfigError: if no such file exists, which names the places searched, or a name leads out of these.
     """
     if ".." in Path(name).parts:
-        raise ConfigError([f"robot.urdf: '{name}' leads out of its folder; put the file there, or give its whole path"])
+        raise ConfigError([f"{key}: '{name}' leads out of its folder; put the file there, or give its whole path"])
     places = [place for folder in config_dirs for place in (folder / "robots", folder)] + [robots_dir()]
     candidates = [Path(name)] if Path(name).is_absolute() else [place / name for place in places]
     for candidate in candidates:
         with contextlib.suppress(OSError):  # a name that is too long for a file, a folder that cannot be read
             if candidate.is_file():
                 return candidate
-    own = sorted(path.name for path in robots_dir().glob("*.urdf"))
+    own = sorted(path.name for path in robots_dir().glob("*.urdf" if key == "robot.urdf" else "*.xml"))
+    ours = f"; ours: {', '.join(own)}" if own else ""
     raise ConfigError(
-        [
-            f"robot.urdf: no file '{name}'{nearest(name, own)}; looked in "
-            f"{', '.join(str(c.parent) for c in candidates)}; ours: {', '.join(own)}"
-        ]
+        [f"{key}: no file '{name}'{nearest(name, own)}; looked in {', '.join(str(c.parent) for c in candidates)}{ours}"]
     )
+
+
+def read_arm(path: Path) -> UrdfTree:
+    """Read an arm's file, a URDF or an MJCF, as the tree of links of a URDF.
+
+    Raises:
+        ConfigError: if it is neither; see read_tree and read_mjcf.
+    """
+    if is_mjcf(path):
+        return make_tree(ET.fromstring(mjcf_of(path).urdf), path)  # noqa: S314 - our own text
+    return read_tree(path)
+
+
+def mjcf_of(path: Path) -> "Mjcf":
+    """Read an MJCF; see read_mjcf. MuJoCo, which takes a quarter of a second to import, comes with the first one."""
+    from runner.robots.mjcf import read_mjcf
+
+    return read_mjcf(path)
 
 
 def read_urdf(
@@ -56,10 +83,10 @@ def read_urdf(
     velocity_limits: Mapping[str, float] | None = None,
     payloads: Sequence[Payload] = (),
 ) -> str:
-    """Return a URDF's text with the given changes, and without meshes, which no part of a run reads.
+    """Return an arm as the text of a URDF with the given changes, and without meshes, which no part of a run reads.
 
     Args:
-        path: The URDF file.
+        path: Its file, a URDF or an MJCF.
         masses: Mass of links by name, in kg, inertias scaled along (a uniform change of density); links not named keep
             theirs.
         rotor_inertia: Inertia added to each moving link about its joint's axis, in kg m^2, and half of it across: a
@@ -69,10 +96,10 @@ def read_urdf(
         payloads: Point masses that links carry.
 
     Raises:
-        ConfigError: if the file is no URDF of one serial arm, a set, link or joint named does not exist, a link named
+        ConfigError: if the file is none of one serial arm, a set, link or joint named does not exist, a link named
             has no mass to change, or a mass, inertia, place or limit is none that an arm can have.
     """
-    tree = read_tree(path)
+    tree = read_arm(path)
     links = tree.links
     from_set = {} if inertials is None else replace_inertials(links, path, inertials)
     problems = _check_numbers(path, tree, from_set) + _check_joints(path, tree)

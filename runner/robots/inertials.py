@@ -151,8 +151,7 @@ def add_payload(links: Mapping[str, ET.Element], payload: Payload) -> None:
     link = links[payload.link]
     frame, own = _inertial_frame(link), _own_inertia(link)
     whole = frame.act(own) + pin.Inertia(payload.mass, np.array(payload.position, dtype=float), np.zeros((3, 3)))
-    tensor = {f"i{'xyz'[row]}{'xyz'[column]}": whole.inertia[row, column] for row, column in _UPPER}
-    _write(link, whole.mass, whole.lever, tensor)
+    write_inertial(link, whole.mass, whole.lever, whole.inertia)
 
 
 def impossible_inertia(link: ET.Element) -> list[str]:
@@ -187,7 +186,7 @@ def mend_inertia(link: ET.Element) -> None:
 
 def make_massless(link: ET.Element) -> None:
     """Give a link zero mass and zero inertia."""
-    _write(link, 0.0, np.zeros(3).tolist(), {f"i{'xyz'[row]}{'xyz'[column]}": 0.0 for row, column in _UPPER})
+    write_inertial(link, 0.0, np.zeros(3), np.zeros((3, 3)))
 
 
 _ROUNDING = 1e-6  # of the largest moment: files print few digits
@@ -214,6 +213,18 @@ def _inertial_frame(link: ET.Element) -> pin.SE3:
     origin = link.find("inertial/origin")
     xyz, rpy = ("0 0 0", "0 0 0") if origin is None else (origin.get("xyz", "0 0 0"), origin.get("rpy", "0 0 0"))
     return pin.SE3(pin.rpy.rpyToMatrix(_vector(rpy)), _vector(xyz))
+
+
+def write_inertial(link: ET.Element, mass: float, centre_of_mass: np.ndarray, tensor: np.ndarray) -> None:
+    """Give a link an inertial in axes of its frame.
+
+    Args:
+        link: The link, changed in place.
+        mass: In kg.
+        centre_of_mass: Shape (3,), in m.
+        tensor: Inertia about it, shape (3, 3), in kg m^2.
+    """
+    _write(link, mass, centre_of_mass.tolist(), {f"i{'xyz'[row]}{'xyz'[col]}": tensor[row, col] for row, col in _UPPER})
 
 
 def _write(link: ET.Element, mass: float, centre_of_mass: Sequence[float], tensor: Mapping[str, float]) -> None:

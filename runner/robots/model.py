@@ -48,6 +48,10 @@ class RobotModel:
         frames = [frame.name for frame in self.pin_model.frames]
         if tip not in frames:
             raise ConfigError([f"robot.tip: no frame '{tip}'{nearest(tip, frames)}; frames: {', '.join(frames)}"])
+        if frames.count(tip) > 1:
+            raise ConfigError(
+                [f"robot.tip: '{tip}' is the name of {frames.count(tip)} links and joints; rename all but one"]
+            )
         self.tip_name = tip
         self.tip_frame: int = self.pin_model.getFrameId(tip)
         self.nq: int = self.pin_model.nq

@@ -1,7 +1,7 @@
 """A robot as a chain of stages: one arm, or arms riding on each other."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 import pinocchio as pin
@@ -44,12 +44,14 @@ class Robot:
         model: Rigid-body model of the whole; its tip is the last stage's.
         stages: The arms.
         flange: Frame on which a tool and a force/torque sensor are fixed; the tip itself where there is no tool.
+        left_out: What would change its motion and stands in the MJCFs that it is made of, by the file's name, in words.
     """
 
     urdf: str
     model: RobotModel
     stages: tuple[Stage, ...]
     flange: str
+    left_out: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def home(self) -> FloatArray:

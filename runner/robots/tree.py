@@ -69,7 +69,11 @@ def read_tree(path: Path) -> UrdfTree:
         ConfigError: if it is no URDF, holds a document type or macros, more than any engine has room for, or its links
             do not form one tree.
     """
-    robot = _parse(path)
+    return make_tree(parse_xml(path), path)
+
+
+def make_tree(robot: ET.Element, path: Path) -> UrdfTree:
+    """Return the tree of links of a URDF's root element; see read_tree for the errors, which name the file."""
     links = {link.get("name", ""): link for link in robot.findall("link")}
     if robot.tag != "robot" or not links:
         raise ConfigError([f"robot.urdf: {path} is no URDF: it needs a <robot> with links"])
@@ -100,21 +104,30 @@ def read_tree(path: Path) -> UrdfTree:
 
 
 class _NoDoctype(ET.TreeBuilder):
-    """Refuses a document type at its first word: a URDF has none, and entities can grow without end."""
+    """Refuses a document type at its first word: no arm needs one, and entities can grow without end."""
 
     def doctype(self, name: str, pubid: str | None, system: str | None) -> None:
-        raise ET.ParseError("it has a document type (<!DOCTYPE>), which a URDF has not; remove it")
+        raise ET.ParseError("it has a document type (<!DOCTYPE>), which no arm needs; remove it")
 
 
-def _parse(path: Path) -> ET.Element:
+def parse_xml(path: Path, key: str = "robot.urdf") -> ET.Element:
+    """Return the root element of an XML file without a document type.
+
+    Args:
+        path: The file.
+        key: The key that names it, for messages.
+
+    Raises:
+        ConfigError: if it cannot be read, or is no such file.
+    """
     try:
         text = path.read_text(encoding="utf-8")
         return ET.fromstring(text, parser=ET.XMLParser(target=_NoDoctype()))  # noqa: S314 - no entities, see there
     except (ET.ParseError, ValueError) as error:
         hint = "; xacro macros? Make a URDF of it first" if "unbound prefix" in str(error) else ""
-        raise ConfigError([f"robot.urdf: {path} is no XML: {error}{hint}"]) from error
+        raise ConfigError([f"{key}: {path} is no XML: {error}{hint}"]) from error
     except OSError as error:
-        raise ConfigError([f"robot.urdf: {path} cannot be read: {error.strerror}"]) from error
+        raise ConfigError([f"{key}: {path} cannot be read: {error.strerror}"]) from error
 
 
 def _excess(robot: ET.Element) -> list[str]:

@@ -66,7 +66,7 @@ def test_what_is_barred_is_not_written(cli):
     assert "first mend what is refused above" in ending.err
 
 
-@pytest.mark.parametrize(("arguments", "said"), [(("none.urdf",), "no file none.urdf"), ((), "required: ROBOT.urdf")])
+@pytest.mark.parametrize(("arguments", "said"), [(("none.urdf",), "no file none.urdf"), ((), "required: FILE")])
 def test_bad_input(cli, arguments, said):
     ending = cli("doctor", *arguments)
     assert ending.code == 2

@@ -52,7 +52,7 @@ def test_a_robot_of_ten_lines_runs(mine):
     assert len(ONE_ARM.splitlines()) == 10
     run = runner.run("robot=plain", config_dirs=[mine])
     assert run.status == "ok"
-    assert {key: run.config["robot"][key] for key in DEFAULTS} == DEFAULTS
+    assert {key: run.config["robot"][key] for key in DEFAULTS} == DEFAULTS | {"urdf": "macro.urdf"}
     assert run.config["controller"]["natural_frequency"] == DEFAULTS["natural_frequency"]
 
 
@@ -75,15 +75,15 @@ def test_what_has_no_default_is_missed(mine):
 
 
 def test_every_key_of_a_robot_has_a_default_or_must_be_given():
-    given = {"name", "urdf", "tip", "home", "goal"}
+    given = {"name", "tip", "home", "goal"}
     assert set(DEFAULTS) == set(OneArmConfig.model_fields) - given
 
 
 def test_each_stage_takes_the_defaults_of_an_arm(mine):
     robot = compose(["robot=pair"], [mine]).resolved["robot"]
     of_arm = {key: DEFAULTS[key] for key in DEFAULTS if key in ArmConfig.model_fields}
-    assert set(of_arm) == {"inertials", "masses", "rotor_inertia", "velocity_limits"}
-    assert {key: robot["stages"]["lower"][key] for key in of_arm} == of_arm
+    assert set(of_arm) == {"urdf", "mjcf", "inertials", "masses", "rotor_inertia", "velocity_limits"}
+    assert {key: robot["stages"]["lower"][key] for key in of_arm} == of_arm | {"urdf": "macro.urdf"}
     assert robot["stages"]["upper"]["rotor_inertia"] == 1e-6
     assert not set(of_arm) & set(robot)
 

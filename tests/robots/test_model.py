@@ -289,3 +289,8 @@ def test_what_pinocchio_says_of_a_body_is_told(macro_urdf, capfd):
     ):
         RobotModel(bare, "tip")
     assert capfd.readouterr() == ("", "")
+
+
+def test_a_tip_that_is_a_link_and_a_joint_is_refused(macro_urdf):
+    with pytest.raises(ConfigError, match=r"robot\.tip: 'tip' is the name of 2 links and joints; rename all but one"):
+        RobotModel(macro_urdf.replace('name="q3"', 'name="tip"'), "tip")

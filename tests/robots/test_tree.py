@@ -49,7 +49,7 @@ def test_what_is_no_tree(read, joints, problem):
 
 def test_entities_that_grow_are_refused_before_they_do(read):
     doctype = '<!DOCTYPE x [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]>'
-    with pytest.raises(ConfigError, match=r"document type \(<!DOCTYPE>\), which a URDF has not; remove it"):
+    with pytest.raises(ConfigError, match=r"document type \(<!DOCTYPE>\), which no arm needs; remove it"):
         read(f'{doctype}<robot name="&b;">{LINKS}</robot>')
 
 

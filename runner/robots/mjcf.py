@@ -1,0 +1,134 @@
+"""An arm's MJCF, MuJoCo's own format, as the URDF of the same arm."""
+
+import threading
+import warnings
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import mujoco
+
+from runner.errors import ConfigError
+from runner.robots.mjcf_efforts import efforts_of
+from runner.robots.mjcf_files import asset_files, follow_includes
+from runner.robots.mjcf_losses import LeftOut, left_out, refused_model, refused_parts
+from runner.robots.mjcf_urdf import write_urdf
+
+_LOCK = threading.Lock()  # MuJoCo has one place for warnings
+_KEPT = 8
+_read: dict[Path, tuple[list[tuple[int, int]], "Mjcf"]] = {}
+
+
+@dataclass(frozen=True)
+class Mjcf:
+    """An MJCF that was read.
+
+    Attributes:
+        urdf: The text of a URDF of its bodies, joints and sites.
+        left_out: What it holds beside.
+        files: Itself, the files that it includes, and its meshes.
+    """
+
+    urdf: str
+    left_out: LeftOut
+    files: tuple[Path, ...]
+
+
+def read_mjcf(path: Path) -> Mjcf:
+    """Read an MJCF, as MuJoCo compiles it: its defaults, includes, frames, angles, and inertias from shapes.
+
+    What was read last is kept until its files change.
+
+    Raises:
+        ConfigError: if it is none, MuJoCo does not take it, it leads out of its folder, a mesh is missing, or it holds
+            what no arm of ours has.
+    """
+    if path in _read and _read[path][0] == _stamps(_read[path][1].files):
+        return _read[path][1]
+    if len(_read) >= _KEPT:
+        _read.clear()
+    mjcf = _convert(path)
+    _read[path] = _stamps(mjcf.files), mjcf
+    return mjcf
+
+
+def _stamps(files: Iterable[Path]) -> list[tuple[int, int]]:
+    """Return what changes with files: when they were written, and how long they are; zeros of one that is gone."""
+    stats = [file.stat() if file.exists() else None for file in files]
+    return [(0, 0) if stat is None else (stat.st_mtime_ns, stat.st_size) for stat in stats]
+
+
+def _convert(path: Path) -> Mjcf:
+    texts = follow_includes(path)
+    with _caught_warnings() as said:
+        try:
+            spec = mujoco.MjSpec.from_file(str(path.resolve()))
+        except (ValueError, mujoco.FatalError) as error:
+            raise _refused(path, error) from error
+        names = [asset.file for asset in (*spec.meshes, *spec.hfields)]
+        names = [Path(name).name for name in names] if spec.strippath else names
+        meshes = asset_files(path, spec.meshdir, names)
+        _refuse(path, refused_parts(spec))
+        slim = spec.copy()
+        _leave_shapes_that_weigh(slim)
+        try:
+            model = slim.compile()
+        except (ValueError, mujoco.FatalError) as error:
+            raise _refused(path, error) from error
+    _refuse(path, refused_model(model))
+    efforts, of_efforts = efforts_of(model)
+    urdf, renamed = write_urdf(spec.modelname, model, efforts)
+    lost = left_out(spec, model)
+    rest = (*of_efforts, *renamed, *lost.rest, *(f"MuJoCo's warning: {text.strip()}" for text in dict.fromkeys(said)))
+    return Mjcf(urdf, LeftOut(lost.motion, rest), (*texts, *meshes))
+
+
+def _refuse(path: Path, problems: Iterator[str]) -> None:
+    told = [f"robot.mjcf: {path} {problem}" for problem in problems]
+    if told:
+        raise ConfigError(told)
+
+
+def _refused(path: Path, error: Exception) -> ConfigError:
+    return ConfigError([f"robot.mjcf: {path}: MuJoCo does not take it: {' '.join(str(error).split())}"])
+
+
+def _leave_shapes_that_weigh(spec: Any) -> None:
+    """Take out of a specification all that has no part in bodies and joints, so that its files are not read."""
+    spec.compiler.fusestatic = False
+    lowest, highest = spec.compiler.inertiagrouprange
+    by_shape = spec.compiler.inertiafromgeom == mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
+    for geom in spec.geoms:
+        geom.material = ""
+        body, weighs = geom.parent, lowest <= geom.group <= highest
+        if not weighs or body.name == "world" or (body.explicitinertial and not by_shape):
+            spec.delete(geom)
+    for site in spec.sites:
+        site.material = ""
+    lists = (spec.sensors, spec.pairs, spec.excludes, spec.keys, spec.skins, spec.materials, spec.textures,
+             spec.cameras, spec.lights, spec.tuples)  # fmt: skip
+    for element in [element for elements in lists for element in elements]:
+        spec.delete(element)
+    used = {name for geom in spec.geoms for name in (geom.meshname, geom.hfieldname)}
+    for mesh in (*spec.meshes, *spec.hfields):
+        if (mesh.name or Path(mesh.file).stem) not in used:
+            spec.delete(mesh)
+    spec.memory, spec.nuserdata = -1, 0
+
+
+@contextmanager
+def _caught_warnings() -> Iterator[list[str]]:
+    """Catch MuJoCo's warnings for a while, which it would write to a file in the working directory."""
+    said: list[str] = []
+    with _LOCK:
+        before = mujoco.get_mju_user_warning()
+        mujoco.set_mju_user_warning(said.append)
+        try:
+            with warnings.catch_warnings(record=True) as of_python:
+                warnings.simplefilter("always")
+                yield said
+            said += [str(warning.message) for warning in of_python]
+        finally:
+            mujoco.set_mju_user_warning(before)

@@ -1,0 +1,123 @@
+"""The files that an MJCF consists of: followed before MuJoCo reads them, and refused where they lead out."""
+
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable
+from pathlib import Path
+
+from runner.errors import ConfigError
+from runner.robots.tree import parse_xml
+from runner.texts import few, quoted
+
+_FILES = 100  # with all that they include
+_DEPTH = 200
+_MAKES_MORE = {  # elements that stand for many bodies, or for code; `model` brings another file's
+    "attach": "copy its bodies in",
+    "composite": "write its bodies, or take it out",
+    "extension": "take it out, and the plugins",
+    "flex": "take it out",
+    "flexcomp": "take it out",
+    "model": "copy its bodies in",
+    "plugin": "take it out",
+    "replicate": "write its bodies, or take it out",
+}
+
+
+def is_mjcf(path: Path) -> bool:
+    """Tell whether an XML file is an MJCF, by its root element.
+
+    Raises:
+        ConfigError: if it is no XML, or cannot be read.
+    """
+    return parse_xml(path).tag == "mujoco"
+
+
+def follow_includes(path: Path) -> list[Path]:
+    """Return an MJCF file and those that it includes, each of which MuJoCo may read.
+
+    Raises:
+        ConfigError: if the file is no MJCF, one that it includes is missing, lies outside its folder or is no XML, or
+            an element stands for more than itself.
+    """
+    root, folder = parse_xml(path, "robot.mjcf"), path.resolve().parent
+    if root.tag != "mujoco":
+        urdf = "; a URDF stands at robot.urdf" if root.tag == "robot" else ""
+        raise ConfigError([f"robot.mjcf: {path} is no MJCF: it begins with <{root.tag}>, not with <mujoco>{urdf}"])
+    found, todo, problems = [path], [(path, root)], []
+    while todo:
+        file, element = todo.pop()
+        problems += _refused(file, element)
+        for include in element.iter("include"):
+            places = _places(include.get("file", ""), (folder, file.resolve().parent))
+            problems += [f"robot.mjcf: {file} includes {wrong}" for wrong in _wrong(include, places, folder)]
+            new = [] if problems else [place for place in places if place.is_file() and place not in found]
+            found += new
+            todo += [(place, parse_xml(place, "robot.mjcf")) for place in new]
+        if len(found) > _FILES:
+            problems.append(f"robot.mjcf: {path} includes more than {_FILES} files")
+        if problems:
+            raise ConfigError(problems)
+    return found
+
+
+def asset_files(path: Path, folder: str, files: Iterable[str]) -> list[Path]:
+    """Return the files of an MJCF's meshes or height fields.
+
+    Args:
+        path: The MJCF file.
+        folder: Where they lie, from its folder: `meshdir`.
+        files: Their names.
+
+    Raises:
+        ConfigError: with all that are missing or lie outside the file's folder.
+    """
+    home = path.resolve().parent
+    found = {file: (home / folder / file).resolve() for file in files if file}
+    wrong: dict[str, list[str]] = {}
+    for file, place in found.items():
+        if problem := _led_out(place, home) or _missing(place):
+            wrong.setdefault(problem, []).append(quoted(str(Path(folder) / file)))
+    if wrong:
+        raise ConfigError(
+            f"robot.mjcf: {path} names the mesh {few(names)}: {problem}" for problem, names in wrong.items()
+        )
+    return list(dict.fromkeys(found.values()))
+
+
+def _places(name: str, folders: Iterable[Path]) -> list[Path]:
+    """Return where MuJoCo looks for a file that is included: from the first file's folder, and from its own."""
+    return list(dict.fromkeys((folder / name).resolve() for folder in folders))
+
+
+def _wrong(include: ET.Element, places: list[Path], folder: Path) -> list[str]:
+    name = include.get("file", "")
+    there = [place for place in places if place.is_file()]
+    wrong = [led for place in there or places if (led := _led_out(place, folder))]
+    if not there and not wrong:
+        wrong = [_missing(places[0])]
+    return [f"{quoted(name)}: {wrong[0]}"] if wrong else []
+
+
+def _led_out(place: Path, folder: Path) -> str:
+    return "" if place.is_relative_to(folder) else f"out of the folder {folder.name}; put it there, or take it out"
+
+
+def _missing(place: Path) -> str:
+    return "" if place.is_file() else "no such file; put it there, or take it out"
+
+
+def _refused(file: Path, root: ET.Element) -> list[str]:
+    level, depth = [root], 0
+    while level:
+        level, depth = [inner for element in level for inner in element], depth + 1
+    if depth > _DEPTH:
+        return [f"robot.mjcf: {file}: its elements stand {depth} deep within each other; allowed: up to {_DEPTH}"]
+    return [
+        f"robot.mjcf: {file} holds <{element.tag}>{_named(element)}, unknown here; {_MAKES_MORE[element.tag]}"
+        for element in root.iter()
+        if element.tag in _MAKES_MORE
+    ]
+
+
+def _named(element: ET.Element) -> str:
+    name = element.get("name") or element.get("prefix") or element.get("plugin")
+    return f" {quoted(name)}" if name else ""
