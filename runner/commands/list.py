@@ -107,7 +107,8 @@ def _list_works(_: Sequence[Path]) -> dict[str, str]:
     from runner.works.names import find_work, work_names
 
     found = {name: read_about(find_work(name).folder) for name in work_names()}
-    return {name: f"{about.title}. {about.source}" for name, about in found.items()}
+    apart = {name: "" if about.in_all else " (not made by `runner reproduce all`)" for name, about in found.items()}
+    return {name: f"{about.title}. {about.source}{apart[name]}" for name, about in found.items()}
 
 
 TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {

@@ -40,7 +40,7 @@ class MujocoConfig(TorquePlantConfig):
 
     kind: Literal["mujoco"]
     integrator: Literal["euler", "implicitfast", "rk4"]
-    least_inertia: float = Field(ge=1e-14, le=1e-3)
+    least_inertia: float = Field(ge=1e-12, le=1e-3)
 
 
 class Mujoco:

@@ -97,7 +97,7 @@ class RobotModel:
         jacobian: FloatArray = pin.computeFrameJacobian(
             self.pin_model, self._data, q, self.tip_frame, pin.LOCAL_WORLD_ALIGNED
         )
-        return jacobian
+        return jacobian.reshape(6, self.nq)  # of one joint Pinocchio gives a vector
 
     def tip_bias_acceleration(self, q: FloatArray, dq: FloatArray) -> FloatArray:
         """Return the tip's linear acceleration at zero joint acceleration, dJ/dt dq, shape (3,), in m/s^2."""

@@ -30,7 +30,7 @@ class Place:
 
     @property
     def ours(self) -> bool:
-        """Whether it is one of ours, whose configs are those of the runner."""
+        """Whether it is one of ours, whose configs are those of the runner, but for robots that it brings."""
         return self.folder.parent == works_dir()
 
 

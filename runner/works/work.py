@@ -71,8 +71,8 @@ class Work:
 
     @property
     def config_dirs(self) -> tuple[Path, ...]:
-        """Folders in which configs of the work's own are looked for: its own, unless it is one of ours."""
-        return () if self._ours else (self.folder,)
+        """Folders in which configs of the work's own are looked for: its own, but for ours without robots."""
+        return () if self._ours and not (self.folder / "robot").is_dir() else (self.folder,)
 
     @property
     def options(self) -> tuple[str, ...]:

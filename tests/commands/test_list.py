@@ -40,6 +40,12 @@ def test_claims_carry_printed_value_and_place(cli):
     assert any(line.startswith("xarm7 1    Three joints, X stays constant: 0.643 m (section") for line in lines)
 
 
+def test_works_that_are_not_made_with_all_say_so(cli):
+    lines = {line.split()[0]: line for line in cli("list", "works").out.splitlines()}
+    apart = [name for name, line in lines.items() if line.endswith("(not made by `runner reproduce all`)")]
+    assert (apart, sorted(lines)) == (["engines"], ["engines", "meca500", "thesis", "xarm7"])
+
+
 def test_own_options_are_listed(cli, tmp_path):
     (tmp_path / "own" / "robot").mkdir(parents=True)
     (tmp_path / "own" / "robot" / "mine.yaml").write_text("# @package _global_\n# My arm\n")

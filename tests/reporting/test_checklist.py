@@ -3,9 +3,9 @@
 import pytest
 from pydantic import ValidationError
 
+from runner.paths import works_with
 from runner.reporting.checklist import Checklist, load_checklist
 from runner.reporting.document import Curves, Origin, Section
-from runner.works.names import work_names
 
 CONTENT = {
     "title": "Checklist",
@@ -67,8 +67,8 @@ def test_what_was_not_to_be_expected_and_is_there_is_drawn_anew():
     assert table.rows[0] == ["Figure 1.1", "A bridge", "drawn anew", "§1"]
 
 
-@pytest.mark.parametrize("work", work_names())
-def test_every_work_has_a_checklist_that_names_each_thing_once(work):
+@pytest.mark.parametrize("work", works_with("checklist.yaml"))
+def test_every_checklist_names_each_thing_once(work):
     names = [item.name for item in load_checklist(work).items]
     assert len(names) == len(set(names))
 

@@ -58,7 +58,7 @@ def test_programs_get_every_caveat_with_why_it_is_expected():
     ]
 
 
-@pytest.mark.parametrize("work", ["thesis", "xarm7", "meca500"])
+@pytest.mark.parametrize("work", ["thesis", "xarm7", "meca500", "engines"])
 def test_what_a_work_expects_is_of_known_rules_and_of_runs_that_it_has(work):
     made = load_work(work)
     names = made.jobs()

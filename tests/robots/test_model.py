@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+import strangers
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -294,3 +295,9 @@ def test_what_pinocchio_says_of_a_body_is_told(macro_urdf, capfd):
 def test_a_tip_that_is_a_link_and_a_joint_is_refused(macro_urdf):
     with pytest.raises(ConfigError, match=r"robot\.tip: 'tip' is the name of 2 links and joints; rename all but one"):
         RobotModel(macro_urdf.replace('name="q3"', 'name="tip"'), "tip")
+
+
+def test_the_jacobian_of_one_joint_is_a_column():
+    text = strangers.chain("lift", [("prismatic", strangers.Z)])
+    arm = RobotModel(text, "tip")
+    np.testing.assert_array_equal(arm.tip_jacobian(np.zeros(1)), np.array([[0.0, 0.0, 1.0, 0.0, 0.0, 0.0]]).T)

@@ -40,6 +40,15 @@ SOME = {
             "seed=22"),
         "gravity/samples/100": ("calibration=gravity", "calibration.samples=100", "seed=35"),
     },
+    "engines": {
+        "open/planar/MuJoCo RK4/0.0005": (
+            "robot=planar", "controller.torques=[-8,-4]", "controller=held_torques", "trajectory=goal",
+            "controller.period=0.008", "duration=0.4", "plant=mujoco", "plant.integrator=rk4", "plant.step=0.0005"),
+        "impact/Runge-Kutta/6.25e-05": (
+            "robot=hammer", "controller.torques=[0,10]", "environment=wall", "environment.distance=0.05",
+            "environment.stiffness=10000", "environment.damping=0", "duration=0.16", "plant=rk4",
+            "plant.step=6.25e-05", "controller.period=6.25e-05"),
+    },
     "xarm7": {
         "servo/sound/0.00025": ("experiment=xarm7/three_joints", "duration=5", "preset=sound", "plant=bullet",
                                 "plant.step=0.00025"),
@@ -55,7 +64,8 @@ SOME = {
 
 
 @pytest.mark.parametrize(
-    ("work", "runs", "calibrations"), [("thesis", 306, 0), ("xarm7", 115, 0), ("meca500", 242, 36)]
+    ("work", "runs", "calibrations"),
+    [("thesis", 314, 0), ("xarm7", 119, 0), ("meca500", 244, 36), ("engines", 309, 0)],
 )
 def test_a_work_has_its_runs(work, runs, calibrations):
     planned = load_work(work)
@@ -66,4 +76,4 @@ def test_a_work_has_its_runs(work, runs, calibrations):
 
 
 def test_every_work_is_counted():
-    assert set(work_names()) == {"thesis", "xarm7", "meca500"}
+    assert set(work_names()) == {"thesis", "xarm7", "meca500", "engines"}

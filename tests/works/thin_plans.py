@@ -7,7 +7,7 @@ first and the last are made, and stand in for the others. `make test-slow` runs 
 import fcntl
 import hashlib
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TypeVar
@@ -42,7 +42,10 @@ def stand_ins(jobs: Mapping[str, Overrides], thin: bool, every: tuple[str, ...] 
 
 
 def make_runs(
-    folder: Path, jobs: Mapping[str, Overrides], stands_for: Mapping[str, str] | None = None
+    folder: Path,
+    jobs: Mapping[str, Overrides],
+    stands_for: Mapping[str, str] | None = None,
+    config_dirs: Sequence[Path] = (),
 ) -> dict[str, Run]:
     """Return the runs of jobs by name.
 
@@ -50,9 +53,14 @@ def make_runs(
         folder: Shared by all test processes: each run is made by the first one that comes to it.
         jobs: Overrides by name.
         stands_for: Name of the run that stands for each; None lets each stand for itself.
+        config_dirs: Config folders of the work's own.
     """
+
+    def run_here(*overrides: str) -> Run:
+        return run(*overrides, config_dirs=config_dirs)
+
     stands_for = {name: name for name in jobs} if stands_for is None else stands_for
-    made = _make(folder, {name: jobs[name] for name in stands_for.values()}, run, store.open_run)
+    made = _make(folder, {name: jobs[name] for name in stands_for.values()}, run_here, store.open_run)
     return {name: made[stands_for[name]] for name in jobs}
 
 

@@ -1,5 +1,6 @@
 """Which runs the tests of the works' reports make: those of the plans, with what takes long cut to a moment."""
 
+import re
 from collections.abc import Callable, Mapping
 
 from thin_plans import Overrides
@@ -11,6 +12,9 @@ from runner.store import Calibration, Run
 from runner.works.work import Work, load_work
 
 MOMENT = 0.08  # s
+_ENGINES_ARM, _ENGINES_STEP = re.compile(r"^((?:open|reference|closed|least)/)(\w+)"), re.compile(r"^(wall/.*/)[^/]+$")
+_ENGINES_ARMS = {"combined": "mini", "macro_mini_mini": "mini", "xarm7_mini": "mini", "xarm7": "macro",
+                 "meca500": "macro", "scara": "planar", "seven": "planar"}  # fmt: skip
 _ONE_ARM = ("gravity_term", "similarity", "lag", "base_axis", "plants", "sampling", "singular")
 _MECA500 = {"step": 0.2, "sine": 0.8, "tip": 0.2, "wall": 0.4, "map": 0.4, "hand": 0.4, "swing": 1.0, "limit": 0.7,
             "noise": 0.3, "inertials": 0.4, "plants": 0.4}  # s, by what the names begin with  # fmt: skip
@@ -68,6 +72,15 @@ def meca500_calibrations() -> dict[str, Overrides]:
         name: (*(override for override in overrides if override != "repetitions=1"), "repetitions=4")
         for name, overrides in load_work("meca500").calibrations().items()
     }
+
+
+def engines_stand_ins(jobs: Mapping[str, Overrides]) -> dict[str, str]:
+    """Return which run of the report on engines stands for each: three arms for all, one step for every wall."""
+    return {name: _ENGINES_STEP.sub(r"\g<1>0.001", _ENGINES_ARM.sub(_stand_in, name)) for name in jobs}
+
+
+def _stand_in(found: re.Match[str]) -> str:
+    return found[1] + _ENGINES_ARMS.get(found[2], found[2])
 
 
 def chapter_files(work: str) -> list[str]:

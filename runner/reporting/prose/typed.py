@@ -11,7 +11,7 @@ _PARTS = re.compile(r"[/,] ?")
 # Names that hold a digit: parts of the source, of the arm, and of what the works number.
 _NAMED = re.compile(
     r"\b(?:[Ff]igures?|[Ss]ections?|[Tt]ables?|[Cc]laims?|[Cc]hapters?|[Ee]quations?|[Mm]ethods?|[Jj]oints?|[Ll]inks?|"
-    r"[Ff]rames?|[Pp]oses?|Mini|xArm|Meca|rk|q)"
+    r"[Ff]rames?|[Pp]oses?|Mini|xArm|Meca|rk|RK|q)"
     r"[ -]?\(?\d+(?:\.\d+)*(?:(?:, | and | or | to )\d+(?:\.\d+)*)*|^\d[a-c]?\. "
 )
 

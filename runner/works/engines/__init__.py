@@ -1,0 +1,1 @@
+"""The report that holds three physics engines against each other."""

@@ -1,0 +1,120 @@
+"""An impact whose closed form is known, and a tool that is led into walls, on every plant."""
+
+import math
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from runner.reporting.document import FloatArray
+from runner.reporting.figures import columns, joint_columns, model_of
+from runner.store import Run
+
+_ALONG = 1  # the hammer's joint that hits, counted from 0
+
+
+def impact(run: Run) -> dict[str, float]:
+    """Return what a head does in its first touch of a wall, beside the closed form.
+
+    The ratio of the speeds of leaving and of touch, what is lost of it, and by which share the largest force is above
+    the closed form; by which share, without sign, the wall's impulse is off what the head's change of speed and the
+    force that drives it ask for; off_size is that of the largest force without sign.
+    """
+    force = _wall_force(run)
+    touching = np.flatnonzero(force > 0.0)
+    first = int(touching[0])
+    last = first + int(np.argmax(force[first:] <= 0.0)) - 1
+    speed, h = joint_columns(run.trace, "dq")[:, _ALONG], _step(run)
+    before, after = float(speed[first - 1]), float(speed[last + 1])
+    peak, drive = float(force[first : last + 1].max()), float(run.config["controller"]["torques"][_ALONG])
+    asked = mass(run) * (before - after) + drive * h * (last + 1 - (first - 1))
+    off = peak / closed_form_peak(run) - 1.0
+    impulse = float(force[first - 1 : last + 2].sum()) * h
+    return {
+        "restitution": -after / before,
+        "lost": 1.0 + after / before,
+        "off": off,
+        "off_size": abs(off),
+        "impulse_off": abs(impulse / asked - 1.0),
+    }
+
+
+def mass(run: Run) -> float:
+    """Return the mass of the head with its tool, in kg."""
+    return float(model_of(run).mass_matrix(np.zeros(2))[_ALONG, _ALONG])
+
+
+def closed_form_peak(run: Run) -> float:
+    """Return the largest force of an undamped wall on a head under a constant force F, in N.
+
+    It comes with m v^2 / 2 = F d, and the spring takes that and the work of F on its way: f = F + sqrt(F^2 + k m v^2).
+    """
+    wall, drive = run.config["environment"], float(run.config["controller"]["torques"][_ALONG])
+    return drive + math.sqrt(drive**2 + 2.0 * float(wall["stiffness"]) * drive * float(wall["distance"]))
+
+
+def damped_by_step(runs: Mapping[str, Run]) -> Callable[[float], float]:
+    """Return the closed form of the restitution on a spring that is solved at the end of each step, to first order.
+
+    It loses what a damper of k h loses: of an impact of half a period at w = sqrt(k / m), pi w h / 2.
+    """
+    return lambda h: 1.0 - 0.5 * math.pi * _frequency(runs["impact/PyBullet/0.001"]) * h
+
+
+def driven_by_step(runs: Mapping[str, Run]) -> Callable[[float], float]:
+    """Return that of a spring whose force is held for each step, on average half a step late: a gain of pi w h / 4."""
+    return lambda h: 1.0 + 0.25 * math.pi * _frequency(runs["impact/PyBullet/0.001"]) * h
+
+
+def pushed_back(run: Run) -> FloatArray:
+    """Return the wall's force against the way into it, shape (T,), in N."""
+    return _wall_force(run)
+
+
+def peak(run: Run) -> float:
+    """Return the largest force of the wall, in N."""
+    return float(_wall_force(run).max())
+
+
+def at_rest(run: Run) -> float:
+    """Return the force of the wall at the end, in N."""
+    return float(_wall_force(run)[-1])
+
+
+def spring_force(run: Run) -> float:
+    """Return the wall's stiffness times the depth of the tip at the end, in N."""
+    wall = run.config["environment"]
+    begin = float(run.config["trajectory"]["start"][0]) + float(wall["distance"])
+    return float(wall["stiffness"]) * max(float(columns(run.trace, "tip")[-1, 0]) - begin, 0.0)
+
+
+def off_depth(run: Run) -> float:
+    """Return by which share, without sign, the force at the end is off the wall's stiffness times the depth."""
+    return abs(at_rest(run) / spring_force(run) - 1.0)
+
+
+def apart_at_rest(run: Run, other: Run) -> float:
+    """Return by which share, without sign, the forces of two runs at the end differ."""
+    return abs(at_rest(run) / at_rest(other) - 1.0)
+
+
+def apart_at_peak(run: Run, other: Run) -> float:
+    """Return by which share, without sign, the largest forces of two runs differ."""
+    return abs(peak(run) / peak(other) - 1.0)
+
+
+def unrest(run: Run) -> float:
+    """Return how far the force goes up and down in the last tenth of a run, in N."""
+    force = _wall_force(run)
+    return float(np.ptp(force[-len(force) // 10 :]))
+
+
+def _wall_force(run: Run) -> FloatArray:
+    return np.asarray(-run.trace["external_force_x"].to_numpy(), dtype=float)
+
+
+def _frequency(run: Run) -> float:
+    return math.sqrt(float(run.config["environment"]["stiffness"]) / mass(run))
+
+
+def _step(run: Run) -> float:
+    return float(run.config["controller"]["period"])

@@ -1,0 +1,8 @@
+"""What a plant's accuracy costs in time, from the clocks of stored runs."""
+
+from runner.store import Run
+
+
+def cost(run: Run) -> float:
+    """Return the median time that a tick took, over the time that it simulates."""
+    return float(run.record["timing"]["tick_time_median"]) / float(run.config["controller"]["period"])

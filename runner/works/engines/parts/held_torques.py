@@ -1,0 +1,57 @@
+"""Torques that are held whatever the arm does: open loop, to hold plants against each other."""
+
+from typing import Literal
+
+import numpy as np
+from pydantic import PositiveFloat
+
+from runner.config.per_joint import expand
+from runner.controllers.controller import FloatArray, Loop
+from runner.registry import StrictModel
+from runner.robots.robot import Robot
+
+
+class HeldTorquesConfig(StrictModel):
+    """Config of held torques.
+
+    Attributes:
+        kind: Its name in the registry.
+        period: Time between two ticks, in s.
+        torques: Of every joint or one for each, in N m, or in N where a joint slides.
+    """
+
+    kind: Literal["held_torques"]
+    period: PositiveFloat
+    torques: float | list[float]
+
+
+class HeldTorques:
+    """The law that does nothing with what is measured.
+
+    Args:
+        torques: In N m or N, shape (nq,).
+    """
+
+    def __init__(self, torques: FloatArray) -> None:
+        self._torques = torques
+
+    def reset(self) -> None:
+        """Do nothing: the law has no memory."""
+
+    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
+        """Return the torques; see Controller.torque."""
+        return self._torques
+
+
+CONFIG = HeldTorquesConfig
+
+
+def build(config: HeldTorquesConfig, robot: Robot) -> tuple[Loop, ...]:
+    """Make the one loop that a config describes.
+
+    Raises:
+        ConfigError: if a list has not one torque for each joint.
+    """
+    model = robot.model
+    torques = np.array(expand("controller.torques", config.torques, model.joint_names))
+    return (Loop("held torques", slice(0, model.nq), config.period, HeldTorques(torques)),)

@@ -1,0 +1,86 @@
+"""The report on three engines: its closed forms, and its chapters from runs of a thin plan."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from study_sections import unfinished_texts, whatever_has_failed
+from thin_plans import make_runs
+from work_plans import chapter, chapter_files, conditions_that_never_fail, engines_stand_ins
+
+from runner.commands.reproduce import _chosen, _Way
+from runner.reporting.figures import model_of
+from runner.reporting.findings import findings
+from runner.store import Run
+from runner.works.engines import contact, same_arm, side_by_side
+from runner.works.work import load_work
+
+WORK = load_work("engines")
+
+
+@pytest.fixture(scope="module")
+def runs(shared_store: Path) -> dict[str, Run]:
+    jobs = {name: job.overrides for name, job in WORK.jobs().items()}
+    return make_runs(shared_store, jobs, engines_stand_ins(jobs), WORK.config_dirs)
+
+
+def test_it_is_not_made_with_all_works(tmp_path: Path) -> None:
+    names = {work.name for work in _chosen("all", _Way(tmp_path, (), "")) if work is not None}
+    assert names == {"thesis", "xarm7", "meca500"}
+
+
+@pytest.mark.parametrize("file", chapter_files("engines"))
+def test_each_condition_of_a_chapter_can_fail(runs: dict[str, Run], file: str) -> None:
+    assert conditions_that_never_fail("engines", file, runs) == []
+
+
+@whatever_has_failed
+@pytest.mark.parametrize("file", chapter_files("engines"))
+def test_a_chapter_bears_failed_runs(runs, file, spoil) -> None:
+    assert unfinished_texts(chapter("engines", file)(spoil(runs))) == []
+
+
+def test_the_textbooks_mass_matrix_is_that_of_its_kinetic_energy(runs: dict[str, Run]) -> None:
+    """The energy of the two cylinders, from the velocities of their middles."""
+    rng = np.random.default_rng(3)
+    for q, dq in rng.uniform(-1.0, 1.0, (10, 2, 2)):
+        inertia = (3.0 * 0.03**2 + 1.0) / 12.0
+        upper = 0.5 * dq[0] * np.array([-math.sin(q[0]), math.cos(q[0])])
+        turn = q[0] + q[1]
+        lower = 2.0 * upper + 0.5 * dq.sum() * np.array([-math.sin(turn), math.cos(turn)])
+        energy = 0.5 * (upper @ upper + lower @ lower + inertia * (dq[0] ** 2 + dq.sum() ** 2))
+        assert 0.5 * dq @ same_arm._two_links(q[1]) @ dq == pytest.approx(energy, rel=1e-12)
+
+
+def test_a_changed_arm_is_found_to_be_another(runs: dict[str, Run]) -> None:
+    """An engine that is given another mass is told from Pinocchio by what is compared."""
+    run = runs["open/planar/MuJoCo Euler/0.001"]
+    heavier = run.urdf.replace('<mass value="1"', '<mass value="1.001"', 1)
+    assert heavier != run.urdf
+    off = side_by_side.difference(model_of(run), side_by_side.Mujoco(heavier, model_of(run), _config(run), 1e-3, 1))
+    assert min(off.mass, off.acceleration, off.torque) > 1e-5
+    own = side_by_side.difference(model_of(run), side_by_side.mujoco_of(run))
+    assert max(own.mass, own.acceleration, own.torque) < 1e-12
+
+
+def test_the_closed_form_of_the_impact_is_the_solution_of_its_equation(runs: dict[str, Run]) -> None:
+    """A head of 1 kg under 10 N, from rest 0.05 m before the wall, by steps far below what any plant takes."""
+    x, v, h, peak = -0.05, 0.0, 1e-6, 0.0
+    while v >= 0.0:
+        v += h * (10.0 - (1e4 * x if x > 0.0 else 0.0))
+        x += h * v
+        peak = max(peak, 1e4 * x)
+    assert contact.closed_form_peak(runs["impact/PyBullet/0.001"]) == pytest.approx(peak, rel=1e-4)
+
+
+@pytest.mark.slow
+def test_every_finding_holds_with_the_whole_runs(shared_store: Path) -> None:
+    jobs = {name: job.overrides for name, job in WORK.jobs().items()}
+    held = [found for _, found in findings(WORK.document(make_runs(shared_store, jobs, None, WORK.config_dirs), {}))]
+    assert len(held) == 11
+    assert [found.text for found in held if not found.holds] == []
+
+
+def _config(run: Run) -> side_by_side.MujocoConfig:
+    return side_by_side.MujocoConfig.model_validate(run.config["plant"])
