@@ -1,7 +1,8 @@
-"""Make .venv, or mend it: `make install` runs this with the Python that .venv is to have.
+"""Make .venv, or mend it: `make install` runs this, with the Python that .venv is to have where one was asked for.
 
-It runs on any Python 3.6 or newer, to say which one is needed. A .venv that is sound stays; one whose Python is gone or
-too old, or that was moved (its scripts name the folder that they were made in), is made anew.
+Else it looks for a Python 3.11, for which there are wheels of PyBullet, and next for the newest that is supported. It
+runs itself on any Python 3.6 or newer, to say which one is needed. A .venv that is sound stays; one whose Python is
+gone or too old, or that was moved (its scripts name the folder that they were made in), is made anew.
 """
 
 import hashlib
@@ -14,6 +15,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 NEEDED = (3, 11)
+SUPPORTED = ((3, 11), (3, 13), (3, 12))  # in the order in which one is looked for
+WHEELS_OF_PYBULLET = (3, 11)  # up to this version
 _NO_NETWORK = re.compile(
     "name resolution|Name or service not known|establish a new connection|dns error|error sending request|client error|"
     "Network is unreachable|Connection refused|timed out|Could not fetch URL|Failed to fetch"
@@ -28,7 +31,8 @@ def main(arguments: list) -> int:
     """Make .venv fit; return the exit code.
 
     Args:
-        arguments: "--any-version" lets a sound .venv stay whatever its Python; else it has the version of this one.
+        arguments: "--any-version" lets a sound .venv stay whatever its Python, and chooses the one of a new .venv; else
+            it has the version of this one.
     """
     try:
         install(ROOT, "--any-version" in arguments)
@@ -44,13 +48,17 @@ def install(root: Path, any_version: bool) -> None:
     reason = why_anew(venv, any_version)
     if not reason and stamp.is_file() and stamp.read_text() == digest(root):
         return
+    python = sys.executable
     if reason or not venv.exists():
-        require(sys.version_info[:2], sys.executable)
+        version, python = choose() if any_version else (sys.version_info[:2], sys.executable)
+        require(version, python)
+        if reason:
+            print(f"make install: .venv is made anew: {reason}", file=sys.stderr)
+        print(f"make install: {describe(version, python, any_version)}", file=sys.stderr)
     if reason:
-        print(f"make install: .venv is made anew: {reason}", file=sys.stderr)
         shutil.rmtree(str(venv))
     if not (venv / "bin" / "pip").exists():
-        run([sys.executable if not venv.exists() else str(venv / "bin" / "python"), "-m", "venv", str(venv)], root)
+        run([python if not venv.exists() else str(venv / "bin" / "python"), "-m", "venv", str(venv)], root)
     fetch(root, venv)
     stamp.write_text(digest(root))
 
@@ -71,9 +79,46 @@ def why_anew(venv: Path, any_version: bool) -> str:
     return ""
 
 
-def version_of(python: Path) -> "tuple | None":
-    """Return the version of a Python as (major, minor), or None where it does not run."""
-    code = "import sys; print(*sys.version_info[:2])"
+def choose() -> tuple:
+    """Return version and path of the Python for a new .venv: the first supported that is found, else this one."""
+    for version in SUPPORTED:
+        for python in candidates(version):
+            if version_of(python, "ensurepip, sys, venv") == version:
+                return version, str(python)
+    return sys.version_info[:2], sys.executable
+
+
+def candidates(version: tuple) -> list:
+    """Return where a version may be: this Python, those on the PATH, and pyenv's, newest first."""
+    name = "python" + dotted(version)
+    on_path = [Path(folder) / name for folder in os.environ.get("PATH", "").split(os.pathsep) if folder]
+    pyenv = Path(os.environ.get("PYENV_ROOT") or os.path.expanduser("~/.pyenv")) / "versions"  # noqa: PTH111
+    kept = sorted(pyenv.glob(dotted(version) + ".*/bin/" + name), key=lambda path: patch(path.parts[-3]), reverse=True)
+    running = [Path(sys.executable)] if sys.version_info[:2] == version else []
+    return [*running, *(path for path in on_path if path.is_file()), *kept]
+
+
+def patch(version: str) -> int:
+    """Return the last number of a version such as 3.11.7."""
+    digits = re.match(r"\d+", version.rpartition(".")[2])
+    return int(digits.group()) if digits else -1
+
+
+def describe(version: tuple, python: str, chosen: bool) -> str:
+    """Return which Python a .venv gets, and why; chosen is whether nobody asked for it."""
+    why = ", as asked for"
+    if chosen:
+        why = "" if version == SUPPORTED[0] else f", as no Python {dotted(SUPPORTED[0])} was found"
+    if version <= WHEELS_OF_PYBULLET:
+        what = "PyBullet has a wheel for it"
+    else:
+        what = "PyBullet has no wheel for it and is left out, so that plant=mujoco is the default"
+    return f"Python {dotted(version)} ({python}){why}: {what}"
+
+
+def version_of(python: Path, modules: str = "sys") -> "tuple | None":
+    """Return the version of a Python as (major, minor), or None where it does not run or lacks a module."""
+    code = f"import {modules}; print(*sys.version_info[:2])"
     try:
         answer = subprocess.run([str(python), "-c", code], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
         return tuple(map(int, answer.stdout.split())) or None

@@ -5,21 +5,21 @@ import platform
 import shlex
 import subprocess
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache, lru_cache
-from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from runner import plugins
 from runner.compiled.engine import evaluator
+from runner.engines import STAND_IN, installed
 from runner.paths import package_dir
 
 if TYPE_CHECKING:
     from runner.config.compose import Composed
     from runner.config.run import RunConfig
 
-_LIBRARIES = ("arm-control-runner", "pybullet", "pin", "numpy", "scipy", "hydra-core")
+_LIBRARIES = ("arm-control-runner", "pybullet", "mujoco", "pin", "numpy", "scipy", "hydra-core")
 
 
 def made(composed: "Composed", *subcommand: str) -> dict[str, Any]:
@@ -58,8 +58,24 @@ def command(composed: "Composed", *subcommand: str) -> str:
     """Return the command that does what was composed, folders relative to where it was given."""
     added = [word for text in plugins.named() for word in ("--plugin", text)]
     own = [word for folder in composed.config_dirs for word in ("--config-dir", os.path.relpath(folder))]
-    kept = [override for override in composed.overrides if not override.startswith("outputs=")]
+    resolved: Any = composed.resolved
+    kept = [override for override in settled(composed.overrides, resolved) if not override.startswith("outputs=")]
     return " ".join(map(_quoted, ["runner", *added, *subcommand, *own, *kept]))
+
+
+def settled(overrides: Sequence[str], config: Mapping[str, Any]) -> list[str]:
+    """Return overrides that make the same run on any machine: they name the plant that `default` was.
+
+    Args:
+        overrides: As they were given.
+        config: What they gave. Where nobody named a plant and it is bullet, they are left as they are.
+    """
+    plant = config.get("plant", {})
+    stands_in = plant.get("in_place_of") is not None
+    name = f"plant={STAND_IN if stands_in else plant.get('kind')}"
+    named = [name if override == "plant=default" else override for override in overrides]
+    unsaid = stands_in and not any(override.startswith("plant=") for override in named)
+    return [*named, name] if unsaid else named
 
 
 _quoted = lru_cache(4096)(shlex.quote)
@@ -88,7 +104,7 @@ def commit() -> str | None:
 @cache
 def versions() -> dict[str, str]:
     """Return the versions of Python and of the libraries that results depend on."""
-    return {"python": platform.python_version(), **{name: version(name) for name in _LIBRARIES}, **evaluator()}
+    return {"python": platform.python_version(), **installed(_LIBRARIES), **evaluator()}
 
 
 @cache

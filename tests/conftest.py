@@ -1,6 +1,7 @@
 import copy
 import functools
 import gc
+import re
 import signal
 import subprocess
 import sys
@@ -24,6 +25,7 @@ composing.begin()
 
 from runner.assembly import assemble, make_encoders, make_wrist_sensor  # noqa: E402 - after the environment
 from runner.cli import dispatch  # noqa: E402
+from runner.engines import has_pybullet  # noqa: E402
 from runner.robots import RobotModel, find_urdf, read_urdf  # noqa: E402
 from runner.robots.robot import Robot, Stage  # noqa: E402
 from runner.simulation import ClosedLoop, simulate  # noqa: E402
@@ -37,6 +39,20 @@ settings.load_profile("runner")
 
 def read_thesis_urdf(name: str) -> str:
     return read_urdf(find_urdf(f"{name}.urdf"), {})
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Skip what needs PyBullet where it is not installed: what is marked so, and what has bullet for a parameter."""
+    missing = pytest.mark.skip(reason="PyBullet is not installed")
+    for item in () if has_pybullet() else items:
+        given = getattr(item, "callspec", None)
+        asked = given is not None and any(map(_names_bullet, given.params.values()))
+        if asked or item.get_closest_marker("bullet"):
+            item.add_marker(missing)
+
+
+def _names_bullet(value: Any) -> bool:
+    return isinstance(value, str | tuple | list) and re.search(r"\bbullet\b", str(value)) is not None
 
 
 def pytest_collection_finish() -> None:

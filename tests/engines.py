@@ -2,6 +2,7 @@
 
 import pytest
 
+from runner.engines import has_pybullet
 from runner.plants import PLANTS
 from runner.plants.rk4 import Rk4
 
@@ -14,6 +15,12 @@ ENGINES = {
     "compiled rk4": "plant=rk4",
 }
 """The overrides that choose each; rk4 goes through Pinocchio here, and is compiled code under the other name."""
+
+ASKED = "plant=bullet" if has_pybullet() else "plant=mujoco"
+"""Asks for the plant that `default` stands for by its own name, so that no run says that it stands in for another."""
+
+DEFAULT_PLANT = "PyBullet" if has_pybullet() else "MuJoCo"
+"""What reports call it."""
 
 FOURTH_ORDER = ("mujoco rk4", "rk4", "compiled rk4")
 FIRST_ORDER = tuple(name for name in ENGINES if name not in FOURTH_ORDER)

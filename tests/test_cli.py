@@ -9,6 +9,7 @@ import time
 
 import pytest
 import yaml
+from engines import ASKED
 from printed import without_caveats
 
 from runner import execution
@@ -49,7 +50,7 @@ def test_bare_call_runs_the_macro_to_its_goal(cli):
 
 
 def test_a_run_prints_its_folder_and_writes_nothing_but_outputs(cli, tmp_path):
-    ending = cli(*SHORT, "caveats.did_not_follow.share=1")  # it has no time to arrive
+    ending = cli(*SHORT, ASKED, "caveats.did_not_follow.share=1")  # it has no time to arrive
     assert (ending.code, ending.err) == (0, "")
     assert [entry.name for entry in tmp_path.iterdir()] == ["outputs"]
     assert ending.folder.parent == tmp_path / "outputs" / "runs"
@@ -73,10 +74,10 @@ def test_outputs_may_stand_elsewhere(cli, tmp_path):
 
 
 def test_interpolations_may_be_typed(cli):
-    ending = cli(*SHORT, "trajectory.start=${robot.goal}")
+    ending = cli(*SHORT, ASKED, "trajectory.start=${robot.goal}")
     assert ending.code == 0
     record = json.loads((ending.folder / "metrics.json").read_text())
-    assert record["provenance"]["command"] == "runner robot=macro duration=0.05 'trajectory.start=${robot.goal}'"
+    assert record["provenance"]["command"] == f"runner {' '.join(SHORT)} {ASKED} 'trajectory.start=${{robot.goal}}'"
 
 
 def test_showing_the_config_runs_nothing(cli, tmp_path):

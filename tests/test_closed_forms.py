@@ -104,6 +104,7 @@ def test_sampled_stability_on_rk4(simulated, robot, scale, w, stable):
     assert factor == pytest.approx(expected, rel=1e-3)
 
 
+@pytest.mark.bullet
 @pytest.mark.parametrize(("robot", "scale"), ARMS)
 @pytest.mark.parametrize(("steps", "printed"), [(1, 0.83), (4, 0.944), (10, 0.976)])
 @pytest.mark.parametrize("share", [0.98, 0.99, 1.01, 1.02])

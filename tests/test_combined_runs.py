@@ -81,6 +81,7 @@ def fingerprint(trace):
 # What the runs have to reach.
 
 
+@pytest.mark.bullet
 def test_bullet_and_rk4_agree_on_the_tip_error_of_six_joints(measured):
     # Noise-free one-way tracking, the Mini following a series of goals, thesis limits: at most 7.6e-3 m.
     overrides = (*TRACKING, "torque_limits=thesis", "controller.mini_reference_velocity=zero", "plant.step=5e-5")

@@ -43,10 +43,17 @@ def commands(install, monkeypatch):
     return given
 
 
+def write_python(path, version):
+    """Write what answers as a Python of a version does; as a shim of pyenv's without one where that is None."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.unlink(missing_ok=True)
+    path.write_text("#!/bin/sh\nexit 127\n" if version is None else f"#!/bin/sh\necho {version}\n")
+    path.chmod(0o755)
+    return str(path)
+
+
 def another_python(venv, version):
-    (venv / "bin" / "python").unlink()
-    (venv / "bin" / "python").write_text(f"#!/bin/sh\necho {version}\n")
-    (venv / "bin" / "python").chmod(0o755)
+    write_python(venv / "bin" / "python", version)
 
 
 def test_a_sound_venv_is_installed_into_once(install, checkout, commands):
@@ -85,13 +92,62 @@ def test_a_venv_that_cannot_stay_is_made_anew_and_says_why(install, checkout, co
     said = capsys.readouterr().err
     assert said.startswith("make install: .venv is made anew: ")
     assert why[fault] in said
-    assert said.count("\n") == 1
+    assert said.splitlines()[1].startswith("make install: Python 3.")
+    assert said.count("\n") == 2
 
 
 def test_another_version_stays_unless_one_is_asked_for(install, checkout, commands):
     another_python(checkout / ".venv", "3 99")
     install.install(checkout, any_version=True)
     assert commands[0][:3] == ["-m", "pip", "install"]
+
+
+@pytest.fixture
+def elsewhere(install, tmp_path, monkeypatch):
+    """A machine with no Python but the running one, which calls itself 3.14, and those that a test writes."""
+    (tmp_path / "bin").mkdir()
+    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
+    monkeypatch.setenv("PYENV_ROOT", str(tmp_path / "pyenv"))
+    monkeypatch.setattr(install.sys, "version_info", (3, 14, 0))
+    return tmp_path
+
+
+def test_a_new_venv_gets_python_3_11_where_there_is_one(install, elsewhere):
+    for version in ("3.13", "3.12"):
+        write_python(elsewhere / "bin" / f"python{version}", version.replace(".", " "))
+    found = write_python(elsewhere / "bin" / "python3.11", "3 11")
+    assert install.choose() == ((3, 11), found)
+    assert install.describe((3, 11), found, True) == f"Python 3.11 ({found}): PyBullet has a wheel for it"
+
+
+def test_a_shim_without_its_python_is_none_and_pyenv_s_newest_is_taken(install, elsewhere):
+    write_python(elsewhere / "bin" / "python3.11", None)
+    for version in ("3.11.9", "3.11.10", "3.11.2"):
+        write_python(elsewhere / "pyenv" / "versions" / version / "bin" / "python3.11", "3 11")
+    newest = elsewhere / "pyenv" / "versions" / "3.11.10" / "bin" / "python3.11"
+    assert install.choose() == ((3, 11), str(newest))
+
+
+def test_without_3_11_it_gets_the_newest_supported_and_says_what_is_left_out(install, elsewhere):
+    write_python(elsewhere / "bin" / "python3.12", "3 12")
+    found = write_python(elsewhere / "bin" / "python3.13", "3 13")
+    assert install.choose() == ((3, 13), found)
+    assert install.describe((3, 13), found, True) == (
+        f"Python 3.13 ({found}), as no Python 3.11 was found: PyBullet has no wheel for it and is left out, so that "
+        "plant=mujoco is the default"
+    )
+
+
+def test_without_any_of_them_it_gets_the_running_one(install, elsewhere):
+    assert install.choose() == ((3, 14), sys.executable)
+
+
+def test_one_that_is_asked_for_is_named_so(install):
+    assert install.describe((3, 12), "python3.12", False).startswith("Python 3.12 (python3.12), as asked for: ")
+    assert (
+        install.describe((3, 11), "python3", False)
+        == "Python 3.11 (python3), as asked for: PyBullet has a wheel for it"
+    )
 
 
 def test_too_old_a_python_is_told_in_a_line(install, capsys, monkeypatch):

@@ -20,7 +20,7 @@ from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.robots.robot import end_points
 
 CHAINS = ["macro_mini_mini", "xarm7_mini"]
-PLANTS = ["bullet", "rk4"]
+PLANTS = ["default", "rk4"]
 XARM7_HOME = np.array([0.0, 0.75, 0.0, 1.5, 0.0, 0.75, 0.0])
 NUMBERS = (30.0, 1.0, True, True, 0.3)
 
@@ -86,8 +86,8 @@ def test_without_noise_each_stage_gains_a_decade(moved, plant):
 
 @pytest.mark.parametrize("chain", CHAINS)
 def test_the_plants_agree(moved, chain):
-    bullet, rk4 = (moved(f"experiment=staged/{chain}", f"plant={plant}", "noise=none") for plant in PLANTS)
-    np.testing.assert_allclose(bullet.end_points, rk4.end_points, rtol=0, atol=2e-5)
+    default, rk4 = (moved(f"experiment=staged/{chain}", f"plant={plant}", "noise=none") for plant in PLANTS)
+    np.testing.assert_allclose(default.end_points, rk4.end_points, rtol=0, atol=2e-5)
 
 
 @pytest.mark.parametrize("chain", CHAINS)
@@ -100,7 +100,7 @@ def test_no_torque_is_beyond_its_limit(moved, chain):
 
 
 def test_the_xarm7_stays_within_its_limits(moved, checked_config):
-    trace = moved("experiment=staged/xarm7_mini", "plant=bullet")
+    trace = moved("experiment=staged/xarm7_mini", "plant=default")
     model = checked_config("experiment=staged/xarm7_mini").arm.stages[0].model
     q, dq = trace.q[:, :7], trace.dq[:, :7]
     np.testing.assert_array_equal(trace.limits[:7], model.effort_limits)

@@ -48,7 +48,7 @@ def build(config, robot):
     law = Spring(robot.model, robot.home, config.stiffness)
     return (Loop("arm", slice(0, robot.model.nq), config.period, law),)
 '''
-COMMAND = ("--config-dir", "mine", "robot=macro", "controller=spring", "duration=0.1")
+COMMAND = ("--config-dir", "mine", "robot=macro", "controller=spring", "duration=0.1", "plant=rk4")
 PLUGIN = ("--plugin", "controller=mine/spring.py")
 
 
@@ -94,7 +94,8 @@ def test_a_module_named_on_the_command_line_runs_and_is_recorded(mine):
     found = json.loads((mine / folder(ending) / "metrics.json").read_text())["provenance"]
     assert list(found["plugins"]) == ["controller=mine/spring.py"]
     assert found["command"] == (
-        "runner --plugin controller=mine/spring.py --config-dir mine robot=macro controller=spring duration=0.1"
+        "runner --plugin controller=mine/spring.py --config-dir mine robot=macro controller=spring duration=0.1 "
+        "plant=rk4"
     )
 
 

@@ -17,7 +17,7 @@ from runner.simulation import simulate
 
 PRESSED = (
     "experiment=meca500/wall", "environment.distance=0", "environment.damping=0", "trajectory.goal=[0.185,0.01,0.06]",
-    "controller.period=0.01", "plant=bullet", "plant.servo.period=0.001", "plant.step=0.001",
+    "controller.period=0.01", "plant=default", "plant.servo.period=0.001", "plant.step=0.001",
     "plant.servo.stiffness=15000", "controller.damping=[80,80,80,0.8,0.8,0.8]",
 )  # fmt: skip
 
@@ -134,6 +134,7 @@ def test_a_wall_too_stiff_behind_servos_is_told():
     caveat = told(4e4)["unstable_contact"]
     assert caveat.value > 1.0
     assert f"grows {caveat.value:.4g} times in each controller.period" in caveat.text
-    assert told(4e4, "caveats.unstable_contact.radius=2") == {}
-    assert told(1e4) == {}
-    assert told(1e4, "controller.stiffness=[800,0,0,8,8,8]") == {}  # an axis guided by hand is not unstable
+    assert "unstable_contact" not in told(4e4, "caveats.unstable_contact.radius=2")
+    assert "unstable_contact" not in told(1e4)
+    guided_by_hand = "controller.stiffness=[800,0,0,8,8,8]"
+    assert "unstable_contact" not in told(1e4, guided_by_hand)  # an axis that is is not unstable

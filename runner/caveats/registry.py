@@ -6,6 +6,7 @@ from pathlib import Path
 
 from runner.caveats.burden import NO_EFFORT_LIMIT, OVERLOAD
 from runner.caveats.contact import UNSTABLE_CONTACT
+from runner.caveats.default_plant import DEFAULT_PLANT
 from runner.caveats.file import MJCF
 from runner.caveats.knowledge import EXACT_VELOCITY, FIXED_MISMATCH
 from runner.caveats.motion import DID_NOT_FOLLOW, JOINT_LIMITS
@@ -14,7 +15,7 @@ from runner.caveats.torques import CHATTER, SATURATION
 
 TRACE_RULES: tuple[TraceRule, ...] = (DID_NOT_FOLLOW, SATURATION, CHATTER, JOINT_LIMITS)
 SETTING_RULES: tuple[SettingRule, ...] = (
-    OVERLOAD, NO_EFFORT_LIMIT, EXACT_VELOCITY, FIXED_MISMATCH, UNSTABLE_CONTACT, MJCF,
+    OVERLOAD, NO_EFFORT_LIMIT, EXACT_VELOCITY, FIXED_MISMATCH, UNSTABLE_CONTACT, DEFAULT_PLANT, MJCF,
 )  # fmt: skip
 
 _HEX = 24

@@ -38,6 +38,7 @@ class Setting:
         noise: Noise of the joint measurement.
         mismatch: How what controllers believe of the robot differs from it.
         mass: Mass of all moving links, in kg.
+        in_place_of: Kind of the default plant, where it is missing and this one stands in for it; else None.
         contact: Of an arm behind joint servos with a wall, under an admittance law; None where there is none.
         left_out: What would change the motion and stands in the robot's MJCFs, in words, by the file's name.
     """
@@ -56,6 +57,7 @@ class Setting:
     noise: "EncoderNoise"
     mismatch: "MismatchConfig"
     mass: float
+    in_place_of: str | None
     contact: "ServoContact | None"
     left_out: Mapping[str, Sequence[str]]
 
@@ -68,6 +70,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         q_start: Joint positions at the start, shape (nq,), in rad; None leaves contact out.
     """
     from runner.assembly import servo_contact
+    from runner.plants.kinds import StandsIn
 
     model = config.arm.model
     units, position_limits, mass = _of_model(model)
@@ -90,6 +93,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         noise=config.noise,
         mismatch=config.mismatch,
         mass=mass,
+        in_place_of=config.plant.in_place_of if isinstance(config.plant, StandsIn) else None,
         contact=None if q_start is None else servo_contact(config, q_start),
         left_out=config.arm.left_out,
     )

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runner import engines
 from runner.commands.arguments import Parser
 from runner.config.options import group_options
 from runner.errors import RunnerError, nearest
@@ -54,6 +55,11 @@ def main(arguments: Sequence[str]) -> int:
 
 def _list_group(group: str) -> Callable[[Sequence[Path]], dict[str, str]]:
     return lambda config_dirs: group_options(group, config_dirs)
+
+
+def _list_plants(config_dirs: Sequence[Path]) -> dict[str, str]:
+    found = group_options("plant", config_dirs)
+    return found if engines.has_pybullet() else {**found, "bullet": f"not here, PyBullet is missing: {found['bullet']}"}
 
 
 def _list_metrics(_: Sequence[Path]) -> dict[str, str]:
@@ -113,6 +119,7 @@ def _list_works(_: Sequence[Path]) -> dict[str, str]:
 
 TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {
     **{topic: _list_group(group) for topic, group in _GROUPS.items()},
+    "plants": _list_plants,
     "metrics": _list_metrics,
     "claims": _list_claims,
     "references": _list_references,

@@ -99,6 +99,16 @@ class UnstableContactThreshold(StrictModel):
     radius: PositiveFloat
 
 
+class DefaultPlantThreshold(StrictModel):
+    """Threshold of the rule on a plant that stands in for the default one.
+
+    Attributes:
+        replaced: 0 tells of it, 1 does not.
+    """
+
+    replaced: Share
+
+
 class MjcfThreshold(StrictModel):
     """Threshold of the rule on what is not taken from an MJCF.
 
@@ -122,6 +132,7 @@ class CaveatsConfig(StrictModel):
         overload: A payload beyond the rating.
         no_effort_limit: A payload on an arm that lifts anything.
         unstable_contact: A wall too stiff for an admittance behind joint servos.
+        default_plant: Another plant in place of the default one.
         mjcf: What is not taken from the robot's MJCF.
     """
 
@@ -134,4 +145,5 @@ class CaveatsConfig(StrictModel):
     overload: OverloadThreshold
     no_effort_limit: NoEffortLimitThreshold
     unstable_contact: UnstableContactThreshold
+    default_plant: DefaultPlantThreshold
     mjcf: MjcfThreshold

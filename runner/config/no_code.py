@@ -19,6 +19,7 @@ from omegaconf import DictConfig, OmegaConf
 from runner.config.bounded_yaml import CONFIG, YamlError, check_yaml
 from runner.config.interpolation import check_references, refuse_functions
 from runner.config.work_folder import place_in
+from runner.engines import default_plant
 from runner.errors import ConfigError
 from runner.paths import conf_dir
 from runner.texts import quoted
@@ -33,9 +34,11 @@ _NAMED_BY_CONFIGS = ("hydra.searchpath", "main", "command-line")  # others are H
 def code_refused() -> Iterator[None]:
     """Let Hydra go on only with configs that name no code, whichever file, package or override they come from.
 
-    In a config folder that is a work's, experiments are found under its name; see work_folder.
+    In a config folder that is a work's, experiments are found under its name; see work_folder. The one function that a
+    file calls, conf/plant/default.yaml, is ours.
     """
     Plugins.instance()  # registers what reads files, as a class of Hydra's own making
+    OmegaConf.register_new_resolver("default_plant", lambda: f"/plant/{default_plant()}", replace=True)
     files = SourcesRegistry.instance().resolve("file")
     load, search = ConfigLoaderImpl.load_configuration, ConfigRepository.initialize_sources
     read, is_config, is_group = files.load_config, files.is_config, files.is_group

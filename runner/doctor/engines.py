@@ -3,15 +3,18 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from runner.doctor.finding import Finding
+from runner.engines import has_pybullet
 from runner.errors import ConfigError
-from runner.plants.bullet import Bullet
-from runner.plants.bullet_reading import read_as_bullet
 from runner.plants.mujoco import Mujoco, MujocoConfig
 from runner.robots.model import FloatArray, RobotModel, joint_names_of
+
+if TYPE_CHECKING:
+    from runner.plants.bullet import Bullet
 
 _SAMPLES = 1000
 _STEP = 1e-4  # s
@@ -41,12 +44,15 @@ def compare_engines(urdf: str, model: RobotModel, generator: np.random.Generator
     """Return the largest disagreement of mass matrix and forward dynamics at random states within the joints' limits.
 
     Those of PyBullet and MuJoCo are compared with Pinocchio's; their accelerations are those of one step of their own.
+    Where PyBullet is not installed a note says so.
     """
     states = _random_states(model, generator)
-    return [
-        *_compare("PyBullet", lambda: Bullet(urdf, model, _STEP, 1), states, 0.0),
-        *_compare("MuJoCo", lambda: Mujoco(urdf, model, _MUJOCO, _STEP, 1), states, _added_by_mujoco(model)),
-    ]
+    mujoco = _compare("MuJoCo", lambda: Mujoco(urdf, model, _MUJOCO, _STEP, 1), states, _added_by_mujoco(model))
+    if not has_pybullet():
+        return [Finding("note", "engines", "PyBullet is not installed: not compared with Pinocchio"), *mujoco]
+    from runner.plants.bullet import Bullet
+
+    return [*_compare("PyBullet", lambda: Bullet(urdf, model, _STEP, 1), states, 0.0), *mujoco]
 
 
 def _random_states(model: RobotModel, generator: np.random.Generator) -> list[_State]:
@@ -66,7 +72,7 @@ def _added_by_mujoco(model: RobotModel) -> float:
     return model.nq * _MUJOCO.least_inertia * (1.0 + model.reach**2)
 
 
-def _compare(name: str, make: Callable[[], Bullet | Mujoco], states: Sequence[_State], added: float) -> list[Finding]:
+def _compare(name: str, make: "Callable[[], Bullet | Mujoco]", states: Sequence[_State], added: float) -> list[Finding]:
     """Compare an engine with Pinocchio; `added` is what it adds to the mass matrix, in kg m^2."""
     try:
         plant = make()
@@ -99,8 +105,13 @@ def _compare(name: str, make: Callable[[], Bullet | Mujoco], states: Sequence[_S
 def compare_readings(urdf: Path) -> list[Finding]:
     """Return where PyBullet, when nothing is said to it, reads a file otherwise than it is written, or than Pinocchio.
 
-    That is the names and the order of the joints, and inertia that it makes from the links' shapes.
+    That is the names and the order of the joints, and inertia that it makes from the links' shapes; nothing where
+    PyBullet is not installed.
     """
+    if not has_pybullet():
+        return []
+    from runner.plants.bullet_reading import read_as_bullet
+
     try:
         said, made = read_as_bullet(urdf, True), read_as_bullet(urdf, False)
         names = joint_names_of(urdf.read_text(encoding="utf-8"))

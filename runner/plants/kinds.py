@@ -1,8 +1,11 @@
 """What a plant's module and config may offer beside `CONFIG` and `build`, and the registry that asks for it."""
 
 from collections.abc import Mapping
+from types import ModuleType
 from typing import Literal, Protocol, runtime_checkable
 
+from runner import engines
+from runner.errors import ConfigError
 from runner.guard import watch_plant
 from runner.plants.motion import Motion
 from runner.plants.plant import Plant
@@ -57,6 +60,13 @@ class MovesByRungeKutta(Protocol):
         ...
 
 
+@runtime_checkable
+class StandsIn(Protocol):
+    """A config of plants that may stand in for another kind, which is missing; None where nothing is missing."""
+
+    in_place_of: str | None
+
+
 class ChoosesStep(Protocol):
     """The part of a plant's module that chooses the integration step where the config names none."""
 
@@ -74,6 +84,20 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
 
     def __init__(self, modules: Mapping[str, str]) -> None:
         super().__init__("plant", modules, watch_plant)
+
+    def names(self) -> list[str]:
+        """Return the known kinds; see Kinds. Without PyBullet bullet is none of them."""
+        return [kind for kind in super().names() if kind != "bullet" or engines.has_pybullet()]
+
+    def module(self, kind: str) -> ModuleType:
+        """Return the module of a kind.
+
+        Raises:
+            ConfigError: see Kinds; and for bullet where PyBullet is missing.
+        """
+        if kind == "bullet" and not engines.has_pybullet():
+            raise ConfigError([engines.bullet_missing()])
+        return super().module(kind)
 
     def default_step(self, kind: str, tick: float, stages: int) -> float:
         """Return the step that a kind takes when its config names none, in s."""

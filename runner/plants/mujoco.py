@@ -34,12 +34,15 @@ class MujocoConfig(TorquePlantConfig):
         step: Integration step, in s; None is a tenth of the fastest controller period, a quarter with several stages.
         integrator: Semi-implicit Euler; the same with what damps taken at the end of the step, which is no other where
             nothing damps; the classical Runge-Kutta scheme.
+        in_place_of: The default plant, where it is missing and this one stands in for it, which the caveat
+            default_plant says; None where this one was asked for.
         least_inertia: MuJoCo takes no moving link without mass and inertia: one with less mass, or less of a principal
             moment, gets this, in kg and kg m^2.
     """
 
     kind: Literal["mujoco"]
     integrator: Literal["euler", "implicitfast", "rk4"]
+    in_place_of: Literal["bullet"] | None
     least_inertia: float = Field(ge=1e-12, le=1e-3)
 
 

@@ -101,7 +101,7 @@ def playback(run: Run, caption: str, until: float | None = None, frames: int = 1
         frames: Largest number of instants.
     """
     trace = until_time(run, until)
-    trace = trace[np.isfinite(joint_columns(trace, "q")).all(axis=1)]
+    trace = trace[np.isfinite(np.hstack([joint_columns(trace, "q"), columns(trace, "tip")])).all(axis=1)]
     model = model_of(run)
     q, t, tip = joint_columns(trace, "q"), trace["t"].to_numpy(), columns(trace, "tip")
     shown = spaced(len(t), frames)

@@ -1,4 +1,4 @@
-"""How far PyBullet and Runge-Kutta are apart on one and the same case."""
+"""How far a plant and Runge-Kutta are apart on one and the same case."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,7 +10,8 @@ from runner.reporting.figures import columns
 from runner.reporting.words import PLANT
 from runner.store import Run, find_run, run_hash
 
-_TWINS = {"bullet": "rk4", "rk4": "bullet"}
+_TWINS = {"bullet": "rk4", "mujoco": "rk4", "rk4": "bullet"}
+_OF_MUJOCO = ("integrator", "least_inertia", "in_place_of")  # keys that no other plant has
 
 
 @dataclass(frozen=True)
@@ -39,12 +40,9 @@ def find_twin(run: Run) -> Run | None:
     other = _TWINS.get(run.config["plant"]["kind"])
     if other is None:
         return None
+    plant = {key: value for key, value in run.config["plant"].items() if key not in _OF_MUJOCO}
     for repetitions in (1, run.config["repetitions"]):
-        config = {
-            **run.config,
-            "plant": {**run.config["plant"], "kind": other, "step": None},
-            "repetitions": repetitions,
-        }
+        config = {**run.config, "plant": {**plant, "kind": other, "step": None}, "repetitions": repetitions}
         twin = find_run(run.folder.parent.parent, run_hash(config, run.urdf))
         if twin is not None:
             return twin

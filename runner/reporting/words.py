@@ -5,7 +5,7 @@ import re
 PRESET = {"as_reported": "as reported", "sound": "full equations"}
 """The presets of the works, in the order of their columns."""
 
-PLANT = {"bullet": "PyBullet", "rk4": "Runge-Kutta", "mujoco": "MuJoCo"}
+PLANT = {"bullet": "PyBullet", "mujoco": "MuJoCo", "rk4": "Runge-Kutta"}
 
 _WORDS = {
     **PRESET,

@@ -4,11 +4,11 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, lru_cache
-from importlib.metadata import version
 from typing import Any
 
 from runner.compiled.engine import evaluator
 from runner.config.memory import Memory
+from runner.engines import installed
 from runner.paths import package_dir
 from runner.plugins import GROUPS, added, source_files
 from runner.store.names import Names
@@ -22,6 +22,8 @@ _PHYSICS = (
     "plants", "registry.py", "robots", "sensing", "simulation.py", "trace.py", "trajectories",
 )  # fmt: skip
 
+_ENGINES = {"bullet": ("pybullet",), "mujoco": ("mujoco",), "kinematic": (), "rk4": (), "none": ()}  # of our plants
+
 
 _MEMORY = Memory(4096)  # what the groups of configs give: texts, and the kinds that they name
 _PLACES = 12  # bytes of a digest that make a name
@@ -31,9 +33,9 @@ def run_hash(resolved: Mapping[str, Any], urdf: str) -> str:
     """Return the name of a run's folder: SHA-256 over all that its result follows from.
 
     That is the resolved config (without outputs, sweep, limits, caveats, and preset, whose values the groups have
-    taken), the URDF's text, the source of the physics and of the user's parts that it uses, and the versions of
-    PyBullet, Pinocchio and what evaluates compiled laws. It is hashed as JSON with sorted keys; the text of a group is
-    kept for others that share it, which must not be changed.
+    taken), the URDF's text, the source of the physics and of the user's parts that it uses, and the versions of the
+    plant's engine, Pinocchio and what evaluates compiled laws. It is hashed as JSON with sorted keys; the text of a
+    group is kept for others that share it, which must not be changed.
     """
     return hashlib.sha256("".join(_content(resolved, urdf)).encode()).digest()[:_PLACES].hex()
 
@@ -62,7 +64,8 @@ def _content(resolved: Mapping[str, Any], urdf: str) -> Iterator[str]:
         before = ", "
     yield "}" if config else f"{before}}}"
     parts = _parts_digest(tuple(sorted(_parts(resolved))))
-    yield f', "engines": {json_text(_engines())}, "parts": "{parts}", "source": "{source_digest()}"'
+    engines = _engines(str(resolved.get("plant", {}).get("kind", "none")))
+    yield f', "engines": {json_text(engines)}, "parts": "{parts}", "source": "{source_digest()}"'
     yield f', "urdf": {_MEMORY.recall(_sorted_text, urdf)}}}'
 
 
@@ -98,9 +101,11 @@ def _kinds(group: Mapping[str, Any]) -> frozenset[str]:
     return frozenset([str(group["kind"])] if "kind" in group else []).union(*inner)
 
 
-@cache
-def _engines() -> dict[str, str]:
-    return {name: version(name) for name in ("pybullet", "pin")} | evaluator()
+@lru_cache(maxsize=16)
+def _engines(plant: str) -> dict[str, str]:
+    """Return the versions of what a plant, given by its kind, is simulated by; a stranger's may use any engine."""
+    used = _ENGINES.get(plant, ("mujoco", "pybullet"))
+    return installed((*used, "pin")) | evaluator()
 
 
 @cache

@@ -5,6 +5,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from runner.caveats.default_plant import DEFAULT_PLANT
 from runner.caveats.registry import SETTING_RULES, TRACE_RULES
 from runner.data_file import read_data
 from runner.errors import RunnerError, nearest
@@ -12,6 +13,9 @@ from runner.registry import StrictModel
 from runner.reporting.expected_caveats import ExpectedCaveat
 
 FILE = "caveats.yaml"
+_OF_THE_MACHINE = ExpectedCaveat(
+    DEFAULT_PLANT.name, "*", "PyBullet was not installed; conclusions and verdicts are stated for it, and may differ."
+)
 _Texts = Annotated[list[Annotated[str, Field(min_length=1)]], Field(min_length=1)]
 
 
@@ -30,19 +34,18 @@ class Entry(StrictModel):
 
 
 def read_expected(folder: Path) -> tuple[ExpectedCaveat, ...]:
-    """Return the caveats that a work expects; none where it has no such file.
+    """Return the caveats that a work expects: those of its file, if it has one, and one that is the machine's.
 
     Raises:
         RunnerError: if the file does not fit, or names a rule that does not exist; tells entry and key.
     """
     path = folder / FILE
     if not path.is_file():
-        return ()
+        return (_OF_THE_MACHINE,)
     entries = read_data(path, list[Entry])
     known = [*(rule.name for rule in TRACE_RULES), *(rule.name for rule in SETTING_RULES)]
     for rule in (rule for entry in entries for rule in entry.rules):
         if rule not in known:
             raise RunnerError(f"{path}: there is no rule '{rule}'{nearest(rule, known)}; rules: {', '.join(known)}")
-    return tuple(
-        ExpectedCaveat(rule, runs, entry.why) for entry in entries for runs in entry.runs for rule in entry.rules
-    )
+    listed = (ExpectedCaveat(rule, runs, entry.why) for entry in entries for runs in entry.runs for rule in entry.rules)
+    return (*listed, _OF_THE_MACHINE)

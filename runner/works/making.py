@@ -6,6 +6,7 @@ from pathlib import Path
 
 from runner import store
 from runner.calibration_job import CALIBRATION
+from runner.provenance import settled
 from runner.reporting.job import Made
 from runner.store import Calibration, Run
 from runner.sweeps.listed import Item, Listed
@@ -42,11 +43,10 @@ def make_all(
     ends = {name: ended.ends.get(place) for name, place in places.items()}
     missing = {name: "not begun" for name, end in ends.items() if end is None}
     missing |= {name: end.failure for name, end in ends.items() if end is not None and end.cut_short}
-    commands = {name: shlex.join(["runner", *work.options, *job.overrides]) for name, job in jobs.items()}
+    stored = {name: store.open_run(outputs / "runs" / places[name]) for name in jobs if name not in missing}
     runs = {
-        name: store.open_run(outputs / "runs" / places[name]).made_by(commands[name])
-        for name in jobs
-        if name not in missing
+        name: run.made_by(shlex.join(["runner", *work.options, *settled(jobs[name].overrides, run.config)]))
+        for name, run in stored.items()
     }
     found = {
         name: store.open_calibration(outputs / "calibrations" / places[name])

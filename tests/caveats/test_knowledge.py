@@ -1,5 +1,6 @@
 import pytest
 from caveat_runs import found, signals
+from engines import ASKED
 
 from runner.caveats import Watch, setting_of
 
@@ -39,7 +40,7 @@ def test_exact_velocities_beside_noisy_positions(checked_config, overrides, valu
     ],
 )
 def test_repetitions_that_vary_noise_alone(checked_config, overrides, value):
-    config = checked_config("robot=macro", *overrides)
+    config = checked_config("robot=macro", ASKED, *overrides)
     caveats = {caveat.rule: caveat for caveat in Watch(setting_of(config), config.caveats).found().caveats}
     if value is None:
         assert caveats == {}

@@ -2,6 +2,7 @@
 
 import pandas as pd
 import pytest
+from engines import ASKED
 
 from runner.reporting import outline
 from runner.reporting.document import Notice, RunList, Table
@@ -11,7 +12,10 @@ from runner.reporting.run_report import run_document
 from runner.reporting.sweep.report import sweep_document
 from runner.store import open_run, open_sweep
 
-SWEPT = ("-m", "robot=macro", "trajectory=quintic", "duration=0.5", "noise.position=0,1e-3", "torque_limits.max=1,500")
+SWEPT = (
+    "-m", "robot=macro", ASKED, "trajectory=quintic", "duration=0.5", "noise.position=0,1e-3",
+    "torque_limits.max=1,500",
+)  # fmt: skip
 HERE = "hydra.sweeper.workers=0"
 
 
@@ -66,19 +70,19 @@ def test_a_sweep_has_one_set_of_thresholds(cli):
 
 
 def test_a_run_report_begins_with_them(make_run):
-    run = make_run("robot=macro", "duration=0.1", "noise.position=1e-3")
+    run = make_run("robot=macro", ASKED, "duration=0.1", "noise.position=1e-3")
     first, second, *_ = run_document([run]).sections[0].blocks
     assert (first.kind, first.title) == ("warning", "Caveat: did_not_follow")
     assert second.title == "Caveat: exact_velocity"
     assert first.text.startswith("The arm did not follow: at the end the tip is still ")
-    both = run_document([run, make_run("robot=macro")])
+    both = run_document([run, make_run("robot=macro", ASKED)])
     (table,) = (block for block in both.sections[0].blocks if isinstance(block, Table))
     column = list(table.header).index("caveats")
     assert [row[column] for row in table.rows] == ["2", "0"]
 
 
 def test_a_report_says_where_thresholds_are_others(make_run):
-    run = make_run("robot=macro", "duration=0.1", "caveats.did_not_follow.share=5")
+    run = make_run("robot=macro", ASKED, "duration=0.1", "caveats.did_not_follow.share=5")
     (notice,) = (block for block in outline.blocks(run_document([open_run(run.folder)])) if isinstance(block, Notice))
     assert notice.title == "Caveats by other rules than today's"
     assert "caveats.did_not_follow.share 5, now 0.25" in notice.text

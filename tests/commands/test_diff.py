@@ -1,6 +1,7 @@
 import json
 
 import pytest
+from engines import ASKED
 
 from runner.store.stored import write_job
 
@@ -38,7 +39,7 @@ def test_config_keys_and_metrics_that_differ(cli):
     head, table = out.split("config differs:")[1].split("same provenance")
     assert cells(head, "trajectory.duration") == ["0.5", "0.4"]
     assert cells(head, "torque_limits.max") == ["null", "[50,", "50,", "20]"]
-    assert cells(head, "plant.kind") == ["bullet", "rk4"]
+    assert cells(head, "plant.kind") == [ASKED.removeprefix("plant="), "rk4"]
     assert cells(head, "plant.step") == ["null", "0.001"]
     assert "outputs" not in head
     assert "controller" not in head
@@ -69,11 +70,11 @@ def test_provenance_and_robots_that_differ(cli):
     a, b = cli(*SHORT).folder, cli(*SHORT, "seed=1").folder
     (b / "robot.urdf").write_text("<robot/>")
     change(b, lambda record: record["provenance"].update(commit="abc", plant_step=5e-4))
-    change(b, lambda record: record["provenance"]["versions"].update(pybullet="9.9"))
+    change(b, lambda record: record["provenance"]["versions"].update(pin="9.9"))
     out = cli("diff", a, b).out
     assert "  the text of robot.urdf differs\nprovenance differs:\n" in out
     assert cells(out, "commit")[-1] == "abc"
-    assert cells(out, "versions.pybullet")[-1] == "9.9"
+    assert cells(out, "versions.pin")[-1] == "9.9"
     assert cells(out, "plant_step") == ["0.001", "0.0005"]
 
 

@@ -7,6 +7,7 @@ import runner
 KUKA = strangers.DATA / "kuka_iiwa/model.urdf"
 
 
+@pytest.mark.bullet
 def test_from_a_stranger_s_urdf_to_a_report_in_three_commands(cli):
     examined = cli("doctor", KUKA, "--write", "mine")
     assert examined.code == 1
@@ -17,6 +18,7 @@ def test_from_a_stranger_s_urdf_to_a_report_in_three_commands(cli):
     assert cli("report", ran.folder, "--html").code == 0
 
 
+@pytest.mark.bullet
 def test_what_was_written_fits(cli):
     for name, (path, tip) in strangers.SHIPPED.items():
         given = ["--tip", tip] if tip else []
@@ -27,6 +29,7 @@ def test_what_was_written_fits(cli):
         assert again.code == 0, again.out
 
 
+@pytest.mark.bullet
 def test_every_file_of_pybullet_runs_or_is_refused_with_the_reason(cli):
     files = [path for path in sorted(strangers.DATA.rglob("*.urdf")) if not {"random_urdfs", "lego"} & set(path.parts)]
     assert len(files) > 90
@@ -45,6 +48,7 @@ def test_every_file_of_pybullet_runs_or_is_refused_with_the_reason(cli):
     assert {"kuka_iiwa/model.urdf", "xarm/xarm6_robot.urdf", "pendulum5.urdf", "cartpole.urdf"} <= fit
 
 
+@pytest.mark.bullet
 def test_the_page_shows_robot_and_findings(cli, tmp_path):
     ending = cli("doctor", KUKA, "--html", tmp_path / "page")
     assert ending.out.splitlines()[-1] == str(tmp_path / "page")
@@ -53,6 +57,7 @@ def test_the_page_shows_robot_and_findings(cli, tmp_path):
     assert "inertia but no mass" in page
 
 
+@pytest.mark.bullet
 def test_nothing_is_overwritten(cli):
     cli("doctor", KUKA, "--write", "mine")
     ending = cli("doctor", KUKA, "--write", "mine")
@@ -60,6 +65,7 @@ def test_nothing_is_overwritten(cli):
     assert "is there already; choose another folder, or remove it" in ending.err
 
 
+@pytest.mark.bullet
 def test_what_is_barred_is_not_written(cli):
     ending = cli("doctor", strangers.DATA / "cube_no_rotation.urdf", "--write", "mine")
     assert ending.code == 2
@@ -106,8 +112,8 @@ def simulated_stranger():
 
 @pytest.mark.parametrize("name", ["crane", "planar_two", "mixed"])
 def test_the_plants_agree_on_strangers(simulated_stranger, name):
-    bullet, rk4 = (simulated_stranger(name, f"plant={plant}") for plant in ("bullet", "rk4"))
-    np.testing.assert_allclose(bullet.tip, rk4.tip, rtol=0, atol=1e-5 * strangers.examined(name).model.reach)
+    default, rk4 = (simulated_stranger(name, f"plant={plant}") for plant in ("default", "rk4"))
+    np.testing.assert_allclose(default.tip, rk4.tip, rtol=0, atol=1e-5 * strangers.examined(name).model.reach)
 
 
 def test_columns_of_joints_that_slide_are_in_metres(cli):

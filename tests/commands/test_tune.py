@@ -2,6 +2,7 @@ import re
 import shlex
 
 import pytest
+from engines import ASKED
 
 SHORT = ("robot=macro", "trajectory=quintic", "duration=0.05", "hydra.sweeper.workers=0")
 RANGE = "controller.natural_frequency=tag(log,interval(5,80))"
@@ -39,7 +40,7 @@ def test_the_same_command_makes_the_same_report(cli):
 
 
 def test_other_commands_take_a_tuning_for_a_sweep(cli, tmp_path):
-    assert cli(*TUNE).code == 0
+    assert cli(TUNE[0], ASKED, *TUNE[1:]).code == 0
     (folder,) = (tmp_path / "outputs" / "tunings").iterdir()
     assert cli("status", folder).out == "4 runs: 4 done, 0 left\n"
     assert cli("table", folder).code == 0

@@ -159,6 +159,7 @@ def test_a_run_that_diverges_leaves_those_beside_it_alone():
     assert not np.isfinite(found.q[[0, 2]]).all()
 
 
+@pytest.mark.bullet
 def test_bullet_gets_its_torques_from_compiled_laws(monkeypatch):
     overrides = "robot=combined", "controller=whole_body", "plant=bullet", "duration=0.2", *NOISY
     traces = []

@@ -175,7 +175,7 @@ LINE = [(kind, task, period) for kind in ("operational_space", "computed_torque"
 @pytest.mark.parametrize(("kind", "task", "period"), LINE)
 def test_the_xarm7_tracks_its_line_within_its_limits(simulated, kind, task, period):
     trace = simulated(
-        "robot=xarm7", f"controller={kind}", f"controller.task={task}", f"controller.period={period}", "plant=bullet"
+        "robot=xarm7", f"controller={kind}", f"controller.task={task}", f"controller.period={period}", "plant=default"
     )
     assert trace.failure is None
     assert np.linalg.norm(trace.error, axis=1).max() < 2e-5  # required: 1e-4
@@ -190,7 +190,7 @@ def test_the_xarm7_tracks_its_line_within_its_limits(simulated, kind, task, peri
 @pytest.mark.parametrize("kind", ["operational_space", "computed_torque"])
 def test_the_line_lasts_up_to_a_payload_of_2_9_kg(simulated, kind):
     light, heavy = (
-        simulated("robot=xarm7", f"controller={kind}", "plant=bullet", f"robot.payload.mass={mass}", "duration=5")
+        simulated("robot=xarm7", f"controller={kind}", "plant=default", f"robot.payload.mass={mass}", "duration=5")
         for mass in (2.9, 3.5)
     )
     limits = XARM7.model.effort_limits
@@ -202,7 +202,9 @@ def test_the_line_lasts_up_to_a_payload_of_2_9_kg(simulated, kind):
 
 def test_without_a_posture_task_the_arm_drifts_into_a_joint_stop(simulated):
     free, held = (
-        simulated("robot=xarm7", "controller=operational_space", "plant=bullet", f"controller.null_space_frequency={w}")
+        simulated(
+            "robot=xarm7", "controller=operational_space", "plant=default", f"controller.null_space_frequency={w}"
+        )
         for w in (0.0, 30.0)
     )
     assert XARM7.model.limit_margins(free.q).min() < 0.0

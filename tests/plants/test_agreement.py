@@ -45,6 +45,7 @@ def test_runge_kutta_in_mujoco_is_that_of_rk4(followed, robot):
     assert np.linalg.norm(ours.tip - theirs.tip, axis=1).max() < (1e-9 if robot == "combined" else 1e-11)
 
 
+@pytest.mark.bullet
 @pytest.mark.parametrize("robot", CLOSED)
 @pytest.mark.parametrize("integrator", ["euler", "implicitfast"])
 def test_euler_in_mujoco_is_that_of_bullet(followed, robot, integrator):
@@ -55,6 +56,7 @@ def test_euler_in_mujoco_is_that_of_bullet(followed, robot, integrator):
     assert np.abs(bullet.q - mujoco.q).max() < 1e-4 * np.abs(bullet.q - exact.q).max()
 
 
+@pytest.mark.bullet
 @pytest.mark.parametrize(("robot", "scale"), [("macro", 1.0), ("mini", 0.1)])
 @pytest.mark.parametrize("end", [1.5, 2.0])  # s: in motion, and where it ends
 def test_bullet_converges_to_rk4_at_first_order(simulated, robot, scale, end):

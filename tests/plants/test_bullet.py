@@ -1,11 +1,13 @@
 import numpy as np
-import pybullet
 import pytest
 import strangers
 
 from runner.errors import ConfigError
-from runner.plants.bullet import Bullet, build, default_step
 from runner.robots import RobotModel, find_urdf, read_urdf
+
+pybullet = pytest.importorskip("pybullet", reason="PyBullet is not installed")
+
+from runner.plants.bullet import Bullet, build, default_step  # noqa: E402
 
 INERTIAL = '<inertial><mass value="{m}"/><inertia ixx="{i}" ixy="0" ixz="0" iyy="{i}" iyz="0" izz="{i}"/></inertial>'
 NOTHING = INERTIAL.format(m=0, i=0)

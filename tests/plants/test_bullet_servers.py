@@ -4,13 +4,16 @@ import subprocess
 import sys
 
 import numpy as np
-import pybullet
 import pytest
 
 from runner.assembly import assemble
 from runner.errors import ConfigError
-from runner.plants import bullet, decoupled
-from runner.plants.bullet_servers import SERVERS, PhysicsServers
+from runner.plants import decoupled
+
+pybullet = pytest.importorskip("pybullet", reason="PyBullet is not installed")
+
+from runner.plants import bullet  # noqa: E402
+from runner.plants.bullet_servers import SERVERS, PhysicsServers  # noqa: E402
 
 RUN = """
 from runner.config.compose import compose

@@ -5,7 +5,7 @@ import pytest
 import strangers
 
 from runner.errors import ConfigError
-from runner.plants import ContactPlant, ToolReactionPlant, bullet
+from runner.plants import ContactPlant, ToolReactionPlant
 from runner.plants.mujoco import Mujoco, build, default_step
 from runner.robots import RobotModel
 
@@ -135,6 +135,14 @@ def test_a_wall_pushes_by_stiffness_times_depth_whatever_the_steps_of_a_tick(clo
 def test_build_and_default_step(checked_config, macro_urdf, one_stage):
     config = checked_config("robot=macro", "plant=mujoco").plant
     assert isinstance(build(config, one_stage(macro_urdf, RobotModel(macro_urdf, "tip")), 1e-3, 10), Mujoco)
+    assert default_step(0.01, 1) == pytest.approx(0.001)
+    assert default_step(0.001, 2) == pytest.approx(0.00025)
+
+
+@pytest.mark.bullet
+def test_the_default_step_is_that_of_bullet():
+    from runner.plants import bullet
+
     for tick, stages in ((0.01, 1), (0.001, 2)):
         assert default_step(tick, stages) == bullet.default_step(tick, stages)
 

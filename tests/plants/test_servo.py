@@ -96,12 +96,12 @@ def test_a_commanded_ramp_is_followed_without_lag_where_set_points_bear_velocity
 
 
 def test_a_servo_slower_than_its_commands_is_refused(cli):
-    ending = cli("robot=xarm7", "plant=bullet", "plant.servo.period=0.02")
+    ending = cli("robot=xarm7", "plant=default", "plant.servo.period=0.02")
     assert ending.code == 2
     assert "plant.servo.period: 0.02 s is longer than controller.period, 0.01 s" in ending.err
 
 
 def test_a_stiffness_list_of_the_wrong_length_names_the_joints(cli):
-    ending = cli("robot=xarm7", "plant=bullet", "plant.servo.stiffness=[1,2]")
+    ending = cli("robot=xarm7", "plant=default", "plant.servo.stiffness=[1,2]")
     assert ending.code == 2
     assert "plant.servo.stiffness: 2 values for 7 joints (joint1, joint2" in ending.err

@@ -5,7 +5,6 @@ import pytest
 
 from runner.errors import ConfigError
 from runner.plants import PLANTS
-from runner.plants.bullet import Bullet
 from runner.plants.decoupled import Decoupled
 from runner.plants.rk4 import Rk4
 from runner.robots.robot import StageBase
@@ -85,8 +84,11 @@ def test_the_mass_matrix_is_singular_where_the_mini_lies_folded_along_joint_4(fr
     assert np.linalg.eigvalsh(free.mass_matrix(folded))[0] > 1e-5
 
 
+@pytest.mark.bullet
 @pytest.mark.parametrize("seed", range(3))
 def test_one_step_of_bullet_is_semi_implicit_euler_on_the_forward_dynamics(combined, seed):
+    from runner.plants.bullet import Bullet
+
     h, plant = 1e-5, Bullet(combined.urdf, combined.model, 1e-5, 1)
     try:
         for q, dq in random_states(5, seed):
@@ -101,6 +103,7 @@ def test_one_step_of_bullet_is_semi_implicit_euler_on_the_forward_dynamics(combi
         plant.close()
 
 
+@pytest.mark.bullet
 @pytest.mark.parametrize("dynamics", ["coupled", "decoupled"])
 def test_bullet_converges_to_rk4_at_first_order(simulated, dynamics):
     def final_state(plant, steps_per_tick):

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from engines import ASKED
 
 from runner import run
 from runner.reporting.figures import (
@@ -17,13 +18,13 @@ OVERRIDES = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "nois
 
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory):
-    return run(*OVERRIDES, f"outputs={tmp_path_factory.mktemp('outputs')}")
+    return run(*OVERRIDES, ASKED, f"outputs={tmp_path_factory.mktemp('outputs')}")
 
 
 def test_an_origin_names_the_command_that_makes_the_run(stored):
     source = origin(stored, "figure 3.5")
     assert source.number == "figure 3.5"
-    assert source.command == "runner robot=macro trajectory=quintic trajectory.duration=1 noise=thesis"
+    assert source.command == f"runner robot=macro trajectory=quintic trajectory.duration=1 noise=thesis {ASKED}"
     assert source.commit == "" or len(source.commit.removesuffix("+changes")) == 12
 
 

@@ -5,6 +5,7 @@ from runner import run
 from runner.quantities import quantity
 from runner.reporting.figures import columns
 from runner.reporting.plant_agreement import describe_agreement, disagreement, find_twin
+from runner.reporting.words import PLANT
 
 CASE = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "duration=0.5", "noise=thesis")
 
@@ -45,9 +46,9 @@ def test_the_twin_is_found_by_its_content_with_one_repetition(pair):
 
 
 def test_the_agreement_is_told_with_plant_and_step(pair):
-    text = describe_agreement(pair[0])
+    text, plant = describe_agreement(pair[0]), PLANT[pair[0].config["plant"]["kind"]]
     assert text.startswith(
-        "PyBullet is the plant, in steps of 1 ms. With Runge-Kutta in its place and the same noise the tip"
+        f"{plant} is the plant, in steps of 1 ms. With Runge-Kutta in its place and the same noise the tip"
     )
     assert f"at most {quantity(disagreement(*pair).tip, 'm', 2)} away at equal times" in text
 

@@ -1,4 +1,5 @@
 import pytest
+from engines import ASKED
 
 from runner import run
 from runner.reporting import outline
@@ -16,12 +17,12 @@ def outputs(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def finished(outputs):
-    return run("robot=macro", "trajectory=quintic", "duration=0.5", "repetitions=2", "noise=thesis", outputs)
+    return run("robot=macro", "trajectory=quintic", "duration=0.5", "repetitions=2", "noise=thesis", ASKED, outputs)
 
 
 @pytest.fixture(scope="module")
 def diverged(outputs):
-    return run("experiment=thesis/singular", outputs)
+    return run("experiment=thesis/singular", ASKED, outputs)
 
 
 def blocks_of(document, kind):
@@ -49,7 +50,7 @@ def test_a_finished_run_is_told_whole(finished):
     assert "outputs" not in [row[0] for row in config.rows]
     (provenance,) = blocks_of(document, Provenance)
     rows = dict(provenance.rows)
-    assert rows["plant"] == "bullet, step 0.001 s"
+    assert rows["plant"] == f"{ASKED.removeprefix('plant=')}, step 0.001 s"
     assert rows["command"].startswith("runner robot=macro trajectory=quintic")
     assert rows["run"] == finished.hash
 
@@ -66,7 +67,8 @@ def test_a_failed_run_says_when_and_where(diverged):
 
 
 def test_a_sweep_is_led_by_what_distinguishes_its_runs(finished, diverged, outputs):
-    other = run("robot=macro", "trajectory=quintic", "duration=0.5", "repetitions=2", "noise=thesis", "seed=1", outputs)
+    case = ("robot=macro", "trajectory=quintic", "duration=0.5", "repetitions=2", "noise=thesis")
+    other = run(*case, "seed=1", ASKED, outputs)
     document = run_document([finished, other, diverged])
     assert document.abstract == "3 runs, 1 of them failed."
     overview = blocks_of(document, Table)[0]

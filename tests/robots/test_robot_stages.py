@@ -9,7 +9,6 @@ from runner.assembly import assemble, make_encoders
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.paths import conf_dir
-from runner.plants.bullet import Bullet
 from runner.plants.rk4 import Rk4
 from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.robots.robot import StageBase, end_points
@@ -223,8 +222,11 @@ def test_rotors_keep_the_energy():
     assert np.abs(plant.q - [0.3, 0.5, -0.4]).max() > 0.3
 
 
+@pytest.mark.bullet
 @pytest.mark.parametrize("robot", ["macro", "combined"])
 def test_bullet_takes_the_rotors_too(checked_config, robot, capfd):
+    from runner.plants.bullet import Bullet
+
     # It sets an inertia that no body can have to zero, and says so on standard error.
     stages = ("robot.stages.macro", "robot.stages.mini") if robot == "combined" else ("robot",)
     rotors = [f"{stage}.rotor_inertia={inertia}" for stage, inertia in zip(stages, (0.3, 1e-3), strict=False)]

@@ -6,7 +6,6 @@ from strangers import Y, Z
 
 from runner.commands.doctor import main as doctor
 from runner.errors import ConfigError
-from runner.plants.bullet import Bullet
 from runner.robots import RobotModel, read_urdf
 
 ARM = strangers.chain("arm", [("revolute", Z), ("revolute", Y), ("revolute", Y)])
@@ -75,7 +74,10 @@ def test_limits_that_the_doctor_mends_are_refused_by_a_run(tmp_path, old, new, s
     assert doctor([str(path)]) == 1
 
 
+@pytest.mark.bullet
 def test_the_longest_names_and_the_most_joints_can_be_simulated(tmp_path):
+    from runner.plants.bullet import Bullet
+
     path = tmp_path / "arm.urdf"
     for text in (changed('"l2"', f'"{"l" * 200}"').replace('"q2"', f'"{"q" * 200}"'), joints(64)):
         path.write_text(text)

@@ -1,14 +1,12 @@
 """What holds for every robot that ships, on random postures within its joint limits."""
 
 import numpy as np
-import pybullet
 import pytest
 
 from runner.config.arms import build_robot
 from runner.config.compose import compose
 from runner.config.options import group_options
 from runner.config.robot import OneArmConfig, StagedRobotConfig
-from runner.plants.bullet import Bullet
 
 ZOO = sorted(group_options("robot"))
 SAMPLES = 20
@@ -67,8 +65,13 @@ def test_gravity_is_the_gradient_of_the_energy(model):
         np.testing.assert_allclose(model.gravity_torque(q), gradient, atol=1e-7)
 
 
+@pytest.mark.bullet
 @pytest.mark.parametrize("overrides", [(), PAYLOAD], ids=["unloaded", "loaded"])
 def test_both_engines_have_the_same_dynamics(name, overrides):
+    import pybullet
+
+    from runner.plants.bullet import Bullet
+
     arm = robot(name, *overrides)
     model, plant = arm.model, Bullet(arm.urdf, arm.model, 1e-3, 1)
     generator = np.random.default_rng(1)

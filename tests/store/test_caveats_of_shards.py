@@ -4,6 +4,7 @@ import json
 
 import pyarrow
 import pyarrow.parquet
+from engines import ASKED
 
 from runner import run
 from runner.store import Finished, open_run
@@ -38,7 +39,7 @@ def test_a_shard_from_before_there_were_any_is_read(tmp_path):
 
 
 def test_a_run_from_before_there_were_any_is_read(tmp_path):
-    made = run("robot=macro", "duration=0.05", "noise.position=1e-3", f"outputs={tmp_path}")
+    made = run("robot=macro", ASKED, "duration=0.05", "noise.position=1e-3", f"outputs={tmp_path}")
     assert [caveat["rule"] for caveat in made.caveats] == ["did_not_follow", "exact_velocity"]
     path = made.folder / "metrics.json"
     skipped = ("schema", "digest", "caveats", "caveat_rules")

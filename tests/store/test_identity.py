@@ -3,6 +3,7 @@ import json
 from importlib.metadata import EntryPoint
 
 import pytest
+from engines import ASKED
 
 from runner.config.compose import compose
 from runner.paths import package_dir
@@ -52,11 +53,11 @@ def test_neither_does_the_experiment_that_says_the_same():
 
 
 def test_it_is_that_of_the_whole_as_json():
-    config = compose(["robot=macro", "noise=thesis", "torque_limits.max=[1,2,3]"]).resolved
+    config = compose(["robot=macro", ASKED, "noise=thesis", "torque_limits.max=[1,2,3]"]).resolved
     urdf = '<robot name="é">\n</robot>'
     content = {
         "config": simulated_part(config),
-        "engines": identity._engines(),
+        "engines": identity._engines(ASKED.removeprefix("plant=")),
         "parts": identity._parts_digest(tuple(sorted(identity._parts(config)))),
         "source": identity.source_digest(),
         "urdf": urdf,
@@ -75,7 +76,7 @@ def test_the_robot_counts():
 def test_the_engines_versions_count(monkeypatch):
     before = changed()
     identity._engines.cache_clear()
-    monkeypatch.setattr(identity, "version", lambda name: "9.9" if name == "pin" else "1")
+    monkeypatch.setattr(identity, "installed", lambda names: dict.fromkeys(names, "9.9"))
     assert changed() != before
     identity._engines.cache_clear()
 
@@ -105,8 +106,8 @@ def test_the_source_counts_but_not_that_of_reports_and_commands(monkeypatch, tmp
 def test_every_room_is_physics_or_known_not_to_be():
     """A new room belongs to one of the two lists; what decides about results must count in the hash."""
     after_the_run = {
-        "audit", "caveats", "claims", "cli.py", "commands", "data_file.py", "doctor", "engine_output.py", "errors.py",
-        "folder_code.py",
+        "audit", "caveats", "claims", "cli.py", "commands", "data_file.py", "doctor", "engine_output.py", "engines.py",
+        "errors.py", "folder_code.py",
         "drawing", "expressions", "paths.py", "plugins.py",
         "provenance.py", "quantities.py", "references", "reporting", "servo_contact.py",
         "statistics", "store", "sweeps", "texts.py", "tuning", "works", "__init__.py", "__main__.py",

@@ -20,7 +20,7 @@ from runner.sweeps import engine
 from runner.sweeps.grid import plan_sweep
 from runner.sweeps.run import Engine, run_sweep
 
-GRID = ("noise=thesis", "robot=macro,mini", "plant=rk4,bullet", "seed=range(0,4)", "repetitions=2", "duration=0.3")
+GRID = ("noise=thesis", "robot=macro,mini", "plant=rk4,default", "seed=range(0,4)", "repetitions=2", "duration=0.3")
 
 
 def results(ended):

@@ -24,4 +24,4 @@ def test_a_trace_is_written_for_each_that_keeps_its_own(tmp_path):
 
 
 def test_a_run_that_is_made_alone_has_its_fixed_cost(tmp_path):
-    assert estimated(tmp_path, 0.0, "plant=bullet") > 100.0
+    assert estimated(tmp_path, 0.0, "plant=default") > 100.0

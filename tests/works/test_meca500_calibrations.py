@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from engines import DEFAULT_PLANT
 from scipy.spatial.transform import Rotation
 from study_sections import blocks, unfinished_texts
 from thin_plans import make_calibrations, make_runs
@@ -76,8 +77,8 @@ def test_refusals_name_the_reason(sections):
     assert refusal(lambda: None) == "not refused"
 
 
-def test_weighed_by_pybullet_s_reaction_the_tool_is_the_true_one(sections):
-    (row,) = table(sections[2], "Identified from PyBullet").rows
+def test_weighed_by_the_plant_s_reaction_the_tool_is_the_true_one(sections):
+    (row,) = table(sections[2], f"Identified from {DEFAULT_PLANT}").rows
     assert len(row) == 5
     assert set(row) <= {"0", "0 (rounding)"}
 

@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from engines import DEFAULT_PLANT
 from thin_plans import make_calibrations, make_runs, stand_ins
 from work_plans import meca500_calibrations, meca500_jobs
 
@@ -61,7 +62,7 @@ def test_the_two_sets_of_inertials_differ_by_a_third(document):
 
 
 def test_the_plants_disagreement_is_measured_and_shrinks_with_the_step(document):
-    rows = table(document, "PyBullet by its step").rows
+    rows = table(document, f"{DEFAULT_PLANT} by its step").rows
     coarse, middle, fine = (float(row[1].replace("·10⁻⁵", "e-5").replace("·10⁻⁶", "e-6")) for row in rows)
     assert middle / coarse == pytest.approx(0.5, rel=0.1)  # first order
     assert fine / middle == pytest.approx(0.5, rel=0.1)

@@ -56,7 +56,7 @@ def test_a_force_through_the_tip_turns_neither_law_nor_tool(planned):
 
 
 def test_the_force_on_a_wall_is_read_true(planned):
-    found = forces(planned("wall/bullet/100000"))
+    found = forces(planned("wall/servos/100000"))
     assert abs(found["off_depth"]) < 0.01
     assert found["felt"] > 1.0
 

@@ -24,10 +24,10 @@ SOME = {
     },
     "meca500": {
         "step/servo, 16.7 ms/rotation x": (
-            "experiment=meca500/push", "controller.period=0.0167", "plant=bullet", "plant.servo.period=0.000835",
+            "experiment=meca500/push", "controller.period=0.0167", "plant=default", "plant.servo.period=0.000835",
             "plant.step=0.000835", "environment.begin=0.0501", "environment.force=[0.0, 0.0, 0.0]",
             "environment.moment=[0.05, 0.0, 0.0]"),
-        "sine/servo, 1 ms/24.0": ("experiment=meca500/sine", "plant=bullet", "plant.step=0.001",
+        "sine/servo, 1 ms/24.0": ("experiment=meca500/sine", "plant=default", "plant.step=0.001",
                                   "environment.frequency=24.0"),
         "rest/0": ("experiment=meca500/weighing",
                    "robot.home=[0.836651,-0.468344,-2.209594,-2.868983,1.257547,2.59342]", "wrist_sensor=mini40",
@@ -50,12 +50,12 @@ SOME = {
             "plant.step=6.25e-05", "controller.period=6.25e-05"),
     },
     "xarm7": {
-        "servo/sound/0.00025": ("experiment=xarm7/three_joints", "duration=5", "preset=sound", "plant=bullet",
+        "servo/sound/0.00025": ("experiment=xarm7/three_joints", "duration=5", "preset=sound", "plant=default",
                                 "plant.step=0.00025"),
         "printed/pose/angles alone/fed back": (
             "robot=xarm7", "controller=xarm7_as_printed", "controller.task=pose", "controller.feedforward=true",
             "controller.columns=right", "controller.angles=printed", "controller.inverse=right", "controller.gain=20"),
-        "rates/bullet/sound/100": ("robot=xarm7", "plant=bullet", "plant.step=0.001", "preset=sound",
+        "rates/servos/sound/100": ("robot=xarm7", "plant=default", "plant.step=0.001", "preset=sound",
                                    "controller.period=0.01", "duration=5"),
         "payload/0.6043/asked/5": ("robot=xarm7", "robot.start=[0.6043,-0.2,0.1508]",
                                    "robot.goal=[0.6043,0.2,0.1508]", "duration=5", "robot.payload.mass=5"),

@@ -4,6 +4,7 @@ import re
 from collections import Counter
 
 import pytest
+from engines import DEFAULT_PLANT
 from thin_plans import make_runs, stand_ins
 from work_plans import chapter_files, conditions_that_never_fail, thesis_jobs, thesis_moments
 
@@ -81,7 +82,7 @@ def test_the_table_of_verdicts_says_what_the_claims_say(document):
 
 def test_the_plants_disagreement_is_measured_on_every_compared_figure(document):
     sentences = [
-        block.text for block in blocks_of(document, Text) if "PyBullet is the plant, in steps of" in block.text
+        block.text for block in blocks_of(document, Text) if f"{DEFAULT_PLANT} is the plant, in steps of" in block.text
     ]
     assert len(sentences) == len(FOR_EACH_PRESET)
     for text in sentences:

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from engines import DEFAULT_PLANT
 from thin_plans import make_runs
 from work_plans import xarm7_studies
 
@@ -133,10 +134,12 @@ def test_a_motion_is_shown_from_a_to_b_as_its_caption_says(document):
 
 
 def test_the_plants_disagreement_is_measured_and_shrinks_with_the_step(document):
-    (text,) = [block.text for block in blocks_of(document, Text) if "PyBullet is the plant, in steps of" in block.text]
+    (text,) = [
+        block.text for block in blocks_of(document, Text) if f"{DEFAULT_PLANT} is the plant, in steps of" in block.text
+    ]
     assert text.count("the tip is at most") == len(PRESETS)
     distances = [float(re.sub("·10⁻⁶$", "e-6", row[2]).replace("·10⁻⁷", "e-7")) for row in
-                 table(document, "PyBullet's step against Runge-Kutta").rows]  # fmt: skip
+                 table(document, f"{DEFAULT_PLANT}'s step against Runge-Kutta").rows]  # fmt: skip
     for first in range(0, len(distances), 3):
         coarse, middle, fine = distances[first : first + 3]
         assert middle / coarse == pytest.approx(0.5, rel=0.05)  # first order

@@ -15,6 +15,7 @@ from runner.reporting.measured import Measured
 from runner.reporting.plant_agreement import describe_agreement
 from runner.reporting.prose.patterns import axes_of, called, found
 from runner.reporting.prose.reading import Signal, config_value, number_of
+from runner.reporting.words import PLANT
 from runner.store import Run
 
 
@@ -57,6 +58,12 @@ def desired_motion(
 def failures(runs: Mapping[str, Run], prefix: str) -> list[Block]:
     """Return a notice that names the failed runs of those whose names begin so; nothing where none failed."""
     return run_values.failures({name: run for name, run in runs.items() if name.startswith(prefix)})
+
+
+def plant_of(runs: Mapping[str, Run], run: str) -> str:
+    """Return the name of a run's plant, such as "PyBullet", or "MuJoCo" where that one is missing."""
+    kind: str = runs[run].config["plant"]["kind"]
+    return PLANT.get(kind, kind)
 
 
 def agreement(runs: Mapping[str, Run], run: str) -> str:

@@ -23,7 +23,7 @@ def forces(run: Run) -> dict[str, float]:
     begin = float(trajectory["start"][0] + wall["distance"])
     way, stiffness = float(trajectory["goal"][0]) - begin, float(wall["stiffness"])
     felt, peak = float(-wrenches(run, "felt")[-1, 0]), float(-wrenches(run, "external")[:, 0].min())
-    soft = float(servo_compliance(run)[0, 0]) if run.config["plant"]["kind"] == "bullet" else 0.0
+    soft = float(servo_compliance(run)[0, 0]) if run.config["plant"]["kind"] != "kinematic" else 0.0
     series = way / (1.0 / float(law_of(run).stiffness[0]) + 1.0 / stiffness + soft)
     off_depth = felt / (stiffness * (float(columns(run.trace, "tip")[-1, 0]) - begin)) - 1.0
     return {"way": way, "felt": felt, "peak": peak, "first": peak / felt, "series": series, "off_depth": off_depth,

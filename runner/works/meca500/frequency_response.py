@@ -42,7 +42,7 @@ def sine(run: Run) -> dict[str, Any]:
     law, period, found = law_of(run), float(run.config["controller"]["period"]), fitted_response(run)
     exact, sampled = (own[0] for own in (frequency_response(law, np.array([omega])),
                       sampled_frequency_response(law, period, np.array([omega]))))  # fmt: skip
-    give = _give(run) if run.config["plant"]["kind"] == "bullet" else np.zeros(len(AXES))
+    give = _give(run) if run.config["plant"]["kind"] != "kinematic" else np.zeros(len(AXES))
     told = {
         axis: f"{abs(over):.3f}, {np.degrees(np.angle(over)):+.1f}°"
         for axis, over in zip(AXES, found / exact, strict=True)

@@ -120,7 +120,7 @@ def left_over_panels(calibrations: Calibrations, name: str) -> list[Panel]:
 
 
 def weighed(runs: Runs, pattern: str, caption: str) -> Table:
-    """Return the identification from PyBullet's own reaction at the tool's joint, in place of the sensor's model."""
+    """Return the identification from the plant's own reaction at the tool's joint, in place of the sensor's model."""
     at_rest = [each.run for each in found(runs, pattern)]
     first = at_rest[0]
     flange = RobotModel(first.urdf, first.config["robot"]["tip"], first.config["gravity"])

@@ -72,12 +72,12 @@ def _map() -> Jobs:
             own = (f"controller.period={period}", f"environment.stiffness={share * bound:.5g}")
             jobs[f"map/kinematic/{period}/{share}"] = Job((*base, *own))
     for period, tick, spring, wall in _SERVOS:
-        servo = ("plant=bullet", f"plant.servo.period={tick}", f"plant.step={tick}",
+        servo = ("plant=default", f"plant.servo.period={tick}", f"plant.step={tick}",
                  f"plant.servo.stiffness={spring:g}", "trajectory.goal=[0.185,0.01,0.06]")  # fmt: skip
         case = f"{1e3 * period:g} ms, servos {1e3 * tick:g} ms, {spring:g}"
         for share in _SHARES:
             own = (f"controller.period={period}", f"environment.stiffness={share * wall:.5g}")
-            jobs[f"map/bullet/{case}/{share}"] = Job((*base, *servo, *own))
+            jobs[f"map/servos/{case}/{share}"] = Job((*base, *servo, *own))
     return jobs
 
 

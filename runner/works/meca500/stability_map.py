@@ -34,7 +34,7 @@ def contact(run: Run) -> dict[str, float]:
     period = float(run.config["controller"]["period"])
     ideal, late = (stiffest_wall(own_law, period, 0, 0.0, delay) for delay in (0, 1))
     bound, radius = ideal, np.nan
-    if run.config["plant"]["kind"] == "bullet":
+    if run.config["plant"]["kind"] != "kinematic":
         q = tuple(joint_columns(run.trace, "q")[0].tolist())
         radius = contact_radius(_loop(run.config, q))
         any_wall = {**run.config, "environment": {**run.config["environment"], "stiffness": 1.0}}

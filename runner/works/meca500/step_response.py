@@ -29,7 +29,7 @@ def step(run: Run) -> dict[str, Any]:
     joined = np.interp(times, clock(run), answer)
     expected, at_ticks = (_expected(run, own) for own in (times, clock(run)))
     error = float(np.abs(joined - expected).max() / np.abs(expected).max())
-    servos = run.config["plant"]["kind"] == "bullet"
+    servos = run.config["plant"]["kind"] != "kinematic"
     give = float(servo_compliance(run)[index, index] * law_of(run).stiffness[index]) if servos else 0.0
     return {
         "peak": quantity(1e3 * float(np.abs(joined).max()), "mm" if index < 3 else "mrad"),

@@ -1,4 +1,4 @@
-"""The wrist's sensor: PyBullet's joint reaction against the tool's rigid-body balance, and a Mini40's noise."""
+"""The wrist's sensor: the plant's joint reaction against the tool's rigid-body balance, and a Mini40's noise."""
 
 import numpy as np
 from scipy.linalg import solve_discrete_lyapunov

@@ -1,4 +1,4 @@
-"""How far a run on PyBullet is from the same one on the Runge-Kutta plant."""
+"""How far a run on a plant is from the same one on the Runge-Kutta plant."""
 
 from collections.abc import Callable, Mapping
 
