@@ -9,6 +9,8 @@ from study_sections import unfinished_texts, whatever_has_failed
 from thin_plans import make_runs
 from work_plans import chapter, chapter_files, conditions_that_never_fail, engines_stand_ins
 
+pytest.importorskip("pybullet", reason="PyBullet is not installed")
+
 from runner.commands.reproduce import _chosen, _Way
 from runner.reporting.figures import model_of
 from runner.reporting.findings import findings

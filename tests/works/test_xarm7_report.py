@@ -8,6 +8,7 @@ from engines import DEFAULT_PLANT
 from thin_plans import make_runs
 from work_plans import xarm7_studies
 
+from runner.engines import has_pybullet
 from runner.reporting import outline
 from runner.reporting.claim import Claim
 from runner.reporting.document import Curves, Notice, Picture, Playback, Section, Table, Text
@@ -111,9 +112,10 @@ def test_both_values_of_x_are_reached_with_room_at_every_joint(document):
 
 
 def test_the_findings_that_need_no_study_hold(document):
-    """These runs are those of the plan; the studies' runs take longer."""
+    """These runs are those of the plan; the studies' runs take longer. One is of two engines, PyBullet and MuJoCo."""
     held = [found for _, found in findings(document)]
-    assert [found.title for found in held if not found.holds] == []
+    fallen = [found.claim for found in held if not found.holds]
+    assert fallen == ([] if has_pybullet() else ["The engines agree, the schemes do not"])
     assert len(held) == 9
 
 
