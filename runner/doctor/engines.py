@@ -10,7 +10,7 @@ import numpy as np
 from runner.doctor.finding import Finding
 from runner.engines import has_pybullet
 from runner.errors import ConfigError
-from runner.plants.mujoco import Mujoco, MujocoConfig
+from runner.plants.mujoco import Mujoco
 from runner.robots.model import FloatArray, RobotModel, joint_names_of
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _SAMPLES = 1000
 _STEP = 1e-4  # s
 _AGREE = 1e-6  # of the largest entry: beyond it the engines simulate different arms
-_MUJOCO = MujocoConfig.model_construct(integrator="euler", least_inertia=1e-12)  # as in conf/; no more is asked of it
+_LEAST = 1e-12  # kg and kg m^2, of MuJoCo's moving links, as in conf/plant/mujoco.yaml
 _DIFFERENT = 0.01  # of the largest moment
 
 
@@ -47,7 +47,7 @@ def compare_engines(urdf: str, model: RobotModel, generator: np.random.Generator
     Where PyBullet is not installed a note says so.
     """
     states = _random_states(model, generator)
-    mujoco = _compare("MuJoCo", lambda: Mujoco(urdf, model, _MUJOCO, _STEP, 1), states, _added_by_mujoco(model))
+    mujoco = _compare("MuJoCo", lambda: Mujoco(urdf, model, _STEP, 1, "euler", _LEAST), states, _added_by_mujoco(model))
     if not has_pybullet():
         return [Finding("note", "engines", "PyBullet is not installed: not compared with Pinocchio"), *mujoco]
     from runner.plants.bullet import Bullet
@@ -69,7 +69,7 @@ def _random_states(model: RobotModel, generator: np.random.Generator) -> list[_S
 
 def _added_by_mujoco(model: RobotModel) -> float:
     """Return the most by which MuJoCo's least mass and inertia of each moving link change a mass matrix, in kg m^2."""
-    return model.nq * _MUJOCO.least_inertia * (1.0 + model.reach**2)
+    return model.nq * _LEAST * (1.0 + model.reach**2)
 
 
 def _compare(name: str, make: "Callable[[], Bullet | Mujoco]", states: Sequence[_State], added: float) -> list[Finding]:
@@ -96,7 +96,7 @@ def _compare(name: str, make: "Callable[[], Bullet | Mujoco]", states: Sequence[
         f"largest entry, the accelerations by {largest[1]:.1e}"
     )
     if added:
-        text += f"; {name} gives a moving link {_MUJOCO.least_inertia:g} kg and kg m^2 where it has less"
+        text += f"; {name} gives a moving link {_LEAST:g} kg and kg m^2 where it has less"
     if not beyond:
         return [Finding("note", "engines", text)]
     return [Finding("finding", "engines", text, "look at the links above: all engines must read the same arm")]

@@ -16,6 +16,7 @@ from runner.robots.robot import Robot
 from runner.robots.tool_link import TOOL_MOUNT
 
 IMPLICIT_CONTACT = True  # a wall's spring and damper act in each step, from the velocity at its end
+Integrator = Literal["euler", "implicitfast", "rk4"]
 _INTEGRATORS = {
     "euler": mujoco.mjtIntegrator.mjINT_EULER,
     "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
@@ -41,7 +42,7 @@ class MujocoConfig(TorquePlantConfig):
     """
 
     kind: Literal["mujoco"]
-    integrator: Literal["euler", "implicitfast", "rk4"]
+    integrator: Integrator
     in_place_of: Literal["bullet"] | None
     least_inertia: float = Field(ge=1e-12, le=1e-3)
 
@@ -52,20 +53,29 @@ class Mujoco:
     Args:
         urdf: The arm's URDF text.
         model: The model built from it, for gravity and the names of the joints.
-        config: Integrator and least inertia.
         step: Integration step, in s.
         steps_per_tick: Integration steps for which the torques of one tick are held.
+        integrator: See MujocoConfig.
+        least_inertia: Likewise, in kg and kg m^2.
 
     Raises:
         ConfigError: if MuJoCo cannot load the URDF.
     """
 
-    def __init__(self, urdf: str, model: RobotModel, config: MujocoConfig, step: float, steps_per_tick: int) -> None:
-        self._model = compiled(read_spec(urdf, config.least_inertia))
+    def __init__(
+        self,
+        urdf: str,
+        model: RobotModel,
+        step: float,
+        steps_per_tick: int,
+        integrator: Integrator,
+        least_inertia: float,
+    ) -> None:
+        self._model = compiled(read_spec(urdf, least_inertia))
         self._data = data = mujoco.MjData(self._model)
         self._steps_per_tick = steps_per_tick
         options = self._model.opt
-        options.timestep, options.integrator, options.tolerance = step, _INTEGRATORS[config.integrator], _TOLERANCE
+        options.timestep, options.integrator, options.tolerance = step, _INTEGRATORS[integrator], _TOLERANCE
         # What diverges is told by the loop, not begun anew; there is nothing to touch until there is a wall.
         options.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET | mujoco.mjtDisableBit.mjDSBL_CONTACT
         self._set_names(model.joint_names)
@@ -153,8 +163,8 @@ CONFIG = MujocoConfig
 
 def build(config: MujocoConfig, robot: Robot, step: float, steps_per_tick: int) -> Plant:
     """Make the plant that a config describes."""
-    tick = step * steps_per_tick
-    return assemble_plant(config, robot, tick, lambda urdf, model: Mujoco(urdf, model, config, step, steps_per_tick))
+    tick, chosen = step * steps_per_tick, (config.integrator, config.least_inertia)
+    return assemble_plant(config, robot, tick, lambda urdf, model: Mujoco(urdf, model, step, steps_per_tick, *chosen))
 
 
 def default_step(tick: float, stages: int) -> float:

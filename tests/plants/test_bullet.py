@@ -274,20 +274,3 @@ def test_the_mass_matrix_counts_joints_as_the_model_does():
             np.testing.assert_allclose(plant.mass_matrix(q), arm.model.mass_matrix(q), atol=1e-10)
     finally:
         plant.close()
-
-
-@pytest.mark.parametrize("steps", [1, 4, 10])
-def test_a_wall_pushes_by_stiffness_times_depth_whatever_the_steps_of_a_tick(closed_loop, steps):
-    closed = closed_loop(
-        "robot=meca500",
-        "controller=operational_space",
-        "environment=wall",
-        "environment.distance=-0.001",
-        "environment.stiffness=3000",
-        "environment.damping=0",
-        f"plant.step={1e-4 / steps}",
-        "controller.period=1e-4",
-    )
-    closed.plant.reset(closed.q_start, np.zeros(6))
-    closed.plant.advance(closed.robot.model.gravity_torque(closed.q_start))
-    assert closed.plant.contact_wrench()[0] == pytest.approx(-3.0, rel=0.01)  # it has moved by then

@@ -216,3 +216,16 @@ def test_a_tool_at_rest_on_a_wall_is_held_by_stiffness_times_depth(simulated, ch
     assert force[0] < -0.9
     assert np.abs(force[1:3]).max() < 1e-9
     assert np.abs(trace.dq[-1]).max() < 1e-3
+
+
+@pytest.mark.parametrize("steps", [1, 4, 10])
+@pytest.mark.parametrize("name", ["bullet", "mujoco", "mujoco implicitfast", "mujoco rk4"])
+def test_a_wall_pushes_by_stiffness_times_depth_whatever_the_steps_of_a_tick(closed_loop, name, steps):
+    wall = ("environment=wall", "environment.distance=-0.001", "environment.stiffness=3000", "environment.damping=0")
+    timing = (f"plant.step={1e-4 / steps}", "controller.period=1e-4")
+    closed = closed_loop("robot=meca500", "controller=operational_space", *ENGINES[name].split(), *wall, *timing)
+    closed.plant.reset(closed.q_start, np.zeros(6))
+    closed.plant.advance(closed.robot.model.gravity_torque(closed.q_start))
+    wrench = closed.plant.contact_wrench()
+    assert wrench[0] == pytest.approx(-3.0, rel=0.01)  # it has moved by then
+    np.testing.assert_allclose(wrench[1:3], 0.0, atol=1e-12 if name != "bullet" else 1e-6)  # its solver leaves 2e-7 N

@@ -21,19 +21,13 @@ def pendulum(across=0.0, along=0.0, dynamics=""):
     return POINT.format(across=across, along=along, dynamics=dynamics)
 
 
-@pytest.fixture
-def make(checked_config):
-    """Make MuJoCo plants; the model may be of another text than MuJoCo reads."""
-
-    def make(urdf, tip, step=1e-4, steps=1, model=None, **changed):
-        config = checked_config("robot=macro", "plant=mujoco").plant.model_copy(update=changed)
-        return Mujoco(urdf, model or RobotModel(urdf, tip), config, step, steps)
-
-    return make
+def make(urdf, tip, step=1e-4, steps=1, model=None, integrator="euler", least_inertia=1e-12):
+    """Make MuJoCo's arm; the model may be of another text than MuJoCo reads."""
+    return Mujoco(urdf, model or RobotModel(urdf, tip), step, steps, integrator, least_inertia)
 
 
 @pytest.mark.parametrize("robot", ["macro", "mini", "combined", "xarm7", "meca500", *strangers.STRANGERS])
-def test_masses_are_those_of_the_model(make, checked_config, robot):
+def test_masses_are_those_of_the_model(checked_config, robot):
     config = strangers.config(robot) if robot in strangers.STRANGERS else checked_config(f"robot={robot}")
     arm, draw = config.arm, np.random.default_rng(0)
     plant = make(arm.urdf, "", model=arm.model)
@@ -44,7 +38,7 @@ def test_masses_are_those_of_the_model(make, checked_config, robot):
 
 
 @pytest.mark.parametrize("floor", [1e-12, 1e-8, 1e-4])
-def test_a_link_without_inertia_gets_the_least_one_and_one_with_more_keeps_its_own(make, floor):
+def test_a_link_without_inertia_gets_the_least_one_and_one_with_more_keeps_its_own(floor):
     assert make(pendulum(), "rod", least_inertia=floor).mass_matrix(np.zeros(1))[0, 0] == pytest.approx(
         2.0 * 0.5**2 + floor, rel=1e-15
     )
@@ -53,12 +47,12 @@ def test_a_link_without_inertia_gets_the_least_one_and_one_with_more_keeps_its_o
 
 
 @pytest.mark.parametrize("along", [0.6, 0.6 * (1.0 + 1e-15), 0.0])
-def test_discs_and_rods_are_taken_whatever_rounding_made_of_their_moments(make, along):
+def test_discs_and_rods_are_taken_whatever_rounding_made_of_their_moments(along):
     across = 0.3
     assert make(pendulum(across, along), "rod").mass_matrix(np.zeros(1))[0, 0] == pytest.approx(0.5 + across)
 
 
-def test_damping_and_friction_of_the_file_are_left_out_as_in_the_other_engines(make):
+def test_damping_and_friction_of_the_file_are_left_out_as_in_the_other_engines():
     plant = make(pendulum(0.1, 0.1, '<dynamics damping="5" friction="3"/>'), "rod", step=1e-3)
     plant.set_gravity(np.zeros(3))
     plant.reset(np.zeros(1), np.array([20.0]))
@@ -69,7 +63,7 @@ def test_damping_and_friction_of_the_file_are_left_out_as_in_the_other_engines(m
 
 
 @pytest.mark.parametrize("speed", [1e3, 1e9])
-def test_no_speed_is_clamped_and_nothing_is_begun_anew(make, speed, capfd, tmp_path, monkeypatch):
+def test_no_speed_is_clamped_and_nothing_is_begun_anew(speed, capfd, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     plant = make(pendulum(0.1, 0.1), "rod", step=1e-3)
     plant.set_gravity(np.zeros(3))
@@ -82,13 +76,13 @@ def test_no_speed_is_clamped_and_nothing_is_begun_anew(make, speed, capfd, tmp_p
     assert not list(tmp_path.iterdir())
 
 
-def test_what_a_file_tells_mujoco_to_do_is_left_out(make):
+def test_what_a_file_tells_mujoco_to_do_is_left_out():
     told = '<mujoco><compiler settotalmass="50"/><option integrator="RK4"/></mujoco></robot>'
     plain, telling = (make(text, "rod") for text in (pendulum(0.1), pendulum(0.1).replace("</robot>", told)))
     np.testing.assert_array_equal(plain.mass_matrix(np.zeros(1)), telling.mass_matrix(np.zeros(1)))
 
 
-def test_an_urdf_that_mujoco_refuses_is_an_error_of_one_line(make):
+def test_an_urdf_that_mujoco_refuses_is_an_error_of_one_line():
     with pytest.raises(
         ConfigError,
         match=r"robot\.urdf: MuJoCo does not take it as it is: Error: axis too small in joint Element name 'q1', id 0$",
@@ -96,40 +90,18 @@ def test_an_urdf_that_mujoco_refuses_is_an_error_of_one_line(make):
         make(pendulum().replace('axis xyz="0 1 0"', 'axis xyz="0 0 0"'), "rod", model=RobotModel(pendulum(), "rod"))
 
 
-def test_joints_in_another_order_are_refused(make):
+def test_joints_in_another_order_are_refused():
     named = RobotModel(pendulum().replace('"q1"', '"hinge"'), "rod")
     with pytest.raises(ConfigError, match=r"MuJoCo has the joints q1, not hinge"):
         make(pendulum(), "rod", model=named)
 
 
-def test_it_makes_contacts_and_feels_tools(make):
+def test_it_makes_contacts_and_feels_tools():
     plant = make(pendulum(), "rod")
     assert isinstance(plant, ContactPlant)
     assert isinstance(plant, ToolReactionPlant)
     assert plant.tool_reaction() is None
     assert not plant.contact_wrench().any()
-
-
-@pytest.mark.parametrize("integrator", ["euler", "implicitfast", "rk4"])
-@pytest.mark.parametrize("steps", [1, 4, 10])
-def test_a_wall_pushes_by_stiffness_times_depth_whatever_the_steps_of_a_tick(closed_loop, integrator, steps):
-    closed = closed_loop(
-        "robot=meca500",
-        "controller=operational_space",
-        "plant=mujoco",
-        f"plant.integrator={integrator}",
-        "environment=wall",
-        "environment.distance=-0.001",
-        "environment.stiffness=3000",
-        "environment.damping=0",
-        f"plant.step={1e-4 / steps}",
-        "controller.period=1e-4",
-    )
-    closed.plant.reset(closed.q_start, np.zeros(6))
-    closed.plant.advance(closed.robot.model.gravity_torque(closed.q_start))
-    wrench = closed.plant.contact_wrench()
-    assert wrench[0] == pytest.approx(-3.0, rel=0.01)  # it has moved by then
-    np.testing.assert_allclose(wrench[1:3], 0.0, atol=1e-12)
 
 
 def test_build_and_default_step(checked_config, macro_urdf, one_stage):

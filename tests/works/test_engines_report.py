@@ -60,7 +60,9 @@ def test_a_changed_arm_is_found_to_be_another(runs: dict[str, Run]) -> None:
     run = runs["open/planar/MuJoCo Euler/0.001"]
     heavier = run.urdf.replace('<mass value="1"', '<mass value="1.001"', 1)
     assert heavier != run.urdf
-    off = side_by_side.difference(model_of(run), side_by_side.Mujoco(heavier, model_of(run), _config(run), 1e-3, 1))
+    least = run.config["plant"]["least_inertia"]
+    other = side_by_side.Mujoco(heavier, model_of(run), 1e-3, 1, "euler", least)
+    off = side_by_side.difference(model_of(run), other)
     assert min(off.mass, off.acceleration, off.torque) > 1e-5
     own = side_by_side.difference(model_of(run), side_by_side.mujoco_of(run))
     assert max(own.mass, own.acceleration, own.torque) < 1e-12
@@ -82,7 +84,3 @@ def test_every_finding_holds_with_the_whole_runs(shared_store: Path) -> None:
     held = [found for _, found in findings(WORK.document(make_runs(shared_store, jobs, None, WORK.config_dirs), {}))]
     assert len(held) == 11
     assert [found.text for found in held if not found.holds] == []
-
-
-def _config(run: Run) -> side_by_side.MujocoConfig:
-    return side_by_side.MujocoConfig.model_validate(run.config["plant"])

@@ -6,7 +6,7 @@ import numpy as np
 import pinocchio as pin
 
 from runner.plants.bullet import Bullet
-from runner.plants.mujoco import Mujoco, MujocoConfig
+from runner.plants.mujoco import Mujoco
 from runner.plants.plant import FloatArray
 from runner.reporting.figures import model_of
 from runner.robots import RobotModel
@@ -41,8 +41,7 @@ def bullet_of(run: Run) -> Bullet:
 
 def mujoco_of(run: Run) -> Mujoco:
     """Return the arm of a run on MuJoCo in MuJoCo, with the run's least inertia, by Euler's scheme."""
-    config = MujocoConfig.model_validate({**run.config["plant"], "integrator": "euler"})
-    return Mujoco(run.urdf, model_of(run), config, STEP, 1)
+    return Mujoco(run.urdf, model_of(run), STEP, 1, "euler", run.config["plant"]["least_inertia"])
 
 
 def random_states(model: RobotModel) -> list[State]:
