@@ -12,8 +12,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from runner.reporting.words import in_words
-
 PAGE = Path(__file__).resolve().parents[1] / "README.md"
 _TABLE = re.compile(r"(<!-- claims of (\w+): ([\d, ]+) -->\n)((?:\|.*\n)+)")
 
@@ -52,7 +50,7 @@ def made_from(page: str, works: Mapping[str, Mapping[str, Any]]) -> str:
 def _lines(verdicts: Sequence[Verdict]) -> list[str]:
     """Return the lines of a table of claims; one without a printed value has no column for it."""
     printed = ["printed"] if any(verdict["printed"] for verdict in verdicts) else []
-    header = ["claim", *printed, *(in_words(ours["preset"]) or "found" for ours in verdicts[0]["ours"])]
+    header = ["claim", *printed, *(ours["way"] or "found" for ours in verdicts[0]["ours"])]
     rows: list[list[str]] = []
     for verdict in verdicts:
         found = [f"{ours['verdict']}: {ours['measured']}" for ours in verdict["ours"]]

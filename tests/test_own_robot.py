@@ -97,7 +97,7 @@ def test_a_report_with_the_motion_is_made_of_the_sweep(place, sweep):
     assert (ending.returncode, without_caveats(ending.stderr)) == (0, "")
     page = (place[0] / ending.stdout.splitlines()[-1] / "report.html").read_text()
     assert "lamp" in page
-    assert page.count('<figure class="playback">') == 2
+    assert page.count('<figure class="playback"') == 2
 
 
 @pytest.mark.parametrize(

@@ -10,12 +10,14 @@ from bench.make_readme_tables import PAGE, made_from
 
 
 def verdict(number, printed="9 mm", **ours):
-    found = [{"preset": preset, "measured": measured, "verdict": "holds"} for preset, measured in ours.items()]
+    found = [
+        {"preset": "sound", "way": way, "measured": measured, "verdict": "holds"} for way, measured in ours.items()
+    ]
     return {"claim": number, "statement": f"Statement {number}", "printed": printed, "ours": found}
 
 
 WORKS = {
-    "thesis": {"verdicts": [verdict("1", sound="8 mm"), verdict("2", sound="7 | mm"), verdict("3", sound="6 mm")]},
+    "thesis": {"verdicts": [verdict("1", full="8 mm"), verdict("2", full="7 | mm"), verdict("3", full="6 mm")]},
     "meca500": {"verdicts": [verdict("1", "", **{"": "within 1 %"})]},
 }
 STALE = """Before.
@@ -37,7 +39,7 @@ After.
 def test_rows_are_made_in_the_order_that_the_page_names():
     assert made_from(STALE, WORKS).splitlines()[2:12] == [
         "<!-- claims of thesis: 3, 2 -->",
-        "| claim | printed | full equations |",
+        "| claim | printed | full |",
         "|---|---|---|",
         "| Statement 3 | 9 mm | holds: 6 mm |",
         r"| Statement 2 | 9 mm | holds: 7 \| mm |",

@@ -134,7 +134,11 @@ def compare_readings(urdf: Path) -> list[Finding]:
             f"PyBullet makes the inertia of {len(off)} links from their shapes unless it is told not to; that of "
             f"'{worst}' is then off by {100.0 * off[worst]:.0f} %"
         )
-        findings.append(Finding("note", "inertia from shapes", text, "the runner tells it to take the file's"))
+        findings.append(
+            Finding(
+                "note", "inertia from shapes", text, "none needed: the runner makes PyBullet take the file's inertia"
+            )
+        )
     findings += [Finding("note", "PyBullet", f"it prints while it loads the file: {line}") for line in said.said[:10]]
     text = "PyBullet damps bodies by 0.04 1/s of their speed unless it is told not to"
-    return [*findings, Finding("note", "default damping", text, "the runner tells it")]
+    return [*findings, Finding("note", "default damping", text, "none needed: the runner sets it to zero")]

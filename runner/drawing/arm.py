@@ -49,7 +49,7 @@ def arm_motion(
         color = _SHADES(number / max(1, len(chains) - 1))
         flat = camera.project(chain)
         axes.plot(*flat.T, color=color, lw=3, solid_capstyle="round", solid_joinstyle="round", zorder=2 + 0.1 * number,
-                  label=f"{times[number]:.3g} s")  # fmt: skip
+                  label=f"{times[number]:.3g} s" if len(chains) > 1 else None)  # fmt: skip
         axes.plot(*flat.T, "o", ms=4, mfc="white", mec=color, mew=1.1, zorder=2.05 + 0.1 * number)
     if path is not None:
         shadow = np.column_stack([path[:, :2], np.full(len(path), floor)])
@@ -59,7 +59,8 @@ def arm_motion(
         axes.plot(*camera.project(desired).T, color=INK, lw=1.0, ls=(0, (4, 2)), zorder=5.5, label="desired path")
     if goal is not None:
         axes.plot(*camera.project(goal), "*", ms=11, mfc=_GOAL, mec="white", mew=0.7, zorder=6, label="goal", ls="none")
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=7.5, handlelength=1.8)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=7.5, handlelength=1.8)
     return figure
 
 

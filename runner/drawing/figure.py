@@ -24,6 +24,7 @@ class Series:
         color: Index into the palette; None takes the next one. Curves that belong together share it.
         hints: What the reader is told of each point when pointing at it, one for each, or none.
         runs: Hash of the run behind each point, one for each, or none.
+        label: What stands beside its last point, in place of a legend entry.
     """
 
     name: str
@@ -35,6 +36,12 @@ class Series:
     color: int | None = None
     hints: Sequence[str] = ()
     runs: Sequence[str] = ()
+    label: str = ""
+
+
+def upright(series: Series) -> bool:
+    """Tell whether a curve is an upright line."""
+    return bool(series.x.size) and bool((series.x == series.x[0]).all())
 
 
 @dataclass(frozen=True)
@@ -53,6 +60,14 @@ class Panel:
     x_range: tuple[float, float] | None = None
     y_range: tuple[float, float] | None = None
     x_names: Sequence[str] = ()
+
+
+def shares_legend(panels: Sequence[Panel]) -> bool:
+    """Tell whether one legend serves several panels: their named curves have the same names, styles and colours."""
+    entries = [
+        [(series.name, series.style, series.color) for series in panel.series if series.name] for panel in panels
+    ]
+    return len(panels) > 1 and bool(entries[0]) and all(each == entries[0] for each in entries)
 
 
 @dataclass(frozen=True)

@@ -33,6 +33,26 @@ def thin(series: Series, points: int = POINTS) -> Series:
     return replace(series, x=series.x[kept], y=series.y[kept], low=low, high=high, hints=hints, runs=runs)
 
 
+def envelope(series: Series, samples: int) -> Series:
+    """Return a curve as the mean of every so many samples, with the least and the greatest of them as its band.
+
+    So a curve that jumps at each sample is seen as wide as it jumps, and a smooth one stays a line.
+
+    Args:
+        series: The curve, arrays of shape (T,); where T is no multiple, the last group is a shorter one.
+        samples: How many samples make one point.
+    """
+    starts = np.arange(0, series.x.size, samples)
+    counts = np.diff(np.append(starts, series.x.size))
+    return replace(
+        series,
+        x=np.add.reduceat(series.x, starts) / counts,
+        y=np.add.reduceat(series.y, starts) / counts,
+        low=np.minimum.reduceat(series.y, starts),
+        high=np.maximum.reduceat(series.y, starts),
+    )
+
+
 def spaced(count: int, most: int) -> list[int]:
     """Return at most `most` of the indices below `count`, evenly spaced, the first and the last among them."""
     return [int(place) for place in np.linspace(0, count - 1, min(count, most)).round()]

@@ -1,5 +1,6 @@
 """Arithmetic as a tree: what the audit parses and evaluates, and what reports draw."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 
@@ -61,18 +62,41 @@ class Sum:
 Node = Number | Name | Call | Power | Product | Sum
 
 
+def parts(node: Node) -> Sequence[Node]:
+    """Return what an expression is made of directly."""
+    match node:
+        case Number() | Name():
+            return ()
+        case Call():
+            return node.arguments
+        case Power():
+            return (node.base, node.exponent)
+        case Product():
+            return [factor for _, factor in node.factors]
+        case Sum():
+            return [term for _, term in node.terms]
+
+
+def symbols(node: Node) -> Iterator[str]:
+    """Yield the names, numbers and functions of an expression, in the order in which they stand."""
+    match node:
+        case Number():
+            yield node.text
+        case Name():
+            yield node.name
+        case Call():
+            yield node.function
+    for part in parts(node):
+        yield from symbols(part)
+
+
+def size(node: Node) -> int:
+    """Return how many symbols an expression has."""
+    return sum(1 for _ in symbols(node))
+
+
 def names(node: Node) -> list[Name]:
     """Return the symbols of an expression in the order in which they stand."""
-    match node:
-        case Name():
-            return [node]
-        case Number():
-            return []
-        case Power():
-            return names(node.base) + names(node.exponent)
-        case Call():
-            return [name for argument in node.arguments for name in names(argument)]
-        case Product():
-            return [name for _, factor in node.factors for name in names(factor)]
-        case Sum():
-            return [name for _, term in node.terms for name in names(term)]
+    if isinstance(node, Name):
+        return [node]
+    return [name for part in parts(node) for name in names(part)]

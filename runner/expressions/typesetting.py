@@ -1,6 +1,7 @@
 """Expressions as formulas in Typst mathematics: products without signs, short quotients as fractions."""
 
 import re
+from collections.abc import Sequence, Set
 
 from runner.expressions.tree import Call, Name, Node, Number, Power, Product, Sum
 
@@ -26,72 +27,120 @@ _GREEK = {
 }
 _FUNCTIONS = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": 'op("atan2")', "abs": 'op("abs")'}
 
+_DIFFERENCE = re.compile(r"\d(_\d)+")
+_WORD = re.compile(r"[^\W\d]\w*'*")
+_LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+
 _SHORT = 160  # characters of Typst code that still make a readable fraction
 
 
 def symbol(name: str) -> tuple[str, str]:
     """Return a symbol's letters, Greek where it is spelt so, with its primes; and its subscript, or an empty text.
 
-    Digits at the end are a subscript, as in s12 and theta1, and so is what follows an underscore.
+    Digits at the end are a subscript, as in s12 and theta1, and so is what follows an underscore; s1_2 is the sine of
+    a difference.
     """
     match = _NAME.fullmatch(name)
     if match is None:
         return name, ""
     letters, digits, suffix, primes = match.groups()
     subscript = digits or suffix or ""
+    if letters.lower() in ("s", "c") and _DIFFERENCE.fullmatch(subscript):
+        return letters, f"({subscript.replace('_', '−')})"
     return _GREEK.get(letters, letters) + "′" * len(primes), _GREEK.get(subscript, subscript).replace("_", ",")
 
 
-def typeset(node: Node) -> str:
+def linear(text: str) -> str:
+    """Return the text of an expression with Greek letters, digits as subscripts, and products without signs."""
+    return _WORD.sub(_lowered, text).replace("*", " ")
+
+
+def _lowered(match: re.Match[str]) -> str:
+    letters, subscript = symbol(match[0])
+    lowered = subscript.translate(_LOWERED)
+    return f"{letters}{lowered if subscript.isdigit() or not subscript else f'_{subscript}'}"
+
+
+def matrix(rows: Sequence[Sequence[Node]], marked: Set[Node] = frozenset()) -> str:
+    """Return expressions in rows and columns as a matrix in Typst mathematics."""
+    lines = [", ".join(f"display({typeset(cell, marked)})" for cell in row) for row in rows]
+    return f'mat(delim: "[", {"; ".join(lines)})'
+
+
+def typeset(node: Node, marked: Set[Node] = frozenset()) -> str:
     """Return an expression in Typst mathematics.
 
     Brackets are plain characters, which a long line can break between, and do not grow with what they hold.
+
+    Args:
+        node: The expression.
+        marked: What of it is set in `differs(...)`.
     """
-    match node:
-        case Number():
-            return node.text
-        case Name():
-            letters, subscript = symbol(node.name)
-            return f'italic("{letters}")' + (f'_"{subscript}"' if subscript else "")
-        case Call():
-            arguments = ", ".join(typeset(argument) for argument in node.arguments)
-            if node.function == "sqrt":
-                return f"sqrt({arguments})"
-            return f"{_FUNCTIONS.get(node.function, node.function)} {_bracketed(arguments)}"
-        case Power():
-            base = typeset(node.base)
-            grouped = not isinstance(node.base, Name | Number) and not base.startswith("sqrt")
-            return f"{f'({base})' if grouped else base}^({typeset(node.exponent)})"
-        case Product():
-            return _product(node)
-        case Sum():
-            return _sum(node)
+    return _Typesetter(marked).written(node)
 
 
-def _product(node: Product) -> str:
-    (_, first), (over, second) = node.factors[0], node.factors[-1]
-    if over and len(node.factors) == 2:
-        above, below = typeset(first), typeset(second)
-        if len(above + below) < _SHORT:
-            return f"({above}) / ({below})"
-    text = _factor(first)
-    for over, factor in node.factors[1:]:
-        sign = " \\/ " if over else " dot " if isinstance(factor, Number) else " "
-        text += sign + (_bracketed(typeset(factor)) if over and isinstance(factor, Product) else _factor(factor))
-    return text
+class _Typesetter:
+    """Writes one expression.
 
+    Args:
+        marked: What of it is marked.
+    """
 
-def _sum(node: Sum) -> str:
-    text = ""
-    for place, (minus, term) in enumerate(node.terms):
-        sign = "- " if minus else "+ " if place else ""
-        text += (" " if place else "") + sign + _factor(term)
-    return text
+    def __init__(self, marked: Set[Node]) -> None:
+        self._marked = marked
 
+    def written(self, node: Node) -> str:
+        return self._noted(node, self._plain(node))
 
-def _factor(node: Node) -> str:
-    return _bracketed(typeset(node)) if isinstance(node, Sum) else typeset(node)
+    def _noted(self, node: Node, text: str) -> str:
+        return f"differs({text})" if self._marked and node in self._marked else text
+
+    def _plain(self, node: Node) -> str:
+        match node:
+            case Number():
+                return node.text
+            case Name():
+                letters, subscript = symbol(node.name)
+                return f'italic("{letters}")' + (f'_"{subscript}"' if subscript else "")
+            case Call():
+                arguments = "\\, ".join(self.written(argument) for argument in node.arguments)
+                if node.function == "sqrt":
+                    return f"sqrt({arguments})"
+                return f"{_FUNCTIONS.get(node.function, node.function)} {_bracketed(arguments)}"
+            case Power():
+                base = self.written(node.base)
+                grouped = not isinstance(node.base, Name | Number) and not base.startswith("sqrt")
+                return f"{f'({base})' if grouped else base}^({self.written(node.exponent)})"
+            case Product():
+                return self._product(node)
+            case Sum():
+                return self._sum(node)
+
+    def _product(self, node: Product) -> str:
+        (_, first), (over, second) = node.factors[0], node.factors[-1]
+        if over and len(node.factors) == 2:
+            above, below = self.written(first), self.written(second)
+            if len(above + below) < _SHORT:
+                return f"({above}) / ({below})"
+        text = self._factor(first)
+        for over, factor in node.factors[1:]:
+            sign = " \\/ " if over else " dot " if isinstance(factor, Number) else " "
+            grouped = over and isinstance(factor, Product)
+            text += sign + (_bracketed(self.written(factor)) if grouped else self._factor(factor))
+        return text
+
+    def _sum(self, node: Sum) -> str:
+        text = ""
+        for place, (minus, term) in enumerate(node.terms):
+            sign = "- " if minus else "+ " if place else ""
+            factor = _bracketed(self._plain(term)) if isinstance(term, Sum) else self._plain(term)
+            text += (" " if place else "") + self._noted(term, sign + factor)
+        return text
+
+    def _factor(self, node: Node) -> str:
+        return self._noted(node, _bracketed(self._plain(node))) if isinstance(node, Sum) else self.written(node)
 
 
 def _bracketed(text: str) -> str:
-    return f"\\({text}\\)"
+    space = " " if text.startswith("(") else ""  # or Typst takes both brackets for one
+    return f"\\({space}{text}\\)"

@@ -11,8 +11,7 @@ from runner.data_file import read_data
 from runner.paths import works_dir
 from runner.registry import StrictModel
 from runner.reporting import outline
-from runner.reporting.claim import Claim
-from runner.reporting.document import Formula, Items, Notice, Provenance, Section, Table, Text
+from runner.reporting.document import Code, Formula, Items, Notice, Provenance, Section, Table, Text
 
 _FILE = "checklist.yaml"
 _MISSING, _NOWHERE = "missing", "–"
@@ -127,6 +126,6 @@ def _places(sections: Sequence[Section]) -> tuple[dict[str, str], dict[str, str]
         place = f"§{chapter.number}"
         titles[chapter.section.title] = place
         for block in chapter.section.blocks:
-            if not isinstance(block, Text | Items | Notice | Formula | Claim | Provenance) and block.origin.number:
+            if not isinstance(block, Text | Items | Code | Notice | Formula | Provenance) and block.origin.number:
                 numbers.setdefault(block.origin.number.lower(), place)
     return titles, numbers

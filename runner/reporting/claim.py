@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Literal
 
 from runner import claims
 
@@ -42,7 +42,6 @@ class Claim:
         command: The command that makes the runs behind it.
     """
 
-    block: ClassVar[str] = "claim"
     number: str
     statement: str
     place: str

@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from runner.claims import FACTOR, Bound, PublishedClaim, PublishedStatement, Verdict, judge, judge_motion
 from runner.quantities import quantity, ranged, spread
 from runner.reporting.claim import Claim, ClaimResult, EquationVerdict, StatementVerdict
-from runner.reporting.document import Table
 from runner.reporting.figures import columns
 from runner.reporting.job import MissingError
 from runner.reporting.run_values import median
@@ -18,10 +17,15 @@ RULE = (
     "motion than the stated one."
 )
 """What the words of a verdict mean."""
+WORDS = (
+    f"holds: within a factor of {FACTOR:g} of the printed number; better: smaller than that; worse: larger, or without "
+    "a value; contradicts itself: another number of the source speaks against it."
+)
+"""The same in one line."""
 _DIGITS = 4  # at least as many as a source prints
 
 
-def claim_blocks(claims: Sequence[PublishedClaim], runs: Mapping[str, Run], presets: Mapping[str, str]) -> list[Claim]:
+def judged_claims(claims: Sequence[PublishedClaim], runs: Mapping[str, Run], presets: Mapping[str, str]) -> list[Claim]:
     """Return each claim with what the runs say of it, under each preset.
 
     Args:
@@ -35,7 +39,7 @@ def claim_blocks(claims: Sequence[PublishedClaim], runs: Mapping[str, Run], pres
     return [_Claimed(claim, claims, runs, presets).block() for claim in claims]
 
 
-def statement_blocks(
+def judged_statements(
     statements: Sequence[PublishedStatement], judged: Mapping[str, tuple[StatementVerdict | EquationVerdict, str]]
 ) -> list[Claim]:
     """Return each statement with its verdict, numbered in order.
@@ -54,12 +58,6 @@ def statement_blocks(
         for number, each in enumerate(statements, start=1)
         for verdict, measured in [judged[each.name]]
     ]
-
-
-def verdict_table(caption: str, blocks: Sequence[Claim], presets: Mapping[str, str]) -> Table:
-    """Return the claims as a table: a row for each, a column for each preset."""
-    rows = [[c.number, c.statement, c.printed, *(f"{f.measured}: {f.verdict}" for f in c.findings)] for c in blocks]
-    return Table(caption, ["claim", "statement", "printed", *(presets.values() or ("simulated",))], rows)
 
 
 def run_name(experiment: str, preset: str) -> str:

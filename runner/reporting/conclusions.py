@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from runner.reporting.claim import Claim
-from runner.reporting.document import Document, Equations
+from runner.reporting.document import Document, Equations, Verdicts
 from runner.reporting.expected_caveats import ExpectedCaveat, caveats_as_data
 from runner.reporting.findings import findings
 from runner.reporting.outline import blocks
@@ -36,7 +36,7 @@ def conclusions(
     """
     return {
         "title": document.title,
-        "verdicts": [_verdict(block) for block in blocks(document) if isinstance(block, Claim)],
+        "verdicts": [_verdict(row) for block in blocks(document) if isinstance(block, Verdicts) for row in block.rows],
         "findings": [
             {
                 "section": number,
@@ -61,7 +61,8 @@ def conclusions(
 
 def _verdict(claim: Claim) -> dict[str, object]:
     ours: Sequence[dict[str, str]] = [
-        {"preset": found.preset, "measured": found.measured, "verdict": found.verdict} for found in claim.findings
+        {"preset": found.preset, "way": found.words, "measured": found.measured, "verdict": found.verdict}
+        for found in claim.findings
     ]
     return {"claim": claim.number, "statement": claim.statement, "printed": claim.printed, "ours": ours}
 

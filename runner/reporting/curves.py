@@ -3,6 +3,7 @@
 import base64
 import html
 import math
+import re
 import textwrap
 from collections.abc import Sequence
 from typing import Any
@@ -10,7 +11,10 @@ from typing import Any
 import numpy as np
 
 from runner.drawing import palette
+from runner.drawing.figure import shares_legend, upright
 from runner.drawing.thinning import band, thin, usable
+from runner.drawing.ticks import mark
+from runner.drawing.units import in_readable_units
 from runner.reporting.document import Curves, FloatArray, Panel, Series
 from runner.texts import plain
 
@@ -20,11 +24,20 @@ _MODES = {"line": "lines", "dashed": "lines", "dotted": "lines", "points": "mark
 _DASHES = {"dashed": "dash", "dotted": "dot"}
 _LEGEND_WIDTH, _TITLE_WIDTH = 40, 45
 _MOST_NAMES = 16
+_FEW_DECADES = 2
+_UNIT = re.compile(r"\(([^(),]+)\)$")
 
 
 def plotly_spec(curves: Curves) -> list[Json]:
-    """Return what the page's script hands to Plotly: for each panel traces, palette indices and layout."""
-    return [_panel(panel) for panel in curves.panels]
+    """Return what the page's script hands to Plotly: for each panel traces, palette indices and layout.
+
+    Where one legend serves all panels, it stands below the first of the last row, and what it hides is hidden in all.
+    """
+    shared, panels = shares_legend(curves.panels), in_readable_units(curves.panels, curves.columns)
+    below = (len(panels) - 1) // curves.columns * curves.columns
+    return [
+        _panel(panel) | {"together": shared, "legend": not shared or at == below} for at, panel in enumerate(panels)
+    ]
 
 
 def neutral(text: str) -> str:
@@ -37,7 +50,7 @@ def _panel(panel: Panel) -> Json:
     traces: list[Json] = []
     colors: list[int] = []
     for number, (series, color) in enumerate(zip(panel.series, chosen, strict=True)):
-        drawn = [*_band(series, number), _trace(series, number)]
+        drawn = [*_band(series, number), _trace(series, number) | _hover(panel, series)]
         traces += drawn
         colors += [color] * len(drawn)
     edges = [edge for series in panel.series for edge in (series.low, series.high) if edge is not None]
@@ -66,7 +79,16 @@ def named_places(names: Sequence[str]) -> Json:
 def _trace(series: Series, number: int) -> Json:
     thinned = thin(series)
     name = plain(series.name).strip()
-    pointed: Json = {}
+    pointed: Json = {"zorder": 1} if series.style in _DASHES else {}  # so that it is seen on a curve without breaks
+    if series.label:
+        texts = [*[""] * (thinned.x.size - 1), neutral(series.label)]
+        pointed |= {
+            "mode": "lines+text",
+            "cliponaxis": False,
+            "text": texts,
+            "textposition": "top right" if upright(series) else "top left",
+            "textfont": {"size": 10},
+        }
     if series.hints:
         pointed |= {"text": [neutral(hint) for hint in thinned.hints], "hoverinfo": "text"}
     if series.runs:
@@ -83,6 +105,22 @@ def _trace(series: Series, number: int) -> Json:
         "y": _typed(thinned.y),
         **pointed,
     }
+
+
+def _hover(panel: Panel, series: Series) -> Json:
+    """Return what the pointer tells of a point without a hint: its numbers with their units."""
+    if series.hints:
+        return {}
+    y = f"%{{y:.4~g}}{_unit(panel.y_label)}"
+    if _compared(series):
+        return {"hovertemplate": y}  # x stands above all curves
+    return {"hovertemplate": f"%{{x:.4~g}}{_unit(panel.x_label)}, {y}"}
+
+
+def _unit(label: str) -> str:
+    """Return the unit at the end of an axis' label, after a space; nothing where there is none."""
+    found = _UNIT.search(plain(label))
+    return f" {neutral(found[1])}" if found else ""
 
 
 def _band(series: Series, number: int) -> list[Json]:
@@ -110,19 +148,22 @@ def _axis(label: str, log: bool, limits: tuple[float, float] | None, values: lis
     shown = limits if limits is not None and usable(limits, log) else None
     if shown is not None:
         axis["range"] = [math.log10(limit) if log else float(limit) for limit in shown]
-    decades = _decades(shown, values)
-    if log and decades > 1:
-        axis["dtick"] = math.ceil(decades / 10)
-    return axis
+    return axis | _marks(shown, values) if log else axis
 
 
-def _decades(shown: tuple[float, float] | None, values: list[FloatArray]) -> float:
-    """Return how many powers of ten an axis spans; beyond one, Plotly's labels between them are noise."""
+def _marks(shown: tuple[float, float] | None, values: list[FloatArray]) -> Json:
+    """Return the marks of a logarithmic axis: powers of ten, at most about ten; 2 and 5 between few of them."""
     everything = np.concatenate(
         [np.ravel(given) for given in (values if shown is None else [np.array(shown)])] or [np.zeros(0)]
     )
     positive = everything[np.isfinite(everything) & (everything > 0)]
-    return float(np.log10(positive.max() / positive.min())) if positive.size else 0.0
+    if not positive.size:
+        return {}
+    first, last = math.floor(np.log10(positive.min())), math.ceil(np.log10(positive.max()))
+    between = (1, 2, 5) if last - first <= _FEW_DECADES else (1,)
+    places = [step * 10.0**power for power in range(first, last + 1, math.ceil((last - first) / 10) or 1)
+              for step in between]  # fmt: skip
+    return {"tickmode": "array", "tickvals": places, "ticktext": [mark(place) for place in places]}
 
 
 def _lines(text: str, characters: int) -> str:

@@ -19,7 +19,13 @@ _SECONDS = 1.5  # for each joint
 def doctor_document(found: Examination) -> Document:
     """Return the report on an examination."""
     counts = {grade: sum(f.grade == grade for f in found.findings) for grade in ("refused", "finding", "note")}
-    verdict = "cannot be taken as it is" if counts["refused"] else "needs mending" if counts["finding"] else "fits"
+    verdict = (
+        "cannot be used as it is"
+        if counts["refused"]
+        else "can be used once what is found below is mended"
+        if counts["finding"]
+        else "can be used as it is"
+    )
     sections = [Section("Findings", (_findings(found),))]
     if found.model is not None and found.start is not None:
         drawn = _swings(found, found.model, found.start.home)
@@ -31,15 +37,23 @@ def doctor_document(found: Examination) -> Document:
     return Document(
         title=f"Robot {found.name}",
         subtitle=f"{found.source.name}, tip {found.tip}",
-        abstract=f"It {verdict} (refused {counts['refused']}, findings {counts['finding']}, notes {counts['note']}).",
+        abstract=f"The robot {verdict}.",
+        key_numbers=[
+            ("that bar the robot", str(counts["refused"]), "refused"),
+            ("to be mended", str(counts["finding"]), "findings"),
+            ("good to know", str(counts["note"]), "notes"),
+        ],
         sections=[*sections, Section("Made with", (Provenance(rows),))],
         date="",
+        figures_float=False,
     )
 
 
 def _findings(found: Examination) -> Table:
     rows = [[each.grade, *literals((each.place, each.text, each.mend)), _yes(each.mended)] for each in found.findings]
-    return Table("What was found, with the mend.", ["", "where", "what", "mend", "--write does it"], rows)
+    return Table(
+        "What was found, with the mend.", ["grade", "where", "what", "mend", "mended by --write"], rows, badges=(0,)
+    )
 
 
 def _yes(value: bool) -> str:

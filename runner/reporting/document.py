@@ -2,7 +2,8 @@
 
 Blocks hold values, never markup. Text may carry inline mathematics between dollar signs, written as Typst
 mathematics (`"the sag is $g / omega_n^2$"`); everything else is shown literally, so that a name from a config
-or a file can never become markup. A dollar sign is written as two. `§2.1` is a link to that section.
+or a file can never become markup. A dollar sign is written as two. `§2.1` is a link to that section, and
+"claim 3", "figure 3.5" and "table 2.1" lead to these where the report has them.
 """
 
 from collections.abc import Sequence
@@ -16,8 +17,10 @@ from runner.drawing.figure import FloatArray as FloatArray
 from runner.drawing.figure import Map as Map
 from runner.drawing.figure import Panel as Panel
 from runner.drawing.figure import Series as Series
-from runner.expressions.tree import Node
-from runner.reporting.claim import Claim, EquationVerdict
+from runner.reporting.claim import Claim
+from runner.reporting.equation import Equation as Equation
+from runner.reporting.equation import EquationForm as EquationForm
+from runner.reporting.equation import Matrix as Matrix
 
 
 @dataclass(frozen=True)
@@ -34,6 +37,14 @@ class Items:
 
     block: ClassVar[str] = "items"
     items: Sequence[str]
+
+
+@dataclass(frozen=True)
+class Code:
+    """A text that is shown as it is typed, and can be copied."""
+
+    block: ClassVar[str] = "code"
+    text: str
 
 
 @dataclass(frozen=True)
@@ -171,6 +182,8 @@ class Table:
         numeric: Indices of the columns that hold numbers, set flush right.
         origin: Its number in the source, command and commit.
         code: Indices of the columns that hold what is typed on the command line, set in monospace.
+        folded: Whether HTML shows it only on a click, and paper not at all.
+        badges: Indices of the columns that hold a verdict or a grade, set as badges.
     """
 
     block: ClassVar[str] = "table"
@@ -180,64 +193,49 @@ class Table:
     numeric: Sequence[int] = ()
     origin: Origin = field(default_factory=Origin)
     code: Sequence[int] = ()
+    folded: bool = False
+    badges: Sequence[int] = ()
 
 
 @dataclass(frozen=True)
-class EquationForm:
-    """One form of an equation: as printed, after repair, corrected. It has expressions, or mathematics, or neither.
+class Verdicts:
+    """What a source claims, each claim with its verdicts and their reason.
 
     Attributes:
-        label: Which form it is.
-        expressions: Left side and expression of each element.
-        math: The equation in Typst mathematics.
-        raw: The text as it stands, where it cannot be read.
-        note: Why it was mended; inline mathematics as in Text.
+        caption: What is listed; inline mathematics as in Text.
+        rows: The claims, in the order of the source; each with as many findings.
+        origin: Command and commit.
     """
 
-    label: str
-    expressions: Sequence[tuple[Node, Node]] = ()
-    math: str = ""
-    raw: str = ""
-    note: str = ""
+    block: ClassVar[str] = "verdicts"
+    caption: str
+    rows: Sequence[Claim]
+    origin: Origin = field(default_factory=Origin)
 
-
-@dataclass(frozen=True)
-class Equation:
-    """A printed equation with its verdict.
-
-    Attributes:
-        number: Its number or name in the source.
-        title: What it is.
-        place: Section or page.
-        verdict: What the samples say.
-        error: Largest and typical error, formatted with unit, or "".
-        forms: As printed first, then repaired and corrected.
-        finding: What is wrong, in words; inline mathematics as in Text.
-    """
-
-    number: str
-    title: str
-    place: str
-    verdict: EquationVerdict
-    error: str
-    forms: Sequence[EquationForm]
-    finding: str = ""
+    @property
+    def ways(self) -> list[str]:
+        """What the ways are called in which each claim was simulated."""
+        return [found.words or "simulated" for found in self.rows[0].findings] if self.rows else []
 
 
 @dataclass(frozen=True)
 class Equations:
-    """A table of audited equations, which the HTML page can be searched by.
+    """Audited equations, those that are wrong first; the HTML page can be searched, and folds those that are right.
 
     Attributes:
-        caption: What it lists.
+        caption: What it lists; inline mathematics as in Text.
         rows: The equations, in the order of the text.
         origin: Its number in the source, command and commit.
+        source: What the source of the equations is called.
+        data: Address of a file beside the report that has all of them whole, or "".
     """
 
     block: ClassVar[str] = "equations"
     caption: str
     rows: Sequence[Equation]
     origin: Origin = field(default_factory=Origin)
+    source: str = ""
+    data: str = ""
 
 
 @dataclass(frozen=True)
@@ -296,6 +294,7 @@ class Provenance:
 Block = (
     Text
     | Items
+    | Code
     | Notice
     | Formula
     | Curves
@@ -303,7 +302,7 @@ Block = (
     | RunList
     | Picture
     | Table
-    | Claim
+    | Verdicts
     | Equations
     | Playback
     | Provenance
@@ -320,6 +319,21 @@ class Section:
 
 
 @dataclass(frozen=True)
+class Cover:
+    """The picture of a report's first screen.
+
+    Attributes:
+        caption: What is seen.
+        moving: It as an SVG that moves, for HTML.
+        still: It as an SVG that does not, for paper and for readers who want no motion.
+    """
+
+    caption: str
+    moving: str
+    still: str
+
+
+@dataclass(frozen=True)
 class Document:
     """A whole report.
 
@@ -329,6 +343,10 @@ class Document:
         abstract: The report in a few sentences; inline mathematics as in Text.
         sections: The chapters.
         date: Date of the newest run behind it, ISO format, so that a report remade is the same; empty where none is.
+        cover: The picture of the first screen.
+        key_numbers: Numbers of the first screen: what each is, its value with unit, and what is to be said of it.
+        figures_float: Whether figures move on paper to where they leave no blank, which text between them makes up for.
+        notes: Lines below the count of verdicts there: what their words mean, caveats; inline mathematics as in Text.
     """
 
     title: str
@@ -336,3 +354,7 @@ class Document:
     abstract: str
     sections: Sequence[Section]
     date: str
+    cover: Cover | None = None
+    notes: Sequence[str] = ()
+    key_numbers: Sequence[tuple[str, str, str]] = ()
+    figures_float: bool = True

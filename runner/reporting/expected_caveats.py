@@ -61,13 +61,17 @@ def caveats_section(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat])
     if lines:
         more = f"; and {len(lines) - _TOLD} more" if len(lines) > _TOLD else ""
         text = literal(f"{'; '.join(lines[:_TOLD])}{more}.")
-        blocks.append(Notice("warning", f"{len(lines)} caveats that this work does not expect", text))
-    rows = [row for each in expected if (row := _row(each, runs)) is not None]
+        blocks.append(
+            Notice(
+                "warning", f"{len(lines)} caveat{'s' if len(lines) > 1 else ''} that this work does not expect", text
+            )
+        )
+    reasons = dict.fromkeys((each.rule, each.why) for each in expected)
+    rows = [row for rule, why in reasons if (row := _row(rule, why, expected, runs)) is not None]
     blocks.append(
         Table(
-            "What rules found at the end of the runs: how many runs have the caveat, the worst of them, and why it is "
-            "expected.",
-            ["caveat", "runs", "worst", "what was found there", "why it is expected"],
+            "Each caveat with the number of runs that have it, the worst of these, and why it was to be expected.",
+            ["caveat", "runs", "the worst of them", "why it is expected"],
             rows,
             (1,),
         )
@@ -77,14 +81,16 @@ def caveats_section(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat])
     return Section("Caveats of the runs", tuple(blocks))
 
 
-def _row(expected: ExpectedCaveat, runs: Mapping[str, Run]) -> list[str] | None:
+def _row(rule: str, why: str, expected: Sequence[ExpectedCaveat], runs: Mapping[str, Run]) -> list[str] | None:
+    """Return the runs in which a rule finds what is expected for one reason, as a row; None where there is none."""
+    patterns = [each for each in expected if (each.rule, each.why) == (rule, why)]
     found = [
         (float(caveat["value"]), name, str(caveat["text"]))
         for name, run in runs.items()
         for caveat in run.caveats
-        if expected.covers(name, caveat)
+        if any(each.covers(name, caveat) for each in patterns)
     ]
     if not found:
         return None
     _, worst, text = max(found)
-    return [expected.rule, str(len(found)), literal(worst), literal(text), expected.why]
+    return [literal(rule.replace("_", " ")), str(len(found)), literal(f"{worst}: {text}"), why]

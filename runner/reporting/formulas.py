@@ -37,6 +37,11 @@ class Image:
     height: float
     depth: float
 
+    @property
+    def view(self) -> str:
+        """What of the drawing is shown: left, top, width and height in its own units."""
+        return f"0 0 {self.width * _FONT_SIZE:g} {self.height * _FONT_SIZE:g}"
+
 
 def draw(texts: Iterable[str], *, displayed: bool) -> dict[str, Image | None]:
     """Return the drawing of each formula, or None where it is no valid Typst mathematics.

@@ -2,6 +2,7 @@
 
 import base64
 import gzip
+import json
 from functools import cache, lru_cache
 from importlib import resources
 from urllib.parse import quote
@@ -11,16 +12,22 @@ from runner.paths import templates_dir
 from runner.reporting import formulas, outline, playback
 from runner.reporting.curves import plotly_spec
 from runner.reporting.document import Curves, Document, Maps, Playback, RunList
+from runner.reporting.formula_sheet import FormulaSheet
 from runner.reporting.maps import maps_spec
+from runner.reporting.places import Places
 from runner.reporting.run_list import run_list_spec
+from runner.reporting.tally import tallies
 from runner.reporting.templating import Code, html_environment
+
+_OF_PLOTS = ("plot_keys", "curves")
+_SCRIPTS = ("report", *_OF_PLOTS, "figure_tools")
 
 
 def render(document: Document) -> str:
     """Return a document as an HTML page."""
     displayed, inline = outline.formulas(document)
     images = {True: formulas.draw(displayed, displayed=True), False: formulas.draw(inline, displayed=False)}
-    stage = _Stage()
+    stage, sheet = _Stage(), FormulaSheet()
     has_plots = any(isinstance(block, Curves | Maps | RunList) for block in outline.blocks(document))
     has_run_list = any(isinstance(block, RunList) for block in outline.blocks(document))
     return (
@@ -30,16 +37,22 @@ def render(document: Document) -> str:
             document=document,
             chapters=outline.chapters(document),
             formula_image=lambda text, is_displayed: images[is_displayed].get(text.strip()),
-            data_uri=data_uri,
+            formula_name=sheet.name,
+            formula_definitions=lambda: Code(sheet.definitions()),
             plotly_spec=plotly_spec,
             maps_spec=maps_spec,
             run_list_spec=run_list_spec,
+            data_uri=data_uri,
+            tallies=tallies(document),
+            places=Places(document),
+            plots=_Pack(),
+            pictures=_Pack(),
             scene=stage.scene,
             player=stage.player,
             plotly=_plotly() if has_plots else "",
             palette={"light": palette.LIGHT, "dark": palette.DARK},
             style=_asset("style.css"),
-            script=_asset("report.js"),
+            scripts=[_asset(f"{name}.js") for name in _SCRIPTS if has_plots or name not in _OF_PLOTS],
             run_list_script=_asset("run_list.js") if has_run_list else "",
         )
     )
@@ -47,7 +60,23 @@ def render(document: Document) -> str:
 
 def data_uri(svg: str) -> str:
     """Return an SVG as the address of an image; images share no ids and run no scripts."""
-    return "data:image/svg+xml," + quote(svg, safe=" /:=;,()+*!@?", encoding="utf-8", errors="replace")
+    return "data:image/svg+xml," + quote(svg, safe=" /:=;()+*!@?", encoding="utf-8", errors="replace")
+
+
+class _Pack:
+    """What the page's script unpacks: data of plots, or pictures, which its figures name by their places."""
+
+    def __init__(self) -> None:
+        self._items: list[object] = []
+
+    def put(self, item: object) -> int:
+        """Take an item, and return its place."""
+        self._items.append(item)
+        return len(self._items) - 1
+
+    def packed(self) -> str:
+        """Return all items as the page holds them."""
+        return packed(json.dumps(self._items, separators=(",", ":"))) if self._items else ""
 
 
 class _Stage:

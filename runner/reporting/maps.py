@@ -21,7 +21,10 @@ Json = dict[str, Any]
 
 
 def maps_spec(block: Maps) -> list[Json]:
-    """Return what the page's script hands to Plotly: for each map traces, palette indices and layout."""
+    """Return what the page's script hands to Plotly: for each map traces, palette indices and layout.
+
+    Names of columns and rows go with them, and whether colours follow the logarithm: for keyboards and saved data.
+    """
     low, high = value_range(block)
     return [_map(panel, block, low, high) for panel in block.panels]
 
@@ -64,7 +67,8 @@ def _map(panel: Map, block: Maps, low: float, high: float) -> Json:
         "showlegend": any(series.name for series in panel.lines),
         "hovermode": "closest",
     }
-    return {"traces": traces, "colors": [OVERLAY] * len(traces), "layout": layout}
+    read = {"names": [list(map(neutral, names)) for names in (panel.x_names, panel.y_names)], "log": block.log}
+    return {"traces": traces, "colors": [OVERLAY] * len(traces), "layout": layout, **read}
 
 
 def _overlay(panel: Map) -> list[Json]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from runner.texts import plain
 
 _SPAN = re.compile(r"\$\$|\$((?:[^$])+)\$|\$|[^$]+")
-_LINK = re.compile(r"§(\d+(?:\.\d+)*)")
+_LINK = re.compile(r"§(?P<section>\d+(?:\.\d+)*)|\b(?P<kind>claim|figure|table) (?P<number>\d+(?:\.\d+)*)\b", re.I)
 MARKS = {"emphasis": ("\ue000", "\ue001"), "code": ("\ue002", "\ue003")}
 """First and last character around each kind of marked text."""
 _ADDRESS_MARKS = ("\ue004", "\ue005", "\ue006")  # before the text, between text and address, behind the address
@@ -43,22 +43,21 @@ class Literal:
 
 @dataclass(frozen=True)
 class Link:
-    """A link to a section of the report, by its number; shown literally where there is no such section."""
+    """A link to a section, a claim, a figure or a table; shown literally where the report has no such place.
 
-    number: str
+    Attributes:
+        text: What is shown.
+        anchor: Name of the place that it leads to; see runner/reporting/places.py.
+        math: False, as of all that is no mathematics.
+        mark: Empty, as of all that is not marked.
+        address: Empty, as of all that leads to no page of the web.
+    """
+
+    text: str
+    anchor: str
     math: bool = False
     mark: str = ""
     address: str = ""
-
-    @property
-    def text(self) -> str:
-        """What is shown."""
-        return f"section {self.number}"
-
-    @property
-    def anchor(self) -> str:
-        """Name of the place that the link leads to."""
-        return anchor(self.number)
 
 
 @dataclass(frozen=True)
@@ -103,7 +102,7 @@ def spans(text: str) -> list[Span]:
     """Split a text into literal and mathematical spans, and links.
 
     `$...$` is mathematics, `$$` a dollar sign, and so is a dollar sign without a partner. `§2.1` is a link to that
-    section.
+    section; "claim 3", "figure 3.5" and "table 2.1" are links to these.
 
     Args:
         text: Text with inline mathematics as in `document.Text`.
@@ -143,6 +142,15 @@ def _marked_span(match: re.Match[str]) -> list[Span]:
 
 
 def _links(text: str) -> list[Span]:
-    parts = _LINK.split(text)  # literals at even places, section numbers at odd ones
-    found: list[Span] = [Link(part) if index % 2 else Literal(part) for index, part in enumerate(parts)]
-    return [span for span in found if span.text]
+    found: list[Span] = []
+    end = 0
+    for match in _LINK.finditer(text):
+        found += [Literal(text[end : match.start()]), _link(match)]
+        end = match.end()
+    return [span for span in [*found, Literal(text[end:])] if span.text]
+
+
+def _link(match: re.Match[str]) -> Link:
+    if match["section"]:
+        return Link(f"section {match['section']}", anchor(match["section"]))
+    return Link(match[0], f"{match['kind'].lower()}-{match['number'].replace('.', '-')}")

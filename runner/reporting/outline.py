@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from runner.reporting.claim import Claim
 from runner.reporting.document import (
     Block,
     Curves,
@@ -19,6 +18,7 @@ from runner.reporting.document import (
     Section,
     Table,
     Text,
+    Verdicts,
 )
 from runner.reporting.markup import Math, anchor, spans
 
@@ -65,7 +65,9 @@ def blocks(document: Document) -> Iterator[Block]:
 def formulas(document: Document) -> tuple[list[str], list[str]]:
     """Return the mathematics of a document: displayed equations and inline spans, each once, in reading order."""
     displayed: dict[str, None] = {}
-    inline: dict[str, None] = dict.fromkeys(_math(document.abstract))
+    inline: dict[str, None] = dict.fromkeys(
+        formula for text in (document.abstract, *document.notes) for formula in _math(text)
+    )
     for block in blocks(document):
         if isinstance(block, Formula):
             displayed[block.typst] = None
@@ -94,8 +96,9 @@ def _texts(block: Block) -> Iterator[str]:
             yield from block.header
             for row in block.rows:
                 yield from row
-        case Claim():
-            yield block.reason
+        case Verdicts():
+            yield block.caption
+            yield from (claim.reason for claim in block.rows)
         case Equations():
             yield block.caption
             for equation in block.rows:

@@ -9,7 +9,9 @@ import typst
 from runner.drawing import map_stills, stills
 from runner.reporting import formulas, outline
 from runner.reporting.document import Curves, Document, Maps
+from runner.reporting.places import Places
 from runner.reporting.run_list import table_header, table_rows
+from runner.reporting.tally import tallies
 from runner.reporting.templating import typst_environment
 
 
@@ -31,6 +33,8 @@ def render(document: Document) -> bytes:
                 run_list_header=table_header,
                 run_list_rows=table_rows,
                 image_file=folder.image,
+                places=Places(document),
+                tallies=tallies(document),
             )
         )
         path = folder.root / "report.typ"

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.engines import has_pybullet
 from runner.quantities import above_rounding, quantity
 from runner.reporting.figures import columns
 from runner.reporting.words import PLANT
@@ -56,6 +57,8 @@ def describe_agreement(run: Run) -> str:
     twin = find_twin(run)
     if twin is None:
         other = _TWINS.get(plant, "rk4")
+        if other == "bullet" and not has_pybullet():
+            return f"{head} PyBullet, which it would be compared with, is not installed here."
         return (
             f"{head} How far the other plant is from it has not been measured on this case: "
             f"run it with plant={other} and repetitions=1, and make this report again."

@@ -5,15 +5,18 @@ from typing import Any
 
 import numpy as np
 
-from runner.quantities import labelled, number, unit_text
+from runner.quantities import number, unit_text
 from runner.reporting.document import RunList
 from runner.reporting.markup import literals
+from runner.reporting.metric_titles import metric_label
 from runner.texts import plain
 
 Json = dict[str, Any]
 
 SHOWN = 5
 """Metrics that stand in the table; all of them stand in the details of a run."""
+ON_PAPER_METRICS = 3
+"""Metrics of the table on paper, whose heads must not run into each other."""
 ON_PAPER = 20
 """Runs that are listed where nothing can be filtered."""
 
@@ -36,7 +39,7 @@ def run_list_spec(block: RunList) -> Json:
 def table_header(block: RunList) -> list[str]:
     """Return the titles of the table's columns."""
     axes = [name for name, _ in block.axes]
-    metrics = [labelled(name, unit) for name, unit in block.metrics[:SHOWN]]
+    metrics = [metric_label(name, unit) for name, unit in block.metrics[:ON_PAPER_METRICS]]
     return literals(("run", *axes, "status", *metrics))
 
 
@@ -45,7 +48,7 @@ def table_rows(block: RunList) -> list[list[str]]:
     rows = []
     for run in range(min(ON_PAPER, len(block.hashes))):
         levels = zip(block.axes, block.levels[run], strict=True)
-        values = (None if np.isnan(value) else float(value) for value in block.values[run, :SHOWN])
+        values = (None if np.isnan(value) else float(value) for value in block.values[run, :ON_PAPER_METRICS])
         cells = [block.hashes[run][:8], *(names[level] for (_, names), level in levels)]
         cells += ["failed" if block.failures[run] else "ok", *map(number, values)]
         rows.append(literals(cells))

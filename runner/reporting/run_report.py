@@ -1,34 +1,116 @@
 """A report on any stored runs: what was run, what came out, and where it comes from."""
 
 import json
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Sequence
 from typing import Any
 
 from runner.caveats import changes_since
-from runner.quantities import above_rounding, number, with_powers
+from runner.errors import RunnerError
+from runner.quantities import above_rounding, number, quantity, spread, with_powers
+from runner.references import check_run, find_shipped
+from runner.reporting.changed_keys import changed_keys, flatten
+from runner.reporting.cover import cover
 from runner.reporting.document import Block, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import desired_motion, playback, torque_and_error
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
 from runner.reporting.plant_agreement import describe_agreement
+from runner.reporting.words import PLANT, in_words
 from runner.store import Run
 
+_OF_TASK = {
+    "goal": ("settling_time", "steady_state_error", "peak_torque", "saturation_fraction"),
+    "contact": ("steady_force", "peak_force", "max_tracking_error", "peak_torque"),
+}
+_OF_MOTION = ("max_tracking_error", "steady_state_error", "peak_torque", "saturation_fraction")
 _HEADLINE = ("settling_time", "steady_state_error", "max_tracking_error", "peak_torque", "saturation_fraction")
 
 
 def run_document(runs: Sequence[Run]) -> Document:
     """Return the report on some stored runs."""
-    failed = [run for run in runs if run.status == "failed"]
-    count = "1 run" if len(runs) == 1 else f"{len(runs)} runs"
-    abstract = f"{count}, {len(failed)} of them failed." if failed else f"{count}, all of them finished."
-    overview = [Section("Overview", (_overview(runs),))] if len(runs) > 1 else []
+    date = max(str(run.provenance["date"]) for run in runs)
+    if len(runs) == 1:
+        return _of_one(runs[0], date)
+    failed = sum(run.status == "failed" for run in runs)
+    ends = f"{failed} of them failed" if failed else "all of them finished"
     return Document(
-        title="Robot-arm control runs",
+        title=f"{len(runs)} runs compared",
         subtitle=", ".join(dict.fromkeys(str(run.config["robot"]["name"]) for run in runs)),
-        abstract=abstract,
-        sections=[*overview, *(_section(run, index) for index, run in enumerate(runs, start=1))],
-        date=max(str(run.provenance["date"]) for run in runs),
+        abstract=f"{len(runs)} runs, {ends}.",
+        sections=[Section("Overview", (_overview(runs),)), *map(_section, runs, range(1, len(runs) + 1))],
+        date=date,
     )
+
+
+def _of_one(run: Run, date: str) -> Document:
+    """Return the report on a single run: its name, the moving arm and four numbers first."""
+    shown = run.trace[[f"q{joint + 1}" for joint in range(len(run.provenance["joints"]))]]
+    return Document(
+        title=_name(run),
+        subtitle=_subtitle(run),
+        abstract=literal(_abstract(run)),
+        sections=[
+            Section("The run", _blocks(run)),
+            Section("Config", _config(run)),
+            Section("Provenance", (provenance([run]),)),
+        ],
+        date=date,
+        cover=cover(run, "The motion of repetition 0.") if shown.notna().all(axis=1).sum() > 1 else None,
+        notes=[literal(f"Caveats: {', '.join(_spaced(caveat['rule']) for caveat in run.caveats)}.")]
+        if run.caveats
+        else [],
+        key_numbers=_key_numbers(run),
+        figures_float=False,
+    )
+
+
+def _name(run: Run) -> str:
+    """Return robot, law, task and plant in words, such as "Macro, operational space, quintic, PyBullet"."""
+    config = run.config
+    kinds = (config["controller"]["kind"], config["trajectory"]["kind"], config["plant"]["kind"])
+    name = _spaced(config["robot"]["name"])
+    return ", ".join([name[:1].upper() + name[1:], *(_spaced(in_words(str(kind))) for kind in kinds)])
+
+
+def _spaced(name: object) -> str:
+    return str(name).replace("_", " ")
+
+
+def _abstract(run: Run) -> str:
+    """Return how the run ended, and whether it lies in the bands of the reference that comes for its experiment."""
+    count = run.record["repetitions"]
+    if run.status == "failed":
+        ended = f"The run {run.failure_text}."
+    else:
+        ended = "One repetition, which finished." if count == 1 else f"{count} repetitions, all of them finished."
+    try:
+        reference = find_shipped(run)
+    except RunnerError:
+        return ended
+    found = check_run(run, reference)
+    wrong = [title(finding.metric) for finding in found if not finding.good]
+    where = f"; outside are: {', '.join(wrong)}" if wrong else ""
+    return f"{ended} {len(found) - len(wrong)} of {len(found)} metrics lie in the bands of {reference.name}{where}."
+
+
+def _subtitle(run: Run) -> str:
+    """Return what limits and disturbs the arm, and the experiment that was asked for."""
+    chosen = run.provenance["choices"]
+    limits = "no" if run.config["torque_limits"]["max"] is None else f"{chosen.get('torque_limits', 'own')}'s"
+    texts = [f"noise {_spaced(chosen['noise'])}"] if "noise" in chosen else []
+    texts += [f"experiment {chosen['experiment']}"] if "experiment" in chosen else []
+    return ", ".join([f"{limits} torque limits", *texts])
+
+
+def _key_numbers(run: Run) -> list[tuple[str, str, str]]:
+    """Return the four metrics that say most of a run's task: of a goal, of a motion along a path, of a contact."""
+    task = "contact" if "steady_force" in run.metrics else run.config["trajectory"]["kind"]
+    names = [name for name in (*_OF_TASK.get(task, ()), *_OF_MOTION) if name in run.metrics][:4]
+    count = run.record["repetitions"]
+    remark = f"median of {count}, smallest to largest in brackets" if count > 1 else ""
+    return [(title(name), spread(run.metrics[name]), remark if run.metrics[name]["median"] is not None else
+             "not reached in half of the repetitions or more") for name in dict.fromkeys(names)]  # fmt: skip
 
 
 def _overview(runs: Sequence[Run]) -> Table:
@@ -36,7 +118,7 @@ def _overview(runs: Sequence[Run]) -> Table:
     varying = _varying(runs)
     rows = []
     for index, run in enumerate(runs, start=1):
-        config = _flatten(run.config)
+        config = flatten(run.config)
         values = [
             above_rounding(run.metrics[name]["median"], run.metrics[name]["unit"]) if name in run.metrics else "–"
             for name in names
@@ -49,8 +131,11 @@ def _overview(runs: Sequence[Run]) -> Table:
 
 
 def _section(run: Run, index: int) -> Section:
+    return Section(f"Run {index}: {_name(run)}", [*_blocks(run), *_config(run), provenance([run])])
+
+
+def _blocks(run: Run) -> list[Block]:
     config = run.config
-    title = f"Run {index}: {config['robot']['name']}, {config['controller']['kind']}, {config['trajectory']['kind']}"
     blocks: list[Block] = []
     if run.failure is not None:
         joint = f", joint {run.failure['joint']}" if run.failure["joint"] else ""
@@ -69,8 +154,7 @@ def _section(run: Run, index: int) -> Section:
     blocks.append(playback(run, "The motion of repetition 0."))
     if run.metrics:
         blocks.append(_metrics(run))
-    blocks += [Text(describe_agreement(run)), _config(run), provenance([run])]
-    return Section(title, blocks)
+    return [*blocks, Text(describe_agreement(run))]
 
 
 def caveat_notices(run: Run) -> list[Block]:
@@ -105,9 +189,22 @@ def _metrics(run: Run) -> Table:
     )
 
 
-def _config(run: Run) -> Table:
-    rows = [literals([key, _yaml(value)]) for key, value in _flatten(run.config).items() if key != "outputs"]
-    return Table("Config, all values.", ["key", "value"], rows, code=(0, 1))
+def _config_sections(run: Run) -> list[Section]:
+    return [Section("Config", _config(run))]
+
+
+def _config(run: Run) -> list[Block]:
+    """Return the keys that were changed, and then all of them; of a config that no group here makes all alone."""
+    changed = changed_keys(run)
+    rows = [literals([key, _yaml(value)]) for key, value in flatten(run.config).items() if key != "outputs"]
+    everything = Table("All keys and their values.", ["key", "value"], rows, code=(0, 1), folded=changed is not None)
+    if changed is None:
+        return [everything]
+    own = [literals([key, _yaml(value), _yaml(before)]) for key, (before, value) in changed.items()]
+    if not own:
+        return [Text("Every key has the value that its group gives it."), everything]
+    header = ["key", "value", "in its group"]
+    return [Table("Keys that were changed against the groups chosen.", header, own, code=(0, 1, 2)), everything]
 
 
 def provenance(runs: Sequence[Run]) -> Provenance:
@@ -117,13 +214,13 @@ def provenance(runs: Sequence[Run]) -> Provenance:
     def join(values: Sequence[Any]) -> str:
         return ", ".join(dict.fromkeys(str(value) for value in values))
 
-    versions = {name: join([r["versions"][name] for r in record]) for name in record[0]["versions"]}
+    versions = (f"{name} {join([r['versions'][name] for r in record])}" for name in record[0]["versions"])
     rows = [
-        ("plant", join([f"{run.config['plant']['kind']}, step {run.provenance['plant_step']:g} s" for run in runs])),
+        ("plant", _plants(runs)),
         ("commit", join([r["commit"] or "none (installed package)" for r in record])),
-        ("seed", join([r["seed"] for r in record])),
+        ("seed", _seeds({int(r["seed"]) for r in record})),
         ("machine", join([r["machine"] for r in record])),
-        *versions.items(),
+        ("software", ", ".join(versions)),
         ("made on", join(sorted(str(r["date"]) for r in record))),
     ]
     unsealed = sum(not run.sealed for run in runs)
@@ -134,8 +231,30 @@ def provenance(runs: Sequence[Run]) -> Provenance:
     return Provenance(rows)
 
 
+def _plants(runs: Sequence[Run]) -> str:
+    """Return each plant once with its steps, such as "PyBullet in steps of 0.5 ms, 1 ms; MuJoCo in steps of 1 ms"."""
+    steps: dict[str, set[float]] = {}
+    for run in runs:
+        steps.setdefault(str(run.config["plant"]["kind"]), set()).add(float(run.provenance["plant_step"]))
+    return "; ".join(
+        f"{PLANT.get(kind, kind)} in steps of {', '.join(quantity(step, 's') for step in sorted(own))}"
+        for kind, own in steps.items()
+    )
+
+
+def _seeds(seeds: set[int]) -> str:
+    """Return some seeds, those that follow each other as a range, such as "0 to 99, 200"."""
+    told: list[list[int]] = []
+    for seed in sorted(seeds):
+        if told and seed == told[-1][-1] + 1:
+            told[-1].append(seed)
+        else:
+            told.append([seed])
+    return ", ".join(str(own[0]) if len(own) == 1 else f"{own[0]} to {own[-1]}" for own in told)
+
+
 def _varying(runs: Sequence[Run]) -> list[str]:
-    flat = [_flatten(run.config) for run in runs]
+    flat = [flatten(run.config) for run in runs]
     keys = dict.fromkeys(
         key for config in flat for key in config if key != "outputs" and not key.startswith("caveats.")
     )
@@ -146,16 +265,7 @@ def _varying(runs: Sequence[Run]) -> list[str]:
     ]
 
 
-def _flatten(value: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    flat: dict[str, Any] = {}
-    for key, item in value.items():
-        if isinstance(item, Mapping) and item:
-            flat |= _flatten(item, f"{prefix}{key}.")
-        else:
-            flat[f"{prefix}{key}"] = item
-    return flat
-
-
 def _yaml(value: Any) -> str:
     """Return a value as it is given in YAML or on the command line."""
-    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    return re.sub(r"\b(\d)0{6,}\.0\b", lambda found: f"{float(found[0]):.0e}".replace("e+0", "e"), text)

@@ -6,10 +6,14 @@ from functools import cache
 import jinja2
 
 from runner.claims import CONTRADICTION
-from runner.expressions.typesetting import symbol, typeset
+from runner.expressions.typesetting import matrix, symbol, typeset
 from runner.paths import templates_dir
 from runner.reporting.document import Origin
+from runner.reporting.equation import FOLDED, SHOWN, by_finding, by_place, of_verdict
 from runner.reporting.markup import spans
+from runner.reporting.places import verdict_place
+from runner.reporting.spoken import spoken
+from runner.reporting.symbols import symbols_in
 from runner.texts import plain
 
 VERDICT_SIGNS = {
@@ -25,11 +29,14 @@ VERDICT_SIGNS = {
     "wrong as printed": "✕",
     "unreadable": "?",
     "definition": "–",
+    "refused": "✕",
+    "finding": "!",
+    "note": "–",
 }
 """A sign beside each verdict, for readers who see no colours."""
 
 
-_HASH = re.compile(r"[0-9a-f]{40,64}")
+_SIZE = re.compile(r'viewBox="[-\d.]+ [-\d.]+ ([\d.]+) ([\d.]+)"')
 
 
 class Code(str):
@@ -113,19 +120,27 @@ def origin_label(origin: Origin, kind: str) -> str:
     return f"{kind} {number}" if number[0].isdigit() else number[0].upper() + number[1:]
 
 
-def short_commit(commit: str) -> str:
-    """Return a commit as readers write it: a full hash by its first twelve digits, anything else as it is."""
-    return commit[:12] if _HASH.fullmatch(commit) else commit
+def aspect(svg: str) -> str:
+    """Return width and height of a drawing as the style `aspect-ratio` has them."""
+    size = _SIZE.search(svg)
+    return f"{size[1]} / {size[2]}" if size else "auto"
 
 
 def _equip(environment: jinja2.Environment) -> jinja2.Environment:
     environment.filters |= {
         "spans": spans,
         "origin_label": origin_label,
-        "short_commit": short_commit,
         "kind": lambda node: type(node).__name__,
         "symbol": symbol,
         "typeset": typeset,
+        "matrix": matrix,
+        "aspect": aspect,
+        "in_words": spoken,
+        "symbols_in": symbols_in,
+        "of_verdict": of_verdict,
+        "by_finding": by_finding,
+        "by_place": by_place,
+        "verdict_place": verdict_place,
     }
-    environment.globals |= {"verdict_signs": VERDICT_SIGNS}
+    environment.globals |= {"verdict_signs": VERDICT_SIGNS, "shown_verdicts": SHOWN, "folded_verdicts": FOLDED}
     return environment

@@ -2,7 +2,7 @@
 
 import re
 
-PRESET = {"as_reported": "as reported", "sound": "full equations"}
+PRESET = {"as_reported": "as the thesis ran it", "sound": "with its full equations"}
 """The presets of the works, in the order of their columns."""
 
 PLANT = {"bullet": "PyBullet", "mujoco": "MuJoCo", "rk4": "Runge-Kutta"}
@@ -22,6 +22,7 @@ _WORDS = {
     "operational_space": "operational space",
     "computed_torque": "computed torque",
     "euler": "Euler",
+    "macro_mini": "Macro and Mini coupled",
 }
 _CODE_NAME = re.compile(rf"\b({'|'.join(_WORDS)})\b")
 

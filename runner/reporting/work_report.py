@@ -3,10 +3,13 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from runner.reporting.checklist import Checklist
-from runner.reporting.document import Block, Document, Notice, Provenance, Section, Table, Text
-from runner.reporting.expected_caveats import ExpectedCaveat, caveats_section
+from runner.reporting.citing import citing_section
+from runner.reporting.claims import WORDS
+from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text, Verdicts
+from runner.reporting.expected_caveats import ExpectedCaveat, caveats_section, unexpected_caveats
 from runner.reporting.job import Made, MissingError
 from runner.reporting.markup import literal, literals
+from runner.reporting.outline import numbered
 from runner.reporting.run_report import provenance
 from runner.store import Calibration, Run
 
@@ -21,6 +24,8 @@ def work_document(
     expected: Sequence[ExpectedCaveat],
     checklist: Checklist | None,
     code: str,
+    cover: Cover | None = None,
+    bibtex: str = "",
 ) -> Document:
     """Return the report on a published work.
 
@@ -34,11 +39,25 @@ def work_document(
         expected: The caveats that the work expects of them.
         checklist: What of the work is to stand where, for the last chapter; None where the work has no list.
         code: What is to be said of the work's own code; nothing where it has none.
+        cover: The picture of the first screen.
+        bibtex: BibTeX entry of the source; empty where there is none.
     """
     missing = [_missing(runs.missing)] if isinstance(runs, Made) and runs.missing else []
     sections = [*missing, *chapters, caveats_section(runs, expected), _where_from(runs, calibrations, code)]
     date = max((str(run.provenance["date"]) for run in runs.values()), default="")
-    return Document(title, subtitle, abstract, [*sections, *([checklist.section(sections)] if checklist else [])], date)
+    listed = [checklist.section(sections)] if checklist else []
+    everything = [*sections, *listed, citing_section(title, subtitle, bibtex, runs)]
+    return Document(title, subtitle, abstract, everything, date, cover, _notes(chapters, runs, expected))
+
+
+def _notes(chapters: Sequence[Section], runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> list[str]:
+    """Return what the words of verdicts mean, where there are any, and how many caveats the runs have."""
+    judged = any(isinstance(block, Verdicts) for each in numbered(chapters) for block in each.section.blocks)
+    carrying = sum(bool(run.caveats) for run in runs.values())
+    strange = len(unexpected_caveats(runs, expected))
+    told = f"{strange} caveats are not expected" if strange else "all of them expected and explained"
+    caveats = f"Caveats: {carrying} of {len(runs)} runs carry some, {told}." if carrying else ""
+    return [*([WORDS] if judged else []), *([caveats] if caveats else [])]
 
 
 def _where_from(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration], code: str) -> Section:

@@ -29,6 +29,20 @@ class Part(StrictModel):
     sections: Annotated[list[Text], Field(min_length=1)]
 
 
+class CoverRun(StrictModel):
+    """What moves on the first screen of the report.
+
+    Attributes:
+        run: Name of the run.
+        caption: What is seen.
+        end: End of the part shown, in s; None shows all.
+    """
+
+    run: Text
+    caption: Text
+    end: Annotated[float, Field(gt=0.0)] | None = None
+
+
 class About(StrictModel):
     """All that `work.yaml` says.
 
@@ -41,6 +55,8 @@ class About(StrictModel):
         in_all: Whether `runner reproduce all` makes the work.
         plugins: Parts of the work's own, GROUP=FILE.py each, such as "controller=spring.py".
         profiles: Profiles by name.
+        cover: What moves on the first screen.
+        bibtex: BibTeX entry of the source.
     """
 
     title: Text
@@ -51,6 +67,8 @@ class About(StrictModel):
     in_all: bool = True
     plugins: list[Text] = Field(default_factory=list)
     profiles: dict[str, Profile] = Field(default_factory=dict)
+    cover: CoverRun | None = None
+    bibtex: str = ""
 
     def files(self) -> Iterator[str]:
         """Yield the files of all chapters and sections, in order."""

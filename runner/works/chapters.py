@@ -12,10 +12,10 @@ from runner.audit.audit import audit
 from runner.audit.sources import Source
 from runner.claims import FACTOR, Verdict, load_claims
 from runner.errors import RunnerError
-from runner.reporting.audit.report import row
+from runner.reporting.audit.report import rows
 from runner.reporting.claim import Claim
-from runner.reporting.claims import RULE, claim_blocks, verdict_table
-from runner.reporting.document import Equations, Origin, Section
+from runner.reporting.claims import RULE, judged_claims
+from runner.reporting.document import Equations, Origin, Section, Verdicts
 from runner.reporting.findings import Finding
 from runner.reporting.job import Made
 from runner.reporting.measured import Measured
@@ -88,7 +88,7 @@ class Chapters:
             "presets": presets,
             "claims": self._claims,
             "claims_that": self._claims_that,
-            "verdicts": lambda caption: verdict_table(caption, self._claims(), presets),
+            "verdicts": lambda caption: Verdicts(caption, self._claims()),
             "verdict_rule": RULE,
             "verdict_factor": FACTOR,
             "equations": self._equations,
@@ -108,7 +108,7 @@ class Chapters:
         return Made({**self._runs, **self._calibrations}, missing, dropped)
 
     def _claims(self) -> list[Claim]:
-        return claim_blocks(load_claims(self._folder), self._runs, self._about.presets)
+        return judged_claims(load_claims(self._folder), self._runs, self._about.presets)
 
     def _claims_that(self, verdict: Verdict, words: str) -> Measured:
         """Return of how many claims this is the verdict under every preset; conditions call it by the words."""
@@ -118,7 +118,7 @@ class Chapters:
     def _equations(self, caption: str) -> Equations:
         """Return the printed equations of the work with their verdicts."""
         judged = audit(Source(self._folder, self._code.runs))
-        return Equations(caption, [row(each) for each in judged], Origin(command=self._command))
+        return Equations(caption, rows(judged), Origin(command=self._command), self._folder.name)
 
     def _each(self, chapters: Sequence[str | Part]) -> list[Section]:
         return parts((_file(each), partial(self.section, each)) for each in chapters)

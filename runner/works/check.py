@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from fnmatch import fnmatchcase
 
-from runner.errors import RunnerError
+from runner.errors import RunnerError, nearest
 from runner.reporting.conclusions import fallen
 from runner.reporting.document import Document
 from runner.reporting.expected_caveats import unexpected_caveats
@@ -34,6 +34,9 @@ def problems(work: Work, runs: Mapping[str, Run], calibrations: Mapping[str, Cal
             yield line
     yield from (f"{work.name}: {name}: expected caveats: no run of it is named so" for name in _unused(work, runs))
     yield from unexpected_caveats(runs, work.expected)
+    cover = work.about.cover
+    if cover is not None and cover.run not in {**runs, **work.dropped()}:
+        yield f"{work.folder.name}/{ABOUT}: cover: no run '{cover.run}'{nearest(cover.run, list(runs))}"
     if not faults:
         document = work.document(runs, calibrations)
         yield from fallen(document)

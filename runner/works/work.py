@@ -10,7 +10,8 @@ from runner.claims import CLAIMS, load_claims
 from runner.errors import RunnerError, nearest
 from runner.plugins import use_plugins
 from runner.reporting.checklist import load_checklist
-from runner.reporting.document import Document, Notice, Section
+from runner.reporting.cover import cover
+from runner.reporting.document import Cover, Document, Notice, Section
 from runner.reporting.expected_caveats import ExpectedCaveat
 from runner.reporting.job import Job, Jobs
 from runner.reporting.work_report import work_document
@@ -128,8 +129,17 @@ class Work:
             expected=self.expected,
             checklist=load_checklist(self.folder),
             code=self._code.about(),
+            cover=self._cover(runs),
+            bibtex=self.about.bibtex,
         )
         return made if not self.profile else replace(made, sections=[_smaller(self.profile), *made.sections])
+
+    def _cover(self, runs: Mapping[str, Run]) -> Cover | None:
+        """Return the picture of the first screen; None where there is none, or its run was not made."""
+        wanted = self.about.cover
+        if wanted is None or wanted.run not in runs or runs[wanted.run].status == "failed":
+            return None
+        return cover(runs[wanted.run], wanted.caption, wanted.end)
 
     def _parts(self) -> list[str]:
         """Return its plug-ins, GROUP=FILE each, files by their whole paths."""

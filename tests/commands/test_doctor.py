@@ -55,6 +55,8 @@ def test_the_page_shows_robot_and_findings(cli, tmp_path):
     page = (tmp_path / "page/report.html").read_text()
     assert "__VISER_EMBED_DATA__" in page
     assert "inertia but no mass" in page
+    assert 'class="badge note"' in page
+    assert ">0 s<" not in page
 
 
 @pytest.mark.bullet

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runner.drawing.figure import Series
-from runner.drawing.thinning import band, runs, spaced, thin
+from runner.drawing.thinning import band, envelope, runs, spaced, thin
 
 
 @given(st.integers(2001, 9000), st.data())
@@ -64,3 +64,13 @@ def test_evenly_spaced_places_are_different_and_reach_both_ends(count, most):
     assert len(places) == len(set(places)) == min(count, most)
     assert places[:1] == ([0] if count else [])
     assert most == 1 or places[-1:] == ([count - 1] if count else [])
+
+
+def test_an_envelope_shows_how_far_a_curve_jumps_and_leaves_a_smooth_one_a_line():
+    x = np.arange(25.0)
+    jumping = envelope(Series("a", x, np.where(np.arange(25) % 2, 5.0, -5.0), color=3), 10)
+    assert (jumping.x.tolist(), jumping.color) == ([4.5, 14.5, 22.0], 3)
+    assert (jumping.low.tolist(), jumping.high.tolist()) == ([-5.0] * 3, [5.0] * 3)
+    np.testing.assert_allclose(jumping.y, [0.0, 0.0, -1.0])
+    smooth = envelope(Series("a", x, np.ones(25)), 10)
+    np.testing.assert_array_equal(smooth.low, smooth.high)

@@ -1,7 +1,7 @@
 import pytest
 
 from runner.expressions.parser import parse
-from runner.expressions.typesetting import symbol, typeset
+from runner.expressions.typesetting import linear, matrix, symbol, typeset
 from runner.reporting import formulas
 
 
@@ -16,6 +16,8 @@ from runner.reporting import formulas
         ("s2'", ("s′", "2")),
         ("Gcos", ("Gcos", "")),
         ("J_g0_32", ("J", "g0,32")),
+        ("c1_2_3", ("c", "(1−2−3)")),
+        ("T_1_2", ("T", "1,2")),
     ],
 )
 def test_digits_and_what_follows_an_underscore_are_subscripts(name, expected):
@@ -44,3 +46,23 @@ def test_brackets_that_matter_are_seen(one, other):
 def test_what_is_typeset_is_valid(text):
     source = typeset(parse(text).root)
     assert formulas.draw([source], displayed=False)[source] is not None
+
+
+def test_what_is_marked_is_set_apart_with_its_sign():
+    node = parse("a - b*c + d").root
+    assert typeset(node, {node.terms[1][1]}) == 'italic("a") differs(- italic("b") italic("c")) + italic("d")'
+
+
+def test_brackets_within_brackets_are_two():
+    assert typeset(parse("arctan(19/60)").root) == "arctan \\( (19) / (60)\\)"
+
+
+def test_a_matrix_is_valid():
+    elements = [parse(text).root for text in ("-s1", "1/2*c12", "atan2(y, x)", "0")]
+    text = matrix([elements[:2], elements[2:]], {elements[1]})
+    assert text.count("differs(") == 1
+    assert formulas.draw([text], displayed=False)[text] is not None
+
+
+def test_a_line_of_text_has_greek_letters_and_low_digits():
+    assert linear("-l4*cos(theta12)*P_ex^2 + J_31") == "-l₄ cos(θ₁₂) P_ex^2 + J₃₁"

@@ -6,6 +6,7 @@ from runner.expressions.parser import parse
 from runner.reporting.claim import Claim, ClaimResult
 from runner.reporting.document import (
     Body,
+    Code,
     Curves,
     Document,
     Equation,
@@ -26,6 +27,7 @@ from runner.reporting.document import (
     Series,
     Table,
     Text,
+    Verdicts,
 )
 from runner.reporting.markup import linked, marked
 
@@ -67,7 +69,7 @@ def curves(text: str = "error", **changes: object) -> Curves:
 
 def equations(text: str = "words", **changes: object) -> Equations:
     forms = [
-        EquationForm(text, raw=text, note=text),
+        EquationForm(text, raw=[(False, text), (True, text)], note=text, whole=text),
         EquationForm(text, expressions=[(parse("J_11").root, parse("-l2*cos(q1)^2/3").root)]),
         EquationForm(text, math="J^+ = J^T (J J^T)^(-1)"),
         EquationForm(text, math=text),
@@ -109,6 +111,7 @@ def document(text: str = "words") -> Document:
                 f"{marked('code <b>', 'code')}; {linked('page', 'https://example.org/a')}",
             )
         ),
+        Code(text),
         Notice("warning", text, text),
         Formula(text, text, text),
         curves(text, origin=origin),
@@ -116,14 +119,20 @@ def document(text: str = "words") -> Document:
         run_list(text, origin=origin),
         Picture(text, SVG, text, origin=origin),
         Table(text, [text, text], [[text, text]] * 2, [1], origin),
-        Claim(
+        Verdicts(
             text,
-            text,
-            text,
-            text,
-            [ClaimResult(text, text, "holds", text), ClaimResult(text, text, "contradicts itself", text)],
-            text,
-            text,
+            [
+                Claim(
+                    text,
+                    text,
+                    text,
+                    text,
+                    [ClaimResult(text, text, "holds", text), ClaimResult(text, text, "contradicts itself", text)],
+                    text,
+                    text,
+                )
+            ],
+            origin,
         ),
         equations(text, origin=origin),
         playback(caption=text, origin=origin),

@@ -1,4 +1,5 @@
 import re
+import unicodedata
 
 import pytest
 
@@ -7,6 +8,7 @@ from runner.audit.verdict import VERDICTS
 from runner.reporting import formulas, html, outline
 from runner.reporting.audit.report import audit_document
 from runner.reporting.document import Curves, Equations, Table
+from runner.reporting.tally import tallies
 from runner.reporting.templating import VERDICT_SIGNS
 
 
@@ -43,7 +45,7 @@ def test_the_counts_add_up(document, judged):
 
 
 def test_each_place_has_as_many_equations_as_are_printed(document):
-    places = tables(document, Table)[1]
+    places = tables(document, Table)[-1]
     assert all(row[2] == row[3] for row in places.rows)
 
 
@@ -52,18 +54,70 @@ def test_every_formula_is_valid(document):
 
 
 def test_each_wrong_formula_that_is_run_has_its_curves(document):
-    assert len(tables(document, Curves)) == 11
+    panels = [panel for figure in tables(document, Curves) for panel in figure.panels]
+    assert len(panels) == len({panel.title for panel in panels}) == 11
+
+
+def squeezed(text):
+    """Return a text as the page's search compares it: see report.js."""
+    return re.sub(r"[\s·*_]+", "", unicodedata.normalize("NFKC", re.sub(r"<[^>]*>", "", text)))
+
+
+def shown(page):
+    row = r'<div class="equation-row" data-verdict="([^"]*)">(.*?)(?=<div class="equation-row"|</details>\n)'
+    return re.findall(row, page, re.DOTALL)
 
 
 def test_the_page_can_be_searched_by_what_is_printed(page, judged):
-    rows = re.findall(r'<tr data-verdict="([^"]*)">(.*?)</tr>', page, re.DOTALL)
-    assert len(rows) == sum(map(len, judged.values()))
-    assert {verdict for verdict, _ in rows} <= set(VERDICTS)
-    shown = [re.sub(r"\s+", "", re.sub(r"<[^>]*>", "", row)) for _, row in rows]
-    assert sum("J_43AngularvelocityalongxA".removesuffix("A") in text for text in shown) == 1
-    assert any("l4cos(q1)" in text for text in shown)
-    assert any("l4cos(θ1)" in text for text in shown)
-    assert page.count('type="search"') == 2
+    found = shown(page)
+    assert len(found) == sum(map(len, judged.values()))
+    assert {verdict for verdict, _ in found} <= set(VERDICTS)
+    texts = [squeezed(row) for _, row in found]
+    assert sum("J43Angularvelocityalongx" in text for text in texts) == 1
+    assert any("l4cos(q1)" in text for text in texts)
+    assert any("l4cos(θ1)" in text for text in texts)
+    assert len(set(re.findall(r'role="search" aria-label="([^"]*)"', page))) == 2
+
+
+def test_wrong_equations_come_first_and_right_ones_are_folded(page):
+    order = [verdict for verdict, _ in shown(page)]
+    first = order[: order.index("definition")]
+    assert list(dict.fromkeys(first)) == ["wrong as printed", "unreadable", "correct after repair", "correct"] or (
+        list(dict.fromkeys(first)) == ["wrong as printed", "unreadable", "correct"]
+    )
+    assert page.count('<details class="verdict" open>') == 5
+    assert page.count('<details class="verdict">') == 4
+
+
+def test_what_differs_is_marked_in_both_forms(document):
+    rows = {row.number: row for table in tables(document, Equations) for row in table.rows}
+    printed, corrected = rows["P_ex"].forms
+    assert {each.name for each in printed.marked} == {"q1", "q2", "q5"}
+    assert {each.name for each in corrected.marked} == {"theta1", "theta2"}
+
+
+def test_a_shifted_column_is_named_and_not_printed_again(document):
+    rows = {row.number: row for table in tables(document, Equations) for row in table.rows}
+    assert 'the right $italic("J")_"12"$, with $italic("q")_"1"$' in rows["J_13"].forms[0].note
+    assert rows["J_13"].forms[0].expressions == ()
+
+
+def test_squares_lead_to_the_equations_of_each_verdict(document, page):
+    for tally in tallies(document):
+        assert sum(int(square.number) for square in tally.squares) == sum(count for _, count in tally.counts)
+        for square in tally.squares:
+            assert page.count(f'id="{square.place}"') == 1
+            assert f'href="#{square.place}"' in page
+
+
+def test_what_can_be_scrolled_can_be_reached_by_keys(page):
+    wide = re.findall(r'<div class="form-math wide"([^>]*)>', page)
+    assert wide
+    assert all('tabindex="0"' in attributes for attributes in wide)
+
+
+def test_the_page_leads_to_the_table_beside_it(page):
+    assert page.count('href="equations.csv" download') == 2
 
 
 def test_every_verdict_has_a_sign():

@@ -7,7 +7,8 @@ import pandas as pd
 import pytest
 
 from runner.claims import CONTRADICTION, PublishedClaim, PublishedStatement
-from runner.reporting.claims import claim_blocks, run_name, statement_blocks, verdict_table
+from runner.reporting.claims import judged_claims, judged_statements, run_name
+from runner.reporting.document import Verdicts
 from runner.reporting.job import PRESETS, MissingError
 from runner.reporting.words import PRESET
 from runner.store import Run
@@ -50,7 +51,7 @@ def run(metrics=None, failure=None, width=0.4):
 
 def blocks(runs, *claims):
     both = {f"{name}/{preset}": each for name, each in runs.items() for preset in PRESETS}
-    return claim_blocks([PublishedClaim.model_validate(claim) for claim in claims], both, PRESET)
+    return judged_claims([PublishedClaim.model_validate(claim) for claim in claims], both, PRESET)
 
 
 def told(block):
@@ -111,7 +112,8 @@ def test_a_bound_is_the_other_claims_number_or_our_median_where_that_is_larger(m
     block = blocks(runs, NUMBER, mini)[1]
     assert told(block) == ("0.3 s", verdict)
     each = f"{macro / 10:g} s"
-    assert block.reason == f"It is scaled. A tenth of the Macro's is {each} (as reported) and {each} (full equations)."
+    ours = f"{each} (as the thesis ran it) and {each} (with its full equations)"
+    assert block.reason == f"It is scaled. A tenth of the Macro's is {ours}."
 
 
 def test_repetitions_that_are_late_are_counted_where_the_error_at_rest_is_judged():
@@ -126,33 +128,33 @@ def test_repetitions_that_are_late_are_counted_where_the_error_at_rest_is_judged
 
 def test_the_table_has_a_row_for_each_claim_and_a_column_for_each_preset():
     made = blocks({"macro": run({"settling_time": metric(1.4)})}, NUMBER, NUMBER | {"number": 2})
-    table = verdict_table("Verdicts.", made, PRESET)
-    assert table.header == ["claim", "statement", "printed", "as reported", "full equations"]
-    assert table.rows == [[n, "It settles", "1.4 s", "1.4 s: holds", "1.4 s: holds"] for n in "12"]
+    assert Verdicts("Verdicts.", made).ways == ["as the thesis ran it", "with its full equations"]
+    assert [row.number for row in made] == ["1", "2"]
+    assert [(found.measured, found.verdict) for found in made[0].findings] == [("1.4 s", "holds")] * 2
 
 
 def test_statements_are_numbered_and_take_their_verdicts_by_name():
     stated = [PublishedStatement(name=n, statement=n.upper(), place="section 1", reason="So.") for n in ("a", "b")]
-    first, second = statement_blocks(stated, {"b": ("no longer holds", "3 mm"), "a": ("holds", "1 mm")})
+    first, second = judged_statements(stated, {"b": ("no longer holds", "3 mm"), "a": ("holds", "1 mm")})
     assert (first.number, first.statement, first.findings[0].verdict) == ("1", "A", "holds")
     assert (second.number, second.findings[0].measured, second.reason) == ("2", "3 mm", "So.")
     with pytest.raises(ValueError, match="stated: a, b; judged: a, c"):
-        statement_blocks(stated, {"a": ("holds", ""), "c": ("holds", "")})
+        judged_statements(stated, {"a": ("holds", ""), "c": ("holds", "")})
 
 
 def test_a_claim_names_a_run_and_presets_of_the_works_own():
     claim = PublishedClaim.model_validate({**NUMBER, "experiment": "", "run": "goal"})
     runs = {"goal/slow": run({"settling_time": metric(1.4)}), "goal/fast": run({"settling_time": metric(0.1)})}
-    (block,) = claim_blocks([claim], runs, {"slow": "half", "fast": "whole"})
+    (block,) = judged_claims([claim], runs, {"slow": "half", "fast": "whole"})
     assert [(each.preset, each.verdict) for each in block.findings] == [("slow", "holds"), ("fast", "better")]
-    assert verdict_table("All.", [block], {"slow": "half", "fast": "whole"}).header[3:] == ["half", "whole"]
+    assert Verdicts("All.", [block]).ways == ["half", "whole"]
 
 
 def test_without_presets_a_claim_is_judged_once():
     claim = PublishedClaim.model_validate({**NUMBER, "experiment": "", "run": "goal"})
-    (block,) = claim_blocks([claim], {"goal": run({"settling_time": metric(1.4)})}, {})
+    (block,) = judged_claims([claim], {"goal": run({"settling_time": metric(1.4)})}, {})
     assert [(each.preset, each.verdict) for each in block.findings] == [("", "holds")]
-    assert verdict_table("All.", [block], {}).header[3:] == ["simulated"]
+    assert Verdicts("All.", [block]).ways == ["simulated"]
 
 
 def test_a_claim_names_an_experiment_or_a_run():

@@ -39,9 +39,9 @@ def test_a_caveat_is_expected_of_the_runs_that_a_pattern_names():
 def test_the_section_tells_how_many_and_the_worst_and_warns_of_others():
     warning, table = caveats_section(RUNS, [SATURATED, ExpectedCaveat("overload", "*", "Nothing has it.")]).blocks
     assert isinstance(warning, Notice)
-    assert warning.title == "1 caveats that this work does not expect"
+    assert warning.title == "1 caveat that this work does not expect"
     assert isinstance(table, Table)
-    assert table.rows == [["saturation", "2", "fast/as_reported", "saturation of 0.6 $$", SATURATED.why]]
+    assert table.rows == [["saturation", "2", "fast/as_reported: saturation of 0.6 $$", SATURATED.why]]
 
 
 def test_a_work_without_caveats_says_so():

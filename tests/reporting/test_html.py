@@ -9,8 +9,9 @@ from typing import get_args
 import pytest
 from sample_document import HOSTILE, curves, document, playback
 
-from runner.reporting import html
-from runner.reporting.document import Block, Document, Section, Text
+from runner.reporting import html, outline
+from runner.reporting.claim import Claim, ClaimResult
+from runner.reporting.document import Block, Document, Origin, Section, Text, Verdicts
 from runner.reporting.markup import spans
 from runner.reporting.templating import html_environment
 from runner.texts import plain
@@ -57,7 +58,7 @@ def test_every_block_type_has_a_macro(kind):
 @pytest.mark.parametrize("text", HOSTILE)
 def test_texts_add_no_tag_and_are_shown_literally(quiet, text):
     page = Page(html.render(document(text)).encode("utf-8", "replace").decode())
-    extra = {"img", "code", "br"}  # mathematics, or its source where it is refused
+    extra = {"svg", "g", "use", "path", "code", "br"}  # mathematics, or its source where it is refused
     assert [tag for tag in page.tags if tag not in extra] == [tag for tag in quiet.tags if tag not in extra]
     assert not any(name.startswith("on") for name, _ in page.attributes)
     if not any(span.math for span in spans(text)):
@@ -68,7 +69,7 @@ def test_texts_add_no_tag_and_are_shown_literally(quiet, text):
 def test_no_text_can_end_a_script():
     page = Page(html.render(document("</script><!--\u2028")))
     data = [content for attributes, content in page.scripts if attributes.get("type") == "application/json"]
-    assert len(data) == 4  # curves, maps, runs, palette
+    assert len(data) == 2  # runs, palette
     for content in data:
         json.loads(content)
         assert "\u2028" not in content
@@ -98,7 +99,38 @@ def test_playbacks_share_one_player():
 
 def test_formulas_are_images_with_their_words():
     page = html.render(Document("", "", "$omega_n$", [], ""))
-    assert re.search(r'<img class="math" role="img" alt="omega_n" aria-label="omega_n" src="data:image/svg', page)
+    assert re.search(r'<svg class="math" role="img" aria-label="omega n" viewBox="0 0 [\d.]+ [\d.]+"', page)
+
+
+def test_a_formula_and_its_letters_stand_in_the_page_once():
+    page = html.render(Document("", "", "$omega_n$ and $omega_n$, $omega$", [], ""))
+    assert page.count('<use href="#f0"/>') == 2
+    assert page.count('<use href="#f1"/>') == 1
+    assert [page.count(f'<g id="{name}">') for name in ("f0", "f1", "g0", "g1")] == [1, 1, 1, 1]
+    assert '<g id="g2">' not in page
+
+
+def test_data_and_pictures_are_packed_and_named_by_their_places():
+    page = Page(html.render(document()))
+    for kind, count in (("plots", 2), ("pictures", 2)):
+        text = next(content for attributes, content in page.scripts if attributes.get("id") == kind)
+        assert len(json.loads(gzip.decompress(base64.b64decode(text)))) == count
+        attribute = {"plots": "data-plots", "pictures": "data-picture"}[kind]
+        assert [value for name, value in page.attributes if name == attribute] == ["0", "1"]
+
+
+def test_claims_figures_and_tables_are_places_that_texts_lead_to():
+    origin = Origin("figure 3.5", "runner experiment=a/b")
+    claim = Claim("3", "It settles", "page 1", "1 s", [ClaimResult("", "1 s", "holds")], "", "runner experiment=a/b")
+    told = Text("claim 3 is judged by figure 3.5; figure 9.9 is not here")
+    blocks = [told, Verdicts("All.", [claim]), curves("seen", origin=origin)]
+    page = html.render(Document("", "", "", [Section("A", blocks)], ""))
+    assert 'href="#claim-3">claim 3</a>' in page
+    assert 'href="#figure-3-5">figure 3.5</a>' in page
+    assert 'href="#figure-9-9"' not in page
+    assert '<tr id="claim-3">' in page
+    assert 'id="figure-3-5"' in page
+    assert 'href="#figure-3-5" aria-label="Claim 3: to the evidence"' in page
 
 
 def test_the_same_document_gives_the_same_page():
@@ -107,8 +139,17 @@ def test_the_same_document_gives_the_same_page():
 
 def test_sections_are_numbered_and_listed():
     page = Page(html.render(replace(document(), sections=[Section("A", [], [Section("B")]), Section("C")])))
-    assert [value for name, value in page.attributes if name == "href" and value.startswith("#s")] == [
-        "#s1",
-        "#s1-1",
-        "#s2",
-    ]
+    own = ["#s1", "#s1-1", "#s2"]  # in the contents, and at the headings
+    assert [value for name, value in page.attributes if name == "href" and value.startswith("#s")] == [*own, *own]
+
+
+def test_every_figure_has_an_address_and_what_can_be_done_with_it():
+    page = Page(html.render(document()))
+    ids = [value for name, value in page.attributes if name == "id"]
+    assert len(ids) == len(set(ids))
+    captioned = page.tags.count("figcaption")
+    assert sum("figure" in name or "table" in name for name in ids) == captioned
+    done = [value for name, value in page.attributes if name == "data-do"]
+    drawn = [block.block for block in outline.blocks(document())]
+    assert done.count("svg") == sum(drawn.count(kind) for kind in ("curves", "maps", "picture", "playback"))
+    assert done.count("csv") == sum(drawn.count(kind) for kind in ("curves", "maps", "table", "verdicts"))

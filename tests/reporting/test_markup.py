@@ -18,8 +18,16 @@ def test_other_dollars_are_literal(text, shown):
 
 
 def test_a_section_sign_with_a_number_is_a_link():
-    assert spans("see §2.1, not § 3") == [Literal("see "), Link("2.1"), Literal(", not § 3")]
-    assert (Link("2.1").text, Link("2.1").anchor) == ("section 2.1", "s2-1")
+    assert spans("see §2.1, not § 3") == [Literal("see "), Link("section 2.1", "s2-1"), Literal(", not § 3")]
+
+
+def test_claims_figures_and_tables_are_links():
+    assert spans("Claim 3 and figure 5.12, not figures 2") == [
+        Link("Claim 3", "claim-3"),
+        Literal(" and "),
+        Link("figure 5.12", "figure-5-12"),
+        Literal(", not figures 2"),
+    ]
 
 
 def test_plain_is_one_line():

@@ -19,7 +19,7 @@ def test_sections_are_numbered_by_their_place():
 def test_blocks_come_in_reading_order():
     kinds = [block.block for block in outline.blocks(document())]
     assert kinds[0] == kinds[-1] == "text"
-    assert len(kinds) == 14
+    assert len(kinds) == 15
 
 
 def test_formulas_of_every_text_are_found_once():

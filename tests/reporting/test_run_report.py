@@ -1,3 +1,5 @@
+from types import SimpleNamespace
+
 import pytest
 from engines import ASKED
 
@@ -7,7 +9,8 @@ from runner.reporting.document import Curves, Notice, Playback, Provenance, Tabl
 from runner.reporting.formulas import faulty
 from runner.reporting.metric_titles import title
 from runner.reporting.render import write_report
-from runner.reporting.run_report import run_document
+from runner.reporting.run_report import provenance, run_document
+from runner.reporting.words import PLANT
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +34,9 @@ def blocks_of(document, kind):
 
 def test_a_finished_run_is_told_whole(finished):
     document = run_document([finished])
-    assert document.abstract == "1 run, all of them finished."
+    assert document.title.startswith("Macro, operational space, quintic, ")
+    assert document.abstract == "2 repetitions, all of them finished."
+    assert document.key_numbers[0][0] == "largest tracking error"
     assert [type(block) for block in outline.blocks(document)] == [
         Notice,
         Curves,
@@ -40,24 +45,39 @@ def test_a_finished_run_is_told_whole(finished):
         Table,
         Text,
         Table,
+        Table,
         Provenance,
     ]
-    metrics, config = blocks_of(document, Table)
+    metrics, changed, config = blocks_of(document, Table)
     assert [row[1] for row in metrics.rows] == list(finished.metrics)
     assert metrics.rows[0][0] == title(metrics.rows[0][1])
     assert metrics.caption == "Metrics over 2 repetitions."
     assert ["controller.natural_frequency", "30.0"] in [list(row) for row in config.rows]
+    assert ["duration", "0.5", "null"] in [list(row) for row in changed.rows]
     assert "outputs" not in [row[0] for row in config.rows]
-    (provenance,) = blocks_of(document, Provenance)
-    rows = dict(provenance.rows)
-    assert rows["plant"] == f"{ASKED.removeprefix('plant=')}, step 0.001 s"
+    (block,) = blocks_of(document, Provenance)
+    rows = dict(block.rows)
+    assert rows["plant"] == f"{PLANT[ASKED.removeprefix('plant=')]} in steps of 1 ms"
+    assert rows["seed"] == "0"
     assert rows["command"].startswith("runner robot=macro trajectory=quintic")
     assert rows["run"] == finished.hash
 
 
+def test_steps_of_a_plant_stand_together_and_seeds_in_a_row_are_a_range(finished):
+    def with_seed(seed, step):
+        config, record = finished.config, {**finished.provenance, "seed": seed, "plant_step": step}
+        return SimpleNamespace(config=config, provenance=record, sealed=True, hash=str(seed))
+
+    rows = dict(
+        provenance([with_seed(seed, step) for seed, step in ((2, 1e-3), (0, 2.5e-4), (1, 1e-3), (7, 1e-3))]).rows
+    )
+    assert rows["seed"] == "0 to 2, 7"
+    assert rows["plant"] == f"{PLANT[ASKED.removeprefix('plant=')]} in steps of 0.25 ms, 1 ms"
+
+
 def test_a_failed_run_says_when_and_where(diverged):
     document = run_document([diverged])
-    assert document.abstract == "1 run, 1 of them failed."
+    assert document.abstract.startswith(f"The run {diverged.failure_text}.")
     (notice,) = blocks_of(document, Notice)
     assert notice.kind == "failure"
     time, joint = diverged.failure["time"], diverged.failure["joint"]

@@ -34,7 +34,8 @@ def test_logarithmic_axes_take_values_that_have_no_logarithm():
 def test_legend_entries_read_along_the_rows():
     x = np.arange(3.0)
     names = ["one", "two", "three", "four", "five"]
-    drawing = stills.draw(Curves("", [Panel("", "", "", [Series(name, x, x) for name in names])] * 3, columns=3))
+    panels = [Panel("", "", "", [Series(name, x, x) for name in [*names, last]]) for last in "abc"]
+    drawing = stills.draw(Curves("", panels, columns=3))
     # matplotlib fills columns, and names every drawn text in a comment.
     assert drawing.index("<!-- one -->") < drawing.index("<!-- three -->") < drawing.index("<!-- two -->")
 

@@ -78,7 +78,7 @@ def test_refusals_name_the_reason(sections):
 
 
 def test_weighed_by_the_plant_s_reaction_the_tool_is_the_true_one(sections):
-    (row,) = table(sections[2], f"Identified from {DEFAULT_PLANT}").rows
+    (row,) = table(sections[2], f"Error of what is identified from {DEFAULT_PLANT}").rows
     assert len(row) == 5
     assert set(row) <= {"0", "0 (rounding)"}
 

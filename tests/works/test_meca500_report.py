@@ -41,7 +41,7 @@ def test_the_checklist_finds_a_place_for_everything(document):
 
 
 def test_the_lost_turns_of_table_1_are_needed(document):
-    rows = {row[0]: row[1:] for row in table(document, "Table 1 as a modified D-H table").rows}
+    rows = {row[0]: row[1:] for row in table(document, "Frame 6 by the modified D-H table").rows}
     assert float(rows["as printed, without both"][0]) > 100.0
     assert rows["without 180° of joint 6"][2] == "180"
     assert set(rows["with both turns"]) <= {"0", "0 (rounding)"}
@@ -57,8 +57,8 @@ def test_every_element_of_transform_and_jacobians_has_a_verdict(document):
 
 
 def test_the_two_sets_of_inertials_differ_by_a_third(document):
-    rows = {row[0]: row for row in table(document, "Masses of the moving links").rows}
-    assert rows["link5"][1:] == ["0.488", "0.358", "1.36", "cad_closed"]
+    rows = {row[0]: row for row in table(document, "The two sets of masses").rows}
+    assert rows["link5"][1:] == ["0.488", "0.358", "1.36", "CAD"]
 
 
 def test_the_plants_disagreement_is_measured_and_shrinks_with_the_step(document):

@@ -117,6 +117,19 @@ def test_caveats_that_no_run_can_have_are_told(tmp_path, made):
     assert [*problems(work, made, {})] == ["paper: gaol/*: expected caveats: no run of it is named so"]
 
 
+def test_a_cover_shows_a_run_in_motion_and_one_that_is_none_is_told(tmp_path, made):
+    def with_cover(run):
+        return load_work(
+            str(a_work(tmp_path / "paper", work__yaml=ABOUT + f"cover: {{run: {run}, caption: It moves.}}\n"))
+        )
+
+    assert "<animate" in with_cover("goal/slow/0.1").document(made, {}).cover.moving
+    work = with_cover("goal/slwo/0.1")
+    assert work.document(made, {}).cover is None
+    (told,) = problems(work, made, {})
+    assert re.search(r"paper/work.yaml: cover: no run 'goal/slwo/0.1' \(did you mean goal/slow/0.1\?\)", told), told
+
+
 def test_a_part_has_sections_and_a_file_of_python_is_a_chapter(tmp_path, made):
     about = "title: T\nsource: S\nabstract: A\nchapters: [{title: Part, sections: [one.md, two.py]}]\n"
     code = (
@@ -142,7 +155,7 @@ def test_functions_of_the_work_are_called_where_code_may_run(tmp_path, made):
     assert section.blocks[0].text == "There are 4 runs, 4."
     _, (section,) = read(folder, made)
     assert section.title == "Left out: one.md"
-    assert "not run" in load_work(str(folder)).document(made, {}).sections[-1].blocks[1].rows[-1][1]
+    assert "not run" in load_work(str(folder)).document(made, {}).sections[-2].blocks[1].rows[-1][1]
 
 
 def test_code_that_cannot_be_imported_is_told(tmp_path, made):

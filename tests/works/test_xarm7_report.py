@@ -10,8 +10,7 @@ from work_plans import xarm7_studies
 
 from runner.engines import has_pybullet
 from runner.reporting import outline
-from runner.reporting.claim import Claim
-from runner.reporting.document import Curves, Notice, Picture, Playback, Section, Table, Text
+from runner.reporting.document import Curves, Notice, Picture, Playback, Section, Table, Text, Verdicts
 from runner.reporting.findings import findings
 from runner.reporting.formulas import faulty
 from runner.reporting.job import PRESETS
@@ -69,18 +68,12 @@ def test_the_checklist_finds_a_place_for_everything(document):
 
 
 def test_the_verdicts(document):
-    verdicts = {claim.number: [f.verdict for f in claim.findings] for claim in blocks_of(document, Claim)}
+    (claims,) = blocks_of(document, Verdicts)
+    verdicts = {claim.number: [f.verdict for f in claim.findings] for claim in claims.rows}
     same = {number: ["holds", "holds"] for number in "123467"}
     assert verdicts == {**same, "5": ["contradicts itself", "contradicts itself"]}
-    for claim in blocks_of(document, Claim):
+    for claim in claims.rows:
         assert tuple(finding.preset for finding in claim.findings) == PRESETS
-
-
-def test_the_table_of_verdicts_says_what_the_claims_say(document):
-    assert [list(row) for row in table(document, "Verdicts").rows] == [
-        [c.number, c.statement, c.printed, *(f"{f.measured}: {f.verdict}" for f in c.findings)]
-        for c in blocks_of(document, Claim)
-    ]
 
 
 def test_one_branch_alone_is_inside_the_joint_limits(document):

@@ -1,24 +1,24 @@
-"""The audit as a report: counts, and one table of equations for each source with the runs of its wrong formulas."""
+"""The audit as a report: the equations of each source, wrong ones first, and what a robot does that uses them."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 
 from runner import provenance
 from runner.audit.audit import counts
-from runner.audit.entry import Form
 from runner.audit.inventory import inventory
 from runner.audit.rollout import run_rollout
 from runner.audit.verdict import SAMPLES, VERDICTS, Judged
-from runner.expressions.parser import ExpressionError, parse
 from runner.quantities import quantity
+from runner.reporting.audit.forms import forms_of
+from runner.reporting.audit.likeness import Likeness
 from runner.reporting.document import (
     Block,
     Curves,
     Document,
     Equation,
-    EquationForm,
     Equations,
+    Items,
     Notice,
     Origin,
     Panel,
@@ -28,9 +28,18 @@ from runner.reporting.document import (
     Table,
     Text,
 )
-from runner.reporting.markup import literals
+from runner.reporting.markup import literals, marked
 
 COMMAND = "runner reproduce audit"
+DATA = "equations.csv"
+"""Name of the table of all equations, which stands beside the report."""
+
+_PANELS = 4  # panels of a figure
+_WORDS = (
+    "Correct: equal to the truth, but for rounding, at every configuration tried. Correct after repair: so once damage "
+    "of the text is mended. Wrong as printed: not so, and the right form stands beside it, with what differs marked. "
+    "Unreadable: too much of the text is lost. Definition: it only names things."
+)
 
 
 def audit_document(judged: Mapping[str, Sequence[Judged]]) -> Document:
@@ -52,10 +61,11 @@ def audit_document(judged: Mapping[str, Sequence[Judged]]) -> Document:
             "wrong was found in two independent ways."
         ),
         sections=(
-            Section("Counts", (_counts(judged), Text(_reading()), _inventory(judged))),
             *(_source(source, each) for source, each in judged.items()),
+            Section("How they were judged", (Text(_reading()), _counts(judged), _ways(judged), _inventory(judged))),
             Section("Provenance", (_provenance(),)),
         ),
+        notes=(_WORDS, f"Each square leads to its equations. All of them, whole, stand in {DATA} beside this report."),
         date=datetime.now(UTC).date().isoformat(),
     )
 
@@ -103,31 +113,39 @@ def _inventory(judged: Mapping[str, Sequence[Judged]]) -> Table:
     )
 
 
+def _ways(judged: Mapping[str, Sequence[Judged]]) -> Table:
+    found: dict[tuple[str, str], dict[str, None]] = {}
+    for source, each in judged.items():
+        for one, another in sorted({one.ways for one in each if one.entry.truth}):
+            found.setdefault((source, one), {})[another] = None
+    lines = [[source, one, "; ".join(others)] for (source, one), others in found.items()]
+    return Table("Ways to what the equations claim to equal.", ["source", "one way", "another"], lines)
+
+
 def _source(source: str, judged: Sequence[Judged]) -> Section:
-    ways = sorted({each.ways for each in judged if each.entry.truth})
     blocks: list[Block] = [
         Notice("finding", "What is wrong, and why", inventory(source).found),
-        Equations(f"Equations of the {source} source.", [row(each) for each in judged], Origin(command=COMMAND)),
-        Table("Ways to what the equations claim to equal.", ["one way", "another"], ways),
+        Equations(f"Equations of the {source} source.", rows(judged), source=source, data=DATA),
     ]
     names = dict.fromkeys(each.entry.rollout for each in judged if each.entry.rollout)
-    runs = tuple(_run(source, name) for name in names)
-    return Section(
-        inventory(source).title,
-        blocks,
-        runs and (Section("What a robot does when it uses the wrong formulas", (), runs),),
-    )
+    return Section(inventory(source).title, blocks, (_runs(source, names),) if names else ())
 
 
-def row(judged: Judged) -> Equation:
-    """Return the row of one equation in a table of them."""
-    entry = judged.entry
-    forms = [_form("as printed", entry.printed)]
-    if entry.repair is not None:
-        forms.append(_form("repaired", entry.repair, entry.repair.why))
-    if entry.corrected is not None:
-        forms.append(_form("corrected", entry.corrected))
-    return Equation(entry.number, entry.title, entry.place, judged.verdict, _error(judged), forms, entry.finding)
+def rows(judged: Sequence[Judged]) -> list[Equation]:
+    """Return the equations of a source for a report, in the order of the text."""
+    likeness = Likeness(judged)
+    return [
+        Equation(
+            each.entry.number,
+            each.entry.title,
+            each.entry.place,
+            each.verdict,
+            _error(each),
+            forms_of(each.entry, likeness),
+            each.entry.finding,
+        )
+        for each in judged
+    ]
 
 
 def _error(judged: Judged) -> str:
@@ -141,23 +159,23 @@ def _error(judged: Judged) -> str:
     return f"up to {quantity(measured.largest, entry.unit)}, typically {quantity(measured.typical, entry.unit)}"
 
 
-def _form(label: str, form: Form, note: str = "") -> EquationForm:
-    if form.math:
-        return EquationForm(label, math=form.math, note=note)
-    try:
-        expressions = [(parse(name).root, parse(text).root) for name, text in form.elements.items()]
-    except ExpressionError:
-        raw = "; ".join(f"{name} = {text}" for name, text in form.elements.items())
-        return EquationForm(f"{label}, as the text has it", raw=raw, note=note)
-    return EquationForm(label, expressions=expressions, note=note)
-
-
-def _run(source: str, name: str) -> Section:
-    words, run = run_rollout(source, name)
-    series = [Series(name, run.x, values) for name, values in run.curves.items()]
-    panel = Panel("", words.x_label, words.y_label, series, y_log=words.logarithmic)
-    caption = f"{words.title}: {words.y_label} over {words.x_label}."
-    return Section(words.title, (Text(words.text), Curves(caption, [panel], columns=1, origin=Origin(command=COMMAND))))
+def _runs(source: str, names: Iterable[str]) -> Section:
+    """Return what a robot does that believes the wrong formulas: a sentence and a panel for each run."""
+    found = [run_rollout(source, name) for name in names]
+    told = [f"{marked(words.title, 'emphasis')}: {words.text}" for words, _ in found]
+    panels = [
+        Panel(
+            words.title,
+            words.x_label,
+            words.y_label,
+            [Series(name, run.x, values) for name, values in run.curves.items()],
+            y_log=words.logarithmic,
+        )
+        for words, run in found
+    ]
+    caption = f"What becomes of a robot that uses a wrong formula of {source}, beside one that uses the corrected one."
+    figures = [Curves(caption, panels[first : first + _PANELS]) for first in range(0, len(panels), _PANELS)]
+    return Section("What a robot does when it uses the wrong formulas", (Items(told), *figures))
 
 
 def _provenance() -> Provenance:

@@ -15,6 +15,7 @@ from runner.store import Run
 
 Style = Literal["line", "dashed", "dotted", "points", "points_line"]
 _POINTS = 100  # of the curve of a closed form
+_MARGIN = 0.05  # of the range of y, above and below what is drawn
 
 
 def line(
@@ -63,10 +64,10 @@ def joints(runs: Mapping[str, Run], run: str, stem: str = "q", name: str = "q") 
     return [Series(f"{name}{joint + 1}", t, column) for joint, column in enumerate(values.T)]
 
 
-def axes(runs: Mapping[str, Run], run: str, stem: str = "error") -> list[Series]:
-    """Return a vector's x, y and z over time: tip, desired, error or another that has these columns."""
+def axes(runs: Mapping[str, Run], run: str, stem: str = "error", factor: float = 1.0) -> list[Series]:
+    """Return so many times a vector's x, y and z over time: tip, desired, error or another that has these columns."""
     return [
-        Series(axis, times_of(runs[run], len(values)), values, color=index)
+        Series(axis, times_of(runs[run], len(values)), factor * values, color=index)
         for index, axis in enumerate(AXES)
         for values in [trace_of(f"{stem}_{axis}", runs[run])]
     ]
@@ -172,8 +173,26 @@ def panel(
     return Panel(title, x_label, y_label, drawn, x_log, y_log, ranges[0], ranges[1], tuple(x_names))
 
 
+def same_y(*panels: Panel) -> list[Panel]:
+    """Return panels that are to be compared, all with the range of y that shows what any of them has."""
+    drawn = [edge for each in panels for series in each.series for edge in (series.y, series.low, series.high)]
+    values = np.concatenate([edge[np.isfinite(edge)] for edge in drawn if edge is not None] or [np.zeros(0)])
+    if not values.size or values.min() == values.max():
+        return list(panels)
+    log = any(each.y_log for each in panels)
+    low, high = (np.log(values.min()), np.log(values.max())) if log else (values.min(), values.max())
+    ends = np.array([low - _MARGIN * (high - low), high + _MARGIN * (high - low)])
+    low, high = map(float, np.exp(ends) if log else ends)
+    return [replace(each, y_range=(low, high)) for each in panels]
+
+
 def curves(
-    runs: Mapping[str, Run], caption: str, run: str, *panels: Panel, columns: int | None = None, number: str = ""
+    runs: Mapping[str, Run],
+    caption: str,
+    run: str,
+    *panels: Panel | Sequence[Panel],
+    columns: int | None = None,
+    number: str = "",
 ) -> Curves:
     """Return a figure of some panels, side by side.
 
@@ -181,11 +200,12 @@ def curves(
         runs: The runs of the work by name.
         caption: What is seen; inline mathematics as in Text.
         run: The run whose command stands under the figure.
-        panels: The axes in reading order.
+        panels: The axes in reading order, one by one or several in one, as `same_y` gives them.
         columns: How many stand beside each other; two at most where it is left out.
         number: Its number in the source.
     """
-    return Curves(caption, panels, columns or min(2, len(panels)), origin(runs[run], number))
+    drawn = [each for given in panels for each in ([given] if isinstance(given, Panel) else given)]
+    return Curves(caption, drawn, columns or min(2, len(drawn)), origin(runs[run], number))
 
 
 def heat_map(

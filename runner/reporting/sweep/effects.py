@@ -3,7 +3,7 @@
 import numpy as np
 
 from runner.drawing.thinning import spaced
-from runner.quantities import number
+from runner.quantities import labelled, number
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
@@ -17,7 +17,7 @@ _MOST_LEVELS = 200  # of an axis that are drawn, spread evenly
 
 def section(subject: Subject) -> Section:
     """Return what each axis does to each metric."""
-    blocks: list[Block] = [_table(subject.effects), Text(_explained(subject.effects)), _main_effects(subject)]
+    blocks: list[Block] = [_table(subject.effects), Text(_explained(subject.effects)), *_main_effects(subject)]
     many = [axis.name for axis in subject.axes if len(axis.values) > MOST_GROUPS]
     if many:
         blocks.insert(2, Text(literal(f"{', '.join(many)}: taken in {MOST_GROUPS} groups of neighbouring values.")))
@@ -95,17 +95,19 @@ def _on_chance(tests: int) -> str:
     )
 
 
-def _main_effects(subject: Subject) -> Curves:
-    panels = []
-    for metric in subject.metrics[:3]:
-        panels += [_main_effect(subject, metric, axis) for axis in subject.axes]
-    return Curves(
-        "Main effects: median of all repetitions at each value of an axis, over the values of the others; shaded, or a "
-        "bar, the half of them between the quartiles. " + QUANTILE_RULE + " No point stands where half of the runs or "
-        "more failed.",
-        panels,
-        columns=3 if len(subject.axes) in (3, 5, 6) else 2,
+def _main_effects(subject: Subject) -> list[Curves]:
+    """Return a figure for each metric, with a panel for each axis."""
+    told = (
+        ": median of all repetitions at each value of an axis, over the values of the others; shaded, or a bar, the "
+        f"half of them between the quartiles. {QUANTILE_RULE} No point stands where half of the runs or more failed."
     )
+    figures: list[Curves] = []
+    for metric in subject.metrics[:3]:
+        panels = [_main_effect(subject, metric, axis) for axis in subject.axes]
+        name = title(metric)
+        caption = literal(f"{name[0].upper()}{name[1:]} and each axis{'.' if figures else told}")
+        figures.append(Curves(caption, panels, columns=len(panels) if len(panels) <= 4 else 3))
+    return figures
 
 
 def _main_effect(subject: Subject, metric: str, axis: Axis) -> Panel:
@@ -125,7 +127,8 @@ def _main_effect(subject: Subject, metric: str, axis: Axis) -> Panel:
         gap = np.full(len(x), np.nan)
         whiskers = Series("", np.repeat(x, 3), np.column_stack([low, high, gap]).ravel(), color=0)
         series = [whiskers, Series("", x, median, "points", color=0)]
-    return axis_panel("", axis, subject.label(metric), series, quartiles)
+    unit = subject.measurements.units[metric]
+    return axis_panel("", axis, labelled("median", unit), series, quartiles)
 
 
 def _percent(share: float) -> str:

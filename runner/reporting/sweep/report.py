@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from runner.quantities import quantity
 from runner.reporting.document import Document, Provenance, RunList, Section, Text
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
@@ -18,6 +19,7 @@ MOST_RUNS = 5000
 """Runs that the list of a report holds; of more, the best and the worst."""
 
 _MOST_VALUES = 100  # of what made the runs
+_NAMED = 3  # cells that failed, on the first screen
 
 
 def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str = "") -> Document:
@@ -60,7 +62,24 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
         abstract=literal(_abstract(subject)),
         sections=sections,
         date=max(measurements.provenance["made on"]),
+        key_numbers=_key_numbers(subject),
+        figures_float=False,
     )
+
+
+def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
+    """Return how many cells there are and failed, and the best one of the first metric with its value."""
+    failed = [cell for cell, status in enumerate(subject.measurements.statuses) if status != "ok"]
+    count = len(subject.measurements.hashes)
+    numbers = [("cells", str(count), f"{subject.measurements.repetitions} repetitions in each")]
+    names = "; ".join(subject.cell_name(cell) for cell in failed[:_NAMED])
+    more = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
+    numbers.append(("failed", str(len(failed)), names + more))
+    if subject.ranked and subject.axes:
+        metric, best = subject.metrics[0], subject.ranked[0]
+        least = quantity(float(subject.medians[metric][best]), subject.measurements.units[metric])
+        numbers.append((f"least {title(metric)}, median", least, subject.cell_name(best)))
+    return numbers
 
 
 def _abstract(subject: Subject) -> str:

@@ -55,6 +55,7 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
         abstract=literal(_abstract(subject)),
         sections=sections,
         date=max(measurements.provenance.get("made on", [""])),
+        figures_float=False,
     )
 
 

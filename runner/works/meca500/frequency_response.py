@@ -65,7 +65,7 @@ def bode(runs: Runs) -> list[Panel]:
     drawn = [
         ("analytic", fine, exact, "dashed"),
         ("sampled law, 16.7 ms", fine, sampled, "dotted"),
-        ("analytic, and give of the servos", fine, exact + _give(servo), "dotted"),
+        ("analytic, and yielding of the servos", fine, exact + _give(servo), "dotted"),
     ]
     for case in SINE_CASES:
         found = np.array([fitted_response(runs[f"sine/{case}/{frequency}"]) for frequency in FREQUENCIES])

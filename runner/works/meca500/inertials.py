@@ -15,7 +15,7 @@ from runner.works.meca500.figures import Runs
 
 _COUNT = 1000
 _LIGHT = 0.1  # kg and N m, below which a share means little
-_SETS = ("cad_closed", "uniform_density")
+_SETS = {"cad_closed": "CAD", "uniform_density": "meshes"}
 
 
 def light() -> float:
@@ -29,7 +29,8 @@ def masses(runs: Runs) -> list[list[str]]:
     pairs = _moving(first, second)
     pairs["all that move"] = (sum(pair[0] for pair in pairs.values()), sum(pair[1] for pair in pairs.values()))
     return [
-        [link, number(a), number(b), number(max(a, b) / min(a, b)), _SETS[int(b > a)]] for link, (a, b) in pairs.items()
+        [link, number(a), number(b), number(max(a, b) / min(a, b)), list(_SETS.values())[int(b > a)]]
+        for link, (a, b) in pairs.items()
     ]
 
 

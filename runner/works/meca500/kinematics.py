@@ -24,7 +24,7 @@ _COUNT, _SAMPLES = 1000, 200
 _MILLIMETRES = 1000.0
 _NOTHING = 1e-4  # mm or degrees: the chord of two equal rotations is known to the root of rounding
 _SIZES = {"T": (3, 4), "J_g0": (6, 6), "J_g6": (6, 6)}
-_WORDS = {"correct": "right", "correct after repair": "right, text mended", "unreadable": "text lost"}
+_WORDS = {"correct": "right", "correct after repair": "right, mended", "unreadable": "text lost"}
 _RUN = "plants/kinematic"
 _TURNED = {
     "with both turns": (),

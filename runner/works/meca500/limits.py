@@ -32,6 +32,8 @@ def limits(run: Run) -> dict[str, Any]:
         "speed": float(np.abs(speeds).max()),
         "change": float(np.abs(np.diff(speeds, axis=0)).max()),
         "singular": float(min(singular) / singular[0]),
-        "said": said.replace("the posture, singular or nearly so", "a posture at or near a singularity"),
+        "said": said.replace("the posture, singular or nearly so", "a posture at or near a singularity").replace(
+            " has held the tool back, first at t =", " from"
+        ),
         "told": "has held the tool back" in said,
     }

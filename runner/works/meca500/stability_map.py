@@ -87,9 +87,8 @@ def outcomes(runs: Runs, pattern: str, x: Callable[[Run], float], y: Callable[[R
     series = []
     for bouncing, name in ((False, "stable"), (True, "unstable")):
         points = [(x(each.run), y(each.run)) for each in found(runs, pattern) if bounces(each.run) == bouncing]
-        if points:
-            over, value = np.array(points).T
-            series.append(Series(name, over, value, "points"))
+        over, value = np.array(points, dtype=float).reshape(-1, 2).T
+        series.append(Series(name, over, value, "points"))
     return series
 
 
@@ -99,9 +98,9 @@ def servo_panels(runs: Runs, pattern: str, x: Callable[[Run], float], y: Callabl
     for case in dict.fromkeys(each.levels["case"] for each in found(runs, pattern)):
         own = pattern.replace("{case}", case)
         walls = [x(each.run) for each in found(runs, own)]
-        level = Series("bound", np.array([min(walls), max(walls)]), np.ones(2), "line")
+        level = Series("predicted bound", np.array([min(walls), max(walls)]), np.ones(2), "line")
         series = [level, *outcomes(runs, own, x, y)]
-        panels.append(Panel(f"{case} N m/rad", "stiffness of the wall (N/m)", "spectral radius", series))
+        panels.append(Panel(f"{case} N m/rad", "wall stiffness (N/m)", "spectral radius", series))
     return panels
 
 

@@ -6,8 +6,8 @@ from typing import Any
 from runner.audit.audit import audit
 from runner.claims import load_statements
 from runner.reporting.claim import EquationVerdict, StatementVerdict
-from runner.reporting.claims import statement_blocks
-from runner.reporting.document import Block
+from runner.reporting.claims import judged_statements
+from runner.reporting.document import Verdicts
 from runner.works.chapters import Concluded
 
 _SAMPLES = 200
@@ -29,6 +29,6 @@ def audited(equation: str) -> EquationVerdict:
     return next(each.verdict for each in audit("meca500", _SAMPLES) if each.entry.id == equation)
 
 
-def statements(judged: Mapping[str, tuple[StatementVerdict | EquationVerdict, str]]) -> list[Block]:
+def statements(caption: str, judged: Mapping[str, tuple[StatementVerdict | EquationVerdict, str]]) -> Verdicts:
     """Return each statement with its verdict and what was measured, by its name."""
-    return [*statement_blocks(load_statements("meca500"), judged)]
+    return Verdicts(caption, judged_statements(load_statements("meca500"), judged))

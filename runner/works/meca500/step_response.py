@@ -61,7 +61,7 @@ def answers(runs: Runs) -> list[Panel]:
         series = [Series("analytic", times - begin, 1e3 * _expected(first, times), "dashed")]
         for case, run in found.items():
             moved = 1e3 * displacement(run)[:, index]
-            style = "points" if case == "kinematic, 16.7 ms" else "line"
+            style = "points" if case == "kinematic, 16.7 ms" else "line"  # of which the line would hide the others
             series.append(Series(case, clock(run) - begins[case], moved, style))  # type: ignore[arg-type]
         label = f"displacement ({'mm' if index < 3 else 'mrad'})"
         panels.append(Panel(axis, "time since the push (s)", label, series, x_range=(-0.02, 0.4)))

@@ -70,7 +70,11 @@ def noise(runs: Runs, pattern: str) -> Table:
             SENSOR_AXES, np.sqrt(np.mean(left**2, axis=0)), np.sqrt(sensor.reading_variance(1)), strict=True
         )
     ]
-    caption = f"Residual of a Mini40's readings, {len(left)} of them, in N and N m."
+    ratios = [float(row[3]) for row in rows]
+    caption = (
+        f"What is left of a Mini40's readings is {min(ratios):.2f} to {max(ratios):.2f} times noise and quantisation; "
+        f"{len(left)} readings, in N and N m."
+    )
     header = ["axis", "root mean square", "noise and quantisation", "ratio"]
     return Table(caption, header, rows, (1, 2, 3), origin(at_rest[0]))
 

@@ -47,7 +47,7 @@ def workspace(runs: Mapping[str, Run], run: str, name: str, figure: str) -> Pict
         f"m (sum of the link lengths {number(found.reach, 4)} m), smallest {above_rounding(found.inner, 'm')}.",
         workspace_sphere(found),
         f"A sphere of radius {found.outer:.3g} m filled with points, and its cross-section",
-        1.0,
+        0.62,
         origin(runs[run], figure),
     )
 

@@ -30,10 +30,11 @@ class _Cost:
         self.power = Measured(f"power of the time from {fitted} joints on", float(exponent))
 
     def table(self, caption: str) -> Table:
-        """Return the times by number of joints."""
+        """Return the times by number of joints, of every doubling and of the longest chain; the curves show all."""
         shown = [*self._times.values()]
         shown.insert(3, self._total)
-        rows = [[f"{n:.0f}", *(number(float(each[row])) for each in shown)] for row, n in enumerate(self._joints)]
+        chosen = [row for row in range(self.arms) if (row + 1).bit_count() == 1 or row + 1 == self.arms]
+        rows = [[f"{self._joints[row]:.0f}", *(number(float(each[row])) for each in shown)] for row in chosen]
         return Table(caption, ["joints", "M", "C", "G", "M, C and G", "forward dynamics"], rows, tuple(range(6)))
 
     def curves(self, caption: str) -> Curves:

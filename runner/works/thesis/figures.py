@@ -8,20 +8,19 @@ import numpy as np
 from runner.claims import load_claims
 from runner.controllers.operational_space_graph import operational_space_graph
 from runner.drawing import block_diagram, frame_assignment
-from runner.quantities import above_rounding, spread
-from runner.reporting.document import Block, FloatArray, Picture, Table, Text
-from runner.reporting.figures import columns, joint_columns, model_of, origin, torque_and_error
-from runner.reporting.figures_staged import staged_torque_and_error
-from runner.reporting.job import PRESETS
+from runner.quantities import above_rounding
+from runner.reporting.document import Block, Curves, FloatArray, Picture, Table, Text
+from runner.reporting.figures import columns, joint_columns, model_of, origin
 from runner.reporting.measured import Measured
-from runner.reporting.metric_titles import title
-from runner.reporting.plant_agreement import describe_agreement
 from runner.reporting.prose.patterns import found
 from runner.reporting.run_values import median
 from runner.reporting.words import PRESET, in_words
 from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.store import Run
+from runner.works.thesis.compared import Compared
+from runner.works.thesis.engines import agreement_of_both, parting
 from runner.works.thesis.equations.truths.thesis_printed import compare
+from runner.works.thesis.takeaways import takeaway
 
 _MEANINGS = {
     "M": ("mass matrix, (3.17)", "kg m²"),
@@ -79,24 +78,40 @@ def law(runs: Mapping[str, Run], run: str, caption: str, number: str) -> Picture
     controller, limited = runs[run].config["controller"], runs[run].config["torque_limits"]["max"] is not None
     goal = runs[run].config["trajectory"]["kind"] == "goal"
     graph = operational_space_graph(controller["gravity_compensation"], controller["feedforward"], limited, goal)
-    words = "Block diagram of the controller, the arm and its encoders"
-    return Picture(caption, block_diagram(graph), words, 1.0, origin(runs[run], number))
+    to, limit = "a goal at rest" if goal else "a moving target", "with" if limited else "without"
+    words = f"Block diagram of one arm's loop: {to}, operational-space controller, arm {limit} torque limits, encoders"
+    return Picture(caption, block_diagram(graph), words, 0.68, origin(runs[run], number))
 
 
 def reproduced(
     runs: Mapping[str, Run], number: str, what: str, metrics: Sequence[str], until: float | None = None
 ) -> list[Block]:
-    """Return one published figure, such as "3.5", under both presets, its numbers, and the plants' agreement on it."""
-    own = [runs[f"figure_{number.replace('.', '_')}/{preset}"] for preset in PRESETS]
-    named = list(zip(PRESET.values(), own, strict=True))
-    draw = staged_torque_and_error if len(own[0].provenance["stages"]) > 1 else torque_and_error
-    rows = [[title(metric), *(spread(run.metrics[metric]) for run in own)] for metric in metrics]
-    caption = f"Numbers of figure {number}: median (smallest to largest) of 40 repetitions."
-    return [
-        *(draw(run, f"{what}, {name}, repetition 0 of 40.", f"figure {number}", until) for name, run in named),
-        Table(caption, ["metric", *PRESET.values()], rows, (1, 2), origin(own[0])),
-        Text(" ".join(f"{name.capitalize()}: {describe_agreement(run)}" for name, run in named)),
-    ]
+    """Return one published figure, such as "3.5", with both presets in it, and how far another engine is from it.
+
+    Args:
+        runs: The runs of the work by name.
+        number: Number of the figure.
+        what: What moves, in a few words.
+        metrics: The metrics that its caption compares.
+        until: End of the time axis, in s; None shows the whole runs.
+    """
+    experiment = f"figure_{number.replace('.', '_')}"
+    own = {words: runs[f"{experiment}/{preset}"] for preset, words in PRESET.items()}
+    first = next(iter(own.values()))
+    claims = [each for each in load_claims("thesis") if each.experiment == f"thesis/{experiment}" and each.printed]
+    figure = Compared(own, claims, until)
+    joints = list(range(1, len(first.provenance["joints"]) + 1))
+    panels = figure.torques(joints)
+    if len(first.provenance["stages"]) > 1:
+        panels += figure.ticks(joints[3:]) if figure.chatters() else []
+        panels += figure.errors("macro_error", "Macro's error")
+    panels += figure.errors("error", "Tip error")
+    if first.config["trajectory"]["kind"] == "goal":
+        panels += figure.enlarged()
+    told = {each.metric: each.number for each in claims}
+    text = " ".join([agreement_of_both(own), *parting(own, told)])
+    caption = f"{takeaway(metrics, own)} {what}; curves of repetition 0, numbers are medians (smallest to largest)."
+    return [Curves(f"{caption} {figure.scales()}".strip(), panels, 3, origin(first, f"figure {number}")), Text(text)]
 
 
 def printed(claim: int, end: int, words: str) -> Measured:

@@ -1,12 +1,13 @@
 """The line by three joints: a picture of it, and where the report's X may come from."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from runner.drawing import arm_motion
-from runner.reporting.document import Picture
+from runner.reporting.document import FloatArray, Picture
 from runner.reporting.figures import columns, joint_columns, model_of, origin
+from runner.reporting.prose.reading import trace_of
 from runner.store import Run
 
 _STILLS = (0.0, 0.25, 0.5)  # of the period: at A, half way, at B
@@ -20,12 +21,32 @@ def sketch(runs: Mapping[str, Run], run: str) -> Picture:
     times = trace["t"].to_numpy()[rows].tolist()
     svg = arm_motion(model_of(runs[run]), joint_columns(trace, "q")[rows], times, tip, desired, desired[rows[-1]])
     return Picture(
-        "The motion: the arm at A, half way, and at B (goal), drawn from the simulation.",
+        "The arm moves its tip from A, over half the way, to B (goal) in a level line; drawn from the simulation.",
         svg,
-        "The xArm7 in three postures with its tip on a horizontal line",
-        0.75,
+        "The xArm7 in three postures, with its tip at the beginning, in the middle and at the end of a level line",
+        0.42,
         origin(runs[run], "sketch of the motion"),
     )
+
+
+def every(seconds: float, signal: str) -> Callable[[Run], FloatArray]:
+    """Return a signal at instants so far apart, to be drawn as points on a line that would hide its curve."""
+    return lambda run: trace_of(signal, run)[:: round(seconds / float(run.config["controller"]["period"]))]
+
+
+def away_from(signal: str, value: float) -> Callable[[Run], FloatArray]:
+    """Return how far a signal is from a value."""
+    return lambda run: trace_of(signal, run) - value
+
+
+def travelled(signal: str) -> Callable[[Run], float]:
+    """Return how far apart the smallest and the largest value of a signal are."""
+    return lambda run: float(np.ptp(trace_of(signal, run)))
+
+
+def apart_in(*signals: str) -> Callable[[Run, Run], float]:
+    """Return the largest difference of two runs in any of some signals."""
+    return lambda run, other: max(float(np.abs(trace_of(each, run) - trace_of(each, other)).max()) for each in signals)
 
 
 def home_tip(runs: Mapping[str, Run], run: str) -> list[float]:

@@ -108,6 +108,20 @@ def singular_values(runs: Mapping[str, Run], task: str) -> list[Series]:
     ]
 
 
+def least_true_value(runs: Mapping[str, Run]) -> float:
+    """Return the least of the singular values of J^T J along the line, of both tasks, that J's rows account for."""
+    return min(float(np.min(each.y)) for each in _all_singular_values(runs) if each.style == "line")
+
+
+def largest_rounded_value(runs: Mapping[str, Run]) -> float:
+    """Return the largest of the others, which are zero but for rounding."""
+    return max(float(np.max(each.y)) for each in _all_singular_values(runs) if each.style != "line")
+
+
+def _all_singular_values(runs: Mapping[str, Run]) -> list[Series]:
+    return [series for task in ROWS for series in singular_values(runs, task)]
+
+
 def _along(runs: Mapping[str, Run], task: str) -> FloatArray:
     """Return the right Jacobians along the line, from A to B, shape (N, 6, 7)."""
     run = runs[f"printed/{task}/working"]
@@ -184,6 +198,11 @@ def column_errors(runs: Mapping[str, Run], run: str, shifted: bool) -> list[Seri
     model, line = model_of(runs[run]), joint_columns(runs[run].trace, "q")[_to_b(runs[run])]
     off = np.linalg.norm((jacobians(model, line, shifted, True) - jacobians(model, line, False, False))[:, :3], axis=1)
     return [Series(f"column {k + 1}", _y(runs[run]), own) for k, own in enumerate(off.T)]
+
+
+def largest_column_error(runs: Mapping[str, Run], run: str, shifted: bool) -> float:
+    """Return the largest of these errors, in m/rad."""
+    return max(float(np.max(each.y)) for each in column_errors(runs, run, shifted))
 
 
 def column_values(compared: Mapping[str, FloatArray]) -> dict[str, float]:

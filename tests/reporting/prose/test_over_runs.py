@@ -68,10 +68,10 @@ def test_a_table_has_a_row_for_each_run_and_a_unit_for_each_metric():
     )
     assert made.header == ["preset", "gain", "error (m)", "settles (s)", "of the sound one"]
     assert [row[:2] for row in made.rows][:4] == [
-        ["full equations", "1"],
-        ["full equations", "ten"],
-        ["full equations", "5"],
-        ["as reported", "1"],
+        ["with its full equations", "1"],
+        ["with its full equations", "ten"],
+        ["with its full equations", "5"],
+        ["as the thesis ran it", "1"],
     ]
     assert [row[2] for row in made.rows] == ["1", "10", "5", "2", "20", "10", "7"]
     assert {row[3] for row in made.rows} == {"never"}
@@ -91,7 +91,7 @@ def test_a_failed_run_says_so():
 
 def test_a_comparison_has_a_row_for_each_metric_and_a_column_for_each_level():
     made = tables.comparison(RUNS, "Both.", "gain/5/{preset}", "error", "settling_time")
-    assert made.header == ["metric", "full equations", "as reported"]
+    assert made.header == ["metric", "with its full equations", "as the thesis ran it"]
     assert made.rows == [["error", "5 m", "10 m"], ["settling time", "never", "never"]]
     with pytest.raises(RunnerError, match="a comparison goes over one axis"):
         tables.comparison(RUNS, "Both.", "gain/{gain}/{preset}", "error")
@@ -100,7 +100,12 @@ def test_a_comparison_has_a_row_for_each_metric_and_a_column_for_each_level():
 def test_a_number_against_an_axis_has_the_band_of_its_repetitions():
     runs = {**RUNS, "gain/10/sound": run(10.0, ends=(8.0, 13.0))}
     sound, reported = plots.over(runs, "gain/{gain}/{preset}", "gain", "error", "{preset}", color=3)
-    assert (sound.name, reported.name, sound.color, reported.color) == ("full equations", "as reported", 3, 4)
+    assert (sound.name, reported.name, sound.color, reported.color) == (
+        "with its full equations",
+        "as the thesis ran it",
+        3,
+        4,
+    )
     np.testing.assert_array_equal(sound.x, [1.0, 10.0, 5.0])
     np.testing.assert_array_equal(sound.y, [1.0, 10.0, 5.0])
     np.testing.assert_array_equal(sound.low, [1.0, 8.0, 5.0])
@@ -121,6 +126,28 @@ def test_signals_over_time():
     assert signals.largest_of("q2")(RUNS["held"]) == 1.0
     with pytest.raises(RunnerError, match=r"has no signal 'q3'"):
         plots.line(RUNS, "held", "q3")
+
+
+def test_panels_to_be_compared_share_the_range_of_y_that_shows_all_of_them():
+    small, large = (plots.panel(str(top), "t", "y", plots.limit(top, 0, 1), plots.limit(0, 0, 1)) for top in (1.0, 4.0))
+    (first, second) = plots.same_y(small, large)
+    assert first.y_range == second.y_range == pytest.approx((-0.2, 4.2))
+    powers = [plots.panel("", "t", "y", plots.limit(10.0**n, 0, 1), y_log=True) for n in (-2, 2)]
+    assert plots.same_y(*powers)[0].y_range == pytest.approx((10**-2.2, 10**2.2))
+    level = plots.panel("", "t", "y", plots.limit(1, 0, 1))
+    assert plots.same_y(level, plots.panel("", "t", "y")) == [level, plots.panel("", "t", "y")]
+
+
+def test_a_figure_takes_panels_one_by_one_and_several_in_one():
+    alone, *pair = (plots.panel(title, "t", "y", plots.limit(1, 0, 1)) for title in "abc")
+    figure = plots.curves(RUNS, "Caption.", "gain/5/sound", alone, pair)
+    assert [each.title for each in figure.panels] == ["a", "b", "c"]
+    assert figure.columns == 2
+
+
+def test_axes_of_a_vector_are_scaled():
+    lines = plots.axes(RUNS, "gain/5/sound", factor=1000)
+    np.testing.assert_allclose([each.y[-1] for each in lines], [15e3, 20e3, 0.0])
 
 
 def test_closed_forms_and_limits():

@@ -104,8 +104,17 @@ def test_the_report_is_written_and_the_same_each_time(document, sweep, tmp_path)
     again = write_report(sweep_document(sweep, (), "../../runs/"), tmp_path / "b")
     assert [path.read_bytes() for path in again] == [html.read_bytes(), pdf.read_bytes()]
     page = html.read_text()
-    assert page.count('<figure class="runlist">') == 1
+    assert page.count('<figure class="runlist"') == 1
     assert "figure.runlist" in page
+
+
+def test_the_first_screen_counts_cells_and_names_the_best(document, sweep):
+    (_, cells, repeated), (_, failed, named), (what, _, best) = document.key_numbers
+    assert cells == str(len(sweep.hashes))
+    assert repeated.endswith("repetitions in each")
+    assert (failed == "0") == (named == "")
+    assert what.startswith("least ")
+    assert best in document.abstract.replace("$$", "$")
 
 
 def test_the_metric_asked_for_ranks_the_cells(sweep):

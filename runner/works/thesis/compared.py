@@ -1,0 +1,149 @@
+"""One figure of the thesis under both presets: a panel for each joint and axis, with the printed values drawn in."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from runner.caveats.torques import CHATTER
+from runner.claims import PublishedClaim
+from runner.drawing.thinning import envelope
+from runner.quantities import number, quantity, ranged
+from runner.reporting.document import FloatArray, Panel, Series
+from runner.reporting.figures import AXES, columns, until_time
+from runner.store import Run
+
+APART = 20.0
+"""From which ratio of their largest errors on two presets have axes of their own."""
+_LONG, _TOGETHER = 1000, 0.01  # ticks from which on a curve is an envelope, and the time that makes a point of it, in s
+_SHORT = 0.05  # s, of which the ticks themselves are shown
+_AT_REST = 1.0  # s before the end in which a printed error at rest is drawn
+_COLORS, _GREY = (1, 0), 7  # indices into the palette
+_EMPTY: FloatArray = np.zeros(0)
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A figure's runs and what is shown of them.
+
+    Attributes:
+        runs: The run under each preset, by the preset's words.
+        claims: What the thesis prints of it, with a number.
+        until: End of the time axis, in s; None shows the whole runs.
+    """
+
+    runs: Mapping[str, Run]
+    claims: Sequence[PublishedClaim] = ()
+    until: float | None = None
+
+    def errors_apart(self, signal: str = "error") -> float:
+        """Return by which factor the largest errors of a signal differ between the presets."""
+        low, high = sorted(_largest(columns(until_time(run, self.until), signal)) for run in self.runs.values())
+        return high / low if low > 0.0 else np.inf
+
+    def scales(self) -> str:
+        """Return by which factor the errors differ where the presets do not share axes; nothing where they do."""
+        far = {whose: self.errors_apart(signal) for signal, whose in self._signals().items()}
+        told = [f"{whose} differ by a factor of {number(factor, 2)}" for whose, factor in far.items() if factor > APART]
+        return f"{' and '.join(told)}, so each preset has axes of its own there." if told else ""
+
+    def chatters(self) -> bool:
+        """Tell whether a torque of some run jumps from limit to limit, as a rule found at its end."""
+        return any(caveat["rule"] == CHATTER.name for run in self.runs.values() for caveat in run.caveats)
+
+    def torques(self, joints: Sequence[int]) -> list[Panel]:
+        """Return the torque of some joints, counted from 1, a panel for each."""
+        return [self._panel(f"Joint {joint}: torque", "torque (N m)", self._curves(f"tau{joint}")) for joint in joints]
+
+    def ticks(self, joints: Sequence[int]) -> list[Panel]:
+        """Return the last ticks of these torques as they are."""
+        title = f"the last {quantity(_SHORT, 's')}"
+        return [
+            self._panel(f"Joint {joint}: {title}", "torque (N m)", self._curves(f"tau{joint}", last=_SHORT))
+            for joint in joints
+        ]
+
+    def errors(self, signal: str, whose: str) -> list[Panel]:
+        """Return the error of a point in x, y and z; of presets that are far apart a row of panels for each."""
+        rows: list[Sequence[str]] = [list(self.runs)]
+        if self.errors_apart(signal) > APART:
+            rows = [[words] for words in self.runs]
+        return [
+            self._with_printed(f"{whose}, {axis}", self._curves(f"{signal}_{axis}", only=row), signal)
+            for row in rows
+            for axis in AXES
+        ]
+
+    def enlarged(self) -> list[Panel]:
+        """Return the tip's error on the scale of the error at rest that is printed; nothing where none is."""
+        claim = next((each for each in self.claims if each.metric == "steady_state_error"), None)
+        if claim is None or claim.value is None:
+            return []
+        seen = max(claim.value, *(_largest(_at_rest(run)) for run in self.runs.values()))
+        panels = []
+        for axis in AXES:
+            curves = self._curves(f"error_{axis}")
+            lines = self._levels(claim, self._end - _AT_REST)
+            panels.append(self._panel(f"Tip error, {axis}, enlarged", "error (m)", [*curves, *lines], 1.7 * seen))
+        return panels
+
+    def _signals(self) -> dict[str, str]:
+        """Return the errors that a figure shows, with their names at the start of a sentence."""
+        staged = all(len(run.provenance["stages"]) > 1 for run in self.runs.values())
+        return {"error": "The tip's errors", **({"macro_error": "the Macro's"} if staged else {})}
+
+    @property
+    def _end(self) -> float:
+        return max(float(until_time(run, self.until)["t"].iloc[-1]) for run in self.runs.values())
+
+    def _panel(self, title: str, label: str, curves: Sequence[Series], most: float = 0.0) -> Panel:
+        return Panel(title, "time (s)", label, curves, y_range=(-most, most) if most else None)
+
+    def _curves(self, column: str, only: Sequence[str] | None = None, last: float | None = None) -> list[Series]:
+        """Return a column of each run; an empty curve for a preset that is left out, so that the legend is one."""
+        curves = []
+        for color, (words, run) in zip(_COLORS, self.runs.items(), strict=True):
+            trace = until_time(run, self.until)
+            t, y = trace["t"].to_numpy(), trace[column].to_numpy()
+            if only is not None and words not in only:
+                t, y = _EMPTY, _EMPTY
+            elif last is not None:
+                t, y = t[t >= t[-1] - last - 1e-9], y[t >= t[-1] - last - 1e-9]
+            series = Series(words, t, y, "line" if color == _COLORS[0] else "dashed", color=color)
+            curves.append(envelope(series, round(_TOGETHER / (t[1] - t[0]))) if t.size > _LONG else series)
+        return curves
+
+    def _with_printed(self, title: str, curves: list[Series], signal: str) -> Panel:
+        """Return an error's panel with the printed values that can be seen on its axes."""
+        seen = max(_largest(edge) for each in curves for edge in (each.y, each.low, each.high) if edge is not None)
+        lines: list[Series] = []
+        for claim in self.claims if signal == "error" else ():
+            value = claim.value or 0.0
+            if claim.metric == "settling_time":
+                lines.append(_line([value, value], [seen, -seen], _told(claim)))
+            elif seen / APART < value < APART * seen:
+                lines += self._levels(claim, 0.0 if claim.metric == "max_tracking_error" else self._end - _AT_REST)
+        return self._panel(title, "error (m)", [*curves, *lines])
+
+    def _levels(self, claim: PublishedClaim, start: float) -> list[Series]:
+        value = claim.value or 0.0
+        return [_line([start, self._end], [sign * value] * 2, _told(claim) if sign > 0 else "") for sign in (1.0, -1.0)]
+
+
+def _line(x: Sequence[float], y: Sequence[float], label: str) -> Series:
+    return Series("", np.array(x, dtype=float), np.array(y, dtype=float), "dotted", color=_GREY, label=label)
+
+
+def _told(claim: PublishedClaim) -> str:
+    low, high = claim.printed[0], claim.printed[-1]
+    return f"printed {quantity(high, claim.unit) if low == high else ranged(low, high, claim.unit)}"
+
+
+def _at_rest(run: Run) -> FloatArray:
+    trace = run.trace
+    return columns(trace[trace["t"] >= trace["t"].iloc[-1] - 0.5 * _AT_REST], "error")
+
+
+def _largest(values: FloatArray) -> float:
+    finite = np.abs(values[np.isfinite(values)])
+    return float(finite.max()) if finite.size else 0.0

@@ -1,0 +1,64 @@
+import pytest
+
+from runner.audit.entry import Entry, Form, Repair
+from runner.audit.verdict import Judged
+from runner.expressions.tree import symbols
+from runner.expressions.typesetting import typeset
+from runner.reporting.audit.forms import forms_of
+from runner.reporting.audit.likeness import Likeness
+
+LONG = " + ".join(f"x{i}*y{i}*z{i}" for i in range(20))
+
+
+def entry(printed, corrected=None, repair=None, name="J_11"):
+    return Entry(
+        id=name, number=name, place="page 1", title="", printed=Form(elements={name: printed}),
+        repair=repair and Repair(why="Torn.", elements={name: repair}),
+        corrected=corrected and Form(elements={name: corrected}),
+    )  # fmt: skip
+
+
+def forms(given, *others):
+    judged = [Judged("paper", each, "wrong as printed", None, None, "", ("", "")) for each in (given, *others)]
+    return forms_of(given, Likeness(judged))
+
+
+def marks(form):
+    return {typeset(node) for node in form.marked}
+
+
+def test_printed_and_corrected_have_what_differs_marked():
+    printed, corrected = forms(entry("a*cos(q1) + b", "a*cos(theta1) + b"))
+    assert (printed.label, corrected.label) == ("as printed", "corrected")
+    assert marks(printed) == {'italic("q")_"1"'}
+    assert marks(corrected) == {'italic("θ")_"1"'}
+    assert printed.whole == corrected.whole == ""
+
+
+def test_a_long_form_is_cut_to_what_differs_and_stands_whole_as_well():
+    printed, corrected = forms(entry(f"{LONG} + p*q*r", f"{LONG} + p*q*s"))
+    assert list(symbols(printed.expressions[0][1])) == ["…", "p", "q", "r"]
+    assert "x₁₉ y₁₉ z₁₉ + p q r" in printed.whole
+    assert "p q s" in corrected.whole
+
+
+def test_a_form_that_stands_in_anothers_place_is_told_by_its_name():
+    shifted, other = entry(LONG.replace("x3", "q3"), "0"), entry(LONG, LONG, name="J_12")
+    printed, _ = forms(shifted, other)
+    assert 'It is the right $italic("J")_"12"$, with $italic("q")_"3"$ for $italic("x")_"3"$.' in printed.note
+    assert not printed.expressions
+    assert printed.whole
+
+
+@pytest.mark.parametrize("printed", ["2*(a + b", "2 a"])
+def test_what_cannot_be_read_is_shown_as_text(printed):
+    first, second = forms(entry(printed, repair="2*(a + b)"))
+    assert "".join(piece for _, piece in first.raw).replace("\u200a", "") == f"J_11 = {printed}"
+    assert (second.label, second.note) == ("repaired", "Torn.")
+    assert any(marked for marked, _ in (*first.raw, *second.raw))
+
+
+def test_a_right_form_is_shown_whole():
+    (only,) = forms(entry(LONG))
+    assert len(list(symbols(only.expressions[0][1]))) == 60
+    assert not only.marked

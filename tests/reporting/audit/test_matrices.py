@@ -1,0 +1,43 @@
+import pytest
+
+from runner.expressions.parser import parse
+from runner.expressions.tree import Name
+from runner.reporting.audit.matrices import gathered
+from runner.reporting.equation import Matrix
+
+
+def elements(*names):
+    return {name: parse(str(place)).root for place, name in enumerate(names)}
+
+
+def shapes(*names):
+    return [
+        (left.name, (len(right.rows), len(right.rows[0])) if isinstance(right, Matrix) else None)
+        for left, right in gathered(elements(*names))
+    ]
+
+
+def grid(name, rows, columns, first=1):
+    return [f"{name}_{i}{j}" for i in range(first, first + rows) for j in range(first, first + columns)]
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        (grid("T", 4, 4), [("T", (4, 4))]),
+        (grid("T", 3, 4, first=0), [("T", (3, 4))]),
+        (grid("J_we", 3, 3), [("J_we", (3, 3))]),
+        (["P_x", "P_y", "P_z"], [("P", (3, 1))]),
+        ([*grid("M", 2, 2), "G_1", "G_2"], [("M", (2, 2)), ("G_1", None), ("G_2", None)]),
+        (grid("T", 3, 3)[:-1], [(name, None) for name in grid("T", 3, 3)[:-1]]),
+        (["J_12"], [("J_12", None)]),
+        (["M_gx"], [("M_gx", None)]),
+    ],
+)
+def test_elements_that_fill_rows_and_columns_are_a_matrix(names, expected):
+    assert shapes(*names) == expected
+
+
+def test_elements_stand_in_their_rows_whatever_their_order():
+    ((_, matrix),) = gathered({"T_21": Name("c", 0), "T_12": Name("b", 0), "T_22": Name("d", 0), "T_11": Name("a", 0)})
+    assert [[node.name for node in row] for row in matrix.rows] == [["a", "b"], ["c", "d"]]

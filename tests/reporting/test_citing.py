@@ -1,0 +1,32 @@
+from types import SimpleNamespace
+
+from runner.reporting.citing import citing_section
+from runner.reporting.document import Code
+
+
+def run(date, commit):
+    return SimpleNamespace(provenance={"date": date, "commit": commit})
+
+
+def codes(section):
+    return [block.text for block in section.blocks if isinstance(block, Code)]
+
+
+def test_the_source_and_the_report_with_the_newest_run():
+    runs = {"a": run("2026-01-01", "0" * 40), "b": run("2026-02-03", "f" * 40)}
+    source, report = codes(citing_section("Arms & hands", "A report", "@misc{x,}\n", runs))
+    assert source == "@misc{x,}"
+    assert report.splitlines() == [
+        "@misc{arms-hands-reproduced,",
+        "  title = {{Arms \\& hands}: A report},",
+        "  author = {{arm-control-runner}},",
+        "  year = {2026},",
+        "  note = {Made by arm-control-runner, commit ffffffffffff, 2026-02-03},",
+        "}",
+    ]
+
+
+def test_without_runs_and_source():
+    (report,) = codes(citing_section("A_{b}%", "c", "", {}))
+    assert "year" not in report
+    assert "{{A\\_\\{b\\}\\%}: c}" in report

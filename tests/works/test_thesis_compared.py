@@ -1,0 +1,133 @@
+"""One figure for both presets: what is drawn and said follows the runs, which are made up here."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from runner.claims import load_claims
+from runner.reporting.words import PRESET
+from runner.store import Run
+from runner.works.thesis import engines
+from runner.works.thesis.compared import APART, Compared
+from runner.works.thesis.engines import agreement_of_both, parting
+from runner.works.thesis.takeaways import takeaway
+
+CLAIMS = [claim for claim in load_claims("thesis") if claim.experiment == "thesis/figure_3_5"]
+
+
+def metric(median, unit="m"):
+    return {"unit": unit, "median": median, "min": median, "max": median, "values": [median]}
+
+
+def run(error=1.0, ticks=400, settling=1.5, rest=0.008, plant="bullet", caveats=()):
+    t = np.linspace(0.0, 4.0, ticks + 1)
+    decaying = {f"error_{axis}": error * np.exp(-3.0 * t) for axis in "xyz"}
+    tips = {f"tip_{axis}": 1.0 - error * np.exp(-3.0 * t) for axis in "xyz"}
+    made = Run(
+        Path("run"),
+        {"plant": {"kind": plant}, "robot": {"settling_band": 0.02}},
+        {
+            "status": "ok",
+            "metrics": {
+                "settling_time": metric(settling, "s"),
+                "steady_state_error": metric(rest),
+                "max_tracking_error": metric(error),
+                "saturation_fraction": metric(0.3, "1"),
+            },
+            "failure": None,
+            "caveats": [{"rule": rule} for rule in caveats],
+            "provenance": {"stages": ["arm"], "joints": ["q1"], "plant_step": 1e-3},
+        },
+    )
+    chatter = 50.0 * np.where(np.arange(ticks + 1) % 2, 1.0, -1.0)
+    made.__dict__["trace"] = pd.DataFrame({"t": t, "tau1": chatter} | decaying | tips)
+    return made
+
+
+def both(first, second):
+    return dict(zip(PRESET.values(), (first, second), strict=True))
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        (0.008, 0.0004, "the tip rests 20 times closer to the goal, within 0.4 mm in place of 8 mm"),
+        (0.0004, 0.008, "the tip rests 20 times farther from it, within 8 mm in place of 0.4 mm"),
+        (0.0080, 0.0082, "the tip rests as close to the goal, within 8.2 mm beside 8 mm"),
+        (0.008, None, "the tip rests within no value in place of 8 mm"),
+    ],
+)
+def test_the_words_of_a_takeaway_follow_the_numbers(before, after, words):
+    told = takeaway(["steady_state_error"], both(run(rest=before), run(rest=after)))
+    assert told == f"With its full equations {words}."
+
+
+def test_a_takeaway_tells_metrics_in_the_order_asked_for():
+    told = takeaway(["settling_time", "max_tracking_error"], both(run(settling=1.0), run(settling=2.0, error=0.1)))
+    assert "settles 2 times later, after 2 s in place of 1 s, and the tip strays 10 times less from its path" in told
+
+
+@pytest.mark.parametrize(("ratio", "rows"), [(APART / 2.0, 1), (2.0 * APART, 2)])
+def test_presets_share_axes_up_to_a_factor(ratio, rows):
+    figure = Compared(both(run(1.0), run(1.0 / ratio)))
+    panels = figure.errors("error", "Tip error")
+    assert len(panels) == 3 * rows
+    drawn = [[series.name for series in panel.series if series.x.size] for panel in panels[::3]]
+    assert drawn == ([[*PRESET.values()]] if rows == 1 else [[words] for words in PRESET.values()])
+    assert ("differ by a factor of 40" in figure.scales()) == (rows == 2)
+
+
+def test_printed_values_are_drawn_where_they_can_be_seen():
+    figure = Compared(both(run(), run()), CLAIMS)
+    labels = [series.label for series in figure.errors("error", "Tip error")[0].series]
+    assert labels == ["", "", "printed 1.4 s"]
+    shown = figure.enlarged()[0]
+    (upper, lower) = (series for series in shown.series if not series.name)
+    assert (upper.label, lower.label) == ("printed 0 to 9 mm", "")
+    assert (set(upper.y), set(lower.y)) == ({0.009}, {-0.009})
+    assert shown.y_range[1] > 0.009
+    assert Compared(both(run(), run())).enlarged() == []
+
+
+def test_long_curves_are_envelopes_and_the_last_ticks_are_shown_as_they_are():
+    figure = Compared(both(run(ticks=4000), run(ticks=4000)))
+    band = figure.torques([1])[0].series[0]
+    assert band.x.size < 500
+    assert (band.low.min(), band.high.max()) == (-50.0, 50.0)
+    ticks = figure.ticks([1])[0].series[0]
+    assert ticks.low is None
+    assert ticks.x[-1] - ticks.x[0] == pytest.approx(0.05)
+    assert figure.torques([1])[0].title == "Joint 1: torque"
+    assert Compared(both(run(), run())).torques([1])[0].series[0].low is None
+    assert [Compared(both(run(caveats=found), run())).chatters() for found in ((), ("chatter",))] == [False, True]
+
+
+@pytest.fixture
+def twins(monkeypatch):
+    found = {}
+    for module in (engines,):
+        monkeypatch.setattr(module, "find_twin", lambda own: found.get(id(own)))
+    return found
+
+
+def test_engines_that_part_are_told_with_what_became_of_them(twins):
+    near, far = run(1.0), run(1.0, settling=1.63)
+    twins[id(near)], twins[id(far)] = run(1.001, plant="rk4"), run(1.5, settling=1.4, plant="rk4")
+    named = both(near, far)
+    assert agreement_of_both(named).startswith("Runge-Kutta in place of PyBullet puts the tip at most 1.7 mm (as the")
+    told, why = parting(named, {"settling_time": 8})
+    assert told.startswith(
+        "With its full equations: some torque is at its limit for 30 % of the ticks; the engines are"
+    )
+    assert "settles after 1.4 s, outside the 1.63 to 1.63 s of PyBullet's 1 repetitions" in told
+    assert told.endswith("claim 8 would read holds in place of worse.")
+    assert "PyBullet against Runge-Kutta" in why
+    twins[id(far)] = run(1.001, plant="rk4")
+    assert parting(named, {"settling_time": 8}) == []
+
+
+def test_an_engine_that_was_not_run_is_told_with_the_way_to_it(twins, monkeypatch):
+    monkeypatch.setattr(engines, "describe_agreement", lambda own: "it has not been measured")
+    assert agreement_of_both(both(run(), run())).count("it has not been measured") == 2
