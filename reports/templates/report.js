@@ -8,9 +8,8 @@ const isDark = () => darkScreen.matches && !printing;
 
 // Libraries stand in the page once, compressed.
 async function inflate(id) {
-  const bytes = Uint8Array.from(atob(document.getElementById(id).textContent), (c) => c.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return new Response(stream).text();
+  const packed = await fetch("data:application/gzip;base64," + document.getElementById(id).textContent);
+  return new Response(packed.body.pipeThrough(new DecompressionStream("gzip"))).text();
 }
 
 /* ---- playbacks ---- */

@@ -36,7 +36,7 @@ def doctor_document(found: Examination) -> Document:
     rows = [("file", found.source.name), *versions().items()]
     return Document(
         title=f"Robot {found.name}",
-        subtitle=f"{found.source.name}, tip {found.tip}",
+        subtitle=f"{found.source.name}, tip frame: {found.tip}",
         abstract=f"The robot {verdict}.",
         key_numbers=[
             ("that bar the robot", str(counts["refused"]), "refused"),
@@ -82,5 +82,5 @@ def _joints(model: RobotModel) -> Table:
     for name, unit, values in zip(model.joint_names, model.joint_units, limits, strict=True):
         cells = [number(value) if np.isfinite(value) else "none" for value in values]
         rows.append([literal(name), "slides" if unit == "m" else "turns", *cells])
-    header = ["joint", "", "lower (rad, m)", "upper (rad, m)", "speed (rad/s, m/s)", "effort (N m, N)"]
+    header = ["joint", "motion", "lower (rad, m)", "upper (rad, m)", "speed (rad/s, m/s)", "effort (N m, N)"]
     return Table("Joints and their limits.", header, rows, (2, 3, 4, 5))

@@ -11,7 +11,7 @@ from runner.quantities import above_rounding, number, quantity, spread, with_pow
 from runner.references import check_run, find_shipped
 from runner.reporting.changed_keys import changed_keys, flatten
 from runner.reporting.cover import cover
-from runner.reporting.document import Block, Document, Notice, Provenance, Section, Table, Text
+from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import desired_motion, playback, torque_and_error
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
@@ -24,6 +24,7 @@ _OF_TASK = {
     "contact": ("steady_force", "peak_force", "max_tracking_error", "peak_torque"),
 }
 _OF_MOTION = ("max_tracking_error", "steady_state_error", "peak_torque", "saturation_fraction")
+_AT_REST = 4.0  # times the settling time, after which an arm is taken to rest
 _HEADLINE = ("settling_time", "steady_state_error", "max_tracking_error", "peak_torque", "saturation_fraction")
 
 
@@ -56,7 +57,7 @@ def _of_one(run: Run, date: str) -> Document:
             Section("Provenance", (provenance([run]),)),
         ],
         date=date,
-        cover=cover(run, "The motion of repetition 0.") if shown.notna().all(axis=1).sum() > 1 else None,
+        cover=_cover(run) if shown.notna().all(axis=1).sum() > 1 else None,
         notes=[literal(f"Caveats: {', '.join(_spaced(caveat['rule']) for caveat in run.caveats)}.")]
         if run.caveats
         else [],
@@ -83,7 +84,11 @@ def _abstract(run: Run) -> str:
     if run.status == "failed":
         ended = f"The run {run.failure_text}."
     else:
-        ended = "One repetition, which finished." if count == 1 else f"{count} repetitions, all of them finished."
+        ended = (
+            "One repetition, which finished."
+            if count == 1
+            else f"{count} repetitions, all of them finished; smallest to largest in brackets."
+        )
     try:
         reference = find_shipped(run)
     except RunnerError:
@@ -94,13 +99,23 @@ def _abstract(run: Run) -> str:
     return f"{ended} {len(found) - len(wrong)} of {len(found)} metrics lie in the bands of {reference.name}{where}."
 
 
+def _cover(run: Run) -> Cover:
+    """Return the arm in motion; a move that settles early is shown until it rests."""
+    settled = run.metrics.get("settling_time", {}).get("median")
+    until = _AT_REST * settled if settled and run.config["trajectory"]["kind"] == "goal" else None
+    if until is None or until >= run.config["duration"]:
+        return cover(run, "The motion of repetition 0.")
+    return cover(run, f"The first {quantity(until, 's')} of repetition 0.", until)
+
+
 def _subtitle(run: Run) -> str:
     """Return what limits and disturbs the arm, and the experiment that was asked for."""
     chosen = run.provenance["choices"]
-    limits = "no" if run.config["torque_limits"]["max"] is None else f"{chosen.get('torque_limits', 'own')}'s"
+    named = f"torque limits {_spaced(chosen['torque_limits'])}" if "torque_limits" in chosen else "torque limits"
+    limits = "no torque limits" if run.config["torque_limits"]["max"] is None else named
     texts = [f"noise {_spaced(chosen['noise'])}"] if "noise" in chosen else []
     texts += [f"experiment {chosen['experiment']}"] if "experiment" in chosen else []
-    return ", ".join([f"{limits} torque limits", *texts])
+    return ", ".join([limits, *texts])
 
 
 def _key_numbers(run: Run) -> list[tuple[str, str, str]]:
@@ -108,7 +123,7 @@ def _key_numbers(run: Run) -> list[tuple[str, str, str]]:
     task = "contact" if "steady_force" in run.metrics else run.config["trajectory"]["kind"]
     names = [name for name in (*_OF_TASK.get(task, ()), *_OF_MOTION) if name in run.metrics][:4]
     count = run.record["repetitions"]
-    remark = f"median of {count}, smallest to largest in brackets" if count > 1 else ""
+    remark = f"median of {count}" if count > 1 else ""
     return [(title(name), spread(run.metrics[name]), remark if run.metrics[name]["median"] is not None else
              "not reached in half of the repetitions or more") for name in dict.fromkeys(names)]  # fmt: skip
 

@@ -35,7 +35,7 @@ def blocks_of(document, kind):
 def test_a_finished_run_is_told_whole(finished):
     document = run_document([finished])
     assert document.title.startswith("Macro, operational space, quintic, ")
-    assert document.abstract == "2 repetitions, all of them finished."
+    assert document.abstract == "2 repetitions, all of them finished; smallest to largest in brackets."
     assert document.key_numbers[0][0] == "largest tracking error"
     assert [type(block) for block in outline.blocks(document)] == [
         Notice,

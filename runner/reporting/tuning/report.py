@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from runner.config.meanings import key_unit
+from runner.quantities import quantity
+from runner.reporting.cover import cover
 from runner.reporting.document import Document, FloatArray, Notice, Origin, Provenance, RunList, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
@@ -35,7 +37,7 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
     overrides = [tuning.study.trial_overrides(subject.trials[place]) for place in made]
     sweep = Sweep(tuning.folder, overrides, subject.runs(made), tuning.study.command)
     measurements = measure_sweep(sweep)
-    sections = [_what(subject)]
+    sections, shown = [_what(subject)], None
     if subject.good:
         sections += [history.section(subject), keys.section(subject)]
         if len(subject.objectives) > 1:
@@ -44,6 +46,7 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
         runs = {place: open_run(sweep.outputs / "runs" / subject.trials[place].run) for place in places}
         commands = {place: _command(tuning.study.trial_overrides(subject.trials[place])) for place in places}
         sections.append(best_trials.section(subject, runs, commands))
+        shown = cover(runs[places[0]], f"The motion of trial {places[0]}, the best.")
     if len(subject.good) < len(subject.trials):
         sections.append(_failures(subject))
     sections.append(_all_runs(subject, sweep, made, measurements, folder))
@@ -55,8 +58,22 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
         abstract=literal(_abstract(subject)),
         sections=sections,
         date=max(measurements.provenance.get("made on", [""])),
+        cover=shown,
+        key_numbers=_key_numbers(subject),
         figures_float=False,
     )
+
+
+def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
+    """Return how many trials there are, and the best value of each objective with the keys that give it."""
+    failed = len(subject.trials) - len(subject.good)
+    numbers = [("trials", str(len(subject.trials)), f"{failed} of them failed" if failed else "none failed")]
+    for place, objectives in (subject.best_by_objective() if subject.good else {}).items():
+        for objective in objectives:
+            value = subject.trials[place].values[list(subject.objectives).index(objective)]
+            best = f"trial {place}: {subject.settings(place)}"
+            numbers.append((f"best {title(objective.metric)}", quantity(value, objective.unit), best))
+    return numbers
 
 
 def _abstract(subject: Subject) -> str:

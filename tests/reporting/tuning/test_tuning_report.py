@@ -87,6 +87,10 @@ def test_one_objective_has_one_best_trial_and_no_trade_off(tuning):
     (best,) = section(made, "Best trial").sections
     place = min(range(22), key=lambda number: one.trials[number].values)
     assert best.title == f"Trial {place}"
+    (_, trials, _), (what, _, settings) = made.key_numbers
+    assert (trials, what.startswith("best ")) == ("22", True)
+    assert settings.startswith(f"trial {place}: ")
+    assert made.cover is not None
     command = blocks(best, Table)[0].origin.command
     assert command.endswith(f"controller.damping_ratio={one.trials[place].params['controller.damping_ratio']!r}")
 
@@ -148,6 +152,7 @@ def test_every_run_is_listed_with_its_trial_keys_and_address(tuning):
 
 def test_a_tuning_in_which_all_failed_has_a_report(tuning):
     lost = replace(tuning, trials=[replace(trial, failure="diverged") for trial in tuning.trials])
+    assert document(lost).key_numbers == [("trials", "22", "22 of them failed")]
     assert titles(document(lost)) == ["What was tuned", "Failed trials", "All runs", "Provenance"]
 
 

@@ -1,0 +1,39 @@
+"""Keys of a run's config that its groups do not set so."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from runner.config.compose import compose
+from runner.reporting.changed_keys import changed_keys, flatten
+
+
+@dataclass
+class _Run:
+    config: dict[str, Any]
+    provenance: dict[str, Any]
+
+
+def _run(*overrides: str, choices: dict[str, str] | None = None) -> _Run:
+    groups = choices or {"robot": "macro", "trajectory": "quintic"}
+    composed = compose([*(f"{group}={name}" for group, name in groups.items()), *overrides])
+    return _Run(dict(composed.resolved), {"choices": groups})
+
+
+def test_only_what_was_set_is_named_with_its_default() -> None:
+    found = changed_keys(_run("trajectory.duration=1.25", "seed=7"))
+    assert found is not None
+    assert set(found) == {"trajectory.duration", "seed"}
+    default, value = found["trajectory.duration"]
+    assert (value, default != value) == (1.25, True)
+
+
+def test_nothing_is_named_where_nothing_was_set() -> None:
+    assert changed_keys(_run()) == {}
+
+
+def test_groups_that_are_not_here_are_told_by_none() -> None:
+    assert changed_keys(_Run({}, {"choices": {"robot": "of_a_stranger"}})) is None
+
+
+def test_keys_are_dotted() -> None:
+    assert flatten({"a": {"b": 1, "c": {}}, "d": [2]}) == {"a.b": 1, "a.c": {}, "d": [2]}
