@@ -127,7 +127,7 @@ def _tell_sweep(ended: "Ended") -> int:
         told = f"{(counts > 0).sum()} of {len(counts)} cells have caveats, {counts.max()} at most"
         print(f"runner: {told}; `runner table {ended.folder}` says which", file=sys.stderr)
     if ended.left:
-        print(f"runner: stopped at a failure; {ended.left} runs are left", file=sys.stderr)
+        print(f"runner: stopped at a failure; left: {ended.left}", file=sys.stderr)
     _tell_differences(ended)
     print(ended.folder)
     return 1 if ended.failures else 0

@@ -202,7 +202,8 @@ def make_jobs(
 
 
 def _count(checked: Checked, left: int, stored: int) -> str:
-    kind = "runs and calibrations" if checked.calibrations else "runs"
+    runs = "run" if left + stored == 1 else "runs"
+    kind = "runs and calibrations" if checked.calibrations else runs
     return f"{left + stored} {kind}, {stored} of them stored already" if stored else f"{left} {kind}"
 
 

@@ -71,7 +71,7 @@ def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
     """Return how many cells there are and failed, and the best one of the first metric with its value."""
     failed = [cell for cell, status in enumerate(subject.measurements.statuses) if status != "ok"]
     count = len(subject.measurements.hashes)
-    numbers = [("cells", str(count), f"{subject.measurements.repetitions} repetitions in each")]
+    numbers = [("cells", str(count), f"repetitions in each: {subject.measurements.repetitions}")]
     names = "; ".join(subject.cell_name(cell) for cell in failed[:_NAMED])
     more = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
     numbers.append(("failed", str(len(failed)), names + more))

@@ -111,7 +111,7 @@ def test_the_report_is_written_and_the_same_each_time(document, sweep, tmp_path)
 def test_the_first_screen_counts_cells_and_names_the_best(document, sweep):
     (_, cells, repeated), (_, failed, named), (what, _, best) = document.key_numbers
     assert cells == str(len(sweep.hashes))
-    assert repeated.endswith("repetitions in each")
+    assert repeated.startswith("repetitions in each: ")
     assert (failed == "0") == (named == "")
     assert what.startswith("least ")
     assert best in document.abstract.replace("$$", "$")
