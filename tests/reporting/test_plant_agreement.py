@@ -3,6 +3,7 @@ import pytest
 
 from runner import run
 from runner.quantities import quantity
+from runner.reporting import plant_agreement
 from runner.reporting.figures import columns
 from runner.reporting.plant_agreement import describe_agreement, disagreement, find_twin
 from runner.reporting.words import PLANT
@@ -62,9 +63,14 @@ def test_the_same_noise_is_spoken_of_where_there_is_some(outputs):
     assert "noise" not in text
 
 
-def test_a_missing_twin_is_told_with_the_way_to_it(outputs):
+@pytest.mark.parametrize("there", [True, False])
+def test_a_missing_twin_is_told_with_the_way_to_it(outputs, monkeypatch, there):
+    monkeypatch.setattr(plant_agreement, "has_pybullet", lambda: there)
     alone = run("robot=mini", "duration=0.01", "plant=rk4", outputs)
     text = describe_agreement(alone)
+    if not there:
+        assert text.endswith("PyBullet, which it would be compared with, is not installed here.")
+        return
     assert text.startswith(
         "Runge-Kutta is the plant, in steps of 1 ms. How far the other plant is from it has not been measured"
     )
