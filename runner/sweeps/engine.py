@@ -4,9 +4,12 @@ import contextlib
 import logging
 import os
 import shutil
+import signal
+import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from concurrent.futures import CancelledError
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -25,15 +28,16 @@ _MEMORY = {"MALLOC_TRIM_THRESHOLD_": 2**28, "MALLOC_MMAP_THRESHOLD_": 2**25}  # 
 _GO_ON = "finished runs are stored, the same command goes on from there"
 
 
-def in_process(queue: Queue) -> Iterator[Report]:
+def in_process(queue: Queue) -> Generator[Report]:
     """Work off a queue in this process; yield what became of each chunk."""
     while (chunk := queue.take(1)) is not None:
-        report = work(chunk)
+        report = work(chunk, partial(queue.tell, chunk.name))
+        queue.end(chunk)
         queue.learn(report)
         yield report
 
 
-def on_cluster(queue: Queue, client: Any) -> Iterator[Report]:
+def on_cluster(queue: Queue, client: Any) -> Generator[Report]:
     """Work off a queue on a Dask cluster, with a bounded number of chunks under way; yield what became of each.
 
     Args:
@@ -49,7 +53,7 @@ def on_cluster(queue: Queue, client: Any) -> Iterator[Report]:
     suspects: set[str] = set()
 
     def submit(chunk: Chunk) -> None:
-        future = client.submit(work, chunk, key=f"runs-{chunk.name}", pure=False)
+        future = client.submit(_work, chunk, topic, key=f"runs-{chunk.name}", pure=False)
         under_way[future] = chunk
 
     def fill() -> None:
@@ -60,11 +64,14 @@ def on_cluster(queue: Queue, client: Any) -> Iterator[Report]:
             suspects.add(suspect.name)
             submit(suspect)
 
+    topic = f"ticks-{queue.rules.sweep.name}"
+    client.subscribe_topic(topic, lambda event: queue.tell(*event[1]))
     try:
         fill()
         while under_way:
             future = _next_done(client, list(under_way))
             chunk = under_way.pop(future)
+            queue.end(chunk)
             if future.status == "finished":
                 report = future.result()
             elif future.status in ("cancelled", "lost"):
@@ -84,6 +91,14 @@ def on_cluster(queue: Queue, client: Any) -> Iterator[Report]:
         raise RunnerError(f"the Dask scheduler is lost; {_GO_ON}") from error
     finally:
         client.cancel(list(under_way))
+
+
+def _work(chunk: Chunk, topic: str) -> Report:
+    """Make the runs of a chunk in a worker, which tells on a topic how many ticks of it are made."""
+    from distributed import get_worker
+
+    worker = get_worker()
+    return work(chunk, lambda ticks: worker.log_event(topic, (chunk.name, ticks)))
 
 
 def _next_done(client: Any, futures: Sequence[Any]) -> Any:
@@ -141,10 +156,33 @@ def local_client(workers: int, scratch: Path) -> Iterator[Any]:
         **{f"distributed.nanny.pre-spawn-environ.{name}": value for name, value in _MEMORY.items()},
     }
     try:
-        with dask.config.set(settings), _start_cluster(workers, scratch) as cluster, Client(cluster) as client:
-            yield client
+        with dask.config.set(settings), contextlib.ExitStack() as stack:
+            with _undisturbed():
+                cluster = stack.enter_context(_start_cluster(workers, scratch))
+            yield stack.enter_context(Client(cluster))
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
+
+
+@contextlib.contextmanager
+def _undisturbed() -> Iterator[None]:
+    """Hold Ctrl-C back until what is within has ended; processes that are started within never get it.
+
+    Half a cluster cannot be ended, and a process that has not read its code yet would tell of the interrupt.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    held: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, _: held.append(number))
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        signal.signal(signal.SIGINT, before)
+    if held:
+        raise KeyboardInterrupt
 
 
 def _start_cluster(workers: int, scratch: Path) -> Any:

@@ -41,7 +41,6 @@ class Queue:
 
     Attributes:
         rules: As given.
-        ticks_done: What the jobs cost that have ended, in ticks.
     """
 
     def __init__(
@@ -52,7 +51,8 @@ class Queue:
         cells: NDArray[np.intp],
         rules: Rules,
     ) -> None:
-        self.rules, self.ticks_done = rules, 0
+        self.rules, self._ticks_done = rules, 0
+        self._ticks_of: dict[str, int] = {}  # made so far of each chunk under way
         self._cells_of, self._names, self._costs = cells_of, names, costs
         self._cells, self._next = cells, 0
         of_each = np.asarray(costs, dtype=np.int64)[cells]
@@ -88,10 +88,24 @@ class Queue:
         """Return the next run whose workers died, as a chunk; made alone, it shows whether it is the cause."""
         return self._chunk([self._suspects.popleft()]) if self._suspects else None
 
+    def tell(self, chunk: str, ticks: int) -> None:
+        """Take note, from any thread, of how many ticks of a chunk under way are made, given by its name."""
+        if chunk in self._ticks_of:
+            self._ticks_of[chunk] = ticks
+
+    def end(self, chunk: Chunk) -> None:
+        """Take note that a chunk is no longer under way."""
+        self._ticks_of.pop(chunk.name)
+
+    @property
+    def ticks_made(self) -> int:
+        """What the jobs cost that have ended, in ticks, and the ticks made of those under way."""
+        return self._ticks_done + sum(list(self._ticks_of.values()))
+
     def learn(self, report: Report) -> None:
         """Take note of what ended, and of how long it took."""
         ticks = sum(int(self._costs[self._under_way.pop(end.name)]) for end in report.outcomes)
-        self.ticks_done += ticks
+        self._ticks_done += ticks
         if ticks and report.seconds:
             seconds = max(report.seconds / ticks, _SHORTEST_TICK)
             known = self._seconds_per_tick
@@ -115,4 +129,6 @@ class Queue:
             names = [self._names[cell] for cell in own]
             self._under_way |= dict(zip(names, own, strict=True))
             parts.append(Part(names, configs))
-        return Chunk(shard_name(self._number, self._handed_out), self.rules, parts)
+        name = shard_name(self._number, self._handed_out)
+        self._ticks_of[name] = 0
+        return Chunk(name, self.rules, parts)

@@ -15,13 +15,15 @@ from runner import store
 from runner.batch_jobs import Job
 from runner.calibration_job import CALIBRATION, carry_out
 from runner.config.calibration import validate_calibration
-from runner.config.compose import Composed, quiet_environment
+from runner.config.compose import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.errors import RunnerError, StoreError, user_place
 from runner.execution import simulate_job
 from runner.plugins import use_plugins
+from runner.progress.ticks import told
 from runner.provenance import job_provenance
+from runner.quiet import quiet_environment
 from runner.store.shards import ShardRun, find_shards, outcome, read_outcomes, write_shard
 from runner.store.writing import cut_short_record
 from runner.sweeps.block import Part
@@ -80,13 +82,18 @@ def dask_setup(_worker: object) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def work(chunk: Chunk) -> Report:
-    """Make the runs of a chunk; a chunk that was begun before goes on where it was."""
+def work(chunk: Chunk, tell: Callable[[int], None] | None = None) -> Report:
+    """Make the runs of a chunk; a chunk that was begun before goes on where it was.
+
+    Args:
+        chunk: The chunk.
+        tell: Is told each second, from a thread, how many ticks of it are made.
+    """
     quiet_environment()
     start = time.perf_counter()
     outcomes: list[store.Outcome] = []
     trouble = ""
-    with _one_at_a_time, ThreadPoolExecutor(1) as disk:
+    with _one_at_a_time, told(tell), ThreadPoolExecutor(1) as disk:
         try:
             use_plugins(chunk.rules.plugins)
             _check_folder(chunk.rules)

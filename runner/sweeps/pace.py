@@ -1,13 +1,10 @@
-"""How long jobs will take: estimated before they start, and shown while they run."""
+"""How long jobs will take: estimated before they start, and noted while they run."""
 
-import sys
 import time
 from pathlib import Path
-from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
-from tqdm import tqdm
 
 from runner.batch import Batcher
 from runner.batch_jobs import simulate_together
@@ -20,7 +17,9 @@ from runner.sweeps.deadline import TimeLimitError, deadline
 from runner.sweeps.plan import Checked, Plan
 from runner.sweeps.status import NOTE
 
-_EVERY = 2.0  # s between two notes of the progress
+_EVERY = 2.0  # s between two notes of the pace
+START_UP = 3.0
+"""CPU time that a worker process takes until its first run, in s."""
 _PROBES = 3  # cells that the first estimate is made from
 _PROBED_WITHIN = 2.0  # s; what takes longer is told when its run is made
 _FIXED = 0.010  # s that a job takes beside its ticks
@@ -28,36 +27,24 @@ _FIXED_TOGETHER = 0.0002  # s, of runs that are simulated together and keep no t
 _TICKS_TOGETHER = 20_000  # of runs that are simulated together for the first estimate
 
 
-class Progress:
-    """A bar on the terminal, in ticks, and a note in the sweep's folder for `runner status`.
+class Pace:
+    """A note in a sweep's folder for `runner status`: how long a job takes.
 
     Args:
         folder: The sweep's folder.
-        jobs: Number of jobs to make.
-        ticks: What they cost together.
     """
 
-    def __init__(self, folder: Path, jobs: int, ticks: int) -> None:
-        self._folder = folder
-        self._made, self._jobs = 0, jobs
-        self._bar = tqdm(total=ticks, unit="tick", unit_scale=True, desc="running", disable=None, file=sys.stderr)
+    def __init__(self, folder: Path) -> None:
+        self._folder, self._made = folder, 0
         self._began = self._noted = time.monotonic()
 
-    def add(self, jobs: int, ticks: int) -> None:
-        """Take note of a number of jobs that ended, and of what all of them so far cost, in ticks."""
+    def add(self, jobs: int) -> None:
+        """Take note of a number of jobs that ended."""
         self._made += jobs
-        self._bar.set_postfix_str(f"{self._made} of {self._jobs}", refresh=False)
-        self._bar.update(ticks - self._bar.n)
         now = time.monotonic()
         if self._made and now - self._noted > _EVERY:
             self._noted = now
             write_atomically(self._folder / NOTE, sealed_json({"seconds_per_run": (now - self._began) / self._made}))
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._bar.close()
 
 
 def estimate(plan: Plan, checked: Checked, cells: NDArray[np.intp], ticks: int, kept: float) -> float:

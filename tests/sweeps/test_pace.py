@@ -1,11 +1,16 @@
 """The first estimate of what a sweep costs."""
 
+import contextlib
+
 import numpy as np
 import pytest
 
+from runner.sweeps import run
+from runner.sweeps.engine import in_process
 from runner.sweeps.grid import plan_sweep
+from runner.sweeps.pace import estimate
 from runner.sweeps.plan import check
-from runner.sweeps.progress import estimate
+from runner.sweeps.run import Engine
 
 
 def estimated(tmp_path, kept, *overrides):
@@ -25,3 +30,14 @@ def test_a_trace_is_written_for_each_that_keeps_its_own(tmp_path):
 
 def test_a_run_that_is_made_alone_has_its_fixed_cost(tmp_path):
     assert estimated(tmp_path, 0.0, "plant=default") > 100.0
+
+
+@pytest.mark.parametrize(("workers", "told"), [(1, "about 43 s on 1 process"), (4, "about 26 s on 4 processes")])
+def test_the_time_that_is_told_has_the_start_of_the_processes_in_it(sweep, monkeypatch, capsys, workers, told):
+    """40 s of simulation, and 3 s to start each process, on two cores."""
+    monkeypatch.setattr(run, "local_client", lambda *_: contextlib.nullcontext())
+    monkeypatch.setattr(run, "on_cluster", lambda queue, _: in_process(queue))
+    monkeypatch.setattr(run, "estimate", lambda *_: 40.0)
+    monkeypatch.setattr(run.os, "cpu_count", lambda: 2)
+    sweep("seed=range(0,4)", "plant=rk4", engine=Engine(workers, None))
+    assert told in capsys.readouterr().err

@@ -1,0 +1,70 @@
+"""How many ticks this process has simulated: counted beside the simulation, at no cost to a tick."""
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import numpy as np
+from numpy.typing import NDArray
+
+_EVERY = 1.0  # s between two times that the count is told
+
+
+class _Count:
+    """Ticks of what has ended, and the clock of the repetition under way: when each row began, 0 before."""
+
+    def __init__(self) -> None:
+        self.ended = 0
+        self.clock: NDArray[np.int64] | None = None
+
+
+_count = _Count()
+
+
+@contextmanager
+def counted(clock: NDArray[np.int64], ticks: int) -> Iterator[None]:
+    """Count the ticks of a repetition while it goes on, by its clock: when each row began, in ns, 0 before it did."""
+    _count.clock = clock
+    try:
+        yield
+    finally:
+        _count.clock = None
+        _count.ended += ticks
+
+
+def add_ticks(ticks: int) -> None:
+    """Count ticks that were simulated at once."""
+    _count.ended += ticks
+
+
+def made() -> int:
+    """Return the number of ticks so far, from any thread."""
+    clock = _count.clock
+    return _count.ended + (0 if clock is None else int(np.count_nonzero(clock)))
+
+
+def counter() -> Callable[[], int]:
+    """Return what tells, from any thread, how many ticks have been simulated since now."""
+    before = made()
+    return lambda: made() - before
+
+
+@contextmanager
+def told(tell: Callable[[int], None] | None) -> Iterator[None]:
+    """Tell each second from a thread how many ticks have been simulated within; None tells nobody."""
+    if tell is None:
+        yield
+        return
+    count, ended = counter(), threading.Event()
+
+    def watch() -> None:
+        while not ended.wait(_EVERY):
+            tell(count())
+
+    thread = threading.Thread(target=watch, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()

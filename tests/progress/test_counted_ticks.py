@@ -1,0 +1,62 @@
+"""Ticks counted beside the simulation."""
+
+import threading
+
+import numpy as np
+import pytest
+
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.execution import simulate_job
+from runner.progress import ticks
+
+
+def test_those_of_a_repetition_under_way_count():
+    clock = np.zeros(101, dtype=np.int64)
+    count = ticks.counter()
+    with ticks.counted(clock, 100):
+        clock[:30] = 7
+        assert count() == 30
+    assert count() == 100
+    ticks.add_ticks(5)
+    assert count() == 105
+
+
+def test_a_repetition_that_ends_early_counts_as_made():
+    count = ticks.counter()
+    with pytest.raises(ValueError, match="diverged"), ticks.counted(np.zeros(11, dtype=np.int64), 10):
+        raise ValueError("diverged")
+    assert count() == 10
+
+
+@pytest.mark.parametrize("plant", ["rk4", "mujoco"])
+def test_a_run_counts_the_ticks_of_all_its_repetitions(plant):
+    """Compiled as a whole, or tick by tick."""
+    composed = compose(["robot=macro", f"plant={plant}", "duration=0.1", "repetitions=3"])
+    config = validate(composed.resolved, composed.config_dirs)
+    count = ticks.counter()
+    simulate_job(config, composed)
+    assert count() == 3 * config.timing.ticks
+
+
+def test_they_are_told_from_a_thread_that_ends_with_the_work(monkeypatch):
+    monkeypatch.setattr(ticks, "_EVERY", 0.001)
+    told, enough = [], threading.Event()
+
+    def tell(count):
+        told.append((count, threading.current_thread()))
+        enough.set()
+
+    with ticks.told(tell):
+        ticks.add_ticks(3)
+        assert enough.wait(10.0)
+    count, thread = told[-1]
+    assert count == 3 or told[0][0] == 0
+    assert thread is not threading.current_thread()
+    assert not thread.is_alive()
+
+
+def test_nobody_is_told_where_nobody_asks():
+    before = threading.active_count()
+    with ticks.told(None):
+        assert threading.active_count() == before
