@@ -20,6 +20,7 @@ from runner.sensing.force_torque import ForceTorqueConfig
 
 _KEPT = 8
 _AT_LIMIT = 1e-9  # rad or m
+_TURN = 2.0 * np.pi
 _built: dict[tuple[object, ...], Robot] = {}
 
 
@@ -125,10 +126,12 @@ def _check_home(key: str, model: RobotModel, home: FloatArray) -> None:
     for name, unit, value, lower, upper in zip(
         model.joint_names, model.joint_units, home, *model.position_limits, strict=True
     ):
+        if unit == "rad" and abs(value) > _TURN and lower <= value <= upper:
+            problems.append(f"{key}: {name} at {value:g} rad is more than a whole turn; degrees? write {value:g}deg")
         if not lower - _AT_LIMIT <= value <= upper + _AT_LIMIT:
             turned = np.radians(value)
-            degrees = unit == "rad" and abs(value) > 2.0 * np.pi and lower <= turned <= upper
-            hint = f"; degrees? {value:g} degrees are {turned:.4g} rad" if degrees else ""
+            degrees = unit == "rad" and abs(value) > _TURN and lower <= turned <= upper
+            hint = f"; degrees? write {value:g}deg, which is {turned:.4g} rad" if degrees else ""
             problems.append(
                 f"{key}: {name} at {value:g} {unit} is beyond its limits, {lower:.4g} to {upper:.4g} {unit}{hint}"
             )

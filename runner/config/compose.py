@@ -1,6 +1,5 @@
 """Composing a config from the groups in conf/ and a list of overrides, with Hydra."""
 
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ from hydra import initialize_config_dir
 from omegaconf import DictConfig, OmegaConf
 
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.in_si import put_in_si
 from runner.config.no_code import code_refused
 from runner.config.overrides import force
 from runner.config.robot_defaults import complete_stage_arms
@@ -25,7 +25,7 @@ class Composed:
     """A composed config that nobody has checked yet.
 
     Attributes:
-        resolved: The config as plain data, interpolations resolved.
+        resolved: The config as plain data, interpolations resolved, quantities such as 20ms in SI units.
         overrides: The overrides that it was composed with, as typed.
         choices: The option chosen in each group, such as {"robot": "macro"}.
         config_dirs: Config folders of the user's.
@@ -92,6 +92,7 @@ def from_hydra(
     problems = list(_strange_keys(resolved))
     if problems:
         raise ConfigError(problems)
+    put_in_si(resolved, config_dirs)
     return Composed(resolved, tuple(overrides), choices, tuple(config_dirs), root)
 
 
@@ -103,10 +104,3 @@ def _strange_keys(value: object, place: str = "") -> Iterator[str]:
                 yield from _strange_keys(item, f"{place}{key}.")
             else:
                 yield f"{place}{quoted(key)}: the key is no text; put it in quotes, or look for a typing error"
-
-
-def quiet_environment() -> None:
-    """Keep numerical libraries to one thread, and let Hydra's exceptions through; call before importing numpy."""
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(name, "1")
-    os.environ["HYDRA_FULL_ERROR"] = "1"

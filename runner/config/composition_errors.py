@@ -1,5 +1,6 @@
 """Turning what Hydra, OmegaConf and YAML say of a bad config into what a user can mend."""
 
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -9,13 +10,15 @@ from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 from runner.config.bounded_yaml import explain_yaml
+from runner.config.malformed import explain_parser
 from runner.config.no_code import check_file
 from runner.config.options import group_options
 from runner.errors import ConfigError, nearest
-from runner.texts import VALUE, one_line
+from runner.texts import VALUE, one_line, quoted
 
 # What Hydra raises for a config that it cannot compose: ValueError and OSError for a file that is no text, or no
 # mapping; and OmegaConf where a value refers to itself.
+_AMBIGUOUS = re.compile(r"Ambiguous value for argument '(.*)'$", re.M)
 COMPOSITION_ERRORS = (HydraException, OmegaConfBaseException, yaml.YAMLError, ValueError, OSError, RecursionError)
 
 
@@ -34,11 +37,17 @@ def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
             return ConfigError([f"{group}: no '{option}'{nearest(option, known)}; known: {', '.join(known)}"])
     if isinstance(error, OverrideParseException):
         found = one_line(f"'{error.override.removeprefix('++')}'", VALUE)
-        return ConfigError([f"{found} is no override: {one_line(str(error).splitlines()[0], VALUE)}"])
+        return ConfigError([f"{found} is no override: {one_line(explain_parser(str(error).splitlines()[0]), VALUE)}"])
     if isinstance(error, OmegaConfBaseException) and error.full_key:
         return ConfigError([f"{error.full_key}: {str(error).splitlines()[0]}"])
     if isinstance(error, RecursionError):
         return ConfigError(["the config is nested too deeply, or a value refers to itself"])
+    several = _AMBIGUOUS.match(str(error))
+    if several is not None:
+        text = several[1].removeprefix("++")
+        return ConfigError(
+            [f"{quoted(text)} gives several values; `runner -m` sweeps over them; a list stands in brackets: KEY=[A,B]"]
+        )
     text = str(error).replace("++", "").split("\nSee https")[0].split("\nTo append")[0]
     return ConfigError([" ".join(text.split())])
 

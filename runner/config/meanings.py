@@ -1,20 +1,40 @@
 """What config keys mean and in which unit they count, as the docstrings of their models say."""
 
-import contextlib
 import inspect
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, get_args
 
-from runner.config.groups import GROUPS
-from runner.config.robot import OneArmConfig, StageConfig
-from runner.config.settings import RunSettings
-from runner.errors import ConfigError
-from runner.registry import Kinds, StrictModel
+from runner.registry import StrictModel
 
-_UNIT = re.compile(
-    r"\b[Ii]n (N m s/rad|N m/rad|N s/m|N/m|N m|N|kg m\^2|kg|m/s\^2|m/s|rad/s\^2|rad/s|rad|m|1/s|s|Hz)(?![\w/^])"
-)
+_ONE = r"(N m s/rad|N m/rad|N s/m|N/m|N m|N|kg m\^2|kg|m/s\^2|m/s|rad/s\^2|rad/s|rad|m|1/s|s|Hz)(?![\w/^])"
+_UNIT = re.compile(rf"\b[Ii]n {_ONE}")
+_TURNED = re.compile(rf" and {_ONE}")  # "in kg and kg m^2": of six axes, three along and three about them
+_SLIDING = re.compile(rf"[;,] (?:or in )?{_ONE} where (?:it|a joint) slides")
+_AXES_ALONG = 3
+
+
+@dataclass(frozen=True)
+class Units:
+    """In which units a key counts; all are empty for a key without unit.
+
+    Attributes:
+        first: Its unit.
+        turned: That of the last three of six axes, of a key that has a value for each.
+        sliding: That of joints which slide, of a key that has values of joints.
+    """
+
+    first: str = ""
+    turned: str = ""
+    sliding: str = ""
+
+    def at(self, place: Sequence[str | int]) -> tuple[str, ...]:
+        """Return the units that a value may have, by its place in the config: keys, and numbers in lists."""
+        if self.turned:
+            axis = place[-1]
+            return ((self.first, self.turned)[axis >= _AXES_ALONG],) if isinstance(axis, int) else ()
+        return tuple(unit for unit in (self.first, self.sliding) if unit)
 
 
 def meanings(model: type[StrictModel]) -> dict[str, str]:
@@ -35,37 +55,22 @@ def nested_model(annotation: Any) -> type[StrictModel] | None:
     return None
 
 
-def key_unit(key: str) -> str:
-    """Return the unit of a dotted key, such as "rad/s" of "controller.natural_frequency".
+def find_units(model: type[StrictModel], path: Sequence[str]) -> Units | None:
+    """Return the units of a key below a model; None where it has no such key.
 
-    It is "1" for a key without unit, of which nothing is known, or that counts otherwise in each kind of its group.
+    Args:
+        model: The model of its group.
+        path: The keys that lead to it, such as ["stages", "macro", "home"]; what stands behind it has no influence.
     """
-    group, *rest = key.split(".")
-    units = {_unit(model, rest or [group]) for model in _models(group if rest else "", rest)} - {None}
-    return units.pop() or "1" if len(units) == 1 else "1"
-
-
-def _models(group: str, rest: Sequence[str]) -> Iterator[type[StrictModel]]:
-    known = GROUPS.get(group)
-    if not group:
-        yield RunSettings
-    elif rest[0] == "stages":
-        yield from (StageConfig, OneArmConfig)
-    elif isinstance(known, Kinds):
-        for kind in known.names():
-            with contextlib.suppress(ConfigError):  # a part of the user's that cannot be imported
-                yield known.config_model(kind)
-    elif known is not None:
-        yield known
-
-
-def _unit(model: type[StrictModel], path: Sequence[str]) -> str | None:
-    """Return the unit of a key below a model; None where it has no such key."""
     name, *rest = path[2:] if path[0] == "stages" and len(path) > 2 else path
     if name not in model.model_fields:
         return None
     inner = nested_model(model.model_fields[name].annotation)
     if inner is not None and rest:
-        return _unit(inner, rest)
-    found = _UNIT.search(meanings(model).get(name, ""))
-    return found[1] if found else ""
+        return find_units(inner, rest)
+    text = meanings(model).get(name, "")
+    found = _UNIT.search(text)
+    if found is None:
+        return Units()
+    turned, sliding = _TURNED.match(text, found.end()), _SLIDING.match(text, found.end())
+    return Units(found[1], turned[1] if turned else "", sliding[1] if sliding else "")

@@ -6,6 +6,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from runner.config.meanings import Units, find_units
+from runner.config.units import explain_quantity, quantities_in
 from runner.errors import nearest
 from runner.registry import StrictModel
 from runner.texts import quoted
@@ -27,6 +29,7 @@ _NUMBERS = {
     "dict_type": "must be a group of keys",
     "model_type": "must be a group of keys",
 }
+_OF_NUMBERS = ("float_type", "int_type", "list_type", "value_error")
 
 
 def describe(group: str, model: type[StrictModel], error: ValidationError) -> Iterator[str]:
@@ -50,6 +53,10 @@ def describe(group: str, model: type[StrictModel], error: ValidationError) -> It
 
 def _explain(model: type[StrictModel], location: list[str], item: dict[str, Any]) -> str:
     kind, found, context = item["type"], item["input"], item.get("ctx", {})
+    quantity = next(quantities_in(found), None) if kind in _OF_NUMBERS and location else None
+    if quantity is not None:
+        units = find_units(model, location) or Units()
+        return explain_quantity(quantity, units.at([int(part) if part.isdecimal() else part for part in location]))
     if kind == "extra_forbidden":
         keys = [field.alias or name for name, field in model.model_fields.items()]
         return f"unknown key{nearest(location[-1], keys)}; keys: {', '.join(keys)}"
@@ -64,4 +71,6 @@ def _explain(model: type[StrictModel], location: list[str], item: dict[str, Any]
     if kind == "value_error":
         return f"{context['error']}; found {quoted(found)}"
     wanted = _NUMBERS.get(kind)
+    if wanted == _NUMBERS["int_type"] and isinstance(found, float) and found.is_integer():
+        return f"{wanted}; found {quoted(found)}; write {int(found)}"
     return f"{wanted.format(**context) if wanted else item['msg']}; found {quoted(found)}"

@@ -1,5 +1,7 @@
 """Config of the joint measurement."""
 
+import math
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -16,12 +18,13 @@ class NoiseConfig(StrictModel):
     """Noise, bias and steps of the joint encoders.
 
     Attributes:
-        position: Half-width (uniform) or standard deviation (gaussian) of the joint-position noise, in rad, by
-            stage where the robot has several.
+        position: Half-width (uniform) or standard deviation (gaussian) of the joint-position noise, in rad; m
+            where a joint slides. By stage where the robot has several.
         distribution: Its shape; with none, `position` has no effect.
-        bias: Constant error of the measured joint positions, in rad, by stage where the robot has several: the same at
-            every tick and in every repetition, as of a zero that is set wrong; of either sign.
-        resolution: Step to which the biased, noisy joint positions are rounded, in rad, likewise; 0 for none.
+        bias: Constant error of the measured joint positions, in rad; m where a joint slides. By stage where the robot
+            has several: the same at every tick and in every repetition, as of a zero that is set wrong; of either sign.
+        resolution: Step to which the biased, noisy joint positions are rounded, in rad; m where a joint slides. By
+            stage likewise; 0 for none.
         velocity: Whether joint velocities are exact or differences of the measured positions.
     """
 
@@ -48,6 +51,9 @@ class NoiseConfig(StrictModel):
         resolution = problems.attempt(lambda: by_stage("noise.resolution", steps, names))
         if position is None or bias is None or resolution is None:
             raise ConfigError(problems.found)
+        for key, values in (("position", position), ("bias", bias), ("resolution", resolution)):
+            problems.found += _no_angles(f"noise.{key}", values, arm)
+        problems.report()
         return EncoderNoise(
             np.repeat(position, joints),
             np.repeat(bias, joints),
@@ -55,3 +61,14 @@ class NoiseConfig(StrictModel):
             self.distribution,
             self.velocity,
         )
+
+
+def _no_angles(key: str, values: Sequence[float], arm: Robot) -> list[str]:
+    """Return a problem for each stage with an error of more than half a turn of joints that turn."""
+    several = len(arm.stages) > 1
+    return [
+        f"{key}{f'.{stage.name}' if several else ''}: {value:g} rad is more than half a turn, and no measurement of an "
+        f"angle; degrees? write {value:g}deg"
+        for stage, value in zip(arm.stages, values, strict=True)
+        if abs(value) > math.pi and "rad" in stage.model.joint_units
+    ]

@@ -4,6 +4,8 @@ import re
 from collections.abc import Sequence
 
 from runner.config.bounded_yaml import CONFIG
+from runner.config.in_si import with_numbers
+from runner.config.malformed import malformed
 from runner.config.options import groups
 from runner.errors import ConfigError
 from runner.texts import quoted
@@ -19,14 +21,14 @@ def force(overrides: Sequence[str]) -> list[str]:
     of a group is quoted where Hydra would take it for a number or null and not name the group.
 
     Raises:
-        ConfigError: for overrides that are too long or nested too deeply, choose an option of Hydra's own, or give a
-            group no name to choose.
+        ConfigError: for overrides that are too long, nested too deeply or malformed, choose an option of Hydra's own,
+            give a group no name to choose, or a range in a unit that does not fit its key.
     """
     names = set(groups())
     problems = [problem for override in overrides if (problem := _problem(override, names))]
     if problems:
         raise ConfigError(problems)
-    return [_forced(override, names) for override in overrides]
+    return [_forced(with_numbers(override), names) for override in overrides]
 
 
 def _forced(override: str, names: set[str]) -> str:
@@ -46,6 +48,9 @@ def _problem(override: str, names: set[str]) -> str | None:
         return f"{quoted(override)} is no override: it is too long; allowed: up to {_CHARACTERS} characters"
     if _depth(value) + key.count(".") > CONFIG.depth:
         return f"{quoted(override)} is no override: nested deeper than {CONFIG.depth} levels"
+    fault = malformed(override)
+    if fault:
+        return f"{quoted(override)} is no override: {fault}"
     group = key.lstrip("+~").partition("@")[0]
     if group.startswith("hydra/"):
         return f"{group}: Hydra's own groups are as they are; free are hydra.sweeper.workers, .address and .params"

@@ -21,12 +21,13 @@ class ArmConfig(StrictModel):
             MJCF.
         mjcf: Its MJCF, MuJoCo's format, found likewise; None where it has a URDF.
         tip: Name of its tip frame.
-        home: Joint positions at home, in rad.
+        home: Joint positions at home, in rad; m where a joint slides.
         inertials: Set of masses, centres of mass and inertias, of those in `<urdf>.inertials.yaml`, in place of the
             file's; None keeps these.
         masses: Mass of links by name, in kg, in place of the file's or the set's.
         rotor_inertia: Inertia added to each moving link about its joint's axis, in kg m^2.
-        velocity_limits: Largest speed of joints by name, in rad/s, in place of the file's; an MJCF has none.
+        velocity_limits: Largest speed of joints by name, in rad/s; m/s where a joint slides. They stand in place of the
+            file's; an MJCF has none.
     """
 
     urdf: FileName | None
@@ -107,9 +108,10 @@ class RobotConfig(StrictModel):
         natural_frequency: omega_n of its controller, in rad/s, by stage where it has several; so all that follow.
         damping_ratio: xi of its controller.
         period: Its controller's period, in s.
-        joint_error_limit: Error of its joint positions, in rad.
+        joint_error_limit: Error of its joint positions, in rad; m where a joint slides.
         no_joint_error: Zero for each stage, which `noise: none` takes.
-        torque_limit: Its largest continuous torque, in N m; None where none is stated beside the URDF's efforts.
+        torque_limit: Its largest continuous torque, in N m; N where a joint slides. None where none is stated beside
+            the URDF's efforts.
         settling_band: Tip error within which it counts as settled, on each axis, in m.
     """
 

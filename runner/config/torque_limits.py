@@ -13,8 +13,8 @@ class TorqueLimitsConfig(StrictModel):
     """Limits of the joint torques.
 
     Attributes:
-        max: Largest magnitude of the torque, in N m: one for all joints, or a list with one for each, by stage where
-            the robot has several; None is no limit.
+        max: Largest magnitude of the torque, in N m; N where a joint slides. One for all joints, or a list with
+            one for each, by stage where the robot has several; None is no limit.
     """
 
     max: TorquePerStage | None

@@ -83,7 +83,7 @@ def test_what_was_chosen_is_kept():
         ("experiment=figure_3_5", "experiment: no 'figure_3_5' (did you mean thesis/figure_3_5?); known: "),
         ("trajectory.goal=${robot.nope}", "trajectory.goal: Interpolation key 'robot.nope' not found"),
         ("noise.position=[1,", "'noise.position=[1,' is no override: "),
-        ("foo", "'foo' is no override: Error parsing override 'foo'"),
+        ("foo", "'foo' is no override: it must read KEY=VALUE; a value with signs such as"),
         ("foo\x1b]0;t\x07[", r"'foo\x1b]0;t\x07[' is no override: "),
     ],
 )

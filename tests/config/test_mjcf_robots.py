@@ -68,7 +68,7 @@ def test_every_plant_takes_an_mjcf_and_the_run_needs_it_no_more(mine, plant):
     short = ("duration=0.2", "trajectory.duration=0.2", f"plant={plant}")
     run = runner.run("robot=elbow", *short, config_dirs=[mine])
     assert run.status == "ok"
-    assert run.metrics["max_tracking_error"]["median"] < 1e-3
+    assert run.metrics["max_tracking_error"].median < 1e-3
     assert run.config["robot"]["mjcf"] == "arm.xml"
     (mine / "robots/arm.xml").unlink()
     model = RobotModel(run.urdf, run.provenance["tip_frame"])

@@ -50,8 +50,19 @@ ABOVE_ZERO = "must be a number above 0, or a list of such numbers with one for e
         ("robot.home=[0,0]", "robot.home: 2 values for 3 joints (q1, q2, q3); found [0.0, 0.0]"),
         (
             "robot=xarm7 robot.home=[0,0,0,90,0,0,0]",
-            "joint4 at 90 rad is beyond its limits, -0.192 to 3.927 rad; degrees? 90 degrees are 1.571 rad",
+            "joint4 at 90 rad is beyond its limits, -0.192 to 3.927 rad; degrees? write 90deg, which is 1.571 rad",
         ),
+        ("robot.home=[0,45,0]", "robot.home: q2 at 45 rad is more than a whole turn; degrees? write 45deg\n"),
+        (
+            "noise.position=5",
+            "noise.position: 5 rad is more than half a turn, and no measurement of an angle; degrees? ",
+        ),
+        (
+            "noise.bias=-90",
+            "noise.bias: -90 rad is more than half a turn, and no measurement of an angle; degrees? write",
+        ),
+        ("repetitions=1e6", "repetitions: must be a whole number; found 1000000.0; write 1000000\n"),
+        ("repetitions=1.5", "repetitions: must be a whole number; found 1.5\n"),
         ("robot=xarm7 robot.home=[0,0,0,5,0,0,0]", "joint4 at 5 rad is beyond its limits, -0.192 to 3.927 rad\n"),
         (
             "robot=xarm7 robot.home=[0,0,0,9000,0,0,0]",

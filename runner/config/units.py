@@ -1,0 +1,111 @@
+"""Quantities as people write them, such as 45deg, 5mm, 20ms or 1e-3 rad: a number, and its unit behind it."""
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from decimal import Decimal
+from typing import NamedTuple
+
+from runner.errors import nearest
+from runner.texts import quoted
+
+_DEGREE, _RPM = math.pi / 180.0, math.pi / 30.0
+_ONE, _MILLI, _MICRO, _KILO = Decimal(1), Decimal("1e-3"), Decimal("1e-6"), Decimal(1000)
+
+WRITTEN: Mapping[str, Mapping[str, Decimal | float]] = {
+    "m": {"m": _ONE, "cm": Decimal("1e-2"), "mm": _MILLI, "um": _MICRO},
+    "s": {"s": _ONE, "ms": _MILLI, "us": _MICRO, "min": Decimal(60), "h": Decimal(3600)},
+    "rad": {"rad": _ONE, "mrad": _MILLI, "deg": _DEGREE},
+    "m/s": {"m/s": _ONE, "cm/s": Decimal("1e-2"), "mm/s": _MILLI},
+    "m/s^2": {"m/s^2": _ONE, "mm/s^2": _MILLI},
+    "rad/s": {"rad/s": _ONE, "deg/s": _DEGREE, "rpm": _RPM},
+    "rad/s^2": {"rad/s^2": _ONE, "deg/s^2": _DEGREE},
+    "N": {"N": _ONE, "mN": _MILLI, "kN": _KILO},
+    "N m": {"N m": _ONE, "mN m": _MILLI, "kN m": _KILO},
+    "kg": {"kg": _ONE, "g": _MILLI},
+    "kg m^2": {"kg m^2": _ONE, "kg cm^2": Decimal("1e-4"), "g m^2": _MILLI, "g cm^2": Decimal("1e-7")},
+    "N/m": {"N/m": _ONE, "N/mm": _KILO, "kN/m": _KILO},
+    "N m/rad": {"N m/rad": _ONE, "N m/deg": 180.0 / math.pi},
+    "N s/m": {"N s/m": _ONE},
+    "N m s/rad": {"N m s/rad": _ONE},
+    "1/s": {"1/s": _ONE},
+    "Hz": {"Hz": _ONE, "kHz": _KILO},
+}
+"""What each unit of a key may be written as, and what that is of the unit."""
+
+_ALIKE = str.maketrans({"°": "deg", "µ": "u", "μ": "u", "²": "^2", " ": "", "*": "", "·": ""})
+_BARE: Mapping[str, str] = {
+    written.translate(_ALIKE): written for all_written in WRITTEN.values() for written in all_written
+}
+# Three digits of an exponent are more than a number may have, and no more are worked out.
+_NUMBER = r"[-+]?(?:\d[\d_]*\.?[\d_]*|\.\d[\d_]*)(?:[eE][-+]?\d{1,3})?"
+_QUANTITY = re.compile(rf"\s*({_NUMBER})(\s*[a-zA-Z°µμ][\w°µμ ^²*·/]*|\s+1/s)")
+_LONGEST = 60  # characters
+
+
+class Quantity(NamedTuple):
+    """A number with a unit, as typed.
+
+    Attributes:
+        number: The number.
+        unit: What stands behind it, spaces and signs of multiplication as a config writes them where it is known.
+    """
+
+    number: Decimal
+    unit: str
+
+    def in_unit(self, unit: str) -> float | None:
+        """Return the number in a unit of a key; None where this is no quantity of that unit.
+
+        Powers of ten are exact, so that 20ms is the float that 0.02 is; 30deg is what math.radians(30) is.
+        """
+        factor = WRITTEN.get(unit, {}).get(self.unit)
+        if factor is None:
+            return None
+        return float(self.number * factor) if isinstance(factor, Decimal) else float(self.number) * factor
+
+
+def read_quantity(value: object) -> Quantity | None:
+    """Return what a text says where it is a number with a unit, known or not; None for all else."""
+    if not isinstance(value, str) or len(value) > _LONGEST:
+        return None
+    match = _QUANTITY.fullmatch(value)
+    if match is None or _is_number(value):
+        return None
+    unit = match[2].strip()
+    return Quantity(Decimal(match[1].replace("_", "")), _BARE.get(unit.translate(_ALIKE), unit))
+
+
+def _is_number(text: str) -> bool:
+    """Tell whether a text is a number alone, as 1e3 is, though its end could be a unit."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def quantities_in(value: object) -> Iterator[str]:
+    """Yield the texts in a value, a list or a mapping, that are quantities."""
+    for item in value.values() if isinstance(value, Mapping) else value if isinstance(value, list) else [value]:
+        if isinstance(item, list | dict):
+            yield from quantities_in(item)
+        elif isinstance(item, str) and read_quantity(item) is not None:
+            yield item
+
+
+def explain_quantity(text: str, units: Sequence[str]) -> str:
+    """Return what is wrong with a quantity that a key does not take, and which units it takes.
+
+    Args:
+        text: The quantity, as typed.
+        units: Units in which the key may count; none for a key without unit.
+    """
+    quantity = read_quantity(text)
+    unit = quantity.unit if quantity is not None else ""
+    if not units:
+        return f"counts in no unit; found {quoted(text)}; write the number alone"
+    allowed = " or ".join(f"{own} (written {', '.join(WRITTEN[own])})" for own in units)
+    known = [written for all_written in WRITTEN.values() for written in all_written]
+    what = "" if unit in known else f"; '{unit}' is no unit{nearest(unit, known)}"
+    return f"must be a number, or one with a unit of {allowed}; found {quoted(text)}{what}"
