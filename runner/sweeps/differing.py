@@ -110,7 +110,7 @@ class Resolved:
             of_option = any(axis.name == group != key for axis in axes)
             if any(key == axis.name or (key.startswith(f"{axis.name}.") and axis.name != group) for axis in axes):
                 continue
-            if of_option and _is_option(key):
+            if of_option and is_of_option(key):
                 continue
             # What one option has and another has not is what they are.
             present = codes != texts.index(None) if of_option and None in texts else np.ones(len(codes), dtype=bool)
@@ -147,7 +147,7 @@ def in_words(differences: Sequence[Difference]) -> str:
     return f"{values} beyond the swept axes{by}: {', '.join(named)}{more}"
 
 
-def _is_option(key: str) -> bool:
+def is_of_option(key: str) -> bool:
     """Return whether a key of a swept group says which option it is, or what is no part of the comparison."""
     group, _, rest = key.partition(".")
     return rest in _NAMES or (group == "robot" and rest.partition(".")[0] not in _OF_A_ROBOT)
@@ -167,7 +167,7 @@ def _difference(
                 first = np.unique(together, return_index=True)[1]
                 levels: dict[str, list[str]] = {}
                 for cell in first.tolist():
-                    name = " and ".join(_name(axis, int(place[cell])) for axis, place in zip(some, places, strict=True))
+                    name = " and ".join(axis.text(int(place[cell])) for axis, place in zip(some, places, strict=True))
                     levels.setdefault(texts[codes[cell]] or "–", []).append(name)
                 values = [(", ".join(names), text) for text, names in levels.items()]
                 return Difference(key, tuple(axis.name for axis in some), values)
@@ -184,28 +184,24 @@ def _numbered(levels: Sequence[Levels], counts: Sequence[int]) -> Levels:
     return np.asarray(np.unique(together, return_inverse=True)[1])
 
 
-def _name(axis: "Axis", level: int) -> str:
-    value = axis.values[level]
-    return value if isinstance(value, str) else f"{value:g}"
-
-
 def _is_same(one: Any, other: Any) -> bool:
     return one is other or bool(one == other)
 
 
 def _flat(name: str, value: Any) -> dict[str, str]:
-    return dict(_entries({name: value}, ""))
+    return dict(entries({name: value}))
 
 
-def _entries(config: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, str]]:
+def entries(config: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
+    """Yield the values of a config by their dotted keys, as texts."""
     for key, value in config.items():
         if isinstance(value, Mapping) and value:
-            yield from _entries(value, f"{prefix}{key}.")
+            yield from entries(value, f"{prefix}{key}.")
         else:
-            yield f"{prefix}{key}", _text(value)
+            yield f"{prefix}{key}", value_text(value)
 
 
-def _text(value: Any) -> str:
+def value_text(value: Any) -> str:
     """Return a value as text: equal numbers alike, whether they are written 1 or 1.0."""
     if value is None:
         return "null"
@@ -214,5 +210,5 @@ def _text(value: Any) -> str:
     if isinstance(value, int | float):
         return f"{value:.12g}"
     if isinstance(value, Sequence) and not isinstance(value, str):
-        return f"[{', '.join(map(_text, value))}]"
+        return f"[{', '.join(map(value_text, value))}]"
     return str(value)

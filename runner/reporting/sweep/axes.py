@@ -2,7 +2,7 @@
 
 import math
 
-from runner.config.meanings import key_unit
+from runner.config.key_units import key_unit
 from runner.quantities import labelled
 from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
 from runner.reporting.markup import literal, literals

@@ -5,7 +5,7 @@ import numpy as np
 from runner.drawing.thinning import POINTS, spaced
 from runner.reporting.document import Block, Curves, Panel, Section, Series
 from runner.reporting.metric_titles import title
-from runner.reporting.sweep.subject import QUANTILE_RULE, Subject, grouped, spans_decades, value_name
+from runner.reporting.sweep.subject import QUANTILE_RULE, Subject, grouped, spans_decades
 from runner.sweeps.measurements import Axis, FloatArray
 
 _MOST_LINES = 8
@@ -35,7 +35,7 @@ def _shares(subject: Subject, metric: str, axis: Axis) -> Panel:
         pooled = values[chosen]
         x, y = _distribution(pooled[~np.isnan(pooled)])
         first, last = int(axis.level[chosen].min()), int(axis.level[chosen].max())
-        name = value_name(axis, first) + (f" to {value_name(axis, last)}" if last > first else "")
+        name = axis.text(first) + (f" to {axis.text(last)}" if last > first else "")
         series.append(Series(name, x, y))
     title = f"by {axis.name}"
     return Panel(title, subject.label(metric), "share", series, x_log=spans_decades(values.ravel()), y_range=(0, 1.02))

@@ -7,7 +7,7 @@ from runner.quantities import labelled, number
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
-from runner.reporting.sweep.intervals import axis_panel, cells_with_intervals, places
+from runner.reporting.sweep.intervals import at_texts, axis_panel, cells_with_intervals, places
 from runner.reporting.sweep.subject import MOST_GROUPS, QUANTILE_RULE, Subject
 from runner.statistics import PERMUTATIONS, EffectAnalysis
 from runner.sweeps.measurements import Axis
@@ -118,15 +118,14 @@ def _main_effect(subject: Subject, metric: str, axis: Axis) -> Panel:
         pooled = values[axis.level == level]
         pooled = pooled[~np.isnan(pooled)]
         if pooled.size:
-            quartiles[:, place] = np.quantile(pooled, (0.25, 0.5, 0.75), method="inverted_cdf")
+            low, high = np.quantile(pooled, (0.25, 0.75), method="inverted_cdf")
+            quartiles[:, place] = low, np.median(pooled), high  # the median as in all tables
     quartiles[~np.isfinite(quartiles)] = np.nan
     x = places(axis)[shown]
     low, median, high = quartiles
     series = [Series("", x, median, "points_line", low, high, color=0)]
-    if axis.numbers is None:  # between texts there is nothing that a line could stand for
-        gap = np.full(len(x), np.nan)
-        whiskers = Series("", np.repeat(x, 3), np.column_stack([low, high, gap]).ravel(), color=0)
-        series = [whiskers, Series("", x, median, "points", color=0)]
+    if axis.numbers is None:
+        series = at_texts(series[0])
     unit = subject.measurements.units[metric]
     return axis_panel("", axis, labelled("median", unit), series, quartiles)
 

@@ -4,18 +4,24 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from runner.comparison.pairs import CellPairs, compare, share_seeds
 from runner.errors import StoreError
 from runner.quantities import with_ends
 from runner.reporting.document import Block, Notice, Section, Table, Text
 from runner.reporting.figures import playback, torque_and_error
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
-from runner.reporting.sweep.pairs import HEADER, columns, compare
+from runner.reporting.sweep.pairs import HEADER, columns
 from runner.reporting.sweep.subject import Subject
 from runner.statistics import median_interval
 from runner.store import Run
 
 _BEHIND = 5
+_EXPLAINED = (
+    "median of the differences, its 95 % interval from n pairs, effect size (rank-biserial correlation, 1 where the "
+    "best is better in every repetition), and p of the signed-rank test. The best was chosen by the first metric, "
+    "which makes it look better there than it is"
+)
 
 
 def section(subject: Subject, best: Run, worst: Run) -> Section:
@@ -65,28 +71,25 @@ def _with_interval(values: np.ndarray, unit: str) -> str:
 
 
 def _behind(subject: Subject, ranked: Sequence[int]) -> list[Block]:
-    """Compare the cells next to the best with it, repetition by repetition."""
-    shared = [cell for cell in ranked[1:] if subject.share_seeds(ranked[0], cell)]
+    """Compare the cells next to the best with it, repetition by repetition, in each metric."""
+    measurements = subject.measurements
+    others = np.array(ranked[1:])
+    pairs = CellPairs(np.full(len(others), ranked[0]), others)
+    shared = others[share_seeds(measurements, measurements, pairs)][:_BEHIND].tolist()
     if not shared:
         return [Text("Cells are not compared in pairs: the sweep varies the seed, so that no two share their noise.")]
-    metric, unit = subject.metrics[0], subject.measurements.units[subject.metrics[0]]
-    rows = []
-    for cell in shared[:_BEHIND]:
-        comparison = compare(subject, metric, ranked[0], cell)
-        if comparison is not None:
-            name = literal(subject.cell_name(cell))
-            rows.append([name, *columns(comparison, unit), comparison.verdict])
-    return [
-        Table(
-            f"The next cells against the best, by {title(metric)} on the same seeds: median of the differences, its "
-            "95 % interval from n pairs, effect size (rank-biserial correlation, 1 where the best is better in every "
-            "repetition), and p of the signed-rank test. The best was chosen by the same values, which makes it look "
-            "better than it is.",
-            ["cell", *HEADER, "than the best"],
-            rows,
-            tuple(range(1, 1 + len(HEADER))),
-        )
-    ]
+    tables: list[Block] = []
+    for metric in subject.metrics:
+        values, rows = measurements.values[metric], []
+        for cell in shared:
+            comparison = compare(values, values, CellPairs(np.array(ranked[:1]), np.array([cell])))
+            if comparison is not None:
+                told = columns(comparison, measurements.units[metric])
+                rows.append([literal(subject.cell_name(cell)), *told, comparison.verdict])
+        explained = f", on the same seeds: {_EXPLAINED}" if not tables else "; the best and its followers as above"
+        caption = f"The next cells against the best, by {title(metric)}{explained}."
+        tables.append(Table(caption, ["cell", *HEADER, "than the best"], rows, tuple(range(1, 1 + len(HEADER)))))
+    return tables
 
 
 def _motion(title: str, run: Run) -> Section:

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from runner.drawing.thinning import spaced
 from runner.reporting.document import Block, Section, Table
 from runner.reporting.markup import literals
-from runner.reporting.sweep.subject import Subject, value_name
+from runner.reporting.sweep.subject import Subject
 from runner.sweeps.measurements import Axis
 
 _MOST_ROWS = 40
@@ -36,4 +36,4 @@ def _by_level(axis: Axis, failed: NDArray[np.bool_]) -> list[list[str]]:
     count, lost = (np.bincount(axis.level[chosen], minlength=len(axis.values)) for chosen in (slice(None), failed))
     levels = np.flatnonzero(lost)
     chosen = levels[spaced(len(levels), _MOST_ROWS)].tolist()
-    return [[axis.name, value_name(axis, level), f"{lost[level]} of {count[level]}"] for level in chosen]
+    return [[axis.name, axis.text(level), f"{lost[level]} of {count[level]}"] for level in chosen]

@@ -1,13 +1,16 @@
 """Cells of a sweep over one or two axes, each with its confidence interval."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from runner.reporting.document import Curves, Panel, Series
-from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_name, value_names
+from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_names
 from runner.statistics import median_interval
 from runner.sweeps.measurements import Axis, FloatArray
 
 _MOST_LINES = 6
+_APART = 0.1  # of curves at one text, so that their bars are seen
 _MOST_INTERVALS = 60
 
 
@@ -29,14 +32,17 @@ def cells_with_intervals(subject: Subject, metric: str) -> Curves | None:
         cells = cells[np.argsort(along.level[cells], kind="stable")].tolist()
         ends = np.array([_interval(subject, metric, cell) for cell in cells]).reshape(-1, 3)
         low, median, high = np.where(np.isfinite(ends), ends, np.nan).T
-        name = f"{other[0].name} = {value_name(other[0], group)}" if other else ""
+        name = f"{other[0].name} = {other[0].text(group)}" if other else ""
         x = places(along)[along.level[cells]]
         hints, runs = subject.hints(cells), subject.hashes(cells)
-        curves.append(Series(name, x, median, "points_line", low, high, group, hints, runs))
+        curve = Series(name, x, median, "points_line", low, high, group, hints, runs)
+        beside = _APART * (group - (count - 1) / 2)
+        curves += [curve] if along.numbers is not None else at_texts(replace(curve, x=x + beside))
     panel = axis_panel("", along, subject.label(metric), curves, np.concatenate([series.y for series in curves]))
     sizes = sorted({subject.measurements.of_cell(metric, cell).size for cell in range(len(groups))})
     n = f"n = {sizes[0]}" if len(sizes) == 1 else f"n = {sizes[0]} to {sizes[-1]}"
-    caption = f"Median of each cell; shaded its 95 % interval by the bootstrap over the repetitions ({n}), if enough."
+    interval = f"its 95 % interval by the bootstrap over the repetitions ({n}), if enough"
+    caption = f"Median of each cell; shaded, or a bar, {interval}."
     return Curves(caption, [panel], columns=1)
 
 
@@ -47,6 +53,17 @@ def _interval(subject: Subject, metric: str, cell: int) -> tuple[float, float, f
     interval = median_interval(values)
     low, high = (np.nan if end is None else end for end in (interval.low, interval.high))
     return (low, interval.median, high)
+
+
+def at_texts(series: Series) -> list[Series]:
+    """Return a curve over texts as points with upright bars: between texts there is nothing that a line stands for."""
+    if series.low is None or series.high is None:
+        return [replace(series, style="points")]
+    gap = np.full(series.x.size, np.nan)
+    bars = Series(
+        "", np.repeat(series.x, 3), np.column_stack([series.low, series.high, gap]).ravel(), color=series.color
+    )
+    return [bars, replace(series, style="points", low=None, high=None)]
 
 
 def places(axis: Axis) -> FloatArray:

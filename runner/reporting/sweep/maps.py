@@ -10,7 +10,7 @@ from runner.reporting import metric_titles
 from runner.reporting.document import Block, Map, Maps, Section
 from runner.reporting.markup import literal
 from runner.reporting.sweep import theory
-from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_name, value_names
+from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_names
 from runner.sweeps.measurements import Axis, FloatArray
 
 _POOLED = "seed"  # the one axis over which maps take a median: its values mean nothing
@@ -73,7 +73,7 @@ def _maps(subject: Subject, metric: str, x: Axis, y: Axis, others: Sequence[Axis
         shown = spaced(len(combinations), _MOST_MULTIPLES)
         panels = [
             _map(subject, metric, x, y, np.flatnonzero((levels == some).all(axis=1)).tolist(),
-                 ", ".join(f"{axis.name} = {value_name(axis, int(level))}"
+                 ", ".join(f"{axis.name} = {axis.text(int(level))}"
                            for axis, level in zip(others, some, strict=True)))
             for some in combinations[shown]
         ]  # fmt: skip

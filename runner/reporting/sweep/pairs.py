@@ -5,56 +5,54 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from runner.comparison.levels import SEED, LevelPair, level_pairs
+from runner.comparison.pairs import compare, paired_values
+from runner.comparison.words import at_once
 from runner.drawing.thinning import spaced
 from runner.quantities import with_ends
 from runner.reporting.document import Block, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
-from runner.reporting.sweep.subject import Subject, value_name
-from runner.statistics import Comparison, compare_paired
+from runner.reporting.sweep.subject import Subject
+from runner.statistics import Comparison
 from runner.sweeps.measurements import Axis
 
 HEADER = ("difference", "95 % interval", "n", "effect", "p")
 """Columns of what `columns` returns."""
 
+_SMALLEST = 1e-3  # p-value that is told
 _MOST_ROWS = 24
-
-Pair = tuple[int, int]
+_MOST_OF_OTHERS = 12  # rows of metrics behind the first
 
 
 def section(subject: Subject) -> Section | None:
-    """Return the comparisons of the first metric, axis by axis; None where no two cells share their seeds."""
+    """Return the comparisons of each metric, axis by axis; None where no two cells share their seeds."""
     # Choices, such as controllers, are what is compared most.
     axes = sorted(subject.axes, key=lambda axis: axis.numbers is not None)
-    tables = [table for table in (_table(subject, axis) for axis in axes) if table is not None]
-    if not tables:
+    pairs = [(axis, level_pairs(subject.measurements, axis.name)) for axis in axes]
+    made = 0
+    sections: list[Section] = []
+    for metric in subject.metrics:
+        most = _MOST_OF_OTHERS if sections else _MOST_ROWS
+        tables: list[Block] = []
+        for axis, found in pairs:
+            table = _table(subject, axis, metric, found, most)
+            if table is not None:
+                tables.append(table)
+                made += len(table.rows)
+        if tables:
+            name = title(metric)
+            sections.append(Section(f"{name[:1].upper()}{name[1:]}", tables))
+    if not sections:
         return None
     text = (
         "The cells of a pair differ in one axis alone, and in what goes with it (Also differs). Both have the same "
         "seeds, and are compared repetition by repetition: median of the differences with its 95 % interval by the "
         "bootstrap over n pairs; effect size (rank-biserial correlation, 1 where the second is larger in every pair, "
-        "-1 where it is smaller); p of the signed-rank test. Where two cells do not differ p falls below 0.05 in at "
-        "most one test in twenty: of many pairs some may by chance. The option --metric compares by another metric."
+        f"-1 where it is smaller); p of the signed-rank test. {at_once(made)} The option --metric compares by other "
+        "metrics."
     )
-    blocks: list[Block] = [Text(text), *tables]
-    return Section("Compared in pairs", blocks)
-
-
-def pairs(subject: Subject, axis: Axis) -> list[Pair]:
-    """Return the cells to compare: along an axis each with the first that has the same levels of all other axes."""
-    groups: dict[tuple[int, ...], list[int]] = {}
-    others = [other for other in subject.axes if other is not axis]
-    for cell in np.argsort(axis.level, kind="stable").tolist():
-        groups.setdefault(tuple(int(other.level[cell]) for other in others), []).append(cell)
-    found = [(first, cell) for _, (first, *rest) in sorted(groups.items()) for cell in rest]
-    return [(a, b) for a, b in found if axis.level[a] != axis.level[b] and subject.share_seeds(a, b)]
-
-
-def compare(subject: Subject, metric: str, a: int, b: int) -> Comparison | None:
-    """Return how cell b differs from cell a in the repetitions that both have; None where there are none."""
-    values = subject.measurements.values[metric]
-    both = ~np.isnan(values[a]) & ~np.isnan(values[b])
-    return compare_paired(values[a][both], values[b][both]) if both.any() else None
+    return Section("Compared in pairs", [Text(text)], sections)
 
 
 def columns(comparison: Comparison, unit: str) -> list[str]:
@@ -66,8 +64,12 @@ def columns(comparison: Comparison, unit: str) -> list[str]:
         "–" if difference.low is None else _with_unit(ends, shown),
         str(difference.n),
         f"{comparison.effect:.2f}",
-        "–" if comparison.p_value is None else f"{comparison.p_value:.2g}",
+        "–" if comparison.p_value is None else _chance(comparison.p_value),
     ]
+
+
+def _chance(p_value: float) -> str:
+    return f"{p_value:.2g}" if p_value >= _SMALLEST else f"< {_SMALLEST:g}"
 
 
 def _with_unit(ends: str, unit: str) -> str:
@@ -78,33 +80,28 @@ def _with_unit(ends: str, unit: str) -> str:
     return ends if low == "never" else f"{low} {unit}".strip() + " to never"
 
 
-def _table(subject: Subject, axis: Axis) -> Table | None:
-    metric = subject.metrics[0]
+def _table(subject: Subject, axis: Axis, metric: str, pairs: Sequence[LevelPair], most: int) -> Table | None:
     values = subject.measurements.values[metric]
-    everything = [(a, b) for a, b in pairs(subject, axis) if (~np.isnan(values[a]) & ~np.isnan(values[b])).any()]
-    chosen = [everything[place] for place in spaced(len(everything), _MOST_ROWS)]
-    rows = [row for row in (_row(subject, axis, metric, *pair) for pair in chosen) if row]
-    if not rows:
+    whole = not np.isnan(values).any()
+    everything = [pair for pair in pairs if whole or paired_values(values, values, pair.cells)[0].size]
+    chosen = [everything[place] for place in spaced(len(everything), most)]
+    if not chosen:
         return None
-    which = (
-        f"{len(rows)} of {len(everything)} pairs, spread evenly over the sweep" if len(everything) > len(rows) else ""
-    )
+    fewer = len(everything) > len(chosen)
+    which = f" ({len(chosen)} of {len(everything)} pairs, spread evenly over the sweep)" if fewer else ""
     name = title(metric)
-    within = "within each level of the other axes" if len(subject.axes) > 1 else "as the only axis"
+    within = "within each level of the other axes" if chosen[0].at else "as the only axis"
+    if any(other.name == SEED for other in subject.axes):
+        within += ", over all seeds"
     return Table(
-        literal(f"{name[:1].upper()}{name[1:]} by {axis.name}, {within}{f' ({which})' if which else ''}."),
+        literal(f"{name[:1].upper()}{name[1:]} by {axis.name}, {within}{which}."),
         ["at", literal(axis.name), *HEADER, "the second is"],
-        rows,
+        [_row(subject, metric, pair, found) for pair in chosen if (found := compare(values, values, pair.cells))],
         tuple(range(2, 2 + len(HEADER))),
     )
 
 
-def _row(subject: Subject, axis: Axis, metric: str, a: int, b: int) -> Sequence[str] | None:
-    comparison = compare(subject, metric, a, b)
-    if comparison is None:
-        return None
-    others = [f"{other.name}={value_name(other, int(other.level[a]))}" for other in subject.axes if other is not axis]
-    first, second = (value_name(axis, int(axis.level[cell])) for cell in (a, b))
-    names = [", ".join(others) or "–", f"{first}, {second}"]
+def _row(subject: Subject, metric: str, pair: LevelPair, comparison: Comparison) -> Sequence[str]:
+    at = ", ".join(f"{name}={text}" for name, text in pair.at.items()) or "–"
     told = columns(comparison, subject.measurements.units[metric])
-    return [*literals(names), *told, comparison.verdict]
+    return [*literals([at, f"{pair.first}, {pair.second}"]), *told, comparison.verdict]

@@ -6,12 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from runner.quantities import quantity
 from runner.reporting.document import Document, Provenance, RunList, Section, Text
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep import axes, caveats, distributions, effects, extremes, failures, maps, pairs, tradeoff
-from runner.reporting.sweep.subject import Subject, choose, value_name
+from runner.reporting.sweep.subject import Subject, choose
 from runner.store import Sweep
 from runner.sweeps.measurements import measure_sweep
 
@@ -75,10 +74,9 @@ def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
     names = "; ".join(subject.cell_name(cell) for cell in failed[:_NAMED])
     more = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
     numbers.append(("failed", str(len(failed)), names + more))
-    if subject.ranked and subject.axes:
-        metric, best = subject.metrics[0], subject.ranked[0]
-        least = quantity(float(subject.medians[metric][best]), subject.measurements.units[metric])
-        numbers.append((f"least {title(metric)}, median", least, subject.cell_name(best)))
+    if subject.best is not None:
+        metric, least, cell = subject.best
+        numbers.append((f"least {metric}, median", least, cell))
     return numbers
 
 
@@ -120,7 +118,7 @@ def _all_runs(subject: Subject, sweep: Sweep, address: str) -> Section:
     levels = np.column_stack([level for *_, level in named] or [np.zeros((len(order), 0), dtype=np.intp)])
     listing = RunList(
         caption,
-        [(axis.name, [value_name(axis, level) for level in some.tolist()]) for axis, some, _ in named],
+        [(axis.name, [axis.text(level) for level in some.tolist()]) for axis, some, _ in named],
         levels,
         shown,
         np.where(np.isfinite(values), values, np.nan),

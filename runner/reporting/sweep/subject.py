@@ -1,19 +1,21 @@
 """What a report on a sweep is about: its cells, the metrics that it compares, and their order."""
 
-import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.config.meanings import key_unit
-from runner.errors import RunnerError, nearest
+from runner.config.key_units import key_unit
 from runner.quantities import labelled, quantity
 from runner.reporting.metric_titles import metric_label, title
-from runner.statistics import EffectAnalysis, axis_effects
 from runner.sweeps.measurements import Axis, FloatArray, Measurements
+from runner.sweeps.metric_names import is_part
+
+if TYPE_CHECKING:
+    from runner.statistics import EffectAnalysis
 
 MOST_METRICS = 4
 """Metrics that a report compares when nobody has named any."""
@@ -39,7 +41,6 @@ _PREFERRED = (
 COSTS = ("peak_torque", "rms_torque", "control_effort", "energy")
 """Metrics of what a motion costs."""
 
-_PART = re.compile(r".*_([xyz]|q\d+)$")  # a metric of one direction or joint
 _DECADE = 10.0
 
 
@@ -66,11 +67,13 @@ class Subject:
         return {name: self.measurements.medians(name) for name in self.measurements.values}
 
     @cached_property
-    def effects(self) -> dict[str, EffectAnalysis]:
+    def effects(self) -> "dict[str, EffectAnalysis]":
         """What the axes do to each metric compared, over all repetitions of all cells."""
         return {metric: self._analyse(self.measurements.values[metric]) for metric in self.metrics}
 
-    def _analyse(self, values: FloatArray) -> EffectAnalysis:
+    def _analyse(self, values: FloatArray) -> "EffectAnalysis":
+        from runner.statistics import axis_effects  # SciPy, a second, which the end of a sweep does without
+
         present = ~np.isnan(values).ravel()
         levels = {axis.name: np.repeat(grouped(axis), values.shape[1])[present] for axis in self.axes}
         return axis_effects(levels, values.ravel()[present], self.measurements.draws.ravel()[present])
@@ -91,10 +94,14 @@ class Subject:
         medians, statuses = self.medians[self.metrics[0]], self.measurements.statuses
         return [cell for cell in self.order.tolist() if np.isfinite(medians[cell]) and statuses[cell] == "ok"]
 
-    def share_seeds(self, a: int, b: int) -> bool:
-        """Return whether two cells have the same random draws in each repetition."""
-        seeds = self.measurements.seeds
-        return not len(seeds) or seeds[a] == seeds[b]
+    @property
+    def best(self) -> tuple[str, str, str] | None:
+        """The first metric, its median in the best cell, and that cell, in words; None where nothing is ranked."""
+        if not (self.ranked and self.axes):
+            return None
+        metric, cell = self.metrics[0], self.ranked[0]
+        value = quantity(float(self.medians[metric][cell]), self.measurements.units[metric])
+        return title(metric), value, self.cell_name(cell)
 
     def label(self, metric: str) -> str:
         """Return the title of a metric with its unit, as on the axis of a figure."""
@@ -102,7 +109,7 @@ class Subject:
 
     def cell_name(self, cell: int, separator: str = ", ") -> str:
         """Return the values of a cell on all axes, such as "noise.position=0.001, torque_limits.max=20"."""
-        return separator.join(f"{axis.name}={value_name(axis, int(axis.level[cell]))}" for axis in self.axes)
+        return separator.join(f"{axis.name}={axis.text(int(axis.level[cell]))}" for axis in self.axes)
 
     def hint(self, cell: int) -> str:
         """Return what a reader is told of a cell when pointing at it."""
@@ -137,16 +144,9 @@ def choose(measurements: Measurements, wanted: Sequence[str] = ()) -> Subject:
     Raises:
         RunnerError: If a metric asked for is none of the sweep's.
     """
-    for name in wanted:
-        if name not in measurements.values:
-            known = ", ".join(measurements.values) or "none, as all runs failed"
-            raise RunnerError(
-                f"--metric: the runs have no '{name}'{nearest(name, measurements.values)}; known: {known}"
-            )
     if wanted:
-        return Subject(measurements, tuple(dict.fromkeys(wanted)))
-    names = [name for name in (*_PREFERRED, *measurements.values) if name in measurements.values]
-    whole = [name for name in dict.fromkeys(names) if not _PART.match(name)]
+        return Subject(measurements, tuple(measurements.named(wanted)))
+    whole = whole_metrics(measurements.values)
     varying = [name for name in whole if _varies(measurements.medians(name))]
     chosen = (varying or whole)[:MOST_METRICS]
     cost = next((name for name in COSTS if name in varying), None)
@@ -155,15 +155,14 @@ def choose(measurements: Measurements, wanted: Sequence[str] = ()) -> Subject:
     return Subject(measurements, tuple(chosen))
 
 
-def value_name(axis: Axis, level: int) -> str:
-    """Return the value of an axis as text."""
-    value = axis.values[level]
-    return value if isinstance(value, str) else f"{value:g}"
+def whole_metrics(known: Collection[str]) -> list[str]:
+    """Return metrics without those of one direction or joint, errors first, as they are compared."""
+    return [name for name in dict.fromkeys([*_PREFERRED, *known]) if name in known and not is_part(name)]
 
 
 def value_names(axis: Axis) -> list[str]:
     """Return all values of an axis as texts."""
-    return [value_name(axis, level) for level in range(len(axis.values))]
+    return [axis.text(level) for level in range(len(axis.values))]
 
 
 def spans_decades(values: FloatArray) -> bool:

@@ -6,7 +6,6 @@ from sample_sweep import measurements, noisy, two_axes
 from runner.reporting.document import Table
 from runner.reporting.sweep import extremes, pairs
 from runner.reporting.sweep.subject import choose
-from runner.statistics import compare_paired
 
 ROBOTS = {"robot": ["macro", "xarm7"], "controller": ["computed_torque", "operational_space"]}
 
@@ -17,8 +16,9 @@ def robots(repetitions=8):
     return choose(measurements(ROBOTS, {"rms": error}))
 
 
-def tables(section):
-    return {block.header[1]: block for block in section.blocks if isinstance(block, Table)}
+def tables(section, metric=0):
+    """Return the tables of one of the metrics by the axis that each is about."""
+    return {block.header[1]: block for block in section.sections[metric].blocks if isinstance(block, Table)}
 
 
 def test_laws_are_compared_within_each_robot():
@@ -32,20 +32,17 @@ def test_laws_are_compared_within_each_robot():
     assert [row[4] for row in table.rows] == ["8", "8"]  # n stands where the interval does
 
 
-def test_every_pair_differs_in_one_axis_alone():
+def test_every_metric_that_is_compared_is_compared_in_pairs():
     subject = two_axes()
-    for axis in subject.axes:
-        found = pairs.pairs(subject, axis)
-        assert len(found) == 12 - 12 // len(axis.values)
-        for a, b in found:
-            assert axis.level[a] == 0 < axis.level[b]
-            assert all(other is axis or other.level[a] == other.level[b] for other in subject.axes)
-
-
-def test_a_comparison_is_that_of_the_two_cells():
-    subject = robots()
-    values = subject.measurements.values["rms"]
-    assert pairs.compare(subject, "rms", 0, 1) == compare_paired(values[0], values[1])
+    section = pairs.section(subject)
+    assert [part.title for part in section.sections] == ["Largest tracking error", "Largest torque"]
+    for metric, _ in enumerate(subject.metrics):
+        found = tables(section, metric)
+        assert {axis: len(table.rows) for axis, table in found.items()} == {
+            axis.name: 12 - 12 // len(axis.values) for axis in subject.axes
+        }
+    count = sum(len(table.rows) for metric in (0, 1) for table in tables(section, metric).values())
+    assert f"Comparisons made: {count}; none is corrected" in section.blocks[0].text
 
 
 def test_cells_of_different_seeds_are_no_pair():
@@ -55,11 +52,14 @@ def test_cells_of_different_seeds_are_no_pair():
     assert pairs.section(choose(replace(subject.measurements, seeds=range(4)))) is None
 
 
-def test_over_seeds_pairs_are_found_within_each_seed():
+def test_swept_seeds_are_pooled_as_repetitions_are():
     grid = {"seed": [0.0, 1.0], "controller": ["a", "b"]}
     sample = measurements(grid, {"rms": noisy(lambda seed, law: 1.0 + law)})
     subject = choose(replace(sample, seeds=[0, 0, 1, 1]))
-    assert [row[0] for row in tables(pairs.section(subject))["controller"].rows] == ["seed=0", "seed=1"]
+    table = tables(pairs.section(subject))["controller"]
+    (row,) = table.rows
+    assert (row[0], row[4]) == ("–", "16")
+    assert table.caption.endswith("by controller, as the only axis, over all seeds.")
 
 
 def test_of_many_pairs_some_are_shown_and_the_caption_says_so():
@@ -90,3 +90,16 @@ def test_missing_repetitions_are_left_out_and_failed_ones_are_beyond_every_numbe
 def test_n_stands_beside_the_intervals_of_best_and_worst():
     table = extremes._medians(robots(), [2, 1])
     assert all(cell.endswith("n = 8)") for cell in table.rows[0][1:])
+
+
+def test_the_best_is_held_against_its_followers_in_every_metric():
+    subject = two_axes()
+    best, followers = subject.ranked[0], subject.ranked[1:]
+    first, second = extremes._behind(subject, subject.ranked)
+    assert [row[0] for row in first.rows] == [subject.cell_name(cell) for cell in followers[:5]]
+    assert "by largest tracking error, on the same seeds" in first.caption
+    torque = subject.medians["peak_torque"]
+    assert [row[-1] for row in second.rows] == [
+        {-1: "smaller", 0: "no difference shown", 1: "larger"}[int(np.sign(torque[cell] - torque[best]))]
+        for cell in followers[:5]
+    ]

@@ -2,7 +2,7 @@ import shutil
 
 import pytest
 
-from runner import run
+from runner.execution import run
 from runner.reporting import outline
 from runner.reporting.document import Maps, Playback, RunList, Table
 from runner.reporting.formulas import faulty

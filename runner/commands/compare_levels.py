@@ -1,0 +1,66 @@
+"""The levels of an axis of one sweep side by side, for `runner compare SWEEP --by AXIS`."""
+
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from runner.commands.columns import COMPARED, aligned, comparison_cells
+from runner.comparison.caveats import caveats_of
+from runner.comparison.cells import label_text
+from runner.comparison.levels import levels
+from runner.comparison.side import Side, open_side
+from runner.comparison.words import NOISE_ALONE, at_once, counted, noise_alone
+from runner.texts import one_line
+
+
+def print_levels(folder: Path, axis: str, within: Sequence[str], metrics: Sequence[str]) -> None:
+    """Print how the levels of an axis differ from the first one.
+
+    Args:
+        folder: Folder of the sweep.
+        axis: The axis.
+        within: Axes within whose levels they are compared; empty for all others.
+        metrics: Names of metrics; empty for all.
+
+    Raises:
+        RunnerError: If the sweep has no such axis or metric.
+        StoreError: If it cannot be read.
+    """
+    side = open_side("A", folder)
+    for damage in side.damage:
+        print(f"runner: {damage}", file=sys.stderr)
+    print("\n".join(_lines(side, axis, within, metrics)))
+
+
+def _lines(side: Side, axis: str, within: Sequence[str], metrics: Sequence[str]) -> Iterator[str]:
+    measurements = side.measurements
+    found = levels(measurements, axis, within, metrics)
+    cells = len(measurements.hashes)
+    yield one_line(f"{side.folder}  {cells} cells, by {axis}; repetitions in each: {measurements.repetitions}")
+    if side.missing:
+        yield one_line(f"{counted(side.missing, 'cell is', 'cells are')} not stored; this goes on: {side.command}")
+    if side.failed:
+        yield f"{counted(side.failed, 'cell', 'cells')} failed; a failed repetition counts as beyond every number"
+    along = [difference for difference in measurements.differences if axis in difference.axes or not difference.axes]
+    if along:
+        yield f"the levels of {axis} differ in more than {axis}; what follows may be due to any of these:"
+        rows = [
+            [difference.key, "; ".join(f"{levels_}: {text}" for levels_, text in difference.values)]
+            for difference in along
+        ]
+        yield aligned(rows)
+    else:
+        yield f"the levels of {axis} differ in {axis} alone"
+    caveats = [[one.rule, f"{one.count} of {one.cells} cells", one.worst] for one in caveats_of(side)]
+    yield f"caveats:\n{aligned(caveats)}" if caveats else "no caveats"
+    yield ""
+    header = ["at", axis, "metric", "unit", "difference", *COMPARED, "the second is"]
+    rows = []
+    for one in found:
+        names = [label_text(one.pair.at) if one.pair.at else "-", f"{one.pair.first}, {one.pair.second}"]
+        rows.append([*names, one.metric, one.unit, *comparison_cells(one.comparison)])
+    yield aligned([header, *rows], indent="")
+    yield ""
+    yield f"effect 1: the second is larger in every pair, -1: smaller. {at_once(len(found))}"
+    if measurements.repetitions > 1 and noise_alone(config for config, _ in measurements.configs):
+        yield NOISE_ALONE

@@ -1,0 +1,101 @@
+"""Sweeps side by side for `runner compare`: what differs, which cells match, every metric."""
+
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from runner.commands.columns import COMPARED, aligned, comparison_cells, letter, number
+from runner.comparison.beyond import Beyond, Value
+from runner.comparison.caveats import SideCaveat, caveats_of
+from runner.comparison.cells import label_text
+from runner.comparison.side import open_side
+from runner.comparison.summary import cells_told, size_told
+from runner.comparison.sweeps import MetricComparison, SweepComparison, compare_sweeps
+from runner.comparison.words import NOISE_ALONE, POOLED, at_once
+from runner.texts import one_line
+
+_NAMED = 3  # cells of one sweep alone
+
+
+def print_sweeps(folders: Sequence[Path], metrics: Sequence[str]) -> None:
+    """Print how each sweep but the first differs from the first.
+
+    Args:
+        folders: Folders of two or more sweeps.
+        metrics: Names of metrics; empty for all.
+
+    Raises:
+        RunnerError: If two share no cell, or have no such metric.
+        StoreError: If one cannot be read.
+    """
+    sides = [open_side(letter(place), folder) for place, folder in enumerate(folders)]
+    for side in sides:
+        for damage in side.damage:
+            print(f"runner: {damage}", file=sys.stderr)
+    found = [compare_sweeps(sides[0], side, metrics) for side in sides[1:]]
+    print("\n\n".join("\n".join(_lines(one)) for one in found))
+
+
+def _lines(found: SweepComparison) -> Iterator[str]:
+    a, b = found.a, found.b
+    for side in (a, b):
+        yield one_line(f"{side.name}  {side.folder}  {size_told(side)}")
+    yield ""
+    yield one_line(found.beyond.in_words(a.name, b.name))
+    yield from _values(found.beyond, a.name, b.name)
+    yield from map(one_line, cells_told(found))
+    caveats = [*caveats_of(a), *caveats_of(b)]
+    yield f"caveats:\n{aligned(list(map(_caveat, caveats)))}" if caveats else "no caveats"
+    yield ""
+    n = len(found.matched.labels)
+    over = "in the one cell" if n == 1 else f"over all {n} cells"
+    yield f"every metric {over}: medians of the differences of the pairs on the same seeds"
+    header = [
+        "metric",
+        "unit",
+        a.name,
+        b.name,
+        f"{b.name} - {a.name}",
+        *COMPARED,
+        f"{b.name} is",
+        "cells smaller, larger",
+    ]
+    yield aligned([header, *(_row(one) for one in found.pooled)], indent="")
+    if found.cells:
+        yield ""
+        yield f"cells that differ most, in relation to the size of the metric (of {found.candidates}):"
+        yield aligned([["cell", *header[:-1]], *([label_text(one.cell), *_row(one)[:-1]] for one in found.cells)])
+    yield ""
+    yield f"effect 1: {b.name} is larger in every pair, -1: smaller. {POOLED} {at_once(found.comparisons)}"
+    if found.noise_alone:
+        yield NOISE_ALONE
+
+
+def _values(found: Beyond, a: str, b: str) -> Iterator[str]:
+    """Yield tables of the values that differ, and of what made the runs."""
+    values = [*found.options, *found.values]
+    if values:
+        yield aligned([["key", a, b, "at"], *map(_value, values)])
+    if found.provenance:
+        yield f"provenance differs:\n{aligned([['made by', a, b, ''], *map(_value, found.provenance)])}"
+    else:
+        yield "same provenance"
+
+
+def _value(value: Value) -> list[str]:
+    return [value.key, value.a, value.b, value.cells]
+
+
+def _caveat(found: SideCaveat) -> list[str]:
+    return [found.side, found.rule, f"{found.count} of {found.cells} cells", found.worst]
+
+
+def _row(one: MetricComparison) -> list[str]:
+    return [
+        one.metric,
+        one.unit,
+        number(one.a),
+        number(one.b),
+        *comparison_cells(one.comparison),
+        f"{one.smaller}, {one.larger}",
+    ]

@@ -1,0 +1,1 @@
+"""The report that holds several sweeps against each other."""

@@ -1,0 +1,61 @@
+import pytest
+
+TASK = ("robot=macro", "duration=0.05", "noise=thesis", "repetitions=6", "hydra.sweeper.workers=0")
+
+
+@pytest.fixture(name="folder")
+def _folder(cli):
+    laws = "controller=computed_torque,operational_space"
+    return cli("-m", *TASK, "trajectory=quintic", laws, "gravity=9.81,9.7").folder
+
+
+def rows(out, metric):
+    return [line.split() for line in out.splitlines() if metric in line.split()]
+
+
+def test_levels_are_compared_within_each_level_of_the_other_axis(cli, folder):
+    ending = cli("compare", folder, "--by", "controller", "--metrics", "rms_torque")
+    assert (ending.code, ending.err) == (0, "")
+    first, second = rows(ending.out, "rms_torque")
+    assert [first[0], second[0]] == ["gravity=9.7", "gravity=9.81"]
+    assert first[1:3] == ["computed_torque,", "operational_space"]
+    assert "Comparisons made: 2; none is corrected" in ending.out
+    assert "peak_torque" not in ending.out
+
+
+def test_axes_that_are_not_named_are_pooled(cli, folder):
+    cli("-m", *TASK, "gravity=9.81")
+    axis = ("--by", "gravity", "--within", "controller", "--metrics", "rms_torque")
+    assert [row[0] for row in rows(cli("compare", folder, *axis).out, "rms_torque")] == [
+        "controller=computed_torque",
+        "controller=operational_space",
+    ]
+
+
+def test_what_goes_with_an_axis_is_told_before_any_number(cli):
+    folder = cli("-m", *TASK, "trajectory=quintic", "controller.period=0.01,0.005").folder
+    out = cli("compare", folder, "--by", "controller.period", "--metrics", "rms_torque").out
+    head, _ = out.split("metric ")
+    assert "the levels of controller.period differ in more than controller.period" in head
+    assert "plant.step" in head
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((), "is one sweep alone; compare the levels of one of its axes (it was swept over: controller, gravity)"),
+        (("--by", "controler"), "the sweep has no axis 'controler' (did you mean controller?)"),
+        (("--by", "controller", "--within", "robot"), "the sweep has no axis 'robot'"),
+        (("--by", "controller", "--metrics", "torque"), "the runs have no metric 'torque'"),
+        (("--within", "controller"), "--within goes with --by AXIS"),
+    ],
+)
+def test_bad_arguments_are_refused_in_a_line(cli, folder, arguments, message):
+    ending = cli("compare", folder, *arguments)
+    assert (ending.code, ending.out) == (2, "")
+    assert message in ending.err
+    assert ending.err.count("\n") == 1
+
+
+def test_by_is_for_one_sweep(cli, folder):
+    assert "--by is for one sweep" in cli("compare", folder, folder, "--by", "controller").err

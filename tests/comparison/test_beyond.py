@@ -1,0 +1,80 @@
+from dataclasses import replace
+
+from sample_sides import LAWS, side
+
+from runner.comparison.beyond import ABSENT, Value, beyond
+from runner.comparison.cells import match
+
+
+def nothing(*_):
+    return 1.0
+
+
+def found(a, b):
+    return beyond(a, b, match(a, b))
+
+
+def test_one_value_differs_alone():
+    a, b = (side(name, LAWS, nothing, noise={"position": size}) for name, size in (("A", 1e-3), ("B", 1e-4)))
+    told = found(a, b)
+    assert list(told.values) == [Value("noise.position", "0.001", "0.0001")]
+    assert told.in_words("A", "B") == "A and B differ in noise.position alone: 0.001 against 0.0001."
+
+
+def test_an_option_differs_alone_where_only_one_has_its_other_values():
+    a = side("A", LAWS, nothing, controller={"kind": "computed_torque", "gain": 30.0, "integral_gain": 0.0})
+    b = side("B", LAWS, nothing, controller={"kind": "operational_space", "gain": 30.0, "null_space": "none"})
+    told = found(a, b)
+    assert told.in_words("A", "B") == ("A and B differ in controller alone: computed_torque against operational_space.")
+    assert told.values == []
+
+
+def test_a_gain_that_both_laws_have_is_named_beside_them():
+    a = side("A", LAWS, nothing, controller={"kind": "computed_torque", "gain": 30.0}, plant={"step": 1e-3})
+    b = side("B", LAWS, nothing, controller={"kind": "operational_space", "gain": 5.0}, plant={"step": 1e-4})
+    told = found(a, b)
+    assert told.names == ["controller", "controller.gain", "plant.step"]
+    assert told.in_words("A", "B") == (
+        "A and B differ in controller (computed_torque against operational_space), and beside it in controller.gain, "
+        "plant.step. What follows may be due to any of these."
+    )
+
+
+def test_what_follows_from_other_values_stands_behind_them():
+    a = side("A", LAWS, nothing, plant={"step": 1e-3}, controller={"kind": "a", "period": 0.01})
+    b = side("B", LAWS, nothing, plant={"step": 5e-4}, controller={"kind": "a", "period": 0.005})
+    assert found(a, b).names == ["controller.period", "plant.step"]
+
+
+def test_values_that_differ_at_some_cells_say_where():
+    a, b = side("A", LAWS, nothing, noise={"position": 1e-3}), side("B", LAWS, nothing, noise={"position": 1e-3})
+    b.measurements.configs[3][0]["noise"] = {"position": 1e-4}
+    assert list(found(a, b).values) == [Value("noise.position", "0.001", "0.0001", "robot=xarm7, gravity=9.81")]
+
+
+def test_another_robot_is_one_thing_and_what_it_proposes_another():
+    a = side("A", {"gravity": [9.6, 9.81]}, nothing, robot={"name": "macro", "tip": "tip", "settling_band": 0.02})
+    b = side("B", {"gravity": [9.6, 9.81]}, nothing, robot={"name": "xarm7", "tip": "flange", "settling_band": 0.001})
+    assert found(a, b).names == ["robot", "robot.settling_band"]
+
+
+def test_of_the_same_robot_everything_counts():
+    a = side("A", {"gravity": [9.6, 9.81]}, nothing, robot={"name": "macro", "home": [0, 1]})
+    b = side("B", {"gravity": [9.6, 9.81]}, nothing, robot={"name": "macro", "home": [0, 2]})
+    assert list(found(a, b).values) == [Value("robot.home", "[0, 1]", "[0, 2]")]
+
+
+def test_seed_and_repetitions_are_no_difference_of_cells():
+    assert found(side("A", LAWS, nothing, repetitions=8), side("B", LAWS, nothing, repetitions=6)).names == []
+
+
+def test_a_value_that_one_lacks_is_absent():
+    a, b = side("A", LAWS, nothing), side("B", LAWS, nothing, push={"force": 1.0})
+    assert list(found(a, b).values) == [Value("push.force", ABSENT, "1")]
+
+
+def test_commits_and_versions_are_told():
+    a, b = side("A", LAWS, nothing), side("B", LAWS, nothing)
+    made = {**b.measurements.provenance, "commit": ["def"], "machine": ["another"], "made on": ["2027-01-01"]}
+    other = replace(b, measurements=replace(b.measurements, provenance=made))
+    assert list(found(a, other).provenance) == [Value("commit", "abc", "def")]

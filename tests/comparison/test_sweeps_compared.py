@@ -1,0 +1,127 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from sample_sides import LAWS, side
+
+from runner.comparison.sweeps import by_cell, compare_sweeps
+from runner.errors import RunnerError
+from runner.statistics import compare_paired
+
+
+def error(robot, gravity):
+    return {"macro": 0.01, "xarm7": 0.1}[robot] + gravity
+
+
+def shifted(robot, gravity):
+    return error(robot, gravity) + 0.25
+
+
+def named(found):
+    return {one.metric: one for one in found}
+
+
+def test_identical_sweeps_differ_by_zero_in_every_metric():
+    found = compare_sweeps(side("A", LAWS, error), side("B", LAWS, error))
+    assert set(named(found.pooled)) == {"rms_tracking_error", "peak_torque_q1"}
+    for one in found.pooled:
+        difference = one.comparison.difference
+        assert (difference.median, difference.low, difference.high, difference.n) == (0.0, 0.0, 0.0, 32)
+        assert (one.comparison.effect, one.comparison.p_value) == (0.0, 1.0)
+        assert (one.smaller, one.larger) == (0, 0)
+    assert found.cells == []
+    assert found.beyond.in_words("A", "B") == "A and B differ in no value."
+
+
+def test_a_known_shift_is_found_over_all_cells_and_in_each():
+    found = compare_sweeps(side("A", LAWS, error), side("B", LAWS, shifted))
+    one = named(found.pooled)["rms_tracking_error"]
+    assert one.comparison.difference.median == pytest.approx(0.25)
+    assert (one.comparison.effect, one.comparison.verdict) == (1.0, "larger")
+    assert (one.smaller, one.larger) == (0, 4)
+    assert [cell.comparison.difference.median for cell in by_cell(found, "rms_tracking_error")] == pytest.approx(
+        [0.25] * 4
+    )
+
+
+def test_the_order_of_cells_and_keys_does_not_count():
+    a, b = side("A", LAWS, error), side("B", LAWS, shifted)
+    turned = side("B", dict(reversed(LAWS.items())), lambda gravity, robot: shifted(robot, gravity), order=[3, 1, 0, 2])
+    draws = a.measurements.values["rms_tracking_error"]
+    turned.measurements.values["rms_tracking_error"][:] = draws[[3, 2, 0, 1]] + 0.25  # the noise of the same cell
+    expected, found = compare_sweeps(a, b), compare_sweeps(a, turned)
+    for one, other in zip(expected.pooled, found.pooled, strict=True):
+        assert one.comparison.difference.median == pytest.approx(other.comparison.difference.median)
+        assert one.comparison.effect == other.comparison.effect
+    assert found.matched.labels == expected.matched.labels
+
+
+def test_swapping_the_two_negates():
+    a, b = side("A", LAWS, error), side("B", LAWS, lambda robot, gravity: error(robot, gravity) * 1.1)
+    there, back = compare_sweeps(a, b), compare_sweeps(b, a)
+    for one, other in zip(there.pooled, back.pooled, strict=True):
+        assert one.comparison.difference.median == -other.comparison.difference.median
+        assert one.comparison.effect == -other.comparison.effect
+        assert one.comparison.p_value == other.comparison.p_value
+        assert (one.smaller, one.larger, one.a, one.b) == (other.larger, other.smaller, other.b, other.a)
+
+
+def test_the_pooled_comparison_is_that_of_all_pairs():
+    a, b = side("A", LAWS, error), side("B", LAWS, shifted, order=[2, 0, 3, 1])
+    values = [one.measurements.values["rms_tracking_error"] for one in (a, b)]
+    one = named(compare_sweeps(a, b).pooled)["rms_tracking_error"]
+    assert one.comparison == compare_paired(values[0].ravel(), values[1][[1, 3, 0, 2]].ravel())
+
+
+def test_cells_that_differ_most_are_named_in_relation_to_their_size():
+    def moved(robot, gravity):
+        return error(robot, gravity) + {"macro": 1.0, "xarm7": 0.0}[robot] * (1.0 if gravity > 9.7 else -2.0)
+
+    found = compare_sweeps(side("A", LAWS, error), side("B", LAWS, moved))
+    first, second = found.cells
+    assert (first.cell, first.comparison.verdict) == ({"robot": "macro", "gravity": "9.6"}, "smaller")
+    assert (second.cell, second.comparison.verdict) == ({"robot": "macro", "gravity": "9.81"}, "larger")
+    assert found.candidates == 4  # of the metric that is no joint's
+    assert found.comparisons == 2 + 4
+
+
+def test_cells_of_opposite_sign_are_counted():
+    def opposite(robot, gravity):
+        return error(robot, gravity) + {"macro": 0.5, "xarm7": -0.5}[robot]
+
+    one = named(compare_sweeps(side("A", LAWS, error), side("B", LAWS, opposite)).pooled)["rms_tracking_error"]
+    assert (one.smaller, one.larger) == (2, 2)
+
+
+def test_fewer_repetitions_on_one_side_are_compared_as_far_as_they_go():
+    a, b = side("A", LAWS, error, repetitions=8), side("B", LAWS, shifted, repetitions=6)
+    assert named(compare_sweeps(a, b).pooled)["rms_tracking_error"].comparison.difference.n == 4 * 6
+
+
+def test_failed_and_missing_values():
+    a, b = side("A", LAWS, error), side("B", LAWS, error)
+    b.measurements.values["rms_tracking_error"][0] = np.inf
+    b.measurements.values["rms_tracking_error"][1] = np.nan
+    found = compare_sweeps(a, b)
+    one = named(found.pooled)["rms_tracking_error"]
+    assert one.comparison.difference.n == 3 * 8
+    assert (one.smaller, one.larger) == (0, 1)
+    assert found.cells[0].comparison.difference.median == np.inf
+    assert len(by_cell(found, "rms_tracking_error")) == 3
+
+
+def test_spread_is_more_than_noise():
+    a, b = side("A", LAWS, error), side("B", LAWS, error)
+    assert compare_sweeps(a, b).noise_alone
+    spread = side("B", LAWS, error, mismatch={"spread": 0.1})
+    assert not compare_sweeps(a, spread).noise_alone
+
+
+def test_sweeps_without_a_common_metric_and_unknown_ones_are_refused():
+    a, b = side("A", LAWS, error), side("B", LAWS, error)
+    other = replace(b, measurements=replace(b.measurements, values={}))
+    with pytest.raises(RunnerError, match="A and B have no metric in common"):
+        compare_sweeps(a, other)
+    with pytest.raises(RunnerError, match="the runs have no metric 'rms'; known: rms_tracking_error, "):
+        compare_sweeps(a, b, ["rms"])
+    assert list(named(compare_sweeps(a, b, ["peak_torque_q1"]).pooled)) == ["peak_torque_q1"]

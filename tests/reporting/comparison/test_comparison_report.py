@@ -1,0 +1,123 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from sample_sides import LAWS, side
+
+from runner.reporting.comparison.report import comparison_document
+from runner.reporting.document import Code, Curves, Notice, Table, Text
+from runner.reporting.render import write_report
+
+
+def error(robot, gravity):
+    return {"macro": 0.01, "xarm7": 0.1}[robot] + gravity
+
+
+def shifted(robot, gravity):
+    return error(robot, gravity) + 0.25
+
+
+def parts(sections, kind):
+    """Return the blocks of a kind, in order."""
+    return [
+        block
+        for section in sections
+        for block in [*(one for one in section.blocks if isinstance(one, kind)), *parts(section.sections, kind)]
+    ]
+
+
+def pair(**of_b):
+    return [side("A", LAWS, error, noise={"position": 1e-3}), side("B", LAWS, shifted, **of_b)]
+
+
+@pytest.fixture(name="document")
+def _document():
+    return comparison_document(pair(noise={"position": 1e-4}))
+
+
+def test_the_first_screen_says_what_differs_how_many_cells_match_and_by_how_much(document):
+    assert document.title == "2 sweeps compared"
+    assert document.abstract.startswith("A and B differ in noise.position alone: 0.001 against 0.0001.")
+    assert "noise draws alone" in document.abstract
+    cells, differ, first = document.key_numbers
+    assert cells[:2] == ("cells in both", "4")
+    assert differ[1:] == ("1 value", "noise.position")
+    assert first[:2] == ("rms tracking error, B - A", "0.250 m")
+    assert "32 pairs: larger" in first[2]
+
+
+def test_a_confounded_comparison_is_marked_before_any_number(document):
+    assert parts(document.sections, Notice) == []
+    sides = pair(noise={"position": 1e-4}, plant={"step": 1e-3})
+    (notice,) = parts(comparison_document(sides).sections, Notice)
+    assert (notice.kind, notice.title) == ("warning", "More than one thing differs")
+    assert "plant.step" in notice.text
+
+
+def test_the_differing_values_stand_in_a_table_with_units(document):
+    table = next(block for block in parts(document.sections, Table) if "resolved values" in block.caption)
+    assert [list(row) for row in table.rows] == [["noise.position (rad)", "0.001", "0.0001", "all cells"]]
+
+
+def test_every_metric_stands_in_a_table_and_parts_of_it_folded(document):
+    whole, parts_ = (block for block in parts(document.sections, Table) if "cells smaller, larger" in block.header)
+    assert [row[0] for row in whole.rows] == ["rms tracking error"]
+    assert whole.rows[0][-2:] == ["larger", "0, 4"]
+    assert parts_.folded
+    assert [row[0] for row in parts_.rows] == ["largest torque, joint 1"]
+    text = next(block.text for block in parts(document.sections, Text) if "signed-rank" in block.text)
+    assert "Comparisons made: 6; none is corrected" in text
+
+
+def test_each_cell_stands_in_the_figure_with_its_interval(document):
+    (figure,) = parts(document.sections, Curves)
+    (panel,) = figure.panels
+    zero, interval, points = panel.series
+    assert points.y == pytest.approx([0.25] * 4)
+    assert np.nanmax(zero.y) == 0.0
+    assert interval.y[2::3] == pytest.approx([np.nan] * 4, nan_ok=True)
+    assert panel.y_label == "B - A (m)"
+    assert list(panel.x_names) == ["1", "2", "3", "4"]
+    cells = next(block for block in parts(document.sections, Table) if block.caption == "The cells of the figure.")
+    assert list(cells.rows[3]) == ["4", "xarm7", "9.81"]
+
+
+def test_short_names_stand_below_the_figure():
+    axes = {"robot": ["macro", "xarm7"]}
+    one, other = side("A", axes, lambda _: 1.0), side("B", axes, lambda _: 1.1)
+    (figure,) = parts(comparison_document([one, other]).sections, Curves)
+    assert list(figure.panels[0].x_names) == ["macro", "xarm7"]
+
+
+def test_of_many_cells_the_medians_are_drawn_against_each_other():
+    axes = {"gravity": [9.0 + number / 100 for number in range(30)]}
+    one, other = side("A", axes, lambda gravity: gravity), side("B", axes, lambda gravity: gravity + 1.0)
+    (figure,) = parts(comparison_document([one, other]).sections, Curves)
+    _, points = figure.panels[0].series
+    assert points.y - points.x == pytest.approx(np.ones(30))
+    assert figure.panels[0].x_label == "A (m)"
+
+
+def test_more_than_two_sweeps_are_held_against_the_first():
+    third = side("C", LAWS, error, noise={"position": 1e-2})
+    document = comparison_document([*pair(noise={"position": 1e-4}), third])
+    titles = [section.title for section in document.sections]
+    assert titles == ["The sweeps", "B against A", "C against A", "Caveats", "Provenance"]
+
+
+def test_caveats_of_both_and_the_commands_are_shown():
+    one, other = pair()
+    caveat = {"rule": "exact_velocity", "text": "velocities are exact", "value": 1.0, "repetitions": 1}
+    doubted = replace(other.measurements, caveats=[[caveat], [], [], [caveat]])
+    document = comparison_document([one, replace(other, measurements=doubted)])
+    table = next(block for block in parts(document.sections, Table) if "caveat" in block.header)
+    assert [list(row) for row in table.rows] == [["B", "exact_velocity", "2 of 4", "velocities are exact"]]
+    assert [block.text for block in parts(document.sections, Code)] == ["runner -m A", "runner -m B"]
+
+
+def test_it_is_written_and_escapes_what_comes_from_a_config(tmp_path):
+    one = side("A", {"robot": ["a<b>$x$", "b"]}, lambda _: 1.0, note={"text": "<script>1</script>"})
+    other = side("B", {"robot": ["a<b>$x$", "b"]}, lambda _: 1.1)
+    html, pdf = write_report(comparison_document([one, other]), tmp_path)
+    assert "<script>1" not in html.read_text()
+    assert pdf.stat().st_size > 0
