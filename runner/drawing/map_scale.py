@@ -1,5 +1,7 @@
 """Heat maps in numbers: what their colours follow, how the scale is marked, which values are printed."""
 
+import math
+
 import numpy as np
 
 from runner.drawing.figure import FloatArray, Map, MapFigure
@@ -11,6 +13,7 @@ CONTOURS = 10
 """About how many lines of equal value a map shows."""
 MOST_PARTED = 20
 """Most cells beside each other that are parted by white lines."""
+_SMALLEST, _LARGEST = 1e-4, 1e4  # of values without a power of ten
 _MOST_PRINTED = 10  # cells beside each other whose values can be read
 
 
@@ -35,7 +38,8 @@ def scale_marks(figure: MapFigure) -> tuple[list[float], list[str]]:
     places = np.linspace(low, high, 5 if high > low else 1)
     values = 10.0**places if figure.log else places
     digits = digits_between(values[0], values[-1])
-    return places.tolist(), [number(float(value), digits) for value in values]
+    plain = _plain(values)
+    return places.tolist(), [number(float(value), digits, plain=plain) for value in values]
 
 
 def prints_values(panel: Map, figure: MapFigure) -> bool:
@@ -48,8 +52,16 @@ def printed_values(panel: Map, figure: MapFigure) -> list[list[str]]:
     """Return the value that is printed into each cell; nothing into an empty one, nor where a cross stands."""
     low, high = value_range(figure)
     digits = digits_between(10.0**low, 10.0**high) if figure.log else digits_between(low, high)
+    plain = _plain(np.concatenate([each.values.ravel() for each in figure.panels]))
     return [
-        ["" if np.isnan(value) or failed else number(float(value), digits) if np.isfinite(value) else "never"
+        ["" if np.isnan(value) or failed else
+         number(float(value), digits, plain=plain) if np.isfinite(value) else "never"
          for value, failed in zip(*row, strict=True)]
         for row in zip(panel.values, panel.failed, strict=True)
     ]  # fmt: skip
+
+
+def _plain(values: FloatArray) -> float:
+    """Return from where on values are decimals, so that all of them have one notation: none if not each can be."""
+    sizes = np.abs(values[np.isfinite(values) & (values != 0.0)])
+    return _SMALLEST if sizes.size == 0 or (sizes.min() >= _SMALLEST and sizes.max() < _LARGEST) else math.inf

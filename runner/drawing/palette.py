@@ -1,7 +1,11 @@
-"""Colours of curves and links, told apart by readers with any colour vision, for paper and for a dark screen."""
+"""Colours of curves and links, for paper and for a dark screen, told apart without red or green cones, too.
 
-LIGHT = ("#1f5fa8", "#c8442f", "#1c8a63", "#b97a00", "#7a4fa6", "#0e8ca3", "#a03a6b", "#5b6570")
-DARK = ("#6aaef2", "#ff8a73", "#53cfa0", "#efb945", "#bd9af0", "#57cfe3", "#ec8fbb", "#a9b4c0")
+Any two of a palette are 20 or more apart in CIELAB for readers who see all colours, for protanopes and for deuteranopes
+(simulated after Machado, Oliveira and Fernandes, 2009); a test measures it.
+"""
+
+LIGHT = ("#0d4d8f", "#bb3a29", "#218e68", "#bb7c00", "#8a6bd4", "#1897b3", "#7b063b", "#4e6270")
+DARK = ("#0e7ad2", "#f7816b", "#73dda2", "#efb945", "#9facff", "#75b9d3", "#ca6b90", "#b9e4e0")
 
 DESIRED = "#8a929c"
 """Colour of a desired path, which belongs to no body."""

@@ -3,13 +3,14 @@
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
-from runner.drawing.figure import FloatArray, Panel, Series
+from runner.drawing.figure import FloatArray, MapFigure, Panel, Series
 from runner.quantities import fitting
 
+MapOf = TypeVar("MapOf", bound=MapFigure)
 _UNIT = re.compile(r"\((m|s)\)$")
 
 
@@ -24,6 +25,19 @@ def in_readable_units(panels: Sequence[Panel], columns: int) -> list[Panel]:
     """
     rows = [panels[start : start + columns] for start in range(0, len(panels), max(1, columns))]
     return [_in_unit(_in_unit(panel, row, "x"), row, "y") for row in rows for panel in row]
+
+
+def map_in_readable_units(figure: MapOf) -> MapOf:
+    """Return a figure of maps, a dataclass, with values that are lengths or times in the unit that fits the largest."""
+    found = _UNIT.search(figure.value_label)
+    if found is None:
+        return figure
+    values = np.concatenate([np.zeros(1), *(panel.values.ravel() for panel in figure.panels)])
+    factor, name = fitting(float(np.abs(values[np.isfinite(values)]).max()), found[1])
+    panels = [replace(panel, values=factor * panel.values) for panel in figure.panels]
+    label = f"{figure.value_label[: found.start()]}({name})"
+    scaled: MapOf = replace(figure, value_label=label, panels=panels)  # type: ignore[type-var]
+    return scaled
 
 
 def _in_unit(panel: Panel, row: Sequence[Panel], axis: str) -> Panel:

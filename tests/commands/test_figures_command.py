@@ -1,0 +1,97 @@
+import pytest
+
+CASE = ("robot=macro", "trajectory=quintic", "duration=0.05", "noise.position=1e-4", "outputs=o")
+
+
+def names(folder):
+    return {path.name for path in folder.iterdir()}
+
+
+def test_the_figures_of_a_run_lie_beside_its_report(cli):
+    made = cli(*CASE).folder
+    ending = cli("figures", made)
+    assert ending.code == 0
+    assert ending.folder.name == "figures"
+    assert ending.folder.parent == cli("report", made, "--html").folder
+    listed = ending.out.splitlines()[:-1]
+    assert names(ending.folder) >= {f"{name}.{kind}" for name in listed for kind in ("svg", "pdf", "csv")}
+
+
+def test_the_figures_of_a_sweep_and_a_tuning(cli, tmp_path):
+    swept = cli("-m", *CASE, "controller=computed_torque,operational_space", "hydra.sweeper.workers=0").folder
+    ending = cli("figures", swept, "--width", "double", "--output", tmp_path / "papers", "--only", "s3-figure-2")
+    assert ending.folder == tmp_path / "papers"
+    (name,) = ending.out.splitlines()[:-1]
+    assert names(tmp_path / "papers") == {f"{name}.svg", f"{name}.pdf", f"{name}.csv"}
+    before = {path.name: path.read_bytes() for path in (tmp_path / "papers").iterdir()}
+    cli("figures", swept, "--width", "180mm", "--output", tmp_path / "papers", "--only", name)
+    assert {path.name: path.read_bytes() for path in (tmp_path / "papers").iterdir()} == before
+
+
+def test_a_failed_run_is_drawn_up_to_its_failure_and_told(cli):
+    made = cli("robot=macro", "trajectory=quintic", "controller.natural_frequency=300", "duration=3", "outputs=o")
+    assert made.code == 1
+    ending = cli("figures", made.folder)
+    assert ending.code == 0
+    assert "runner: the run failed in repetition 0 at t = " in ending.err
+    assert "its figures show repetition 0, up to " in ending.err
+
+
+def test_a_failed_run_without_a_trace_has_no_figures(cli):
+    made = cli("robot=macro", "trajectory=quintic", "controller.natural_frequency=300", "duration=3", "outputs=o")
+    (made.folder / "trace.parquet").unlink()
+    ending = cli("figures", made.folder)
+    assert ending.code == 2
+    assert "the run failed in repetition 0 at t = " in ending.err
+    assert "it has no trace to draw" in ending.err
+    assert len(ending.err.splitlines()) == 1
+
+
+def test_a_work_that_was_not_made_is_told(cli):
+    ending = cli("figures", "xarm7")
+    assert ending.code == 2
+    assert "no report on xarm7 in outputs; `runner reproduce xarm7 --outputs outputs` makes it" in ending.err
+
+
+@pytest.mark.slow
+def test_a_work_of_which_runs_are_missing_is_told_and_none_is_made(cli, tmp_path):
+    folder = tmp_path / "o" / "reports" / "xarm7"
+    folder.mkdir(parents=True)
+    ending = cli("figures", folder)
+    assert ending.code == 2
+    assert f"runs of xarm7 are not stored in {tmp_path / 'o'} as they are made today; `runner repro" in ending.err
+    assert not (tmp_path / "o" / "runs").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("nowhere",), "no folder nowhere"),
+        ((), "the following arguments are required: DIR"),
+    ],
+)
+def test_bad_input_is_one_line(cli, arguments, message):
+    ending = cli("figures", *arguments)
+    assert ending.code == 2
+    assert message in ending.err
+    assert len(ending.err.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("width", "message"),
+    [
+        ("triple", "--width triple: allowed are single (88 mm), double (180 mm) or 60 to 400"),
+        ("5", "--width 5: allowed are single"),
+    ],
+)
+def test_a_width_that_is_none_is_one_line(cli, width, message):
+    ending = cli("figures", cli(*CASE).folder, "--width", width)
+    assert (ending.code, ending.err.count("\n")) == (2, 1)
+    assert message in ending.err
+
+
+def test_an_unknown_figure_is_told_with_those_that_there_are(cli):
+    ending = cli("figures", cli(*CASE).folder, "--only", "figure-9")
+    assert ending.code == 2
+    assert "--only: no figure 'figure-9'" in ending.err
+    assert "s1-figure-1-torque-of-each-joint-and-tip" in ending.err

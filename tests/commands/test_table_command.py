@@ -1,0 +1,110 @@
+import json
+import re
+
+import pandas as pd
+import pytest
+
+from runner import run
+from runner.store import write_sweep
+
+CASE = ("robot=macro", "trajectory=quintic", "duration=0.05", "noise.position=1e-4", "repetitions=6", "outputs=o")
+CONTROLLERS = ("computed_torque", "operational_space")
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory):
+    """Two runs of six short repetitions, and the sweep of both, in a folder o."""
+    folder = tmp_path_factory.mktemp("table")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        cells = [(f"controller={name}", *CASE) for name in CONTROLLERS]
+        runs = [run(*overrides) for overrides in cells]
+        write_sweep(folder / "o", [(own, each.hash) for own, each in zip(cells, runs, strict=True)], "runner -m ...")
+    return folder
+
+
+@pytest.fixture
+def sweep(stored, monkeypatch):
+    monkeypatch.chdir(stored)
+    return next((stored / "o" / "sweeps").iterdir()).relative_to(stored)
+
+
+@pytest.fixture
+def a_run(stored, monkeypatch):
+    monkeypatch.chdir(stored)
+    return min((stored / "o" / "runs").iterdir()).relative_to(stored)
+
+
+def test_a_table_for_a_paper_goes_to_standard_output_alone(cli, sweep):
+    markdown = cli("table", sweep, "--format", "markdown", "--metrics", "rms_tracking_error")
+    assert markdown.code == 0
+    assert markdown.out.startswith("| controller | rms tracking error (")
+    latex = cli("table", sweep, "--format", "latex", "--metrics", "rms_tracking_error")
+    assert r"\toprule" in latex.out
+    assert latex.out.rstrip().endswith(r"\end{tabular}")
+
+
+@pytest.mark.parametrize(("name", "start"), [("t.tex", b"% Needs"), ("t.md", b"| contr"), ("t.csv", b"controller,"),
+                                             ("t.parquet", b"PAR1")])  # fmt: skip
+def test_the_ending_of_a_file_chooses_the_format(cli, sweep, name, start, tmp_path):
+    ending = cli("table", sweep, "--output", tmp_path / name)
+    assert ending.out == f"{tmp_path / name}\n"
+    assert (tmp_path / name).read_bytes().startswith(start)
+
+
+def test_a_selection_is_csv_unless_told_otherwise(cli, sweep):
+    ending = cli("table", sweep, "--metrics", "peak_torque", "--where", "controller=computed_torque")
+    lines = ending.out.splitlines()
+    assert lines[0].startswith("cells,failed,peak_torque.median,")
+    assert len(lines) == 2
+
+
+def test_a_run_has_a_table_of_its_metrics(cli, a_run):
+    ending = cli("table", a_run)
+    assert ending.out.startswith("| metric | unit | median")
+    assert ending.out.splitlines()[-1] == str(a_run)
+    record = json.loads((a_run / "metrics.json").read_text())
+    frame = cli("table", a_run, "--format", "csv").out.splitlines()
+    assert len(frame) == 1 + len(record["metrics"])
+    assert cli("table", a_run, "--format", "latex", "--metrics", "peak_torque").code == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--format", "latx"), "--format: no 'latx' (did you mean latex?); allowed: csv, parquet, markdown, "),
+        (("--format", "parquet"), "--format parquet is no text: write --output FILE as well"),
+        (("--output", "t.txt"), "--output t.txt: write --format, or a name that ends in .csv, .parquet, .md, .tex"),
+        (("--metrics", "peak_torq"), "the runs have no metric 'peak_torq' (did you mean peak_torque?); known: "),
+        (("--by", "robot"), "--by: 'robot' was not swept"),
+        (("--where", "controller=pid"), "controller has no value 'pid'"),
+    ],
+)
+def test_bad_input_is_one_line(cli, sweep, arguments, message):
+    ending = cli("table", sweep, *arguments)
+    assert ending.code == 2
+    assert message in ending.err
+    assert len(ending.err.splitlines()) == 1
+    assert ending.out == ""
+
+
+def test_axes_are_for_sweeps(cli, a_run):
+    ending = cli("table", a_run, "--by", "controller")
+    assert ending.code == 2
+    assert f"--by and --where are for sweeps; {a_run} is a run" in ending.err
+
+
+def test_a_sweep_that_is_not_whole_tells_what_is_missing(cli, tmp_path):
+    done = run(f"controller={CONTROLLERS[0]}", *CASE[:-1], f"outputs={tmp_path}/o")
+    jobs = [(("controller=computed_torque",), done.hash), (("controller=operational_space",), "0" * 24)]
+    folder = write_sweep(tmp_path / "o", jobs, "runner -m controller=computed_torque,operational_space")
+    ending = cli("table", folder, "--format", "markdown")
+    assert ending.code == 2
+    assert f"1 of 2 cells of {folder} are missing; this goes on with it: runner -m controller=" in ending.err
+
+
+def test_the_whole_table_stays_as_it_was(cli, sweep):
+    ending = cli("table", sweep)
+    assert re.match(r"2 cells, 0 of them failed, \d with caveats; \d+ columns: table.parquet, table.csv\n", ending.out)
+    assert ending.out.splitlines()[-1] == str(sweep)
+    assert len(pd.read_csv(sweep / "table.csv")) == 2

@@ -1,0 +1,122 @@
+import re
+import zlib
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from sample_document import HOSTILE, SVG, curves, document, maps, playback
+
+from runner.drawing.sheet import column
+from runner.errors import RunnerError
+from runner.export.figures import chosen, figures_of, write_figures
+from runner.reporting.document import Curves, Document, Origin, Panel, Picture, Section, Series
+
+SHEETS = {88.0: column(88.0), 180.0: column(180.0)}
+POINTS = 72.0 / 25.4  # in a millimetre
+
+
+def report(*blocks):
+    return Document("t", "", "", [Section("First", blocks)], "2026-01-01")
+
+
+def written(folder, blocks, sheet=SHEETS[88.0], only=None):
+    return list(write_figures(chosen(figures_of(report(*blocks)), only), folder, sheet))
+
+
+def letters(pdf):
+    """Return the sizes in which a PDF of matplotlib's sets letters."""
+    streams = re.findall(rb"stream\r?\n(.*?)endstream", pdf, re.S)
+    texts = []
+    for stream in streams:
+        try:
+            texts.append(zlib.decompress(stream))
+        except zlib.error:
+            texts.append(stream)
+    return {float(size) for text in texts for size in re.findall(rb"/F\d+ ([\d.]+) Tf", text)}
+
+
+def size_of(pdf):
+    (box,) = re.findall(rb"/MediaBox ?\[ ?([\d. ]+)\]", pdf)
+    return [float(number) for number in box.split()][2:]
+
+
+def test_each_figure_has_its_files_and_is_named_as_in_the_report(tmp_path):
+    blocks = [curves("Torque of each joint, over time. More."), maps("m", origin=Origin("3.5")), playback(),
+              Picture("The frames.", SVG, "alt")]  # fmt: skip
+    names = written(tmp_path, blocks)
+    assert names == ["s1-figure-1-torque-of-each-joint-over-time", "figure-3-5-m", "s1-figure-3-it-moves",
+                     "s1-figure-4-the-frames"]  # fmt: skip
+    kinds = {name: sorted(path.suffix for path in tmp_path.glob(f"{name}.*")) for name in names}
+    assert list(kinds.values()) == [[".csv", ".pdf", ".svg"]] * 3 + [[".pdf", ".svg"]]
+
+
+@pytest.mark.parametrize("width", SHEETS)
+@pytest.mark.parametrize("block", [curves("error"), maps("error")], ids=["curves", "maps"])
+def test_letters_are_of_8_points_and_embedded_at_any_width(block, width, tmp_path):
+    (name,) = written(tmp_path, [block], SHEETS[width])
+    pdf = (tmp_path / f"{name}.pdf").read_bytes()
+    assert letters(pdf) == {8.0}
+    assert b"/FontFile2" in pdf
+    assert size_of(pdf)[0] == pytest.approx(width * POINTS, abs=0.01)
+    svg = ElementTree.fromstring((tmp_path / f"{name}.svg").read_text())
+    assert float(svg.get("width").removesuffix("pt")) == pytest.approx(width * POINTS, abs=0.01)
+
+
+@pytest.mark.parametrize("block", [curves("error"), maps("error"), Picture("p", SVG, "")])
+def test_the_same_figure_gives_the_same_bytes(block, tmp_path):
+    first, second = tmp_path / "1", tmp_path / "2"
+    names = [written(folder, [block]) for folder in (first, second)]
+    assert names[0] == names[1]
+    assert {path.name for path in first.iterdir()} == {path.name for path in second.iterdir()}
+    for path in first.iterdir():
+        assert path.read_bytes() == (second / path.name).read_bytes()
+
+
+def test_nothing_is_transparent(tmp_path):
+    (name,) = written(tmp_path, [curves("error")])
+    assert "opacity" not in (tmp_path / f"{name}.svg").read_text()
+    assert set(re.findall(rb"/ca ([\d.]+)", (tmp_path / f"{name}.pdf").read_bytes())) <= {b"1"}
+
+
+def test_a_drawing_is_made_smaller_and_never_larger(tmp_path):
+    wide = SVG.replace('width="40" height="20"', 'width="400pt" height="200pt"').replace("<path", "<g ></g><path")
+    small = wide.replace("400pt", "40pt").replace("200pt", "20pt")
+    written(tmp_path, [Picture("wide", wide, ""), Picture("small", small, "")])
+    first, second = (size_of(path.read_bytes()) for path in sorted(tmp_path.glob("*.pdf")))
+    assert first == pytest.approx([88.0 * POINTS, 44.0 * POINTS], abs=0.1)
+    assert second == pytest.approx([40.0, 20.0], abs=0.1)
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_any_text_in_any_field_gives_files(text, tmp_path):
+    for _ in write_figures(figures_of(document(text)), tmp_path, SHEETS[88.0]):
+        pass
+    for path in tmp_path.iterdir():
+        assert re.fullmatch(r"[a-z0-9-]+\.(svg|pdf|csv)", path.name)
+        if path.suffix == ".svg":
+            ElementTree.fromstring(path.read_text())
+
+
+def test_one_figure_may_be_asked_for():
+    figures = figures_of(report(curves("One."), curves("Two.", origin=Origin("2.1")), maps("Three")))
+    assert list(chosen(figures, "figure-2-1")) == ["figure-2-1-two"]
+    assert list(chosen(figures, "s1-figure-1-one")) == ["s1-figure-1-one"]
+    assert list(chosen(figures, None)) == list(figures)
+    with pytest.raises(RunnerError, match="no figure 'figure-2-2'") as told:
+        chosen(figures, "figure-2-2")
+    assert all(name in str(told.value) for name in figures)
+
+
+def test_a_report_without_figures_is_told():
+    with pytest.raises(RunnerError, match="the report has no figures"):
+        chosen(figures_of(report()), None)
+
+
+def test_panels_stand_below_each_other_in_a_narrow_column(tmp_path):
+    x = np.linspace(0.0, 1.0, 5)
+    three = Curves("c", [Panel("", "time (s)", "error (m)", [Series("a", x, x)])] * 3, columns=3)
+    heights = []
+    for width, sheet in SHEETS.items():
+        (name,) = written(tmp_path / str(width), [three], sheet)
+        heights.append(size_of((tmp_path / str(width) / f"{name}.pdf").read_bytes())[1])
+    assert heights[0] > 1.5 * heights[1]
