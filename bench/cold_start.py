@@ -1,10 +1,18 @@
-"""Wall time from a typed command to its answer, each in a process of its own."""
+"""What a typed command costs until its answer, each in a process of its own: wall time, and CPU time against Hydra's.
+
+CPU time (user and system) is divided by that of `python -c "import hydra"`, measured in turn with the commands, so that
+a busy machine slows both. A TAB at a key composes the config the first time, and recalls its keys later in the same
+line; both are measured.
+"""
 
 import os
+import resource
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
@@ -12,42 +20,123 @@ import pybullet_data
 
 REPEATS = 7
 TARGET = 0.5  # s, for what only tells and computes nothing
+HELP_TARGET = 0.1  # s
 DOCTOR_TARGET = 5.0  # s, for an arm of seven joints with meshes
 _RUNNER = str(Path(sys.executable).parent / "runner")
 _KUKA = str(Path(pybullet_data.getDataPath()) / "kuka_iiwa" / "model_free_base.urdf")
-_COMPLETE = {"COMP_LINE": "runner robot=m", "COMP_POINT": "14"}
+_HYDRA = (sys.executable, "-c", "import hydra")
+
+
+@dataclass(frozen=True)
+class _Command:
+    """A command whose CPU time is divided by that of importing Hydra.
+
+    Attributes:
+        name: What it is, in words.
+        arguments: What follows `runner`.
+        target: The largest ratio; None where none is asked for.
+        line: The line at whose end TAB is pressed; empty for a command.
+        first: Whether nothing is recalled.
+    """
+
+    name: str
+    arguments: tuple[str, ...]
+    target: float | None
+    line: str = ""
+    first: bool = False
+
+
+_COMMANDS = (
+    _Command("runner robot=macro, stored already", ("robot=macro",), 2.5),
+    _Command("the same, nothing recalled", ("robot=macro",), None, first=True),
+    _Command("runner report nosuch", ("report", "nosuch"), 0.3),
+    *(
+        _Command(f"TAB at `runner {line}`", ("-sc", "query=bash"), target, f"runner {line}", first)
+        for line, target, first in (
+            ("rep", 0.2, False),
+            ("list r", 0.2, False),
+            ("robot=m", 1.3, False),
+            ("table --", 1.3, False),
+            ("report ", 1.3, False),
+            ("reproduce ", 1.3, False),
+            ("robot=macro controller.p", 1.3, False),
+            ("tune --minimize s", 1.3, False),
+            ("robot=macro controller.p", None, True),
+            ("tune --minimize s", None, True),
+        )
+    ),
+)
 
 
 def main() -> bool:
     """Measure and print; return whether every target is met."""
-    print(f"wall time of a command, median of {REPEATS}")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        fresh = [_time(folder, "robot=macro", f"seed={seed}") for seed in range(REPEATS)]
-        print(f"  {'runner robot=macro, simulated':34} {median(fresh):5.2f} s")
-        print(f"  {'runner robot=macro, found stored':34} {_repeat(folder, 'robot=macro', 'seed=0'):5.2f} s")
-        return all(
-            [
-                _judge("runner --help", _repeat(folder, "--help")),
-                _judge("runner list robots", _repeat(folder, "list", "robots")),
-                _judge("completion of robot=m", _repeat(folder, "-sc", "query=bash", environment=_COMPLETE)),
-                _judge("runner doctor, KUKA iiwa", _repeat(folder, "doctor", _KUKA), DOCTOR_TARGET),
-            ]
-        )
+        return all([_wall_times(folder), _ratios(folder)])
 
 
-def _repeat(folder: Path, *arguments: str, environment: dict[str, str] | None = None) -> float:
-    return median(_time(folder, *arguments, environment=environment) for _ in range(REPEATS))
-
-
-def _time(folder: Path, *arguments: str, environment: dict[str, str] | None = None) -> float:
-    start = time.perf_counter()
-    subprocess.run(
-        [_RUNNER, *arguments], cwd=folder, env={**os.environ, **(environment or {})}, capture_output=True, check=True
+def _wall_times(folder: Path) -> bool:
+    print(f"wall time of a command, median of {REPEATS}")
+    fresh = [_wall(folder, "robot=macro", f"seed={seed}") for seed in range(REPEATS)]
+    print(f"  {'runner robot=macro, simulated':50} {median(fresh):5.2f} s")
+    return all(
+        [
+            _judge("runner --help", _repeat(folder, "--help"), HELP_TARGET),
+            _judge("runner list robots", _repeat(folder, "list", "robots"), TARGET),
+            _judge("runner doctor, KUKA iiwa", _repeat(folder, "doctor", _KUKA), DOCTOR_TARGET),
+        ]
     )
+
+
+def _ratios(folder: Path) -> bool:
+    print(f'CPU time of a command against `python -c "import hydra"`, in turn, median of {REPEATS}')
+    found: dict[_Command, list[float]] = {}
+    hydra: list[float] = []
+    kept = {**os.environ, "XDG_CACHE_HOME": str(folder / "cache")}
+    for command in _COMMANDS:  # so that all is compiled, stored and kept
+        _cpu(folder, [_RUNNER, *command.arguments], _environment(command, kept))
+    for repeat in range(REPEATS):
+        hydra.append(_cpu(folder, _HYDRA, kept))
+        for number, command in enumerate(_COMMANDS):
+            cache = {"XDG_CACHE_HOME": str(folder / f"empty_{repeat}_{number}")} if command.first else {}
+            environment = _environment(command, {**kept, **cache})
+            found.setdefault(command, []).append(_cpu(folder, [_RUNNER, *command.arguments], environment))
+    print(f"  {'import hydra':50} {median(hydra):5.2f} s")
+    met = [_judge_ratio(command, median(seconds), median(hydra)) for command, seconds in found.items()]
+    return all(met)
+
+
+def _environment(command: _Command, base: Mapping[str, str]) -> dict[str, str]:
+    return {**base, **({"COMP_LINE": command.line, "COMP_POINT": str(len(command.line))} if command.line else {})}
+
+
+def _cpu(folder: Path, words: Sequence[str], environment: Mapping[str, str]) -> float:
+    """Return the CPU time of a process and its children, in s."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(words, cwd=folder, env=environment, capture_output=True, check=False)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def _repeat(folder: Path, *arguments: str) -> float:
+    return median(_wall(folder, *arguments) for _ in range(REPEATS))
+
+
+def _wall(folder: Path, *arguments: str) -> float:
+    start = time.perf_counter()
+    subprocess.run([_RUNNER, *arguments], cwd=folder, capture_output=True, check=True)
     return time.perf_counter() - start
 
 
-def _judge(what: str, seconds: float, target: float = TARGET) -> bool:
-    print(f"  {what:34} {seconds:5.2f} s  target {target:g}: {'met' if seconds <= target else 'MISSED'}")
+def _judge(what: str, seconds: float, target: float) -> bool:
+    print(f"  {what:50} {seconds:5.2f} s  target {target:g}: {'met' if seconds <= target else 'MISSED'}")
     return seconds <= target
+
+
+def _judge_ratio(command: _Command, seconds: float, hydra: float) -> bool:
+    name = command.name + (", the first time" if command.first and command.line else "")
+    ratio = seconds / hydra
+    met = command.target is None or ratio <= command.target
+    told = "" if command.target is None else f"  target {command.target:g}: {'met' if met else 'MISSED'}"
+    print(f"  {name:50} {seconds:5.2f} s  ratio {ratio:4.2f}{told}")
+    return met

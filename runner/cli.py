@@ -6,18 +6,21 @@ imports little, so that help and completion answer at once.
 
 import importlib
 import os
+import shlex
 import signal
 import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
+from runner.completion import answer, is_asked
 from runner.errors import RunnerError, nearest, told, user_place
+from runner.progress import shown
 from runner.texts import one_line
 
 HELP = """\
 runner: config-driven experiments for robot-arm control, with reports
 
-  runner robot=macro trajectory=goal             one run; the last line printed is its folder
+  runner robot=macro trajectory=goal             one run; its key metrics, and as the last line its folder
   runner -m robot=macro,mini noise.position=1e-4,1e-3
                                                  a sweep over every combination; again, it makes what is missing
   runner status DIR                              how far a sweep is
@@ -25,10 +28,14 @@ runner: config-driven experiments for robot-arm control, with reports
   runner reproduce [thesis|xarm7|meca500|audit|all|FOLDER]
                                                  run what is missing and write the report of a published work
   runner report DIR... [--html] [--pdf]          a report from stored runs or sweeps
-  runner table DIR                               a sweep as one table, Parquet and CSV
+  runner table DIR [--format latex|markdown|csv|parquet] [--metrics A,B] [--by KEY,KEY]
+                                                 a sweep as one table, or a table for a paper
+  runner figures DIR [--width single|double|MM]  each figure of a report as SVG, PDF and CSV
   runner verify [DIR]                            is all in an outputs folder as it was written?
   runner check DIR [--reference FILE]            is every metric inside its reference band? --learn a sweep's
-  runner diff A B                                two runs side by side: config and metrics
+  runner compare A B...                          runs or sweeps side by side: what differs, every metric in pairs;
+                                                 compare SWEEP --by controller: the levels of an axis;
+                                                 runner diff is its former name
   runner work new FOLDER                         write a first work of your own, to reproduce another paper;
                                                  check FOLDER looks through it, diff OLD NEW compares two makings
   runner calibrate [OVERRIDES]                   calibrate tool or sensor against the truth: calibration=gravity
@@ -36,6 +43,7 @@ runner: config-driven experiments for robot-arm control, with reports
                                                  --gravity
   runner doctor FILE [--tip FRAME] [--write DIR] [--html DIR]
                                                  does a robot of yours fit, what to mend, and a config to start from
+  latest                                         in place of a DIR: the run, sweep, tuning or report made or found last
   runner list [robots|controllers|trajectories|experiments|plants|environments|wrist_sensors|mismatch|noise|presets|
                torque_limits|calibrations|metrics|claims|references|works]
 
@@ -50,9 +58,23 @@ Groups: robot, controller, trajectory, plant, environment, wrist_sensor, mismatc
 experiment. A value is set by its dotted key, as in controller.period=0.005; `runner --cfg job` shows all keys. Exit
 codes: 0 good, 1 a run failed or a check fell short, 2 bad input.
 """
+GUIDE = """\
+runner: experiments on the control of robot arms; a line of text makes a run, a sweep or a report
+
+  runner robot=macro trajectory=quintic          one run; its key metrics and its folder are told
+  runner report latest                           a report on it, HTML and PDF
+  runner -m robot=macro controller.period=5ms,10ms
+                                                 a sweep over every combination
+  runner list                                    robots, controllers, trajectories, metrics and works there are
+  runner doctor FILE                             does a URDF or MJCF of yours fit?
+
+All commands: runner --help. All keys of a run: runner --cfg job. The pages are in docs/ of the source, docs/tutorial.md
+first.
+"""
 COMMANDS = (
-    "reproduce", "report", "table", "status", "tune", "verify", "check", "diff", "calibrate", "audit", "doctor", "list",
-    "work",
+    "reproduce", "report", "table", "figures", "status", "tune", "verify", "check", "compare", "diff", "calibrate",
+    "audit",
+    "doctor", "list", "work",
 )  # fmt: skip
 
 
@@ -96,7 +118,10 @@ def _open_outputs() -> None:
 def dispatch(arguments: Sequence[str]) -> int:
     """Run one command line and return its exit code."""
     try:
-        return _choose(_take_plugins(arguments))
+        if is_asked(arguments):
+            return answer(arguments, os.environ)
+        with shown():
+            return _choose(_take_plugins(arguments))
     except RunnerError as error:
         print(f"runner: {error}", file=sys.stderr)
         return 2
@@ -135,7 +160,10 @@ def _take_plugins(arguments: Sequence[str]) -> list[str]:
 
 
 def _choose(arguments: Sequence[str]) -> int:
-    first = arguments[0] if arguments else ""
+    if not arguments:
+        print(GUIDE, end="")
+        return 0
+    first = arguments[0]
     if first in ("-h", "--help", "help"):
         print(HELP, end="")
         return 0
@@ -146,12 +174,33 @@ def _choose(arguments: Sequence[str]) -> int:
         return 0
     if first in COMMANDS:
         return _command(first, arguments[1:])
+    if first == "run":
+        overrides = shlex.join(arguments[1:]) or "robot=macro"
+        raise RunnerError(f"there is no command 'run': a run is started by overrides alone: `runner {overrides}`")
+    if len(arguments) > 1 and arguments[1].startswith("=") and "=" not in first:
+        given = "".join(arguments[1:3]) if arguments[1] == "=" else arguments[1]
+        raise RunnerError(f"an override has no spaces beside its '=': `runner {shlex.join([first + given])}`")
     if first and first[0].isalpha() and "=" not in first:
         raise RunnerError(
             f"no command '{first}'{nearest(first, COMMANDS)}; commands: {', '.join(COMMANDS)}; a "
             "run is started by overrides such as robot=macro"
         )
-    return _command("run", arguments)
+    return _run(arguments)
+
+
+def _run(arguments: Sequence[str]) -> int:
+    """Make a run or a sweep, or tell again of the run that the same line gave before."""
+    from runner.quiet import quiet_environment
+    from runner.recall.runs import find_again
+
+    quiet_environment()
+    found = find_again(arguments)
+    if found is None:
+        return _command("run", arguments)
+    from runner.commands.ending import tell_run
+
+    run, thresholds = found
+    return tell_run(run, False, thresholds)
 
 
 def _command(name: str, arguments: Sequence[str]) -> int:

@@ -2,6 +2,8 @@
 
 import json
 import os
+import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -10,10 +12,10 @@ import time
 import pytest
 import yaml
 from engines import ASKED
-from printed import without_caveats
+from printed import without_caveats, without_results
 
 from runner import execution
-from runner.cli import COMMANDS, HELP
+from runner.cli import COMMANDS, GUIDE, HELP
 from runner.config.options import group_options
 from runner.store import open_sweep
 
@@ -43,15 +45,54 @@ def test_unknown_command_names_the_nearest(cli):
     assert ending.err.startswith("runner: no command 'chek' (did you mean check?); commands: reproduce, report,")
 
 
-def test_bare_call_runs_the_macro_to_its_goal(cli):
+def test_a_bare_call_guides_and_makes_nothing(cli, tmp_path):
     ending = cli()
-    assert ending.code == 0
-    assert yaml.safe_load((ending.folder / "config.yaml").read_text())["robot"]["name"] == "macro"
+    assert (ending.code, ending.out, ending.err) == (0, GUIDE, "")
+    assert len(GUIDE.splitlines()) <= 12
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_guide_s_commands_work(cli):
+    lines = [line.strip() for line in GUIDE.splitlines() if line.startswith("  runner ")]
+    commands = [shlex.split(re.split(r"  +", line)[0])[1:] for line in lines if "FILE" not in line]
+    assert len(commands) == 4
+    for arguments in commands:
+        assert cli(*arguments).code == 0, arguments
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (
+            ["run", "robot=macro"],
+            "there is no command 'run': a run is started by overrides alone: `runner robot=macro`",
+        ),
+        (["run"], "there is no command 'run': a run is started by overrides alone: `runner robot=macro`"),
+        (["run", "a=b c"], "there is no command 'run': a run is started by overrides alone: `runner 'a=b c'`"),
+        (["robot", "=", "macro"], "an override has no spaces beside its '=': `runner robot=macro`"),
+        (["robot", "=macro"], "an override has no spaces beside its '=': `runner robot=macro`"),
+    ],
+)
+def test_what_looks_like_a_command_is_one_line(cli, tmp_path, arguments, told):
+    ending = cli(*arguments)
+    assert (ending.code, ending.out, ending.err) == (2, "", f"runner: {told}\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_sweep_without_an_axis_is_told(cli):
+    ending = cli("-m", *IN_PROCESS, *SHORT)
+    assert ending.err.splitlines()[:2] == [
+        "runner: nothing is swept, and a single run is made: no key has several values, as seed=0,1 has",
+        "runner: 1 run",
+    ]
 
 
 def test_a_run_prints_its_folder_and_writes_nothing_but_outputs(cli, tmp_path):
     ending = cli(*SHORT, ASKED, "caveats.did_not_follow.share=1")  # it has no time to arrive
-    assert (ending.code, ending.err) == (0, "")
+    assert ending.code == 0
+    assert ending.err.splitlines()[0] == (
+        f"runner: macro, operational_space, goal: 1 repetition, stored in outputs/runs/{ending.folder.name}"
+    )
     assert [entry.name for entry in tmp_path.iterdir()] == ["outputs"]
     assert ending.folder.parent == tmp_path / "outputs" / "runs"
     assert sorted(entry.name for entry in ending.folder.iterdir()) == [
@@ -65,7 +106,9 @@ def test_a_run_prints_its_folder_and_writes_nothing_but_outputs(cli, tmp_path):
 def test_the_same_command_again_simulates_nothing(cli, monkeypatch):
     first = cli(*SHORT)
     monkeypatch.setattr(execution, "simulate", None)
-    assert cli(*SHORT) == first
+    again = cli(*SHORT)
+    assert (again.code, again.out) == (first.code, first.out)
+    assert again.err == first.err.replace(", stored in", ", stored before in")
 
 
 def test_outputs_may_stand_elsewhere(cli, tmp_path):
@@ -89,12 +132,16 @@ def test_showing_the_config_runs_nothing(cli, tmp_path):
 
 def test_a_sweep_stores_every_combination_and_its_table(cli, tmp_path):
     ending = cli("-m", *IN_PROCESS, "robot=macro,mini", "noise.position=0,1e-4", "duration=0.05")
-    runs, process, *told = ending.err.splitlines()
+    runs, process, *told, counts, following = ending.err.splitlines()
     assert (ending.code, runs, process) == (0, "runner: 4 runs", "runner: about 1 s on 1 process")
     assert [("caveats" in line, "differ beyond the swept axes with robot" in line) for line in told] == [
         (True, False),
         (False, True),
     ]
+    assert counts.startswith("runner: 4 runs: 4 made, 0 stored before, none of them failed; least largest torque: ")
+    assert (
+        following == "runner: next: `runner report latest`, `runner table latest`, `runner compare latest --by robot`"
+    )
     sweep = open_sweep(ending.folder)
     assert [overrides[:2] for overrides in sweep.overrides] == [
         ("robot=macro", "noise.position=0"),
@@ -118,7 +165,7 @@ def test_a_sweep_tells_in_a_table_what_failed(cli):
     overrides = ("plant=rk4", "controller.period=0.01,0.06", "controller.singularity_damping=0", "trajectory=quintic")
     ending = cli("-m", *IN_PROCESS, "robot=macro", *overrides)
     assert ending.code == 1
-    *_, count, title, row, differs = without_caveats(ending.err).splitlines()
+    *_, count, title, row, differs, made, _ = without_caveats(ending.err).splitlines()
     assert "plant.step" in differs  # which follows the period
     assert count == "runner: 1 run failed"
     assert title.split() == ["run", "why", "more", "in"]
@@ -126,7 +173,9 @@ def test_a_sweep_tells_in_a_table_what_failed(cli):
     assert "failed in repetition 0 at t = 0.6 s (q1): diverged" in row
     assert (ending.folder.parents[2] / row.split()[-1]).is_file()
     again = cli("-m", *IN_PROCESS, "robot=macro", *overrides)
+    assert made.startswith("runner: 2 runs: 2 made, 0 stored before, 1 of them failed")
     assert (again.code, again.folder) == (1, ending.folder)
+    assert "runner: 2 runs: 0 made, 2 stored before, 1 of them failed" in again.err
     assert "runner: 2 runs, 2 of them stored already" in again.err
 
 
@@ -238,20 +287,28 @@ def test_hydra_s_own_help(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_listing_and_help_import_little():
-    heavy = "{'numpy', 'pydantic', 'pinocchio', 'pybullet', 'pandas', 'hydra'}"
-    for arguments in (["list", "robots"], ["--help"]):
-        lines = (
-            f"import sys; from runner.cli import dispatch; dispatch({arguments}); assert not {heavy} & {{*sys.modules}}"
-        )
-        subprocess.run([sys.executable, "-c", lines], check=True, stdout=subprocess.DEVNULL)
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--help"], ["list", "robots"], ["nosuch"], ["report", "nosuch"], ["table", "nosuch"], ["status", "nosuch"],
+        ["check", "nosuch"], ["diff", "nosuch", "nosuch"], ["verify", "nosuch"], ["doctor", "nosuch"],
+        ["report", "latest"], ["table", "--nosuch"], ["tune", "robot=macro"],
+        ["reproduce", "nosuch"], ["work", "check", "nosuch"],
+    ],
+)  # fmt: skip
+def test_what_needs_no_config_imports_little(tmp_path, arguments):
+    """Help, lists, and folders that are not there or are none of the kind that a command takes."""
+    heavy = "{'numpy', 'scipy', 'pandas', 'pydantic', 'yaml', 'pinocchio', 'pybullet', 'hydra', 'omegaconf', 'pyarrow'}"
+    lines = f"import sys; from runner.cli import dispatch; dispatch({arguments}); print({heavy} & {{*sys.modules}})"
+    ending = subprocess.run([sys.executable, "-c", lines], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert ending.stdout.splitlines()[-1] == "set()"
 
 
 @pytest.mark.parametrize("closed", [">&-", "2>&-", "<&- >&- 2>&-", pytest.param(">&- 2>&-", marks=pytest.mark.slow)])
 def test_outputs_may_be_closed(tmp_path, closed):
     command = f'"{sys.executable}" -m runner {" ".join(SHORT)} {closed}'
     ending = subprocess.run(command, shell=True, cwd=tmp_path, capture_output=True, text=True, timeout=60)
-    assert (ending.returncode, without_caveats(ending.stderr)) == (0, "")
+    assert (ending.returncode, without_caveats(without_results(ending.stderr))) == (0, "")
     (folder,) = (tmp_path / "outputs" / "runs").iterdir()
     assert json.loads((folder / "metrics.json").read_text())["status"] == "ok"
 

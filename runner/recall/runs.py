@@ -1,0 +1,86 @@
+"""Which stored run a command line gave: found again without composing and checking its config."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from runner.latest import note
+from runner.plugins import has_users_parts, in_use
+from runner.recall.answers import keep, recall
+from runner.recall.basis import basis
+
+if TYPE_CHECKING:
+    from runner.config.compose import Composed
+    from runner.store import Run
+
+_CONFIG_DIR = ("--config-dir", "-cd")
+_READ = {"hydra", "main", "command-line", "schema"}  # Hydra's names of where configs come from that the key holds
+
+
+def find_again(arguments: Sequence[str]) -> "tuple[Run, Any] | None":
+    """Return the stored run that a command line gave before, with its thresholds of caveats; None where it must run.
+
+    Args:
+        arguments: What is typed.
+    """
+    key = line_key(arguments)
+    answer = None if key is None else recall(key)
+    if not (isinstance(answer, dict) and answer.keys() == {"run", "outputs", "thresholds"}):
+        return None
+    from runner.store import DamagedError, find_run
+
+    try:
+        run = find_run(Path(answer["outputs"]), answer["run"])
+    except DamagedError:
+        return None  # told where it is made again
+    if run is None:
+        return None
+    note(run.folder)
+    return run, answer["thresholds"]
+
+
+def keep_run(
+    key: str | None, arguments: Sequence[str], composed: "Composed", run: "Run", sources: Sequence[str]
+) -> None:
+    """Keep which run a command line gave, where it follows from nothing but what its key is a digest of.
+
+    Args:
+        key: The line's key from before it was composed; files that changed since then leave nothing to keep.
+        arguments: What is typed.
+        composed: The config that it composed.
+        run: The run that this gave.
+        sources: From where Hydra took configs, by the names of its providers.
+    """
+    resolved = composed.resolved
+    alone = set(sources) <= _READ and not has_users_parts() and all(map(_is_read, _arms(resolved.get("robot"))))
+    if key is not None and alone and key == line_key(arguments):
+        keep(key, {"run": run.folder.name, "outputs": resolved["outputs"], "thresholds": resolved.get("caveats")})
+
+
+def line_key(arguments: Sequence[str]) -> str | None:
+    """Return the digest that a run is kept under.
+
+    It is None for a line with plug-ins, whose source is not read, or with flags or keys of Hydra's, which may make it
+    another thing than a run.
+    """
+    if in_use():
+        return None
+    config_dirs, words = [], iter(arguments)
+    for word in words:
+        if word in _CONFIG_DIR:
+            config_dirs.append(Path(next(words, "")))
+        elif word.startswith("--config-dir="):
+            config_dirs.append(Path(word.partition("=")[2]))
+        elif word.startswith("-") or "=" not in word or "hydra" in word:
+            return None
+    return basis(arguments, config_dirs)
+
+
+def _arms(robot: Any) -> Iterator[Mapping[str, Any]]:
+    stages = robot.get("stages")
+    yield from stages.values() if isinstance(stages, Mapping) else (robot,)
+
+
+def _is_read(arm: Mapping[str, Any]) -> bool:
+    """Tell whether an arm is a URDF in one of the folders that are read; an MJCF may take files from anywhere."""
+    return isinstance(arm.get("urdf"), str) and not arm.get("mjcf") and not Path(arm["urdf"]).is_absolute()
