@@ -1,27 +1,69 @@
-"""Config-driven batch experiments for robot-arm control, with reports."""
+"""Config-driven batch experiments for robot-arm control, with reports.
 
+    >>> import runner
+    >>> run = runner.run("noise=thesis", robot="macro", duration=0.1)
+    >>> run.status
+    'ok'
+
+`run`, `sweep`, `tune` and `calibrate` do what the commands do, `report` writes a report; `open_run` and `open_sweep`
+open what is stored. docs/python.md shows them at work.
+"""
+
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from runner.calibration_job import calibrate
-    from runner.execution import run
-    from runner.store import Calibration, Run, Sweep, open_run, open_sweep
+    from runner.api.calls import calibrate, run, sweep, tune
+    from runner.api.metric import Metric
+    from runner.api.opening import open_run, open_sweep
+    from runner.api.report import Report, report
+    from runner.api.run import Run
+    from runner.api.sweep import Sweep
+    from runner.api.tuning import Tuning
+    from runner.errors import RunnerError
+    from runner.store import Calibration
 
-__all__ = ["Calibration", "Run", "Sweep", "calibrate", "open_run", "open_sweep", "run"]
+__all__ = [
+    "Calibration",
+    "Metric",
+    "Report",
+    "Run",
+    "RunnerError",
+    "Sweep",
+    "Tuning",
+    "calibrate",
+    "open_run",
+    "open_sweep",
+    "report",
+    "run",
+    "sweep",
+    "tune",
+]
+_PLACES = {
+    "Calibration": "runner.store",
+    "Metric": "runner.api.metric",
+    "Report": "runner.api.report",
+    "Run": "runner.api.run",
+    "RunnerError": "runner.errors",
+    "Sweep": "runner.api.sweep",
+    "Tuning": "runner.api.tuning",
+    "calibrate": "runner.api.calls",
+    "open_run": "runner.api.opening",
+    "open_sweep": "runner.api.opening",
+    "report": "runner.api.report",
+    "run": "runner.api.calls",
+    "sweep": "runner.api.calls",
+    "tune": "runner.api.calls",
+}
 
 
 def __getattr__(name: str) -> Any:
-    """Import the simulator only when it is asked for, so that `runner --help` answers at once."""
-    if name == "run":
-        from runner.execution import run
+    """Import what is asked for only when it is asked for, so that `runner --help` answers at once."""
+    if name not in _PLACES:
+        raise AttributeError(f"module 'runner' has no attribute '{name}'")
+    return getattr(import_module(_PLACES[name]), name)
 
-        return run
-    if name == "calibrate":
-        from runner.calibration_job import calibrate
 
-        return calibrate
-    if name in ("Calibration", "Run", "Sweep", "open_run", "open_sweep"):
-        from runner import store
-
-        return getattr(store, name)
-    raise AttributeError(f"module 'runner' has no attribute '{name}'")
+def __dir__() -> list[str]:
+    """Name what is for users, and none of the modules behind it."""
+    return list(__all__)

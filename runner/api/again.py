@@ -1,0 +1,106 @@
+"""A repetition of a stored run, simulated again: a run keeps the trace of its first one alone."""
+
+import itertools
+import shlex
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from runner import store
+from runner.errors import ConfigError, RunnerError
+from runner.store.run import units_of
+from runner.store.shards import ShardRun
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from runner.config.run import RunConfig
+    from runner.trace import Trace
+
+
+@dataclass(frozen=True)
+class Signals:
+    """The signals of one repetition.
+
+    Attributes:
+        frame: A row per tick, a column per signal.
+        units: Unit of each column.
+    """
+
+    frame: "pd.DataFrame"
+    units: Mapping[str, str]
+
+
+def signals_of(run: store.Run, repetition: int) -> Signals:
+    """Return the signals of a repetition: of the first as stored, else simulated again.
+
+    What is simulated again has the metrics that are stored, to the last bit, or it is refused.
+
+    Raises:
+        RunnerError: if there is no such repetition, or the code, the robot's file or the machine gives another one.
+        DamagedError: if the run is damaged.
+    """
+    count = int(run.record["repetitions"])
+    if not 0 <= repetition < count:
+        allowed = "0 alone" if count == 1 else f"0 to {count - 1}"
+        raise RunnerError(f"repetition {repetition}: the run {run.hash} has no such one; allowed: {allowed}")
+    if repetition == 0 and not isinstance(run, ShardRun):
+        return Signals(run.trace.copy(), run.units)
+    return _simulated(run, repetition)
+
+
+def _simulated(run: store.Run, repetition: int) -> Signals:
+    from runner.assembly import metric_context
+    from runner.metrics import evaluate
+    from runner.store.writing import trace_table
+
+    config = _checked(run, repetition)
+    trace = _simulate(config, repetition)
+    found = evaluate(trace, metric_context(config), [])
+    for name, stored in run.metrics.items():
+        value = stored["values"][repetition]
+        if found.get(name) != value:
+            raise RunnerError(
+                f"repetition {repetition} of {run.hash}, simulated again, is another one: {name} is {found.get(name)}, "
+                f"stored is {value}; another machine or version of a library computes otherwise"
+            )
+    table = trace_table(trace)
+    return Signals(table.to_pandas(), units_of(table))
+
+
+def _checked(run: store.Run, repetition: int) -> "RunConfig":
+    """Return the config of a run, once it is sure that it describes what was simulated."""
+    from runner.config.validation import validate
+
+    cannot = f"repetition {repetition} of {run.hash} cannot be simulated again: "
+    if store.run_hash(run.config, run.urdf) != run.hash:
+        raise RunnerError(
+            f"{cannot}the code has changed since the run (our source, a plug-in, or the version of an engine), or a "
+            "plug-in of it is not in use; make the run anew by runner.run"
+        )
+    try:
+        config = validate(run.config, _own_folders(str(run.provenance["command"])))
+    except ConfigError as error:
+        raise RunnerError(f"{cannot}{'; '.join(error.problems)}") from None
+    if config.arm.urdf != run.urdf:
+        raise RunnerError(f"{cannot}the file of its robot has changed since the run; make the run anew by runner.run")
+    return config
+
+
+def _simulate(config: "RunConfig", repetition: int) -> "Trace":
+    from runner.assembly import assemble, make_encoders, make_wrist_sensor
+    from runner.simulation import simulate
+
+    loop, seed = assemble(config, repetition), config.settings.seed
+    try:
+        wrist = make_wrist_sensor(loop, config.wrist_sensor, seed, repetition)
+        return simulate(loop, make_encoders(loop, config.noise, seed, repetition), wrist)
+    finally:
+        loop.close()
+
+
+def _own_folders(command: str) -> Sequence[Path]:
+    """Return the config folders that a command names, in which the file of its robot is looked for."""
+    words = shlex.split(command)
+    return [Path(after) for before, after in itertools.pairwise(words) if before == "--config-dir"]

@@ -1,0 +1,192 @@
+"""The commands that make something, as functions."""
+
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+
+from runner import store
+from runner.api.door import door
+from runner.api.overrides import config_folders, run_overrides, sweep_overrides, tuning_overrides
+from runner.api.processes import workers_only_work
+from runner.api.run import Run
+from runner.api.sweep import Sweep
+from runner.api.tuning import Tuning
+from runner.config.overrides import force
+from runner.errors import ConfigError
+from runner.plugins import named, use_plugins
+
+Folders = Sequence[str | Path] | str | Path
+
+
+@door
+def run(*overrides: str, config_dirs: Folders = (), plugins: Sequence[str] = (), **values: object) -> Run:
+    """Make one run, or find it stored: what `runner OVERRIDES` does.
+
+        >>> runner.run("robot=macro", "noise=thesis", duration=0.1, controller__period=0.01).status
+        'ok'
+        >>> runner.run("robot=macro", "noise=thesis", "duration=0.1", **{"controller.period": 0.01}).status
+        'ok'
+
+    Args:
+        overrides: Overrides as on the command line, such as "robot=macro" and "noise.position=1e-3".
+        config_dirs: Config folders of yours, searched before ours.
+        plugins: Parts of yours as GROUP=MODULE, such as "controller=mine/spring.py"; they stay in use, and Python must
+            be started again once such a file was edited.
+        values: Overrides as keywords; two underscores stand for a dot. Texts are read as on the command line.
+
+    Raises:
+        RunnerError: for a config that cannot be run (a ConfigError, which lists all its problems), or a folder that
+            cannot be written.
+    """
+    from runner import execution
+
+    use_plugins(plugins)
+    texts = run_overrides(overrides, values)
+    return Run(execution.run(*texts, config_dirs=config_folders(config_dirs)))
+
+
+@door
+def sweep(
+    *overrides: str,
+    workers: int = 2,
+    address: str | None = None,
+    config_dirs: Folders = (),
+    plugins: Sequence[str] = (),
+    **values: object,
+) -> Sweep:
+    """Make every combination of some values: what `runner -m OVERRIDES` does.
+
+    Runs that are stored are not made again, so that the same call goes on where it was interrupted.
+
+        >>> sweep = runner.sweep("noise=thesis", robot=["macro", "mini"], duration=0.1, workers=0)
+        >>> sweep.run(robot="mini").status
+        'ok'
+
+    Args:
+        overrides: Overrides as on the command line: "robot=macro,mini", "seed=range(0,20)".
+        workers: Number of processes on this machine; 0 makes the runs in this process.
+        address: Address of a running Dask scheduler, such as "tcp://127.0.0.1:8786", in place of `workers`.
+        config_dirs: See `run`.
+        plugins: See `run`.
+        values: See `run`; a list, tuple, range or array is an axis of the sweep. One value that is itself a list
+            stands in a list of its own: `torque_limits__max=[[1, 2, 3]]`.
+
+    Raises:
+        RunnerError: for a config that cannot be run, before any run is made; if another sweep is at work there.
+    """
+    from runner.sweeps.grid import Grid
+    from runner.sweeps.loading import Loader
+    from runner.sweeps.run import Engine, run_sweep
+
+    use_plugins(plugins)
+    folders, texts = config_folders(config_dirs), sweep_overrides(overrides, values)
+    _refuse_hydra(texts)
+    engine, loader = Engine(workers, address), Loader(folders)
+    brought = loader.sweeper(force(texts)).params or {}  # axes that an experiment brings along
+    plan = Grid([*(f"{key}={value}" for key, value in brought.items()), *texts], loader)
+    with workers_only_work():
+        ended = run_sweep(plan, engine, _command(["-m"], folders, texts))
+    return Sweep(store.open_sweep(ended.folder))
+
+
+@door
+def tune(
+    *overrides: str,
+    minimize: str | Sequence[str] = (),
+    maximize: str | Sequence[str] = (),
+    trials: int = 100,
+    at_once: int = 4,
+    workers: int = 2,
+    config_dirs: Folders = (),
+    plugins: Sequence[str] = (),
+    **values: object,
+) -> Tuning:
+    """Choose numbers so that metrics get better: what `runner tune OVERRIDES --minimize METRIC` does.
+
+        >>> tuning = runner.tune(robot="macro", trajectory="quintic", duration=0.1, workers=0, trials=2,
+        ...                      controller__natural_frequency=(5, 50), minimize="max_tracking_error")
+        >>> len(tuning.table())
+        2
+
+    Args:
+        overrides: Overrides as on the command line, "controller.natural_frequency=interval(5,50)" for a key to tune.
+        minimize: Metrics that are to be small.
+        maximize: Metrics that are to be large.
+        trials: Number of trials in all, those of earlier calls included.
+        at_once: Trials under way at once; the choice of trials depends on it.
+        workers: Number of processes on this machine; 0 makes the trials in this process.
+        config_dirs: See `run`.
+        plugins: See `run`.
+        values: See `run`; a tuple (low, high) is a range in which a key is tuned.
+
+    Raises:
+        RunnerError: if a key cannot be tuned, a config in its range not be run, or there is no such metric.
+    """
+    from runner.sweeps.run import Engine
+    from runner.tuning import run as tuning
+    from runner.tuning.objective import Objective
+
+    use_plugins(plugins)
+    folders, texts = config_folders(config_dirs), tuning_overrides(overrides, values)
+    _refuse_hydra(texts)
+    Engine(workers, None)  # its check
+    objectives = [Objective(metric, "minimize") for metric in _several(minimize)]
+    objectives += [Objective(metric, "maximize") for metric in _several(maximize)]
+    if not objectives or len({objective.metric for objective in objectives}) < len(objectives):
+        raise ConfigError(["name each metric once, in minimize=... or maximize=..."])
+    words = [f"--{objective.direction}={objective.metric}" for objective in objectives]
+    words += [f"--trials={trials}", f"--at-once={at_once}"]
+    _check_counts(trials=trials, at_once=at_once)
+    command = _command(["tune"], folders, [*texts, *words])
+    with workers_only_work():
+        made = tuning.tune([*texts, f"hydra.sweeper.workers={workers}"], objectives, trials, at_once, command, folders)
+    return Tuning(made)
+
+
+@door
+def calibrate(
+    *overrides: str, config_dirs: Folders = (), plugins: Sequence[str] = (), **values: object
+) -> store.Calibration:
+    """Calibrate a tool or a sensor in simulation, or find that stored: what `runner calibrate OVERRIDES` does.
+
+        >>> runner.calibrate(calibration="gravity", calibration__orientations=8, repetitions=2).status
+        'ok'
+
+    Args:
+        overrides: Overrides as on the command line, such as "calibration=gravity".
+        config_dirs: See `run`.
+        plugins: See `run`.
+        values: See `run`.
+
+    Raises:
+        RunnerError: for a config that cannot be carried out, or a folder that cannot be written.
+    """
+    from runner import calibration_job
+
+    use_plugins(plugins)
+    texts = run_overrides(overrides, values)
+    return calibration_job.calibrate(*texts, config_dirs=config_folders(config_dirs))
+
+
+def _several(metrics: str | Sequence[str]) -> Sequence[str]:
+    return [metrics] if isinstance(metrics, str) else metrics
+
+
+def _check_counts(**counts: int) -> None:
+    wrong = [f"{name}: must be a whole number, 1 or more; found {count!r}" for name, count in counts.items()
+             if isinstance(count, bool) or not isinstance(count, int) or count < 1]  # fmt: skip
+    if wrong:
+        raise ConfigError(wrong)
+
+
+def _refuse_hydra(texts: Sequence[str]) -> None:
+    found = [f"{text}: give workers=... and address=... as arguments" for text in texts if text.startswith("hydra.")]
+    if found:
+        raise ConfigError(found)
+
+
+def _command(words: Sequence[str], folders: Sequence[Path], texts: Sequence[str]) -> str:
+    """Return the command that does the same, kept with what is made."""
+    added = [word for text in named() for word in ("--plugin", text)]
+    own = [word for folder in folders for word in ("--config-dir", str(folder))]
+    return shlex.join(["runner", *added, *words, *own, *texts])

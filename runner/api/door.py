@@ -1,0 +1,29 @@
+"""What the functions for users have in common: a line that says how far they are, and short errors."""
+
+import functools
+from collections.abc import Callable
+from typing import ParamSpec, TypeVar
+
+from runner.errors import RunnerError
+from runner.progress import shown
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+_GO_ON = "interrupted; finished runs are stored, the same call goes on from there"
+
+
+def door(function: Callable[P, T]) -> Callable[P, T]:
+    """Show how far a function is; let what a user can mend, and interruptions, out of it without the frames within."""
+
+    @functools.wraps(function)
+    def through(*args: P.args, **kwargs: P.kwargs) -> T:
+        try:
+            with shown():
+                return function(*args, **kwargs)
+        except RunnerError as error:
+            raise error.with_traceback(None) from None
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(_GO_ON) from None
+
+    return through

@@ -1,0 +1,46 @@
+"""Opening what is stored."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from runner import store
+from runner.api.door import door
+from runner.latest import find_folder
+
+if TYPE_CHECKING:
+    from runner.api.run import Run
+    from runner.api.sweep import Sweep
+
+
+@door
+def open_run(folder: str | Path) -> "Run":
+    """Open a stored run.
+
+        >>> made = runner.run(robot="macro", duration=0.1)
+        >>> runner.open_run(made.folder).status
+        'ok'
+
+    Args:
+        folder: Its folder, such as "outputs/runs/0871075a1b2c3d4e5f607182"; "latest" for what was made or found last.
+
+    Raises:
+        RunnerError: if the folder is no run, one that was not finished, or damaged.
+    """
+    from runner.api.run import Run
+
+    return Run(store.open_run(find_folder(folder, ("run",))))
+
+
+@door
+def open_sweep(folder: str | Path) -> "Sweep":
+    """Open a stored sweep, at work or ended.
+
+    Args:
+        folder: Its folder in `outputs/sweeps`; "latest" for the one made or found last.
+
+    Raises:
+        RunnerError: if the folder is no sweep, or damaged.
+    """
+    from runner.api.sweep import Sweep
+
+    return Sweep(store.open_sweep(find_folder(folder, ("sweep", "tuning"))))

@@ -1,0 +1,142 @@
+"""Values of Python as overrides, the texts that Hydra composes a config from."""
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path, PurePath
+
+import numpy as np
+from hydra.core.override_parser.types import Quote, QuotedString
+
+from runner.errors import ConfigError
+from runner.texts import quoted
+
+_KEY = re.compile(r"[A-Za-z_][\w.@/]*")
+_PLAIN = re.compile(r"[\w./+-]+")
+_ALLOWED = "a number, text, bool, None, Path, list, tuple, dict or NumPy array"
+
+
+class _WrittenError(Exception):
+    """A value that no override can hold."""
+
+
+def run_overrides(given: Sequence[str], values: Mapping[str, object]) -> list[str]:
+    """Return the overrides of one run: those given as texts, and those given as keywords, in this order.
+
+    A keyword is a key, with two underscores in place of a dot: `controller__period=0.01` is controller.period. A text
+    means what it means on the command line behind `KEY=`; a Path is taken letter by letter.
+
+        >>> run_overrides(["noise=thesis"], {"robot": "macro", "controller__period": 0.01, "torque_limits.max": [1, 2]})
+        ['noise=thesis', 'robot=macro', 'controller.period=0.01', 'torque_limits.max=[1,2]']
+
+    Raises:
+        ConfigError: for keys and values of which no override can be made; lists all of them.
+    """
+    return _overrides(given, values, _text)
+
+
+def sweep_overrides(given: Sequence[str], values: Mapping[str, object]) -> list[str]:
+    """Return the overrides of a sweep: as of a run, and a list, tuple, range or array is an axis.
+
+    One value that is itself a list stands in a list of its own.
+
+        >>> sweep_overrides([], {"robot": ["macro", "mini"], "seed": range(20), "torque_limits__max": [[1, 2, 3]]})
+        ['robot=macro,mini', 'seed=range(0,20)', 'torque_limits.max=[1,2,3]']
+    """
+    return _overrides(given, values, _axis)
+
+
+def tuning_overrides(given: Sequence[str], values: Mapping[str, object]) -> list[str]:
+    """Return the overrides of a tuning: as of a run, and a tuple of two numbers is the range in which a key is tuned.
+
+    >>> tuning_overrides([], {"robot": "macro", "controller__natural_frequency": (5, 50)})
+    ['robot=macro', 'controller.natural_frequency=interval(5,50)']
+    """
+    return _overrides(given, values, _interval)
+
+
+def _overrides(given: Sequence[str], values: Mapping[str, object], text: Callable[[object], str]) -> list[str]:
+    problems = [f"{quoted(each)} is no override; write KEY=VALUE as a text" for each in given if type(each) is not str]
+    found = list(given)
+    for name, value in values.items():
+        key = name.replace("__", ".")
+        if not _KEY.fullmatch(key):
+            problems.append(f"{quoted(name)} is no key; write controller__period=... or **{{'controller.period': ...}}")
+            continue
+        try:
+            found.append(f"{key}={text(value)}")
+        except _WrittenError as error:
+            problems.append(f"{key}: {error}")
+    if problems:
+        raise ConfigError(problems)
+    return found
+
+
+def _axis(value: object) -> str:
+    if isinstance(value, range):
+        step = "" if value.step == 1 else f",{value.step}"
+        return f"range({value.start},{value.stop}{step})"
+    if isinstance(value, np.ndarray) and value.ndim:
+        value = list(value)
+    if isinstance(value, list | tuple):
+        if not value:
+            raise _WrittenError("is swept over no value; give one or more")
+        return ",".join(map(_item, value))
+    return _text(value)
+
+
+def _interval(value: object) -> str:
+    if isinstance(value, tuple):
+        if len(value) != 2:
+            raise _WrittenError(f"a range has two ends, (low, high); found {quoted(value)}")
+        return f"interval({_text(value[0])},{_text(value[1])})"
+    return _text(value)
+
+
+def _text(value: object) -> str:
+    """Return a value as it stands behind `KEY=`; a text as it is."""
+    return value if type(value) is str else _item(value)
+
+
+def _item(value: object) -> str:
+    """Return a value as it stands in a list, in which a text is always one value."""
+    if isinstance(value, np.generic | np.ndarray):
+        value = value.tolist()
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int | float):
+        return repr(value)
+    if isinstance(value, str | PurePath):
+        return _letters(str(value))
+    if isinstance(value, list | tuple | range):
+        return f"[{','.join(map(_item, value))}]"
+    if isinstance(value, Mapping):
+        return "{" + ",".join(f"{_name(key)}:{_item(each)}" for key, each in value.items()) + "}"
+    raise _WrittenError(f"cannot be written as an override: found {quoted(value)}; allowed: {_ALLOWED}")
+
+
+def _name(key: object) -> str:
+    if not (isinstance(key, str) and _KEY.fullmatch(key)):
+        raise _WrittenError(f"cannot be written as an override: {quoted(key)} is no name of a key")
+    return key
+
+
+def _letters(text: str) -> str:
+    """Return a text that Hydra reads as one value, letter by letter where it holds more than a name or a number."""
+    if _PLAIN.fullmatch(text):
+        return text
+    return QuotedString(text.replace("${", r"\${"), Quote.single).with_quotes()
+
+
+def config_folders(given: "Sequence[str | Path] | str | Path") -> list[Path]:
+    """Return config folders of the user's.
+
+    Raises:
+        ConfigError: for one that does not exist.
+    """
+    folders = [Path(each) for each in ([given] if isinstance(given, str | Path) else given)]
+    missing = [f"config_dirs: no folder {folder}" for folder in folders if not folder.is_dir()]
+    if missing:
+        raise ConfigError(missing)
+    return folders

@@ -1,0 +1,92 @@
+"""Figures of a run's signals over time, as matplotlib's."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from matplotlib.figure import Figure
+
+from runner.api.again import Signals
+from runner.drawing.figure import Panel, Series
+from runner.drawing.stills import as_figure, draw
+from runner.errors import RunnerError, nearest
+from runner.quantities import labelled
+
+_JOINT = re.compile(r"(q|dq|tau)(\d+)(_command)?")
+_AXIS = re.compile(r"(\w+)_([xyz])")
+_NAMES = {"q": "position", "dq": "velocity", "tau": "torque", "q_command": "position_command"}
+_TITLES = {
+    "position": "joint position",
+    "position_command": "commanded joint position",
+    "velocity": "joint velocity",
+    "torque": "joint torque",
+    "error": "tip position error",
+    "tip": "tip position",
+    "desired": "desired tip position",
+}
+_BESIDE = {"tip": "desired"}  # what is drawn dashed beside a signal
+
+
+@dataclass(frozen=True)
+class _Curves:
+    """What is drawn; see runner.drawing.figure.CurveFigure."""
+
+    panels: Sequence[Panel]
+    columns: int = 1
+
+
+def families(columns: Sequence[str]) -> dict[str, dict[str, str]]:
+    """Return the signals of a trace that are drawn together: the columns of each, by the name of joint or axis.
+
+    >>> families(["t", "q1", "tau1", "tau2", "error_x", "error_y"])
+    {'position': {'1': 'q1'}, 'torque': {'1': 'tau1', '2': 'tau2'}, 'error': {'x': 'error_x', 'y': 'error_y'}}
+    """
+    found: dict[str, dict[str, str]] = {}
+    for column in columns:
+        joint, axis = _JOINT.fullmatch(column), _AXIS.fullmatch(column)
+        if joint:
+            found.setdefault(_NAMES[joint[1] + (joint[3] or "")], {})[joint[2]] = column
+        elif axis:
+            found.setdefault(axis[1], {})[axis[2]] = column
+    return found
+
+
+def figure_of(signals: Signals, name: str) -> Figure:
+    """Return a signal over time: a panel for each unit, a curve for each joint or axis.
+
+    Raises:
+        RunnerError: if there is no such signal; tells which there are.
+    """
+    return as_figure(_curves(signals, name))
+
+
+def svg_of(signals: Signals, name: str) -> str:
+    """Return the same as SVG."""
+    return draw(_curves(signals, name))
+
+
+def _curves(signals: Signals, name: str) -> _Curves:
+    known = families(list(signals.frame.columns))
+    if name not in known:
+        raise RunnerError(f"no signal '{name}'{nearest(name, known)}; the run has: {', '.join(known)}")
+    title = _TITLES.get(name, name.replace("_", " "))
+    units = dict.fromkeys(signals.units[column] for column in known[name].values())
+    beside = known.get(_BESIDE.get(name, ""), {})
+    return _Curves([_panel(signals, title, unit, known[name], beside) for unit in units])
+
+
+def _panel(signals: Signals, title: str, unit: str, columns: Mapping[str, str], beside: Mapping[str, str]) -> Panel:
+    shown = {label: column for label, column in columns.items() if signals.units[column] == unit}
+    t = signals.frame["t"].to_numpy()
+    series = [
+        Series(label, t, signals.frame[column].to_numpy(), color=place)
+        for place, (label, column) in enumerate(shown.items())
+    ]
+    series += [
+        Series(f"{label} desired", t, signals.frame[beside[label]].to_numpy(), "dashed", color=place)
+        for place, label in enumerate(shown)
+        if label in beside
+    ]
+    if title == _TITLES["torque"] and unit == "N":
+        title = "joint force"
+    return Panel(title[:1].upper() + title[1:], "time (s)", labelled(title.split()[-1], unit), series)

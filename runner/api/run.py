@@ -1,0 +1,180 @@
+"""A run as a user holds it."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from runner import store
+from runner.api import page
+from runner.api.door import door
+from runner.api.metric import Metrics
+from runner.errors import RunnerError
+from runner.texts import one_line
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+    from runner.reporting.key_metrics import KeyMetric
+
+_IN_TEXT, _ON_PAGE = 1, 6
+
+
+class Run:
+    """A stored run: `runner.run` makes one, `runner.open_run` opens one.
+
+        >>> run = runner.run("noise=thesis", robot="macro", trajectory="quintic", duration=0.1, repetitions=3)
+        >>> run.metrics["peak_torque"].unit
+        'N m'
+        >>> len(run.metrics["peak_torque"].values)
+        3
+        >>> run.metrics_frame().columns.tolist()
+        ['unit', 'median', 'min', 'max', 'n']
+        >>> run.trace(repetition=2)[["t", "error_x"]].shape
+        (11, 2)
+
+    Args:
+        stored: The run as it lies on the disk.
+
+    Attributes:
+        stored: The same; what the other rooms of the package take.
+    """
+
+    def __init__(self, stored: store.Run) -> None:
+        self.stored = stored
+
+    @property
+    def folder(self) -> Path:
+        """Where it is stored; a run of a large sweep that kept no trace lies in a shard beside `runs`."""
+        return self.stored.folder
+
+    @property
+    def hash(self) -> str:
+        """Its name: a digest of all that the result follows from."""
+        return self.stored.hash
+
+    @property
+    def status(self) -> str:
+        """Either "ok" or "failed"."""
+        return self.stored.status
+
+    @property
+    def failure(self) -> str | None:
+        """When, where and why it failed, in words; None for a good one."""
+        return self.stored.failure_text or None
+
+    @property
+    def repetitions(self) -> int:
+        """How often it was simulated, each time with other random draws."""
+        return int(self.stored.record["repetitions"])
+
+    @property
+    def metrics(self) -> Metrics:
+        """Its metrics by name, each a Metric with unit, median, min, max and values."""
+        return Metrics(self.stored.metrics)
+
+    @property
+    def caveats(self) -> Sequence[Mapping[str, Any]]:
+        """Why the metrics may not be what they seem: rule, text, value and number of repetitions of each."""
+        return self.stored.caveats
+
+    @property
+    def config(self) -> Mapping[str, Any]:
+        """The whole config, resolved, in SI units."""
+        return self.stored.config
+
+    @property
+    def urdf(self) -> str:
+        """The URDF of the arm that was simulated."""
+        return self.stored.urdf
+
+    @property
+    def provenance(self) -> Mapping[str, Any]:
+        """Command, commit, versions, machine, seed, warnings and more."""
+        return self.stored.provenance
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Unit of each column of the trace."""
+        return self.stored.units
+
+    def metrics_frame(self) -> "pd.DataFrame":
+        """Return the metrics as a table: a row for each, with unit, median, min, max and n, the number of values."""
+        import pandas as pd
+
+        rows = {
+            name: (one.unit, one.median, one.min, one.max, sum(value is not None for value in one.values))
+            for name, one in self.metrics.items()
+        }
+        frame = pd.DataFrame.from_dict(rows, orient="index", columns=["unit", "median", "min", "max", "n"])
+        return frame.rename_axis("metric").astype({"median": float, "min": float, "max": float})
+
+    @door
+    def trace(self, repetition: int = 0) -> "pd.DataFrame":
+        """Return the signals of a repetition, a row per tick; `units` tells the columns' units.
+
+        That of repetition 0 is stored. Another one is simulated again, and has the very metrics that are stored.
+
+        Raises:
+            RunnerError: if there is no such repetition, or it cannot be had as the code has changed since.
+        """
+        from runner.api.again import signals_of
+
+        return signals_of(self.stored, repetition).frame
+
+    @door
+    def plot(self, signal: str = "error", repetition: int = 0) -> "Figure":
+        """Return a signal over time as a figure of matplotlib, to be changed or saved.
+
+        Args:
+            signal: Such as "error", "tip", "torque", "position" or "velocity".
+            repetition: Which repetition; see `trace`.
+
+        Raises:
+            RunnerError: if the run has no such signal; tells which it has.
+        """
+        from runner.api.again import signals_of
+        from runner.api.plots import figure_of
+
+        return figure_of(signals_of(self.stored, repetition), signal)
+
+    def __repr__(self) -> str:
+        told = "; ".join(f"{one.title} {one.value}" for one in self._key_metrics(_IN_TEXT))
+        caveats = f"caveats: {', '.join(str(caveat['rule']) for caveat in self.caveats)}" if self.caveats else ""
+        lines = [f"Run of {self._name()}: {self._ended()}", self.failure or "", told, caveats, str(self.folder)]
+        return "\n  ".join(one_line(line) for line in lines if line)
+
+    def _repr_html_(self) -> str:
+        rows = [(one.title, one.value, one.remark) for one in self._key_metrics(_ON_PAGE)]
+        parts = [
+            page.heading(self._name(), self._ended()),
+            page.line(self.failure or ""),
+            page.table(("metric", "median (smallest to largest)", ""), rows) if rows else "",
+            page.listed("Caveats", [f"{caveat['rule']}: {caveat['text']}" for caveat in self.caveats]),
+            self._picture(),
+            page.code(self.folder),
+        ]
+        return "".join(parts)
+
+    def _ended(self) -> str:
+        return f"{self.status}, {self.repetitions} repetition{'s' if self.repetitions != 1 else ''}"
+
+    def _name(self) -> str:
+        config = self.config
+        kinds = (config["controller"]["kind"], config["trajectory"]["kind"], config["plant"]["kind"])
+        return ", ".join(str(part) for part in (config["robot"]["name"], *kinds))
+
+    def _key_metrics(self, most: int) -> "Sequence[KeyMetric]":
+        from runner.reporting.key_metrics import key_metrics
+
+        return key_metrics(self.stored, most)
+
+    def _picture(self) -> str:
+        from runner.api.again import Signals
+        from runner.api.plots import svg_of
+
+        try:
+            signals = Signals(self.stored.trace, self.stored.units)
+        except RunnerError:
+            return ""  # it kept no trace, or that is damaged: what is left is shown
+        return page.picture(svg_of(signals, "error"), "tip position error of repetition 0 over time")

@@ -1,0 +1,277 @@
+"""A sweep as a user holds it."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from runner import store
+from runner.api import page
+from runner.api.door import door
+from runner.api.run import Run
+from runner.errors import RunnerError, StoreError, nearest
+from runner.quantities import quantity
+from runner.sweeps.measurements import Axis, Measurements, axes_of, measure_sweep
+from runner.sweeps.status import Status, find_status
+from runner.texts import few, one_line, quoted
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_CELLS_SHOWN, _METRICS_SHOWN = 20, 3
+
+
+class Sweep:
+    """A stored sweep: `runner.sweep` makes one, `runner.open_sweep` opens one.
+
+        >>> sweep = runner.sweep("noise=thesis", "trajectory=quintic", duration=0.1, repetitions=6, workers=0,
+        ...                      robot=["macro", "mini"], controller=["operational_space", "computed_torque"])
+        >>> len(sweep)
+        4
+        >>> sweep.table(["max_tracking_error"])[["robot", "controller", "median", "low", "high", "n"]].shape
+        (4, 6)
+        >>> paired = sweep.compare("controller", within="robot", metrics=["max_tracking_error"])
+        >>> paired[["robot", "first", "second", "difference", "low", "high", "n"]].shape
+        (2, 7)
+        >>> sweep.run(robot="mini", controller="computed_torque").status
+        'ok'
+
+    Args:
+        stored: The sweep as it lies on the disk.
+
+    Attributes:
+        stored: The same; what the other rooms of the package take.
+    """
+
+    def __init__(self, stored: store.Sweep) -> None:
+        self.stored = stored
+
+    @property
+    def folder(self) -> Path:
+        """Where it is stored; its runs lie in `runs` and `shards` of the outputs folder."""
+        return self.stored.folder
+
+    @property
+    def command(self) -> str:
+        """The command that makes it and goes on with it."""
+        return self.stored.command
+
+    @property
+    def axes(self) -> Mapping[str, Sequence[float] | Sequence[str]]:
+        """What was swept: the values of each key."""
+        return {axis.name: axis.values for axis in self._axes}
+
+    def __len__(self) -> int:
+        """Return the number of cells, the combinations of the values."""
+        return len(self.stored.hashes)
+
+    def runs(self) -> Iterator[Run]:
+        """Open its runs, one after the other, in the order of the cells.
+
+        Raises:
+            RunnerError: if one is missing or damaged.
+        """
+        return map(Run, self.stored.runs())
+
+    @door
+    def run(self, **values: object) -> Run:
+        """Return the one run with some values of the axes; two underscores in a keyword stand for a dot.
+
+        Raises:
+            RunnerError: if there is no such axis or value, no such run, or more than one; tells what is left to say.
+        """
+        chosen = np.ones(len(self), dtype=bool)
+        for name, value in values.items():
+            axis = self._axis(name.replace("__", "."))
+            chosen &= axis.level == _level(axis, value)
+        cells = np.flatnonzero(chosen)
+        if len({self.stored.hashes[cell] for cell in cells.tolist()}) > 1:
+            others = [axis for axis in self._axes if len(np.unique(axis.level[cells])) > 1]
+            left = "; ".join(f"{axis.name}: {few([axis.text(k) for k in range(len(axis.values))])}" for axis in others)
+            raise RunnerError(f"{len(cells)} runs have these values; name one value of {left}")
+        if not len(cells):
+            raise RunnerError("no run of the sweep has these values together")
+        return Run(store.Finished(self.stored.outputs).open(self.stored.hashes[int(cells[0])]))
+
+    @door
+    def table(self, metrics: str | Sequence[str] | None = None) -> "pd.DataFrame":
+        """Return the metrics of its cells: a row for each cell and metric.
+
+        The columns are the axes under their keys; metric and unit; median; low and high, the ends of the median's 95 %
+        interval over the repetitions, missing where these are too few; n, the number of repetitions that have a value;
+        status and the number of caveats. `runner table` writes one row for each cell, with quantiles.
+
+        Args:
+            metrics: Names of metrics; None for all.
+
+        Raises:
+            RunnerError: if there is no such metric, or runs are missing.
+        """
+        import pandas as pd
+
+        from runner.sweeps.table import table
+
+        found, names = self._measurements, self._names(metrics)
+        wide = table(replace(found, values={name: found.values[name] for name in names}))
+        keys = [axis.name for axis in found.axes]
+        parts = []
+        for name in names:
+            part = wide[keys].copy()
+            part["metric"], part["unit"] = name, found.units[name]
+            for column in ("median", "low", "high", "n"):
+                part[column] = wide[f"{name}.{column}"]
+            part["status"], part["caveats"] = wide["status"], wide["caveats"]
+            parts.append(part)
+        return pd.concat(parts, ignore_index=True) if parts else wide[[*keys, "status", "caveats"]]
+
+    @door
+    def values(self, metric: str) -> "pd.DataFrame":
+        """Return a metric in each repetition: a row for each, with the axes, the repetition and the value.
+
+        A value is infinite, which is beyond every number, where the repetition failed or never settled.
+
+        Raises:
+            RunnerError: if there is no such metric, or runs are missing.
+        """
+        import pandas as pd
+
+        (name,) = self._names(metric)
+        found = self._measurements
+        cells, repetitions = np.nonzero(~np.isnan(found.values[name]))
+        columns: dict[str, object] = {
+            axis.name: [axis.values[level] for level in axis.level[cells].tolist()] for axis in found.axes
+        }
+        return pd.DataFrame(columns | {"repetition": repetitions, name: found.values[name][cells, repetitions]})
+
+    @door
+    def compare(
+        self, axis: str, within: str | Sequence[str] = (), metrics: str | Sequence[str] | None = None
+    ) -> "pd.DataFrame":
+        """Return how the values of an axis differ from its first one, in pairs of runs that differ in nothing else.
+
+        The columns are the axes compared within; first and second, the two values; metric and unit; difference, the
+        median of second minus first over the repetitions, low and high, the ends of its 95 % interval, n the number of
+        pairs; effect, from -1 (smaller in every pair) to 1; p; and the verdict in words. What is swept beyond that is
+        pooled pair by pair.
+
+        Args:
+            axis: The axis, such as "controller".
+            within: Axes within each combination of whose values it is compared; none for all others but the seed.
+            metrics: Names of metrics; None for all.
+
+        Raises:
+            RunnerError: if there is no such axis or metric, or no two runs share their seeds.
+        """
+        import pandas as pd
+
+        from runner.comparison.levels import levels
+
+        inside = [within] if isinstance(within, str) else list(within)
+        rows = [
+            {
+                **found.pair.at,
+                "first": found.pair.first,
+                "second": found.pair.second,
+                "metric": found.metric,
+                "unit": found.unit,
+                "difference": found.comparison.difference.median,
+                "low": found.comparison.difference.low,
+                "high": found.comparison.difference.high,
+                "n": found.comparison.difference.n,
+                "effect": found.comparison.effect,
+                "p": found.comparison.p_value,
+                "verdict": found.comparison.verdict,
+            }
+            for found in levels(self._measurements, axis, inside, metrics=self._names(metrics))
+        ]
+        return pd.DataFrame(rows).astype({"low": float, "high": float, "p": float})
+
+    def __repr__(self) -> str:
+        told = _told(find_status(self.stored))
+        return "\n  ".join(map(one_line, [f"Sweep of {len(self)} runs: {told}", *self._over(), str(self.folder)]))
+
+    def _repr_html_(self) -> str:
+        status = find_status(self.stored)
+        parts = [page.heading("Sweep", f"{len(self)} runs: {_told(status)}"), page.listed("Swept over", self._over())]
+        parts += [] if status.left else [self._cells()]
+        return "".join([*parts, page.code(self.folder)])
+
+    def _cells(self) -> str:
+        """Return the first cells as a table, with the medians of the metrics that its report would compare."""
+        from runner.reporting.metric_titles import title
+        from runner.reporting.sweep.subject import choose
+
+        runs = self._measurements
+        subject = choose(runs)
+        names = subject.metrics[:_METRICS_SHOWN]
+        rows = [
+            [
+                *(axis.text(int(axis.level[cell])) for axis in runs.axes),
+                *(quantity(float(subject.medians[name][cell]), runs.units[name]) for name in names),
+                runs.statuses[cell],
+                len(runs.caveats[cell]),
+            ]
+            for cell in range(min(len(self), _CELLS_SHOWN))
+        ]
+        heads = [*(axis.name for axis in runs.axes), *(f"{title(name)}, median" for name in names)]
+        more = len(self) - len(rows)
+        rest = f"and {more} more; `table()` has all of them" if more else ""
+        return page.table([*heads, "status", "caveats"], rows) + page.line(rest)
+
+    def _over(self) -> list[str]:
+        return [f"{axis.name}: {few([axis.text(level) for level in range(len(axis.values))])}" for axis in self._axes]
+
+    def _names(self, metrics: str | Sequence[str] | None) -> list[str]:
+        known = self._measurements.values
+        wanted = list(known) if metrics is None else [metrics] if isinstance(metrics, str) else list(metrics)
+        for name in wanted:
+            if name not in known:
+                listed = ", ".join(known) or "none, as all runs failed"
+                raise RunnerError(f"the runs have no metric '{name}'{nearest(name, known)}; they have: {listed}")
+        return list(dict.fromkeys(wanted))
+
+    def _axis(self, name: str) -> Axis:
+        names = [axis.name for axis in self._axes]
+        if name not in names:
+            known = ", ".join(names) or "nothing"
+            raise RunnerError(f"'{name}' was not swept{nearest(name, names)}; the sweep is over {known}")
+        return self._axes[names.index(name)]
+
+    @cached_property
+    def _axes(self) -> Sequence[Axis]:
+        return axes_of(self.stored.overrides)[0]
+
+    @cached_property
+    def _measurements(self) -> Measurements:
+        """The cells with their values; what a sweep that is at work lacks is looked for anew each time."""
+        left = find_status(self.stored).left
+        if left:
+            raise StoreError(
+                f"{self.folder}: {left} of its {len(self)} runs are not made yet; the same call of runner.sweep goes "
+                f"on, or the command: {self.command}"
+            )
+        return measure_sweep(self.stored)
+
+
+def _told(status: Status) -> str:
+    """Say how far a sweep is."""
+    texts = [f"{status.left} not made yet" if status.left else "all made"]
+    texts += [f"{status.failed} failed"] if status.failed else []
+    doubted = sum(map(bool, status.caveats))
+    return ", ".join(texts + ([f"{doubted} with caveats"] if doubted else []))
+
+
+def _level(axis: Axis, value: object) -> int:
+    """Return the place of a value on an axis.
+
+    Raises:
+        RunnerError: if it has no such value.
+    """
+    texts = [axis.text(level) for level in range(len(axis.values))]
+    for level, own in enumerate(axis.values):
+        if own == value or texts[level] == str(value):
+            return level
+    raise RunnerError(f"{axis.name} has no value {quoted(value)}{nearest(str(value), texts)}; it has: {few(texts)}")

@@ -1,0 +1,91 @@
+"""A tuning as a user holds it."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from runner import store
+from runner.api import page
+from runner.api.door import door
+from runner.api.run import Run
+from runner.errors import RunnerError
+from runner.quantities import quantity
+from runner.texts import one_line
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from runner.tuning.study import Tuning as StoredTuning
+
+
+class Tuning:
+    """A stored tuning, which `runner.tune` makes.
+
+    Args:
+        stored: The tuning as it lies on the disk.
+
+    Attributes:
+        stored: The same; what the other rooms of the package take.
+    """
+
+    def __init__(self, stored: "StoredTuning") -> None:
+        self.stored = stored
+
+    @property
+    def folder(self) -> Path:
+        """Where it is stored."""
+        return self.stored.folder
+
+    def table(self) -> "pd.DataFrame":
+        """Return the trials, a row for each: the tuned keys, the objectives, failure, hash of the run, and best.
+
+        `best` tells the best trial; of several objectives, those of the Pareto front.
+        """
+        import pandas as pd
+
+        best = set(self._best())
+        objectives = [objective.metric for objective in self.stored.study.objectives]
+        rows = [
+            {**trial.params, **dict(zip(objectives, trial.values, strict=True))}
+            | {"failure": trial.failure, "hash": trial.run, "best": number in best}
+            for number, trial in enumerate(self.stored.trials)
+        ]
+        columns = [*(key.name for key in self.stored.study.keys), *objectives, "failure", "hash", "best"]
+        return pd.DataFrame(rows, columns=columns).rename_axis("trial")
+
+    @door
+    def best(self) -> Run:
+        """Return the run of the best trial; of several objectives, that of the Pareto front's first.
+
+        Raises:
+            RunnerError: if all trials failed.
+        """
+        best = self._best()
+        if not best:
+            raise RunnerError(f"{self.folder}: no trial ended well, so none is the best")
+        return Run(store.Finished(self.folder.parent.parent).open(self.stored.trials[best[0]].run))
+
+    def _best(self) -> list[int]:
+        from runner.tuning.trial import best
+
+        return best(self.stored.trials, self.stored.study.objectives)
+
+    def _lines(self) -> list[str]:
+        study, trials = self.stored.study, self.stored.trials
+        failed = sum(bool(trial.failure) for trial in trials)
+        lines = [f"{len(trials)} trials of {', '.join(key.name for key in study.keys)}, {failed} of them failed"]
+        for number in self._best():
+            trial = trials[number]
+            told = ", ".join(
+                f"{objective.metric} {quantity(value, objective.unit)}"
+                for objective, value in zip(study.objectives, trial.values, strict=True)
+            )
+            lines.append(f"best: {told} with {', '.join(key.override(trial.params[key.name]) for key in study.keys)}")
+        return lines
+
+    def __repr__(self) -> str:
+        first, *rest = self._lines()
+        return "\n  ".join(map(one_line, [f"Tuning: {first}", *rest, str(self.folder)]))
+
+    def _repr_html_(self) -> str:
+        first, *rest = self._lines()
+        return page.heading("Tuning", first) + page.listed("", rest) + page.code(self.folder)

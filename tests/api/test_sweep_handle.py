@@ -1,0 +1,200 @@
+"""A sweep from Python: the engine of the command line, and its results as tables."""
+
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+import runner
+from runner.quantities import quantity
+from runner.sweeps.measurements import measure_sweep
+from runner.sweeps.table import table
+
+CONTROLLERS = ["operational_space", "computed_torque"]
+SHORT = ("trajectory=quintic", "noise=thesis", "duration=0.05")
+
+
+@pytest.fixture(scope="module")
+def sweep(tmp_path_factory):
+    outputs = tmp_path_factory.mktemp("outputs")
+    axes = {"robot": ["macro", "mini"], "controller": CONTROLLERS, "seed": range(2)}
+    return runner.sweep(*SHORT, repetitions=6, outputs=outputs, workers=0, **axes)
+
+
+def test_its_cells_are_those_of_the_command_line(sweep, cli, simulated_runs):
+    words = (*SHORT, "repetitions=6", f"outputs={sweep.folder.parent.parent}")
+    ending = cli("-m", *words, "robot=macro,mini", f"controller={','.join(CONTROLLERS)}", "seed=range(0,2)")
+    assert ending.code == 0, ending.err
+    assert ending.folder == sweep.folder.resolve()
+    assert simulated_runs == []
+    assert sweep.command.startswith("runner -m trajectory=quintic noise=thesis")
+
+
+def test_an_experiment_brings_its_axes_along(tmp_path):
+    (tmp_path / "mine/experiment").mkdir(parents=True)
+    (tmp_path / "mine/experiment/two.yaml").write_text(
+        "# @package _global_\nhydra:\n  sweeper:\n    params: {noise.position: '1e-4,1e-3'}\n"
+    )
+    words = ("robot=macro", "experiment=two", "duration=0.05")
+    sweep = runner.sweep(*words, seed=[0, 1], config_dirs=tmp_path / "mine", outputs=tmp_path, workers=0)
+    assert sweep.axes == {"noise.position": [1e-4, 1e-3], "seed": [0.0, 1.0]}
+
+
+def test_it_knows_its_axes_and_runs(sweep):
+    assert len(sweep) == 8
+    assert sweep.axes == {"robot": ["macro", "mini"], "controller": CONTROLLERS, "seed": [0.0, 1.0]}
+    assert [run.status for run in sweep.runs()] == ["ok"] * 8
+    run = sweep.run(robot="mini", controller="computed_torque", seed=1)
+    assert (run.config["robot"]["name"], run.config["controller"]["kind"]) == ("mini", "computed_torque")
+    assert run.config["seed"] == 1
+
+
+def test_as_text_and_as_a_page(sweep):
+    lines = repr(sweep).splitlines()
+    assert lines[0].startswith("Sweep of 8 runs: all made")
+    assert lines[1:] == [
+        "  robot: macro, mini",
+        f"  controller: {', '.join(CONTROLLERS)}",
+        "  seed: 0, 1",
+        f"  {sweep.folder}",
+    ]
+    page = sweep._repr_html_()
+    assert page.count("<tr>") == 9
+    median = sweep.run(robot="mini", controller="computed_torque", seed=1).metrics["max_tracking_error"].median
+    assert "largest tracking error, median" in page
+    assert quantity(median, "m") in page
+    assert str(sweep.folder) in page
+
+
+def test_the_table_has_a_row_for_each_cell_and_metric(sweep):
+    tidy = sweep.table(["peak_torque", "energy"])
+    keys = ["robot", "controller", "seed"]
+    assert list(tidy.columns) == [*keys, "metric", "unit", "median", "low", "high", "n", "status", "caveats"]
+    assert len(tidy) == 16
+    wide = table(measure_sweep(sweep.stored))
+    for name in ("peak_torque", "energy"):
+        part = tidy[tidy["metric"] == name].reset_index(drop=True)
+        for column in ("median", "low", "high", "n"):
+            np.testing.assert_array_equal(part[column], wide[f"{name}.{column}"])
+    assert set(sweep.table()["metric"]) == set(measure_sweep(sweep.stored).values)
+    assert sweep.table("energy").equals(sweep.table(["energy"]))
+
+
+def test_values_of_each_repetition(sweep):
+    values = sweep.values("peak_torque")
+    assert list(values.columns) == ["robot", "controller", "seed", "repetition", "peak_torque"]
+    assert len(values) == 48
+    chosen = values[(values["robot"] == "mini") & (values["controller"] == "computed_torque") & (values["seed"] == 1)]
+    run = sweep.run(robot="mini", controller="computed_torque", seed=1)
+    assert tuple(chosen["peak_torque"]) == run.metrics["peak_torque"].values
+
+
+def test_a_comparison_is_in_pairs_of_equal_seeds(sweep):
+    found = sweep.compare("controller", within="robot", metrics=["peak_torque"])
+    assert list(found.columns) == [
+        "robot", "first", "second", "metric", "unit", "difference", "low", "high", "n", "effect", "p", "verdict",
+    ]  # fmt: skip
+    assert len(found) == 2
+    values = sweep.values("peak_torque")
+    values = values.set_index(["robot", "controller", "seed", "repetition"])["peak_torque"].sort_index()
+    for _, row in found.iterrows():
+        differences = values[row["robot"], row["second"]] - values[row["robot"], row["first"]]
+        assert row["n"] == len(differences) == 12
+        assert row["difference"] == pytest.approx(differences.median(), rel=1e-12)
+        assert row["low"] <= row["difference"] <= row["high"]
+    assert len(sweep.compare("controller", within=["robot", "seed"], metrics="peak_torque")) == 4
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        (lambda sweep: sweep.table("peak"), "no metric 'peak'"),
+        (lambda sweep: sweep.values("peak_torqe"), r"did you mean peak_torque\?"),
+        (lambda sweep: sweep.compare("robt"), r"no axis 'robt' \(did you mean robot\?\)"),
+        (lambda sweep: sweep.compare("robot", metrics="peak"), "no metric 'peak'"),
+        (lambda sweep: sweep.run(robt="macro"), r"'robt' was not swept \(did you mean robot\?\)"),
+        (lambda sweep: sweep.run(robot="makro"), r"robot has no value 'makro' \(did you mean macro\?\)"),
+        (
+            lambda sweep: sweep.run(robot="macro"),
+            "4 runs have these values; name one value of controller: .*; seed: 0, 1",
+        ),
+    ],
+)
+def test_what_is_not_there_is_told_in_a_line(sweep, asked, message):
+    with pytest.raises(runner.RunnerError, match=message) as raised:
+        asked(sweep)
+    assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"workers": -1}, "workers: must be a whole number"),
+        ({"robot": ["macro", "makro"]}, "makro"),
+        ({"hydra__sweeper__workers": 3}, r"give workers=\.\.\. and address=\.\.\. as arguments"),
+        ({"seed": []}, "seed: is swept over no value"),
+    ],
+)
+def test_what_cannot_be_swept(values, message, tmp_path):
+    with pytest.raises(runner.RunnerError, match=message):
+        runner.sweep("robot=macro", outputs=tmp_path / "outputs", **values)
+    assert not (tmp_path / "outputs").exists()
+
+
+def test_a_sweep_that_is_not_all_made_says_so(sweep, tmp_path):
+    outputs = shutil.copytree(sweep.folder.parent.parent, tmp_path / "outputs")
+    part = runner.open_sweep(outputs / "sweeps" / sweep.folder.name)
+    shutil.rmtree(outputs / "runs" / part.run(robot="mini", controller="computed_torque", seed=1).hash)
+    assert "1 not made yet" in repr(part)
+    assert "1 not made yet" in part._repr_html_()
+    for asked in (part.table, lambda: part.values("energy"), lambda: part.compare("robot")):
+        with pytest.raises(runner.RunnerError, match="1 of its 8 runs are not made yet; the same call"):
+            asked()
+    assert part.run(robot="mini", controller="computed_torque", seed=0).status == "ok"
+    runner.sweep(
+        *SHORT, repetitions=6, outputs=outputs, workers=0, robot="macro,mini", controller=CONTROLLERS, seed="0,1"
+    )
+    assert len(part.table("energy")) == 8
+
+
+# Neither script guards itself by `if __name__ == "__main__"`, and a process that began it again would be seen.
+PLAIN = """\
+print("begins")
+import runner
+sweep = runner.sweep("robot=macro", "duration=0.05", seed=range(4))
+print(len(list(sweep.runs())), __file__, __spec__)
+"""
+LONG = """\
+import runner
+runner.sweep("robot=macro", "trajectory=quintic", "plant=rk4", "plant.step=1e-5", "duration=2", seed=range(60))
+"""
+
+
+def test_a_plain_script_makes_a_sweep_on_processes(tmp_path):
+    (tmp_path / "plain.py").write_text(PLAIN)
+    ending = subprocess.run([sys.executable, "plain.py"], cwd=tmp_path, capture_output=True, text=True)
+    assert ending.returncode == 0, ending.stderr
+    assert ending.stdout.splitlines() == ["begins", f"4 {tmp_path / 'plain.py'} None"]
+
+
+def test_what_is_interrupted_leaves_whole_runs_and_goes_on(tmp_path, interruptible):
+    (tmp_path / "long.py").write_text(LONG)
+    runs = tmp_path / "outputs" / "runs"
+    with subprocess.Popen([sys.executable, "long.py"], cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
+        while process.poll() is None and len(list(runs.glob("*/metrics.json"))) < 2:
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        _, told = process.communicate(timeout=60)
+    assert process.returncode != 0
+    assert told.splitlines()[-1].endswith("finished runs are stored, the same call goes on from there")
+    whole = ["config.yaml", "metrics.json", "robot.urdf", "trace.parquet"]
+    folders = list(runs.iterdir())
+    assert 2 <= len(folders) < 60
+    for folder in folders:
+        assert sorted(path.name for path in folder.iterdir()) == whole
+    (swept,) = (tmp_path / "outputs" / "sweeps").iterdir()
+    assert f"{60 - len(folders)} not made yet" in repr(runner.open_sweep(swept))
