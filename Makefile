@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 # A .venv that is there may have any version, unless PYTHON asks for one.
 ANY_VERSION := $(if $(filter file,$(origin PYTHON)),--any-version)
 
-.PHONY: install reproduce test test-slow lint bench clean
+.PHONY: install reproduce test test-pages test-slow lint bench clean
 
 install:
 	@$(PYTHON) .ci/install.py $(ANY_VERSION)
@@ -15,6 +15,11 @@ reproduce: install
 
 test: install
 	$(BIN)/python -m pytest
+
+# The README and the pages of docs/ that are followed command by command in a shell: what takes minutes of them.
+test-pages: install
+	$(BIN)/python -m pytest -m slow tests/test_readme.py tests/test_tutorial.py tests/test_compare_page.py \
+		tests/test_figures_and_tables_docs.py
 
 test-slow: install
 	$(BIN)/python -m pytest -m slow

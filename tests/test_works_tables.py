@@ -1,12 +1,12 @@
-"""The README's tables of results are those of the works' reports."""
+"""The tables of docs/works.md are those of the works' reports."""
 
 import json
 import re
 
 import pytest
 
-from bench import make_readme_tables
-from bench.make_readme_tables import PAGE, made_from
+from bench import make_works_tables
+from bench.make_works_tables import PAGE, made_from
 
 
 def verdict(number, printed="9 mm", **ours):
@@ -57,15 +57,15 @@ def test_a_claim_that_no_report_has_is_an_error():
 
 
 def test_check_tells_a_stale_page(monkeypatch, tmp_path, capsys):
-    page, file = tmp_path / "README.md", tmp_path / "works.json"
+    page, file = tmp_path / "works.md", tmp_path / "works.json"
     page.write_text(STALE)
     file.write_text(json.dumps(WORKS))
-    monkeypatch.setattr(make_readme_tables, "PAGE", page)
-    assert make_readme_tables.main([str(file), "--check"]) == 1
+    monkeypatch.setattr(make_works_tables, "PAGE", page)
+    assert make_works_tables.main([str(file), "--check"]) == 1
     assert page.read_text() == STALE
-    assert make_readme_tables.main([str(file)]) == 0
-    assert make_readme_tables.main([str(file), "--check"]) == 0
-    assert capsys.readouterr().out.splitlines()[-1] == "README: as reproduced"
+    assert make_works_tables.main([str(file)]) == 0
+    assert make_works_tables.main([str(file), "--check"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == "docs/works.md: as reproduced"
 
 
 def test_every_work_has_a_table():

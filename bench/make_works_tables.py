@@ -1,4 +1,4 @@
-"""Writes the README's tables of results from what was reproduced: `python -m bench.make_readme_tables FILE`.
+"""Writes the tables of docs/works.md of results from what was reproduced: `python -m bench.make_works_tables FILE`.
 
 FILE is what `runner reproduce all --json FILE` wrote. Each table stands below a comment that names the work and the
 claims in it; the rows are those of the work's report. `--check` changes nothing, and ends with 1 where the page says
@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-PAGE = Path(__file__).resolve().parents[1] / "README.md"
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "works.md"
 _TABLE = re.compile(r"(<!-- claims of (\w+): ([\d, ]+) -->\n)((?:\|.*\n)+)")
 
 Verdict = Mapping[str, Any]
@@ -20,14 +20,16 @@ Verdict = Mapping[str, Any]
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Write the tables, or check them; return the exit code."""
-    parser = argparse.ArgumentParser(prog="python -m bench.make_readme_tables", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m bench.make_works_tables", description=__doc__)
     parser.add_argument("file", type=Path, help="what `runner reproduce all --json FILE` wrote")
     parser.add_argument("--check", action="store_true", help="change nothing; exit 1 where it differs")
     options = parser.parse_args(arguments)
     text = PAGE.read_text(encoding="utf-8")
     made = made_from(text, json.loads(options.file.read_text(encoding="utf-8")))
     if options.check:
-        print("README: as reproduced" if made == text else "README: its tables are not what was reproduced")
+        print(
+            "docs/works.md: as reproduced" if made == text else "docs/works.md: its tables are not what was reproduced"
+        )
         return int(made != text)
     PAGE.write_text(made, encoding="utf-8")
     return 0
