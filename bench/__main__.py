@@ -3,8 +3,8 @@
 import sys
 from importlib import import_module
 
-from runner.config.compose import quiet_environment
 from runner.engines import has_pybullet
+from runner.quiet import quiet_environment
 
 NAMES = (
     "tick",

@@ -88,8 +88,8 @@ def _sweep(folder: Path) -> object:
 
 
 def files_of(outputs: Path) -> list[Path]:
-    """Return the files of a store that are read again."""
-    files = [path for path in outputs.rglob("*") if path.is_file() and "reports" not in path.parts]
+    """Return the files of a store that results are read from; what `latest` means is none of them."""
+    files = [path for path in outputs.rglob("*") if path.is_file() and not {"reports", "newest"} & set(path.parts)]
     return sorted(path for path in files if path.parent.name != "logs" and not path.name.startswith("table."))
 
 

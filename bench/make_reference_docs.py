@@ -29,6 +29,7 @@ from runner.config.robot import OneArmConfig, StageConfig
 from runner.config.run import RunSettings
 from runner.config.sweep import SweepConfig
 from runner.config.torque_limits import TorqueLimitsConfig
+from runner.config.units import WRITTEN
 from runner.controllers import CONTROLLERS
 from runner.environments import ENVIRONMENTS
 from runner.metrics.summary import families
@@ -52,6 +53,18 @@ Units are SI, angles in rad; a joint that slides counts in m where one that turn
 several a mapping with one for each. A number other than 0 lies between 1e-12 and 1e12 in magnitude (one of a list may
 be smaller), a name has at most 200 characters.
 
+## Units
+
+A number may have its unit behind it, in YAML and on the command line: `controller.period=20ms`,
+`robot.home=[0,-30deg,90deg]`, `noise.position=0.1deg`, `controller.period=interval(5ms,50ms)` to `runner tune`. It is
+stored as the number in SI units, in the config of a run and on the axes of a sweep: `controller.period=0.02` is the
+same run. A unit that does not fit its key is refused, and so is any unit where a key has none. Signs that a shell or
+Hydra reads otherwise stand in quotes: `"gravity='9.8m/s^2'"`. A key of joints takes angles where a joint turns and
+lengths where it slides; one value for joints of both kinds has no unit. A plug-in's key has the unit that the docstring
+of its config says, as in `reach: How far it goes, in m.`
+
+| A key in | may be written in |
+|---|---|
 """
 _KINDS: Mapping[str, Registry] = {
     "controller": CONTROLLERS,
@@ -73,6 +86,7 @@ def reference_text() -> str:
     """Return the page."""
     sections = [
         _HEAD,
+        *_units(),
         "## Keys\n\n",
         *_keys(),
         "## What is compiled\n\n",
@@ -85,6 +99,12 @@ def reference_text() -> str:
         *_commands(),
     ]
     return "".join(sections).rstrip() + "\n"
+
+
+def _units() -> Iterator[str]:
+    for unit, written in WRITTEN.items():
+        yield f"| {unit} | {', '.join(f'`{each}`' for each in written)} |\n"
+    yield "\n"
 
 
 def _keys() -> Iterator[str]:

@@ -16,11 +16,10 @@ import numpy as np
 import yaml
 from tqdm import tqdm
 
-from runner import open_run
-from runner.config.compose import quiet_environment
 from runner.config.options import group_options
+from runner.quiet import quiet_environment
 from runner.references.shipped import reference_path
-from runner.store import Run
+from runner.store import Run, open_run
 
 SEEDS = range(5)
 MARGIN = 0.02

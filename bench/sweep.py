@@ -17,9 +17,10 @@ from pathlib import Path
 
 from runner import store
 from runner.assembly import assemble, make_encoders
-from runner.config.compose import compose, quiet_environment
+from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.execution import simulate_job
+from runner.quiet import quiet_environment
 from runner.simulation import simulate
 
 _SHORT = ("robot=macro", "noise=thesis", "duration=1")

@@ -42,6 +42,9 @@ class RunnerSweeper(Sweeper):
         self.config_dirs = tuple(Path(each.path).resolve() for each in sources if each.provider == "command-line")
         command = shlex.join(["runner", *(argument.removeprefix("++") for argument in sys.argv[1:])])
         plan = Grid([*self._params, *arguments], self)
+        if len(plan) == 1:
+            text = "nothing is swept, and a single run is made: no key has several values, as seed=0,1 has"
+            print(f"runner: {text}", file=sys.stderr)
         return run_sweep(plan, Engine(self._workers, self._address), command)
 
     def load(self, options: Sequence[str]) -> DictConfig:

@@ -17,6 +17,7 @@ from runner.config.run import RunConfig
 from runner.loop.failures import ended_well, find_failure
 from runner.metrics import MetricContext
 from runner.plugins import added
+from runner.progress.ticks import add_ticks
 from runner.robots.robot import Robot, end_points
 from runner.sensing.encoders import encoder_errors
 from runner.trace import FloatArray, Trace, Traces
@@ -119,11 +120,13 @@ class Batcher:
             most = max(1, int(_MOST_BYTES / (8 * signals * first.rows)))
             for begin in range(0, len(places), most):
                 part = places[begin : begin + most]
+                ticks = sum(runs[place].config.timing.ticks for place in part)
                 for found in self._simulate([runs[place] for place in part]):
                     if isinstance(found, Together):
                         yield replace(found, places=[part[index] for index in found.places])
                     else:
                         yield part[found[0]], found[1]
+                add_ticks(ticks)
 
     def _simulate(self, runs: Sequence[Wanted]) -> Iterator[Together | tuple[int, Trace]]:
         """Simulate runs that share their code; places are those in this sequence."""

@@ -9,18 +9,22 @@ from typing import Any
 
 import numpy as np
 
-from runner import provenance, store
+from runner import progress, provenance, store
 from runner.calibration import consistency
 from runner.calibration.procedures import Outcome
 from runner.config.calibration import CalibrationConfig, validate_calibration
 from runner.config.compose import Composed, compose
+from runner.latest import note
 from runner.metrics.summary import Summary
+from runner.progress.ticks import add_ticks, counter
 from runner.robots.model import FloatArray
 
 CALIBRATION = "calibrate"
 """Root of a calibration's config; that of a run is "config"."""
 LEVEL = 0.99
 """Probability of the band in which the mean normalised error squared must lie."""
+TICKS = 200
+"""Ticks of a run that take as long as one repetition of a calibration."""
 
 
 def calibrate(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Calibration:
@@ -46,9 +50,11 @@ def calibrate(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Calibr
     except store.DamagedError as error:
         print(f"runner: {error}; it is made again", file=sys.stderr)
         stored = None
-    if stored is not None:
-        return stored
-    return store.write_calibration(outputs, name, config.resolved, config.arm.urdf, carry_out(config, composed))
+    if stored is None:
+        progress.begin("calibrating", total=TICKS * config.settings.repetitions, unit="ticks", count=counter())
+        stored = store.write_calibration(outputs, name, config.resolved, config.arm.urdf, carry_out(config, composed))
+    note(stored.folder)
+    return stored
 
 
 def carry_out(config: CalibrationConfig, composed: Composed) -> dict[str, Any]:
@@ -60,10 +66,10 @@ def carry_out(config: CalibrationConfig, composed: Composed) -> dict[str, Any]:
     """
     wall = time.perf_counter()
     procedure, settings = config.procedure, config.settings
-    outcomes = [
-        procedure.repeat(np.random.default_rng([settings.seed, repetition]))
-        for repetition in range(settings.repetitions)
-    ]
+    outcomes = []
+    for repetition in range(settings.repetitions):
+        outcomes.append(procedure.repeat(np.random.default_rng([settings.seed, repetition])))
+        add_ticks(TICKS)
     deviations = [np.sqrt(np.diagonal(outcome.covariance)) for outcome in outcomes]
     return {
         "repetitions": settings.repetitions,

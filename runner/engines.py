@@ -3,7 +3,6 @@
 import contextlib
 import platform
 from collections.abc import Iterable
-from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 
 _WHEELS = (3, 11)  # the newest Python for which there are wheels of PyBullet
@@ -18,6 +17,8 @@ def has_pybullet() -> bool:
 
 def installed(names: Iterable[str]) -> dict[str, str]:
     """Return the versions of libraries by name; one that is not installed is left out."""
+    from importlib.metadata import PackageNotFoundError, version  # half of the time in which a word is completed
+
     found = {}
     for name in names:
         with contextlib.suppress(PackageNotFoundError):

@@ -1,12 +1,16 @@
-"""Errors in the language of robots. Everything a user can mend derives from RunnerError and ends with exit code 2."""
+"""Errors in the language of robots. Everything a user can mend derives from RunnerError and ends with exit code 2.
 
-import difflib
-import sysconfig
-import traceback
+Every command imports this; what only a message needs is imported with it.
+"""
+
 from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from runner.texts import VALUE, lines, one_line
+
+if TYPE_CHECKING:
+    import traceback
 
 _PROBLEMS_SHOWN = 20
 
@@ -63,12 +67,16 @@ class SimulationError(Exception):
 
 def nearest(name: str, allowed: Iterable[str]) -> str:
     """Return " (did you mean X?)" for the nearest allowed name, or an empty text when none is near."""
+    import difflib
+
     matches = difflib.get_close_matches(name, list(allowed), n=1, cutoff=0.5) if len(name) <= VALUE else []
     return f" (did you mean {matches[0]}?)" if matches else ""
 
 
 def told(error: Exception) -> str:
     """Return what an error of a user's part says, with the innermost place in the user's own source."""
+    import traceback
+
     text = traceback.format_exception_only(error)[-1].strip()
     if isinstance(error, SyntaxError):
         return f"{text} ({Path(error.filename or '?').name}, line {error.lineno})"
@@ -79,17 +87,21 @@ def told(error: Exception) -> str:
 
 def user_place(error: BaseException) -> str:
     """Return the innermost place in the user's own files where an error arose, or an empty text."""
+    import sysconfig
+
     libraries = tuple(sysconfig.get_paths()[name] for name in ("purelib", "platlib", "stdlib"))
     own = [frame for frame in _frames(error) if not frame.filename.startswith(libraries)]
     return _place(own[-1]) if own else ""
 
 
-def _frames(error: BaseException) -> list[traceback.FrameSummary]:
+def _frames(error: BaseException) -> "list[traceback.FrameSummary]":
     """Return where an error passed outside of this package."""
+    import traceback
+
     ours = str(Path(__file__).resolve().parent)
     frames = traceback.extract_tb(error.__traceback__)
     return [frame for frame in frames if not frame.filename.startswith((ours, "<frozen"))]
 
 
-def _place(frame: traceback.FrameSummary) -> str:
+def _place(frame: "traceback.FrameSummary") -> str:
     return f"{Path(frame.filename).name}, line {frame.lineno}, in {frame.name}"

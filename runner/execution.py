@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from runner import store
+from runner import progress, store
 from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
 from runner.batch import Batcher
 from runner.batch_jobs import simulate_together
@@ -18,7 +18,10 @@ from runner.config.limits import check_cpu_time
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.errors import SimulationError
+from runner.latest import note
 from runner.metrics import MetricContext, evaluate, summarize
+from runner.progress.stages import SIMULATING, SOON
+from runner.progress.ticks import counter
 from runner.provenance import job_provenance
 from runner.simulation import ClosedLoop, simulate
 from runner.store.writing import timing
@@ -48,6 +51,11 @@ def run(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Run:
 
 def execute(composed: Composed) -> store.Run:
     """Run a composed config, or return its stored run; see `run`."""
+    return find_or_make(composed)[0]
+
+
+def find_or_make(composed: Composed) -> tuple[store.Run, bool]:
+    """Run a composed config, or find its stored run; return the run, and whether it was made."""
     config = validate(composed.resolved, composed.config_dirs)
     outputs = Path(config.settings.outputs)
     name = store.run_hash(composed.resolved, config.arm.urdf)
@@ -57,12 +65,19 @@ def execute(composed: Composed) -> store.Run:
         print(f"runner: {error}; it is made again", file=sys.stderr)
         stored = None
     if stored is not None:
-        return stored
-    ticks = config.timing.ticks * config.settings.repetitions
+        note(stored.folder)
+        return stored, False
+    ticks, seconds = config.timing.ticks * config.settings.repetitions, None
     if ticks > _SURELY_ALLOWED:
-        check_cpu_time(config.limits, seconds_per_tick(config) * ticks, 1)
+        seconds = seconds_per_tick(config) * ticks
+        check_cpu_time(config.limits, seconds, 1)
     store.prepare(outputs)
-    return store.write_run(outputs, name, simulate_job(config, composed))
+    progress.begin(SIMULATING, seconds, ticks, "ticks", counter())
+    result = simulate_job(config, composed)
+    progress.begin("storing the run", SOON)
+    made = store.write_run(outputs, name, result)
+    note(made.folder)
+    return made, True
 
 
 def seconds_per_tick(config: RunConfig) -> float:

@@ -98,7 +98,8 @@ def fitting(value: float | None, unit: str) -> tuple[float, str]:
 def quantity(value: float | None, unit: str, digits: int = 3, rounding: float = 0.0) -> str:
     """Return a number with its unit, such as "8.73 mm"; what is rounding has none."""
     factor, name = fitting(value, unit)
-    text = number(value if value is None else factor * value, digits, factor * rounding)
+    plain = 1e-4 if unit == "%" else 1e-2  # per cent have no smaller unit that spares a power of ten
+    text = number(value if value is None else factor * value, digits, factor * rounding, plain=plain)
     if text == ROUNDED or unit == "°":
         return text if text == ROUNDED else f"{text}°"
     return f"{text} {name}".strip()

@@ -12,6 +12,7 @@ from runner.loop.compiled_loop import run_commands, run_whole
 from runner.loop.contact import Contact
 from runner.loop.drive import make_drive
 from runner.loop.recorder import Recorder
+from runner.progress.ticks import counted
 from runner.sensing import ForceTorqueSensor, JointEncoders
 from runner.trace import Trace
 
@@ -40,7 +41,8 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
         recorder.desired[:] = closed.trajectory.sample(recorder.times)
         if closed.interaction is not None and wrist is not None:
             contact = Contact(closed, closed.interaction, wrist)
-        with np.errstate(over="ignore", invalid="ignore"):  # a diverging run ends as a failure, not as a warning
+        # A diverging run ends as a failure, not as a warning.
+        with counted(recorder.clock, closed.ticks), np.errstate(over="ignore", invalid="ignore"):
             if isinstance(closed.compiled, Whole):
                 run_whole(closed.compiled, closed, encoders, recorder)
             elif isinstance(closed.compiled, CompiledCommands):

@@ -16,9 +16,10 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
-from runner.config.compose import compose, quiet_environment
+from runner.config.compose import compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
+from runner.quiet import quiet_environment
 
 quiet_environment()
 composing.begin()

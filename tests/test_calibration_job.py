@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 import yaml
 
-from runner import calibrate, calibration_job, plugins, provenance
+from runner import calibration_job, plugins, provenance
+from runner.calibration_job import calibrate
 from runner.config.compose import compose
 from runner.errors import StoreError
 from runner.store import open_calibration

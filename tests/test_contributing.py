@@ -306,8 +306,8 @@ def test_a_robot_of_ones_own_runs_from_the_command_line(crane):
     assert ending.returncode == 0
     run = runner.open_run(Path(ending.stdout.splitlines()[-1]))
     assert run.status == "ok"
-    assert run.metrics["settling_time"]["median"] < 4.0
-    assert run.metrics["steady_state_error"]["median"] < 1e-6
+    assert run.metrics["settling_time"].median < 4.0
+    assert run.metrics["steady_state_error"].median < 1e-6
     assert yaml.safe_load((run.folder / "config.yaml").read_text())["robot"]["name"] == "crane"
 
 
@@ -322,8 +322,8 @@ def test_a_robot_of_ones_own_takes_what_the_groups_offer(crane):
     run = runner.run("robot=crane", "trajectory=quintic", "noise=thesis", "torque_limits=thesis", config_dirs=[crane])
     assert run.config["torque_limits"]["max"] == [300.0, 400.0, 200.0]
     assert run.config["noise"]["position"] == 1e-4
-    assert run.metrics["max_tracking_error"]["median"] < 0.01
-    document = run_document([run])
+    assert run.metrics["max_tracking_error"].median < 0.01
+    document = run_document([run.stored])
     assert faulty(document) == []
     assert document.title.startswith("Crane, ")
 
@@ -338,11 +338,11 @@ def test_parts_of_ones_own_run_together(workshop):
     run = runner.run(*overrides, config_dirs=[workshop])
     assert run.status == "ok"
     assert run.provenance["plant_step"] == pytest.approx(0.0005)
-    assert run.metrics["path_length"]["unit"] == "m"
-    assert run.metrics["path_length"]["median"] > 0.1
-    assert run.metrics["steady_state_error"]["median"] is None  # it goes round and round
-    assert run.metrics["max_tracking_error"]["median"] < 0.3
-    assert faulty(run_document([run])) == []
+    assert run.metrics["path_length"].unit == "m"
+    assert run.metrics["path_length"].median > 0.1
+    assert run.metrics["steady_state_error"].median is None  # it goes round and round
+    assert run.metrics["max_tracking_error"].median < 0.3
+    assert faulty(run_document([run.stored])) == []
 
 
 @pytest.mark.parametrize(
@@ -391,7 +391,7 @@ def test_the_page_on_environments_shows_one_that_works(tmp_path):
     command = [sys.executable, "-m", "runner", *words.split(), "duration=0.5"]
     ending = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert ending.returncode == 0, ending.stderr
-    trace = runner.open_run(tmp_path / ending.stdout.strip()).trace
+    trace = runner.open_run(tmp_path / ending.stdout.strip()).trace()
     drag = 5.0 - 20.0 * np.gradient(trace["tip_z"], trace["t"], edge_order=2)
     np.testing.assert_allclose(trace["external_force_z"], drag, atol=0.2)
 

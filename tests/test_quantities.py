@@ -171,6 +171,8 @@ def test_so_many_digits_tell_values_apart_that_lie_between_two(low, high):
 def test_what_is_below_rounding_is_said_to_be_that():
     assert number(3.2e-18, rounding=1e-9) == "0 (rounding)"
     assert quantity(-4.4e-12, "%", rounding=1e-9) == "0 (rounding)"
+    assert quantity(4.71e-3, "%") == "0.00471 %"
+    assert quantity(5.32e-6, "%") == "5.32·10⁻⁶ %"
     assert quantity(2e-9, "m", rounding=1e-9) == "2·10⁻⁹ m"
     assert quantity(5e-7, "m", rounding=1e-6) == "0 (rounding)"
     assert number(0.0, rounding=1e-9) == "0"

@@ -3,11 +3,13 @@
 import csv
 import io
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
-from runner.audit.entry import Form, parts
+from runner import progress
+from runner.audit.entry import Form, Part, parts
 from runner.audit.sources import Where, sources
 from runner.audit.verdict import SAMPLES, VERDICTS, Judge, Judged, Verdict
+from runner.progress.stages import AUDITING
 from runner.texts import table_cell
 
 
@@ -22,12 +24,23 @@ def audit(where: Where, samples: int = SAMPLES) -> list[Judged]:
         RunnerError: If there is no such source, a file does not fit its format, or what it names does not exist.
         AuditError: If an entry contradicts itself.
     """
-    return [judged for part in parts(where) for judged in map(Judge(part, samples).judge, part.entries)]
+    return list(_judged(parts(where), samples))
 
 
 def audit_all(samples: int = SAMPLES) -> dict[str, list[Judged]]:
     """Return the same for every work of ours, by its name."""
-    return {source: audit(source, samples) for source in sources()}
+    found = {source: parts(source) for source in sources()}
+    progress.begin(AUDITING, None, sum(len(part.entries) for each in found.values() for part in each), "equations")
+    judged: dict[str, list[Judged]] = {source: [] for source in found}
+    for source, each in found.items():
+        for one in _judged(each, samples):
+            judged[source].append(one)
+            progress.step()
+    return judged
+
+
+def _judged(found: Iterable[Part], samples: int) -> Iterator[Judged]:
+    return (judged for part in found for judged in map(Judge(part, samples).judge, part.entries))
 
 
 def counts(judged: Iterable[Judged]) -> dict[Verdict, int]:

@@ -1,9 +1,43 @@
 """Command-line arguments of the commands: argparse, with our own way out."""
 
 import argparse
+from pathlib import Path
 from typing import NoReturn
 
-from runner.errors import RunnerError
+from runner.errors import RunnerError, nearest
+from runner.latest import Kind, find_folder
+
+
+class Stored:
+    """The type of an argument that is the folder of something stored, or the word `latest`; see find_folder.
+
+    Args:
+        kinds: What it may be the folder of.
+    """
+
+    def __init__(self, kinds: tuple[Kind, ...]) -> None:
+        self.kinds = kinds
+
+    def __call__(self, text: str) -> Path:
+        """Return the folder that a text names."""
+        return find_folder(text, self.kinds)
+
+
+def stored(*kinds: Kind) -> Stored:
+    """Return the type of an argument that is the folder of something stored, of one of some kinds."""
+    return Stored(kinds)
+
+
+class UsageError(RunnerError):
+    """Arguments that a command does not take.
+
+    Attributes:
+        parser: The command's parser.
+    """
+
+    def __init__(self, message: str, parser: "Parser") -> None:
+        super().__init__(f"{message}; {' '.join(parser.format_usage().split())}")
+        self.parser = parser
 
 
 class Parser(argparse.ArgumentParser):
@@ -17,10 +51,17 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, command: str, description: str | None) -> None:
         super().__init__(prog=f"runner {command}", description=description, allow_abbrev=False)
 
+    def _check_value(self, action: argparse.Action, value: object) -> None:
+        """Refuse a value that is none of an argument's choices, with the nearest of these."""
+        choices = [str(choice) for choice in action.choices or ()]
+        if choices and value not in choices:
+            name = "/".join(action.option_strings) or str(action.metavar)
+            raise RunnerError(f"{name}: no '{value}'{nearest(str(value), choices)}; allowed: {', '.join(choices)}")
+
     def error(self, message: str) -> NoReturn:
         """Raise what is wrong with the arguments.
 
         Raises:
-            RunnerError: always, with the usage.
+            UsageError: always, with the usage.
         """
-        raise RunnerError(f"{message}; {' '.join(self.format_usage().split())}")
+        raise UsageError(message, self)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from runner.commands.arguments import Parser
 from runner.commands.columns import aligned, number
-from runner.config.compose import quiet_environment
+from runner.quiet import quiet_environment
 from runner.texts import one_line
 
 if TYPE_CHECKING:

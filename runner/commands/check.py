@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.commands.arguments import Parser
+from runner.commands.arguments import Parser, stored
 from runner.commands.columns import aligned, number
-from runner.config.compose import quiet_environment
+from runner.quiet import quiet_environment
 from runner.texts import one_line
 
 if TYPE_CHECKING:
@@ -22,7 +22,12 @@ _MOVE_COLUMNS = ("cell", "metric", "was", "is", "moved", "beyond the seeds' spre
 def main(arguments: Sequence[str]) -> int:
     """Check a run or sweep against a reference, or learn one."""
     parser = Parser("check", __doc__)
-    parser.add_argument("folder", type=Path, metavar="DIR", help="folder of a run or a sweep")
+    parser.add_argument(
+        "folder",
+        type=stored("run", "sweep", "tuning"),
+        metavar="DIR",
+        help="folder of a run or a sweep, or latest",
+    )
     parser.add_argument(
         "--reference", type=Path, metavar="FILE", help="reference file; default: the one for the run's experiment"
     )

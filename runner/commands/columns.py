@@ -1,8 +1,15 @@
 """Plain text tables for a terminal."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from runner.texts import one_line
+
+if TYPE_CHECKING:
+    from runner.statistics import Comparison
+
+COMPARED = ("95 % interval", "n", "effect", "p")
+"""Columns of what `comparison_cells` returns, between the difference and the verdict."""
 
 
 def aligned(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
@@ -16,3 +23,21 @@ def aligned(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
 def number(value: float | None) -> str:
     """Return a number with five digits, "-" where there is none."""
     return "-" if value is None else f"{value:.5g}"
+
+
+def comparison_cells(comparison: "Comparison") -> list[str]:
+    """Return the difference, what COMPARED names, and the verdict of a comparison."""
+    difference, p_value = comparison.difference, comparison.p_value
+    return [
+        number(difference.median),
+        f"{number(difference.low)} to {number(difference.high)}",
+        str(difference.n),
+        f"{comparison.effect:.2f}",
+        "-" if p_value is None else f"{p_value:.2g}",
+        comparison.verdict,
+    ]
+
+
+def letter(place: int) -> str:
+    """Return what one of several folders is called: A, B, ..., Z, then its number."""
+    return chr(ord("A") + place) if place < 26 else str(place + 1)

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from runner.commands.arguments import Parser
-from runner.config.compose import quiet_environment
 from runner.errors import RunnerError
+from runner.quiet import quiet_environment
 from runner.texts import one_line
 
 

@@ -1,8 +1,6 @@
 """`runner list [TOPIC]`: what there is to choose from, and what it is judged by."""
 
 import re
-import shutil
-import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -129,6 +127,9 @@ TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {
 
 
 def _print_overview(own: Sequence[Path]) -> None:
+    import shutil
+    import textwrap
+
     width = shutil.get_terminal_size().columns
     for topic, entries in TOPICS.items():
         names = escaped(", ".join(entries(own))) or "none"

@@ -1,4 +1,4 @@
-"""`runner report DIR... [--html] [--pdf] [--metric NAME]`: a report from stored runs or a sweep."""
+"""`runner report DIR... [--html] [--pdf] [--metric NAME]`: a report from stored runs, a sweep, or several compared."""
 
 import hashlib
 import os
@@ -6,9 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.commands.arguments import Parser
-from runner.config.compose import quiet_environment
+from runner import progress
+from runner.commands.arguments import Parser, stored
 from runner.errors import RunnerError
+from runner.latest import note
+from runner.progress.stages import READING, SOON, of_report
+from runner.quiet import quiet_environment
 
 if TYPE_CHECKING:
     from runner.reporting.document import Document
@@ -18,7 +21,11 @@ def main(arguments: Sequence[str]) -> int:
     """Write the report; print its folder as the last line."""
     parser = Parser("report", __doc__)
     parser.add_argument(
-        "folders", nargs="+", type=Path, metavar="DIR", help="run folders, or the folder of one sweep or tuning"
+        "folders",
+        nargs="+",
+        type=stored("run", "sweep", "tuning"),
+        metavar="DIR",
+        help="run folders, sweep folders, or the folder of one tuning; or latest",
     )
     parser.add_argument("--html", action="store_true", help="only HTML (with --pdf: both)")
     parser.add_argument("--pdf", action="store_true", help="only PDF (with --html: both)")
@@ -27,28 +34,64 @@ def main(arguments: Sequence[str]) -> int:
     )
     options = parser.parse_args(arguments)
     quiet_environment()
-    from runner import store
+    formats = [name for name in ("html", "pdf") if getattr(options, name)] or ["html", "pdf"]
+    print(write(options.folders, options.metric, formats))
+    return 0
+
+
+def write(folders: Sequence[Path], metrics: Sequence[str], formats: Sequence[str]) -> Path:
+    """Write the report on some runs, sweeps or one tuning; return its folder.
+
+    Args:
+        folders: Their folders; of several sweeps, which are held against each other.
+        metrics: What a sweep is compared by; the first ranks it.
+        formats: "html", "pdf" or both.
+
+    Raises:
+        RunnerError: if a folder is none of these, or damaged; for an unknown metric or format.
+    """
+    progress.plan({READING: SOON, **of_report(formats)})
     from runner.reporting.render import write_report
+
+    document, folder = compose_report(folders, metrics)
+    write_report(document, folder, formats)
+    note(folder)
+    return folder
+
+
+def compose_report(folders: Sequence[Path], metrics: Sequence[str] = ()) -> "tuple[Document, Path]":
+    """Return the report on some runs, one tuning, or one or more sweeps, and the folder that it is written to.
+
+    Args:
+        folders: Those of the runs or sweeps, or that of the tuning.
+        metrics: What sweeps are compared by.
+
+    Raises:
+        RunnerError: If metrics are given for what is no sweep, or are none of its.
+        StoreError: If a run is missing or damaged.
+    """
+    from runner import store
     from runner.tuning.study import is_tuning
 
-    one_tuning = len(options.folders) == 1 and is_tuning(options.folders[0])
-    one_sweep = len(options.folders) == 1 and store.is_sweep(options.folders[0]) and not one_tuning
-    if options.metric and not one_sweep:
-        raise RunnerError("--metric is for the report on one sweep")
-    formats = [name for name in ("html", "pdf") if getattr(options, name)] or ["html", "pdf"]
-    reports = _outputs(options.folders[0]) / "reports"
-    make = _of_tuning if one_tuning else _of_sweep if one_sweep else _of_runs
-    document, name = make(options.folders, options.metric, reports)
-    folder = reports / hashlib.sha256(name.encode()).hexdigest()[:24]
-    write_report(document, folder, formats)
-    print(folder)
-    return 0
+    tunings = [is_tuning(folder) for folder in folders]
+    sweeps = [store.is_sweep(folder) for folder in folders]
+    if len(folders) > 1 and (any(tunings) or any(sweeps) != all(sweeps)):
+        what = "a tuning has a report of its own" if any(tunings) else "runs and sweeps have no report together"
+        raise RunnerError(f"{what}; give runs alone, sweeps alone, or one folder")
+    if metrics and (any(tunings) or not all(sweeps)):
+        raise RunnerError("--metric is for the report on sweeps")
+    reports = _outputs(folders[0]) / "reports"
+    of_sweeps = _of_sweep if len(sweeps) == 1 else _of_sweeps
+    make = _of_tuning if any(tunings) else of_sweeps if all(sweeps) else _of_runs
+    document, name = make(folders, metrics, reports)
+    return document, reports / hashlib.sha256(name.encode()).hexdigest()[:24]
 
 
 def _of_runs(folders: Sequence[Path], _: Sequence[str], __: Path) -> "tuple[Document, str]":
     from runner import store
     from runner.reporting.run_report import run_document
 
+    progress.begin(READING)
     runs = [run for folder in folders for run in store.open_runs(folder)]
     return run_document(runs), "".join(run.hash for run in runs)
 
@@ -60,6 +103,16 @@ def _of_sweep(folders: Sequence[Path], metrics: Sequence[str], reports: Path) ->
     sweep = store.open_sweep(folders[0])
     address = os.path.relpath(sweep.outputs / "runs", reports / "any") + "/"
     return sweep_document(sweep, metrics, address), " ".join([sweep.folder.name, *metrics])
+
+
+def _of_sweeps(folders: Sequence[Path], metrics: Sequence[str], _: Path) -> "tuple[Document, str]":
+    from runner.commands.columns import letter
+    from runner.comparison.side import open_side
+    from runner.reporting.comparison.report import comparison_document
+
+    sides = [open_side(letter(place), folder) for place, folder in enumerate(folders)]
+    names = [folder.resolve().name for folder in folders]
+    return comparison_document(sides, metrics), " ".join(["compared", *names, *metrics])
 
 
 def _of_tuning(folders: Sequence[Path], _: Sequence[str], reports: Path) -> "tuple[Document, str]":

@@ -13,11 +13,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runner import progress
 from runner.commands.arguments import Parser
-from runner.config.compose import quiet_environment
 from runner.errors import RunnerError
+from runner.latest import note
+from runner.progress.stages import of_audit, of_work
+from runner.quiet import quiet_environment
 from runner.reporting.changes import FILE
-from runner.works.names import work_names
+from runner.works.names import find_work, work_names
 
 if TYPE_CHECKING:
     from runner.reporting.document import Document
@@ -66,6 +69,8 @@ def main(arguments: Sequence[str]) -> int:
     others = [text for text in options.overrides if not text.startswith(_FREE) or text.startswith("sweep.trace")]
     if others:
         raise RunnerError(f"reproduce: {others[0]}: what is simulated is the work's own; free are {', '.join(_FREE)}")
+    if options.work not in (AUDIT, "all"):
+        find_work(options.work, (AUDIT, "all"))  # one that is not there is told at once
     quiet_environment()
     command = shlex.join(["runner", "reproduce", *arguments])
     way = _Way(options.outputs, options.overrides, command, options.profile, options.code)
@@ -99,12 +104,14 @@ def _reproduce(work: "Work | None", way: _Way) -> "tuple[str, _Reproduced]":
     from runner.reporting.render import write_report
 
     name = AUDIT if work is None else work.name
+    progress.named(name)
     folder = way.outputs / "reports" / name
     store.prepare(way.outputs)
     made = _audit(folder) if work is None else _reproduce_work(work, way)
     print("writing the report ...", file=sys.stderr)
     write_report(made.document, folder)
     _write_conclusions({name: made}, folder / FILE)
+    note(folder)
     for run, why in made.missing.items():
         print(f"runner: {name}: {run} is missing in the report: {why}", file=sys.stderr)
     print(folder)
@@ -141,6 +148,7 @@ def _reproduce_work(work: "Work", way: _Way) -> _Reproduced:
     from runner.works.check import formulas_at
     from runner.works.making import make_all
 
+    progress.plan(of_work(len(work.jobs()) + len(work.calibrations())))
     work.measure(way.outputs)
     runs, calibrations = make_all(work, way.outputs, way.overrides, way.command)
     missing = runs.missing | calibrations.missing
@@ -157,6 +165,7 @@ def _audit(folder: Path) -> _Reproduced:
     from runner.store.atomic import write_atomically
 
     print("auditing the equations ...", file=sys.stderr)
+    progress.plan(of_audit())
     judged = audit_all()
     table = as_csv([each for source in judged.values() for each in source])
     write_atomically(folder / "equations.csv", table.encode())

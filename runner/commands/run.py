@@ -1,7 +1,6 @@
 """`runner OVERRIDES` and `runner -m OVERRIDES`: Hydra composes, we check, run and store."""
 
 import itertools
-import os
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -11,19 +10,19 @@ import hydra
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig, OmegaConf
 
-from runner.config.compose import from_hydra, quiet_environment
+from runner.commands.ending import tell_run, tell_sweep
+from runner.config.compose import from_hydra
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.no_code import code_refused
 from runner.config.overrides import force
-from runner.errors import RunnerError
 from runner.paths import conf_dir
-from runner.texts import one_line
+from runner.quiet import quiet_environment
+from runner.recall.runs import keep_run, line_key
 
 if TYPE_CHECKING:
     from runner.store import Run
     from runner.sweeps.run import Ended
 
-_FAILURES_SHOWN = 20
 # What conf/config.yaml says of Hydra itself, which leaves that file aside where it is asked for its own help.
 _WITHOUT_OURS = (
     "hydra/sweeper=runner", "hydra/job_logging=none", "hydra/hydra_logging=none", "hydra.run.dir=.",
@@ -37,15 +36,17 @@ class _Task:
     An error is kept for `main` to raise: in here Hydra would print its own text.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, arguments: Sequence[str]) -> None:
+        self._arguments, self._key = arguments, line_key(arguments)
         self.run: Run | None = None
+        self.made = False
         self.ended: Ended | None = None
         self.error: Exception | None = None
         self.thresholds: Any = None
 
     def __call__(self, config: DictConfig) -> None:
         """Make one run."""
-        from runner.execution import execute  # after the config has composed: bad input is answered at once
+        from runner.execution import find_or_make  # after the config has composed: bad input is answered at once
 
         hydra_config = HydraConfig.get()
         # Unresolved, as an override may hold an interpolation of the config's keys.
@@ -55,7 +56,9 @@ class _Task:
         try:
             composed = from_hydra(config, hydra_config.runtime.choices, overrides, own)
             self.thresholds = composed.resolved.get("caveats")
-            self.run = execute(composed)
+            self.run, self.made = find_or_make(composed)
+            sources = [source.provider for source in hydra_config.runtime.config_sources]
+            keep_run(self._key, self._arguments, composed, self.run, sources)
         except Exception as error:
             self.error = error
 
@@ -70,12 +73,10 @@ class _Task:
 def main(arguments: Sequence[str]) -> int:
     """Make the run or the sweep of a command line; print the folder made as the last line."""
     quiet_environment()
-    task = _Task()
-    completing = bool({"-sc", "--shell-completion"} & set(arguments))
-    if completing and "COMP_LINE" not in os.environ and any(word.startswith("query=") for word in arguments):
-        raise RunnerError('the shell asks so, with COMP_LINE set; let it do so by eval "$(runner -sc install=bash)"')
+    task = _Task(arguments)
+    installing = bool({"-sc", "--shell-completion"} & set(arguments))
     helping = "--hydra-help" in arguments
-    sys.argv = ["runner", *(arguments if completing else force(arguments)), *(_WITHOUT_OURS if helping else ())]
+    sys.argv = ["runner", *(arguments if installing else force(arguments)), *(_WITHOUT_OURS if helping else ())]
     try:
         # The absolute path works from a console script and from a wheel, where a relative one does not.
         with code_refused():
@@ -85,64 +86,10 @@ def main(arguments: Sequence[str]) -> int:
     if task.error is not None:
         raise task.error
     if task.ended is not None:
-        return _tell_sweep(task.ended)
+        return tell_sweep(task.ended)
     if task.run is None:
         return 0  # --cfg, --hydra-help and the like
-    return _tell_run(task.run, task.thresholds)
-
-
-def _tell_run(run: "Run", thresholds: Any) -> int:
-    for warning in run.provenance["warnings"]:
-        print(one_line(f"runner: warning: {warning}"), file=sys.stderr)
-    _tell_caveats(run, thresholds)
-    if run.failure:
-        print(one_line(f"runner: {run.failure_text}"), file=sys.stderr)
-    print(run.folder)
-    return 1 if run.failure else 0
-
-
-def _tell_caveats(run: "Run", thresholds: Any) -> None:
-    """Print why a run's result may mislead, and where other thresholds than those asked for were used."""
-    from runner.caveats import changes_since
-
-    for caveat in run.caveats:
-        print(one_line(f"runner: caveat: {caveat['rule']}: {caveat['text']}"), file=sys.stderr)
-    changes = changes_since(run.caveat_rules, thresholds)
-    if changes:
-        print(one_line(f"runner: stored before; its caveats were looked for by {'; '.join(changes)}"), file=sys.stderr)
-
-
-def _tell_sweep(ended: "Ended") -> int:
-    if ended.failures:
-        from runner.commands.columns import aligned
-
-        rows = [[" ".join(overrides), why, str(where)] for overrides, why, where in ended.failures[:_FAILURES_SHOWN]]
-        count = len(ended.failures)
-        print(f"runner: {count} run{'s' if count > 1 else ''} failed", file=sys.stderr)
-        print(aligned([["run", "why", "more in"], *rows]), file=sys.stderr)
-        if len(ended.failures) > len(rows):
-            print(f"  and {len(ended.failures) - len(rows)} more", file=sys.stderr)
-    counts = ended.ends.caveats
-    if counts.any():
-        told = f"{(counts > 0).sum()} of {len(counts)} cells have caveats, {counts.max()} at most"
-        print(f"runner: {told}; `runner table {ended.folder}` says which", file=sys.stderr)
-    if ended.left:
-        print(f"runner: stopped at a failure; left: {ended.left}", file=sys.stderr)
-    _tell_differences(ended)
-    print(ended.folder)
-    return 1 if ended.failures else 0
-
-
-def _tell_differences(ended: "Ended") -> None:
-    """Say in a line that cells differ beyond what was swept, where they do."""
-    from runner.store import open_sweep
-    from runner.sweeps.differing import in_words
-    from runner.sweeps.measurements import axes_of
-
-    axes, _ = axes_of(open_sweep(ended.folder).overrides)
-    also = in_words(ended.resolved.differences(axes))
-    if also:
-        print(one_line(f"runner: {also}; the report lists their values"), file=sys.stderr)
+    return tell_run(task.run, task.made, task.thresholds)
 
 
 def _config_dirs(arguments: Sequence[str]) -> list[Path]:

@@ -2,20 +2,20 @@
 
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
-from runner.commands.arguments import Parser
-from runner.config.compose import quiet_environment
+from runner.commands.arguments import Parser, stored
+from runner.quiet import quiet_environment
 
 
 def main(arguments: Sequence[str]) -> int:
     """Print how many runs are done, failed or have caveats, what is left and for how long, and how to go on."""
     parser = Parser("status", __doc__)
-    parser.add_argument("folder", type=Path, metavar="DIR", help="folder of a sweep")
+    parser.add_argument("folder", type=stored("sweep", "tuning"), metavar="DIR", help="folder of a sweep, or latest")
     options = parser.parse_args(arguments)
     quiet_environment()
+    from runner.progress import in_words
     from runner.store import open_sweep
-    from runner.sweeps.status import find_status, in_words
+    from runner.sweeps.status import find_status
 
     sweep = open_sweep(options.folder)
     status = find_status(sweep)

@@ -13,10 +13,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runner import progress
 from runner.commands import report
 from runner.commands.arguments import Parser
-from runner.config.compose import quiet_environment
 from runner.errors import RunnerError
+from runner.progress.stages import PREPARING, READING, REPORT_CODE, SIMULATING, SOON, of_report
+from runner.quiet import quiet_environment
 
 if TYPE_CHECKING:
     from runner.tuning.study import Tuning
@@ -60,6 +62,7 @@ def main(arguments: Sequence[str]) -> int:
     from runner.tuning.objective import Objective
     from runner.tuning.run import tune
 
+    progress.plan({SIMULATING: None, PREPARING: REPORT_CODE, READING: SOON, **of_report(("html", "pdf"))})
     tuning = tune(
         options.overrides,
         [Objective(metric, direction) for direction, metric in objectives],
@@ -83,6 +86,7 @@ def _tell(tuning: "Tuning") -> int:
             for objective, value in zip(objectives, trials[number].values, strict=True)
         )
         print(f"best: {values} with {shlex.join(tuning.study.trial_overrides(trials[number]))}")
+    progress.begin(PREPARING)
     report.main([str(tuning.folder)])
     return 0 if failed < len(trials) else 1
 

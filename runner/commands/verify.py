@@ -4,16 +4,16 @@ A digest finds accidents, as a flipped bit or half a file; it does not find forg
 stored and have none; references and claims are edited by people.
 """
 
-import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from runner import progress
 from runner.commands.arguments import Parser
-from runner.config.compose import quiet_environment
 from runner.errors import RunnerError, StoreError
+from runner.quiet import quiet_environment
 
 State = Literal["good", "unsealed", "unfinished", "damaged"]
 _WORDS: Mapping[State, str] = {
@@ -49,10 +49,11 @@ def main(arguments: Sequence[str]) -> int:
     if not options.outputs.is_dir():
         raise RunnerError(f"no folder {options.outputs}; name an outputs folder, as in `runner verify outputs`")
     quiet_environment()
-    from tqdm import tqdm
-
-    looked = tqdm(verify(options.outputs), desc="verifying", unit="thing", delay=1.0, disable=None, file=sys.stderr)
-    found = list(looked)
+    found = []
+    progress.begin("verifying", total=None, unit="things")
+    for each in verify(options.outputs):
+        found.append(each)
+        progress.step()
     counts = Counter((each.kind, each.state) for each in found)
     for kind in dict.fromkeys(each.kind for each in found):
         states = (f"{counts[kind, state]} {words}" for state, words in _WORDS.items() if counts[kind, state])

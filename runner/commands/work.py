@@ -16,7 +16,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from runner.commands.arguments import Parser
-from runner.config.compose import quiet_environment
+from runner.quiet import quiet_environment
 from runner.reporting.changes import KINDS, Change, Value, changes, read_conclusions
 from runner.texts import one_line
 
@@ -60,6 +60,9 @@ def _new(options: Namespace) -> int:
 
 def _check(options: Namespace) -> int:
     """Print what is wrong with a work, a line each; exit 1 where something is."""
+    from runner.works.names import find_work
+
+    find_work(options.work)  # one that is not there is told at once
     quiet_environment()
     from runner.works.check import problems
     from runner.works.making import make_all

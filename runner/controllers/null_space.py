@@ -16,8 +16,8 @@ class NullSpaceConfig(StrictModel):
         task: What is sought: a posture, the middle of the joints' ranges, the largest manipulability, or nothing (the
             joint motion is then the shortest).
         gain: How fast, in 1/s.
-        posture: The posture sought, in rad; None is home.
-        max_speed: Largest joint speed asked for, in rad/s; None is no limit.
+        posture: The posture sought, in rad; m where a joint slides. None is home.
+        max_speed: Largest joint speed asked for, in rad/s; m/s where a joint slides. None is no limit.
     """
 
     task: Literal["none", "posture", "joint_limits", "manipulability"]

@@ -16,7 +16,7 @@ class ServoConfig(StrictModel):
     """Config of the joints' position servos, which act where the controller commands joint positions.
 
     Attributes:
-        stiffness: K, in N m/rad, of every joint or one for each.
+        stiffness: K, in N m/rad; N/m where a joint slides. Of every joint or one for each.
         damping_ratio: xi of each joint on its own, the others held at home; its damping is D = 2 xi sqrt(K M_ii).
         period: Time between two torques of the servo, in s.
         gravity_compensation: Whether the servo adds the torques that hold the arm and its payload.

@@ -32,7 +32,7 @@ def find_shipped(run: "Run") -> Reference:
     """Return the reference for the experiment and preset that a run was composed from.
 
     Raises:
-        RunnerError: if there is none; names those there are.
+        RunnerError: if there is none; says where those there are stand.
     """
     choices = run.provenance.get("choices", {})
     name = f"{choices.get('experiment')}.{choices.get('preset')}"
@@ -40,8 +40,8 @@ def find_shipped(run: "Run") -> Reference:
     if name not in known:
         what = f"'{name}'{nearest(name, known)}" if choices.get("experiment") else "a run without an experiment"
         raise RunnerError(
-            f"{run.folder}: no reference comes with the runner for {what}; give one by --reference FILE; there are: "
-            f"{', '.join(known) or 'none'}"
+            f"{run.folder}: no reference comes with the runner for {what}; give one by --reference FILE, which --learn "
+            f"FILE makes of a sweep; `runner list references` tells the {len(known)} that come with it"
         )
     return load_reference(reference_path(name), name)
 

@@ -13,7 +13,7 @@ import numpy as np
 from runner.drawing import palette
 from runner.drawing.figure import shares_legend, upright
 from runner.drawing.thinning import band, thin, usable
-from runner.drawing.ticks import mark
+from runner.drawing.ticks import marks
 from runner.drawing.units import in_readable_units
 from runner.reporting.document import Curves, FloatArray, Panel, Series
 from runner.texts import plain
@@ -163,7 +163,8 @@ def _marks(shown: tuple[float, float] | None, values: list[FloatArray]) -> Json:
     between = (1, 2, 5) if last - first <= _FEW_DECADES else (1,)
     places = [step * 10.0**power for power in range(first, last + 1, math.ceil((last - first) / 10) or 1)
               for step in between]  # fmt: skip
-    return {"tickmode": "array", "tickvals": places, "ticktext": [mark(place) for place in places]}
+    write = marks(places[0], places[-1], log=True)
+    return {"tickmode": "array", "tickvals": places, "ticktext": [write(place) for place in places]}
 
 
 def _lines(text: str, characters: int) -> str:

@@ -7,8 +7,10 @@ from functools import cache, lru_cache
 from importlib import resources
 from urllib.parse import quote
 
+from runner import progress
 from runner.drawing import palette
 from runner.paths import templates_dir
+from runner.progress.stages import HTML
 from runner.reporting import formulas, outline, playback
 from runner.reporting.curves import plotly_spec
 from runner.reporting.document import Curves, Document, Maps, Playback, RunList
@@ -25,6 +27,7 @@ _SCRIPTS = ("report", *_OF_PLOTS, "figure_tools")
 
 def render(document: Document) -> str:
     """Return a document as an HTML page."""
+    progress.begin(HTML)
     displayed, inline = outline.formulas(document)
     images = {True: formulas.draw(displayed, displayed=True), False: formulas.draw(inline, displayed=False)}
     stage, sheet = _Stage(), FormulaSheet()

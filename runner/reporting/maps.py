@@ -14,6 +14,7 @@ from runner.drawing.map_scale import (
     scaled,
     value_range,
 )
+from runner.drawing.units import map_in_readable_units
 from runner.reporting.curves import named_places, neutral
 from runner.reporting.document import Map, Maps
 
@@ -25,6 +26,7 @@ def maps_spec(block: Maps) -> list[Json]:
 
     Names of columns and rows go with them, and whether colours follow the logarithm: for keyboards and saved data.
     """
+    block = map_in_readable_units(block)
     low, high = value_range(block)
     return [_map(panel, block, low, high) for panel in block.panels]
 

@@ -106,3 +106,8 @@ def _texts(block: Block) -> Iterator[str]:
                 yield from (form.note for form in equation.forms)
         case _:
             pass
+
+
+def count_figures(document: Document) -> int:
+    """Return the number of a document's figures that are drawn for the PDF."""
+    return sum(isinstance(block, Curves | Maps) for block in blocks(document))

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import typst
 
+from runner import progress
 from runner.drawing import map_stills, stills
+from runner.progress.stages import FIGURES, PDF
 from runner.reporting import formulas, outline
 from runner.reporting.document import Curves, Document, Maps
 from runner.reporting.places import Places
@@ -17,6 +19,7 @@ from runner.reporting.templating import typst_environment
 
 def render(document: Document) -> bytes:
     """Return a document as PDF; the same document gives the same bytes."""
+    progress.begin(FIGURES, None, outline.count_figures(document), "figures")
     displayed, inline = outline.formulas(document)
     images = {True: formulas.draw(displayed, displayed=True), False: formulas.draw(inline, displayed=False)}
     with tempfile.TemporaryDirectory() as name:
@@ -39,6 +42,7 @@ def render(document: Document) -> bytes:
         )
         path = folder.root / "report.typ"
         path.write_text(source, encoding="utf-8")
+        progress.begin(PDF)
         return typst.compile(
             path, root=folder.root, format="pdf", ignore_system_fonts=True, timestamp=_timestamp(document.date)
         )
@@ -52,10 +56,14 @@ class _Folder:
         self._count = 0
 
     def curves(self, block: Curves) -> str:
-        return self.image(stills.draw(block))
+        return self._figure(stills.draw(block))
 
     def maps(self, block: Maps) -> str:
-        return self.image(map_stills.draw(block))
+        return self._figure(map_stills.draw(block))
+
+    def _figure(self, svg: str) -> str:
+        progress.step()
+        return self.image(svg)
 
     def image(self, svg: str) -> str:
         self._count += 1

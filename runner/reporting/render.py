@@ -5,8 +5,10 @@ import tempfile
 from collections.abc import Callable, Collection
 from pathlib import Path
 
+from runner import progress
 from runner.errors import RunnerError
-from runner.reporting import html, pdf
+from runner.progress.stages import of_report
+from runner.reporting import html, outline, pdf
 from runner.reporting.column_units import in_readable_units
 from runner.reporting.document import Document
 
@@ -34,6 +36,7 @@ def write_report(document: Document, folder: Path, formats: Collection[str] = ("
     if unknown:
         raise RunnerError(f"unknown report format {', '.join(unknown)}; allowed: {', '.join(_RENDERERS)}")
     folder.mkdir(parents=True, exist_ok=True)
+    progress.plan(of_report(formats, outline.count_figures(document)))
     shown = in_readable_units(document)
     return [_write(folder / f"report.{name}", _RENDERERS[name](shown)) for name in formats]
 

@@ -7,23 +7,20 @@ from typing import Any
 
 from runner.caveats import changes_since
 from runner.errors import RunnerError
-from runner.quantities import above_rounding, number, quantity, spread, with_powers
+from runner.quantities import above_rounding, number, quantity, with_powers
 from runner.references import check_run, find_shipped
 from runner.reporting.changed_keys import changed_keys, flatten
 from runner.reporting.cover import cover
 from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import desired_motion, playback, torque_and_error
+from runner.reporting.key_metrics import key_metrics, least
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
 from runner.reporting.plant_agreement import describe_agreement
 from runner.reporting.words import PLANT, in_words
 from runner.store import Run
 
-_OF_TASK = {
-    "goal": ("settling_time", "steady_state_error", "peak_torque", "saturation_fraction"),
-    "contact": ("steady_force", "peak_force", "max_tracking_error", "peak_torque"),
-}
-_OF_MOTION = ("max_tracking_error", "steady_state_error", "peak_torque", "saturation_fraction")
+_KEY_METRICS = 4
 _AT_REST = 4.0  # times the settling time, after which an arm is taken to rest
 _HEADLINE = ("settling_time", "steady_state_error", "max_tracking_error", "peak_torque", "saturation_fraction")
 
@@ -41,7 +38,22 @@ def run_document(runs: Sequence[Run]) -> Document:
         abstract=f"{len(runs)} runs, {ends}.",
         sections=[Section("Overview", (_overview(runs),)), *map(_section, runs, range(1, len(runs) + 1))],
         date=date,
+        key_numbers=_numbers_of_several(runs),
+        figures_float=False,
     )
+
+
+def _numbers_of_several(runs: Sequence[Run]) -> list[tuple[str, str, str]]:
+    """Return how many runs there are and failed, and the best one where the same metric tells of all tasks."""
+    failed = [f"run {number}" for number, run in enumerate(runs, start=1) if run.status == "failed"]
+    numbers = [("runs", str(len(runs)), ""), ("failed", str(len(failed)), ", ".join(failed))]
+    best = least(runs)
+    if best is not None:
+        metric, place = best
+        found = runs[place].metrics[metric]
+        value = quantity(found["median"], found["unit"])
+        numbers.append((f"least {title(metric)}, median", value, f"run {place + 1}: {_name(runs[place])}"))
+    return numbers
 
 
 def _of_one(run: Run, date: str) -> Document:
@@ -61,7 +73,7 @@ def _of_one(run: Run, date: str) -> Document:
         notes=[literal(f"Caveats: {', '.join(_spaced(caveat['rule']) for caveat in run.caveats)}.")]
         if run.caveats
         else [],
-        key_numbers=_key_numbers(run),
+        key_numbers=[*key_metrics(run, _KEY_METRICS)],
         figures_float=False,
     )
 
@@ -116,16 +128,6 @@ def _subtitle(run: Run) -> str:
     texts = [f"noise {_spaced(chosen['noise'])}"] if "noise" in chosen else []
     texts += [f"experiment {chosen['experiment']}"] if "experiment" in chosen else []
     return ", ".join([limits, *texts])
-
-
-def _key_numbers(run: Run) -> list[tuple[str, str, str]]:
-    """Return the four metrics that say most of a run's task: of a goal, of a motion along a path, of a contact."""
-    task = "contact" if "steady_force" in run.metrics else run.config["trajectory"]["kind"]
-    names = [name for name in (*_OF_TASK.get(task, ()), *_OF_MOTION) if name in run.metrics][:4]
-    count = run.record["repetitions"]
-    remark = f"median of {count}" if count > 1 else ""
-    return [(title(name), spread(run.metrics[name]), remark if run.metrics[name]["median"] is not None else
-             "not reached in half of the repetitions or more") for name in dict.fromkeys(names)]  # fmt: skip
 
 
 def _overview(runs: Sequence[Run]) -> Table:

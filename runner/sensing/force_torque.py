@@ -19,10 +19,10 @@ class ForceTorqueConfig(StrictModel):
     """Config of the sensor; lists hold Fx, Fy, Fz in N and Mx, My, Mz in N m.
 
     Attributes:
-        range: Largest reading of each axis, both ways.
-        resolution: Step of each axis' reading; 0 for none.
-        noise: Standard deviation of each axis' reading at rest, a fresh draw per tick.
-        bias: Reading without load.
+        range: Largest reading of each axis, in N and N m, both ways.
+        resolution: Step of each axis' reading, in N and N m; 0 for none.
+        noise: Standard deviation of each axis' reading at rest, in N and N m, a fresh draw per tick.
+        bias: Reading without load, in N and N m.
         drift: Standard deviation of the bias' random walk after one second, per axis.
         low_pass: Cut-off frequency of the first-order low-pass through which the load is seen, in Hz; None for none.
         rotation: theta, turn of the sensor about the flange's z axis, in rad.

@@ -17,9 +17,12 @@ _NEEDED = ("estimates", "truth", "errors", "deviations", "measures", "consistenc
 Table = Literal["estimates", "errors", "deviations", "measures"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Calibration(Stored):
     """A stored calibration; its record is the content of result.json."""
+
+    def __repr__(self) -> str:
+        return f"Calibration of {', '.join(self.record['estimates'])}\n  {self.folder}"
 
     @property
     def status(self) -> str:

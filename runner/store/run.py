@@ -70,7 +70,7 @@ class Run(Stored):
     @property
     def units(self) -> dict[str, str]:
         """Unit of each column of the trace."""
-        return {field.name: (field.metadata or {}).get(b"unit", b"").decode() for field in self._table.schema}
+        return units_of(self._table)
 
     @cached_property
     def _table(self) -> Any:
@@ -83,6 +83,11 @@ class Run(Stored):
         except (OSError, pyarrow.ArrowException) as error:
             what = str(error).splitlines()[0]
             raise DamagedError(f"cannot read {self.folder / 'trace.parquet'}: {what}; {MEND}") from error
+
+
+def units_of(table: Any) -> dict[str, str]:
+    """Return the unit of each column of a trace, an Arrow table."""
+    return {field.name: (field.metadata or {}).get(b"unit", b"").decode() for field in table.schema}
 
 
 def describe_failure(failure: Mapping[str, Any]) -> str:

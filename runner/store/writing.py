@@ -168,10 +168,9 @@ def cut_short_record(reason: str, repetitions: int, provenance: Mapping[str, Any
     }
 
 
-def _parquet(trace: Trace) -> bytes:
-    """Return a trace as Parquet: a column per signal, its unit in the column's metadata."""
+def trace_table(trace: Trace) -> Any:
+    """Return a trace as an Arrow table: a column per signal, its unit in the column's metadata."""
     import pyarrow
-    import pyarrow.parquet
 
     joints = range(trace.q.shape[1])
     columns: list[tuple[str, str, np.ndarray]] = [("t", "s", trace.t)]
@@ -203,10 +202,17 @@ def _parquet(trace: Trace) -> bytes:
     schema = pyarrow.schema(
         [pyarrow.field(name, pyarrow.float64(), metadata={"unit": unit}) for name, unit, _ in columns]
     )
-    arrays = [float_column(values) for *_, values in columns]
-    table = pyarrow.Table.from_arrays(arrays, schema=schema)
+    return pyarrow.Table.from_arrays([float_column(values) for *_, values in columns], schema=schema)
+
+
+def _parquet(trace: Trace) -> bytes:
+    """Return a trace as Parquet; see trace_table."""
+    import pyarrow.parquet
+
     buffer = io.BytesIO()
-    pyarrow.parquet.write_table(table, buffer, compression="zstd", use_dictionary=False, use_byte_stream_split=True)
+    pyarrow.parquet.write_table(
+        trace_table(trace), buffer, compression="zstd", use_dictionary=False, use_byte_stream_split=True
+    )
     return buffer.getvalue()
 
 

@@ -42,7 +42,7 @@ class Grid:
     def overrides(self, cell: int) -> tuple[str, ...]:
         """Return the overrides of a cell; see Plan."""
         pairs = zip(self._keys, self._numbers(cell), strict=True)
-        return tuple(key.overrides[number].removeprefix("++") for key, number in pairs if is_simulated(key.name))
+        return tuple(key.text(number) for key, number in pairs if is_simulated(key.name))
 
     def axes(self) -> GridOverrides:
         """Return the overrides of all cells; see Plan."""
@@ -154,7 +154,7 @@ def _texts(key: SweptKey) -> Sequence[str]:
         return [""] * len(key.overrides)
     if isinstance(key.overrides, Counted):
         return Counted(key.overrides.start.removeprefix("++"), key.overrides.numbers)
-    return [text.removeprefix("++") for text in key.overrides]
+    return [key.text(number) for number in range(len(key.values))]
 
 
 def plan_sweep(overrides: Sequence[str], config_dirs: Sequence[Path] = ()) -> Grid:

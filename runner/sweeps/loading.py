@@ -61,17 +61,17 @@ class Loader:
         return self._load(root, tuple(options))
 
     def sweeper(self, overrides: Sequence[str]) -> DictConfig:
-        """Return the config of the sweeper, as `runner -m OVERRIDES` takes it.
+        """Return the config of the sweeper, as `runner -m OVERRIDES` takes it; what is swept is left aside for that.
 
         Raises:
             ConfigError: for an option or key that does not exist.
         """
         try:
-            config: DictConfig = self.load(overrides).hydra.sweeper
+            config: DictConfig = self._compose("config", tuple(overrides), RunMode.MULTIRUN).hydra.sweeper
         except COMPOSITION_ERRORS as error:
             raise explain(error, self.config_dirs) from None
         return config
 
-    def _compose(self, root: str, options: tuple[str, ...]) -> DictConfig:
+    def _compose(self, root: str, options: tuple[str, ...], mode: RunMode = RunMode.RUN) -> DictConfig:
         with code_refused():
-            return self.hydra.load_configuration(root, [*self._search, *options], RunMode.RUN)
+            return self.hydra.load_configuration(root, [*self._search, *options], mode)

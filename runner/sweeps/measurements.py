@@ -7,11 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from runner import progress
+from runner.progress.stages import READING
 from runner.store import Run, Sweep
 from runner.store.axes import GridOverrides
 from runner.store.sweep import InShard
 from runner.sweeps.differing import Difference, Resolved
 from runner.sweeps.gathering import Gathered
+from runner.sweeps.metric_names import check_metrics
 from runner.sweeps.swept import is_simulated
 
 FloatArray = NDArray[np.float64]
@@ -37,6 +40,11 @@ class Axis:
         texts = len(self.values) > 0 and isinstance(self.values[0], str)
         return None if texts else np.array(self.values, dtype=float)
 
+    def text(self, level: int) -> str:
+        """Return one of its values as text."""
+        value = self.values[level]
+        return value if isinstance(value, str) else f"{value:g}"
+
 
 @dataclass(frozen=True)
 class Measurements:
@@ -56,6 +64,7 @@ class Measurements:
         caveat_changes: With what else than today these were looked for, each with the number of cells.
         seeds: Seed of each cell; empty where all have the same.
         differences: Resolved config values that differ between cells beyond the axes.
+        configs: Each resolved config with the cells that have it; these may differ in their seed.
     """
 
     axes: Sequence[Axis]
@@ -70,6 +79,7 @@ class Measurements:
     caveat_changes: Mapping[str, int] = field(default_factory=dict)
     seeds: Sequence[int] | NDArray[np.int64] = ()
     differences: Sequence[Difference] = ()
+    configs: Sequence[tuple[Mapping[str, Any], NDArray[np.intp]]] = ()
 
     @property
     def draws(self) -> NDArray[np.intp]:
@@ -84,6 +94,15 @@ class Measurements:
     def repetitions(self) -> int:
         """The most repetitions that a cell has."""
         return max((values.shape[1] for values in self.values.values()), default=1)
+
+    def named(self, wanted: Sequence[str] | None) -> Sequence[str]:
+        """Return some metrics by name, each once; all of them for None.
+
+        Raises:
+            RunnerError: If one is none of the sweep's; tells the nearest, and which there are.
+        """
+        check_metrics(wanted or (), self.values)
+        return list(self.values if wanted is None else dict.fromkeys(wanted))
 
     def of_cell(self, metric: str, cell: int) -> FloatArray:
         """Return the values of a metric over the repetitions of one cell, shape (n,)."""
@@ -130,11 +149,14 @@ def measure_sweep(sweep: Sweep) -> Measurements:
         StoreError: If a run is missing or damaged.
     """
     gathered = Gathered(len(sweep.hashes))
+    progress.begin(READING, None, len(sweep.hashes), "cells")
     for found in sweep.found():
         if isinstance(found, InShard):
             gathered.add_shard(found.path, found.rows, found.cells)
+            progress.step(len(found.cells))
         else:
             gathered.add_run(*found)
+            progress.step()
     return _measured(sweep.overrides, gathered)
 
 
@@ -162,6 +184,7 @@ def _measured(overrides: Sequence[Sequence[str]], gathered: Gathered) -> Measure
         gathered.changes,
         gathered.seeds,
         resolved.differences(axes),
+        [(config, np.concatenate(members)) for config, members in gathered.configs],
     )
 
 

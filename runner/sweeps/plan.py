@@ -7,11 +7,10 @@ from typing import NoReturn, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from tqdm import tqdm
 
-from runner import store
+from runner import progress, store
 from runner.assembly import assemble
-from runner.calibration_job import CALIBRATION
+from runner.calibration_job import CALIBRATION, TICKS
 from runner.config.calibration import validate_calibration
 from runner.config.compose import Composed
 from runner.config.limits import LimitsConfig
@@ -19,6 +18,7 @@ from runner.config.run import RunConfig
 from runner.config.sweep import SweepConfig
 from runner.config.validation import validate
 from runner.errors import ConfigError
+from runner.progress.stages import CHECKING
 from runner.store.axes import GridOverrides
 from runner.store.identity import json_text
 from runner.store.names import Names, Texts
@@ -27,7 +27,6 @@ from runner.sweeps.differing import Resolved
 from runner.sweeps.resolved import is_one_arm, resolve
 
 _PROBLEMS_SHOWN = 20
-_TICKS_OF_A_CALIBRATION = 200  # that take as long as one repetition of it
 
 
 class Plan(Protocol):
@@ -97,27 +96,28 @@ def check(plan: Plan) -> Checked:
     first: RunConfig | None = None
     resolved = Resolved()
     assembled: dict[tuple[str, bytes], ConfigError | None] = {}
-    with tqdm(total=len(plan), desc="checking", unit="run", delay=1.0, disable=None) as bar:
-        for block in plan.blocks():
-            bar.update(len(block.cells))
-            cells = slice(block.cells.start, block.cells.stop, block.cells.step)
-            try:
-                composed = plan.composed(block.cells[0])
-                if composed.root == CALIBRATION:
-                    calibrations.add(block.cells[0])
-                    names[cells], costs[cells] = _check_calibration(composed)
-                    continue
-                config = validate(composed.resolved, composed.config_dirs)
-                first = first or config
-                _check_alike(first, config)
-                _check_assembly(composed, config, assembled)
-                names[cells] = _names(composed, config, block)
-                costs[cells] = config.timing.ticks * config.settings.repetitions
-                start = config.path.start.tolist() if is_one_arm(composed.resolved) else None
-                described = resolve(composed.resolved, config.timing.step, start)
-                resolved.add(described, composed.overrides, block.cells)
-            except ConfigError as error:
-                problems.add(error, block)
+    progress.begin(CHECKING, None, len(plan), "cells")
+    for block in plan.blocks():
+        cells = slice(block.cells.start, block.cells.stop, block.cells.step)
+        try:
+            composed = plan.composed(block.cells[0])
+            if composed.root == CALIBRATION:
+                calibrations.add(block.cells[0])
+                names[cells], costs[cells] = _check_calibration(composed)
+                continue
+            config = validate(composed.resolved, composed.config_dirs)
+            first = first or config
+            _check_alike(first, config)
+            _check_assembly(composed, config, assembled)
+            names[cells] = _names(composed, config, block)
+            costs[cells] = config.timing.ticks * config.settings.repetitions
+            start = config.path.start.tolist() if is_one_arm(composed.resolved) else None
+            described = resolve(composed.resolved, config.timing.step, start)
+            resolved.add(described, composed.overrides, block.cells)
+        except ConfigError as error:
+            problems.add(error, block)
+        finally:
+            progress.step(len(block.cells))
     if problems or first is None:
         problems.report(plan)
     outputs = Path(first.settings.outputs)
@@ -162,7 +162,7 @@ def _check_calibration(composed: Composed) -> tuple[str, int]:
     """Return hash and cost of a calibration."""
     config = validate_calibration(composed)
     name = store.run_hash(config.resolved, config.arm.urdf)
-    return name, _TICKS_OF_A_CALIBRATION * config.settings.repetitions
+    return name, TICKS * config.settings.repetitions
 
 
 def _check_alike(first: RunConfig, other: RunConfig) -> None:
@@ -193,5 +193,5 @@ def _check_assembly(
 
 
 def _describe(plan: Plan, problem: str, cell: int, count: int) -> str:
-    others = f" and {count - 1} other cells:" if count > 1 else ""
+    others = f" and {count - 1} other cell{'s' if count > 2 else ''}:" if count > 1 else ""
     return f"[{' '.join(plan.overrides(cell))}]{others} {problem}"

@@ -1,5 +1,6 @@
 """A whole sweep: from its plan to its stored runs."""
 
+import contextlib
 import os
 import shutil
 import sys
@@ -10,22 +11,23 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from runner import store
+from runner import progress, store
 from runner.config.limits import check_cpu_time
 from runner.config.sweep import SweepConfig
 from runner.errors import ConfigError, StoreError
+from runner.latest import note
 from runner.plugins import in_use
+from runner.progress.stages import SIMULATING, SOON
 from runner.store.atomic import remove_leftovers
 from runner.store.names import Names
 from runner.sweeps.differing import Resolved
 from runner.sweeps.ends import Ends
 from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
 from runner.sweeps.lock import at_work
+from runner.sweeps.pace import START_UP, Pace, estimate
 from runner.sweeps.plan import Checked, Plan, check
-from runner.sweeps.progress import Progress, estimate
 from runner.sweeps.queue import Queue
 from runner.sweeps.rules import Rules, TraceKeeping, one_in
-from runner.sweeps.status import in_words
 from runner.sweeps.work import Report, find_calibrated
 
 _DAMAGE_SHOWN = 10
@@ -60,6 +62,7 @@ class Ended:
         ends: How those ended that are made, by hash.
         failures: Overrides, reason and where to read on, of each cell that failed.
         left: Number of runs that were not made, as the sweep was to stop at the first failure.
+        stored: Number of runs that were stored before.
         resolved: What differs between the configs of the runs.
     """
 
@@ -69,6 +72,7 @@ class Ended:
     ends: Ends
     failures: Sequence[tuple[Sequence[str], str, Path]]
     left: int
+    stored: int = field(compare=False)
     resolved: Resolved = field(compare=False)
 
 
@@ -86,25 +90,33 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
         StoreError: if the disk does not take them, or a worker cannot work.
         RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
     """
+    progress.plan({SIMULATING: None})
     checked = check(plan)
     names, outputs = checked.names, checked.outputs
+    progress.begin("looking for stored runs", SOON)
     store.prepare(outputs)
     with at_work(outputs):
         folder = _write_sweep(plan, checked, command)
+        note(folder)
         rules = replace(make_rules(checked.settings, folder, len(names)), accept_cut_short=accept_cut_short)
         ends = _find_stored(checked, rules)
+        stored = len(ends)
         left = ends.left[np.argsort(-checked.costs[ends.left], kind="stable")]
         queue = Queue(plan, names, checked.costs, left, rules)
-        for report in make_jobs(plan, checked, queue, left, engine, len(ends)):
-            ends.add(report.outcomes)
-            if report.trouble:
-                raise StoreError(f"{report.trouble}; finished runs are stored, the same command goes on from there")
-            if rules.stop_at_failure and any(end.failure for end in report.outcomes):
-                break
+        try:
+            for report in make_jobs(plan, checked, queue, left, engine, stored):
+                ends.add(report.outcomes)
+                if report.trouble:
+                    raise StoreError(f"{report.trouble}; finished runs are stored, the same command goes on from there")
+                if rules.stop_at_failure and any(end.failure for end in report.outcomes):
+                    break
+        except KeyboardInterrupt:  # no worker is left to finish the run that it was at
+            clean(rules, names)
+            raise
         clean(rules, names)
     failed = [(cell, ends[names[cell]]) for cell in ends.failed.tolist()]
     failures = [(plan.overrides(cell), end.failure, _where(end.name, outputs, folder)) for cell, end in failed]
-    return Ended(folder, outputs, names, ends, failures, len(ends.left), checked.resolved)
+    return Ended(folder, outputs, names, ends, failures, len(ends.left), stored, checked.resolved)
 
 
 def _write_sweep(plan: Plan, checked: Checked, command: str) -> Path:
@@ -190,15 +202,19 @@ def make_jobs(
     """
     _tell(_count(checked, len(cells), stored))
     if not len(cells):
+        progress.plan({SIMULATING: 0.0})
         return
     ticks = int(checked.costs[cells].sum())
+    progress.begin("estimating", SOON)
     seconds = estimate(plan, checked, cells, ticks, queue.rules.kept)
     check_cpu_time(checked.limits, seconds, len(cells))
-    progress = Progress(queue.rules.sweep, len(cells), ticks)
-    with progress:
-        for report in _reports(queue, len(cells), engine, seconds):
-            progress.add(len(report.outcomes), queue.ticks_done)
+    pace = Pace(queue.rules.sweep)
+    with _workers(queue, len(cells), engine, seconds) as reports:
+        progress.begin(SIMULATING, None, ticks, "ticks", lambda: queue.ticks_made)
+        for report in reports:
+            pace.add(len(report.outcomes))
             yield report
+    progress.begin("summing up", SOON)
 
 
 def _count(checked: Checked, left: int, stored: int) -> str:
@@ -207,24 +223,40 @@ def _count(checked: Checked, left: int, stored: int) -> str:
     return f"{left + stored} {kind}, {stored} of them stored already" if stored else f"{left} {kind}"
 
 
-def _reports(queue: Queue, jobs: int, engine: Engine, seconds: float) -> Iterator[Report]:
+@contextlib.contextmanager
+def _workers(queue: Queue, jobs: int, engine: Engine, seconds: float) -> Iterator[Iterator[Report]]:
+    """Start what makes the jobs of a queue, told to take some seconds of CPU time; yield what became of each chunk."""
     if engine.address is not None:
-        with remote_client(engine.address) as client:
-            _tell_estimate(seconds, max(1, len(client.nthreads())))
-            yield from on_cluster(queue, client)
+        _expect(0.0, seconds, 1)
+        with remote_client(engine.address) as client, contextlib.closing(on_cluster(queue, client)) as reports:
+            _tell_estimate(_expect(0.0, seconds, max(1, len(client.nthreads()))), max(1, len(client.nthreads())))
+            yield reports
     elif engine.workers == 0:
-        _tell_estimate(seconds, 1)
-        yield from in_process(queue)
+        _tell_estimate(_expect(0.0, seconds, 1), 1)
+        with contextlib.closing(in_process(queue)) as reports:
+            yield reports
     else:
         workers = min(engine.workers, jobs)
-        _tell_estimate(seconds, workers)
-        with local_client(workers, _scratch(queue.rules)) as client:
-            yield from on_cluster(queue, client)
+        together = min(workers, os.cpu_count() or 1)
+        start = START_UP * workers / together
+        _tell_estimate(_expect(start, seconds, together), workers)
+        progress.begin("starting processes", start)
+        with (
+            local_client(workers, _scratch(queue.rules)) as client,
+            contextlib.closing(on_cluster(queue, client)) as reports,
+        ):
+            yield reports
+
+
+def _expect(start: float, seconds: float, processes: int) -> float:
+    """Plan the simulation on some processes; return how long that and their start take together, in s."""
+    progress.plan({SIMULATING: seconds / processes})
+    return start + seconds / processes
 
 
 def _tell_estimate(seconds: float, processes: int) -> None:
     several = "es" if processes > 1 else ""
-    _tell(f"about {in_words(seconds / processes)} on {processes} process{several}")
+    _tell(f"about {progress.in_words(seconds)} on {processes} process{several}")
 
 
 def _tell(text: str) -> None:

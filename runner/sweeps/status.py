@@ -74,12 +74,3 @@ def read_pace(folder: Path) -> float | None:
     if not (isinstance(pace, float) and math.isfinite(pace)):
         raise store.DamagedError(f"cannot read {folder / NOTE}: it holds no time of a run; {_MEND}")
     return pace
-
-
-def in_words(seconds: float) -> str:
-    """Return a duration as a person would say it."""
-    if seconds < 90.0:
-        return f"{max(1, round(seconds))} s"
-    if seconds < 5400.0:
-        return f"{round(seconds / 60.0)} min"
-    return f"{seconds / 3600.0:.1f} h"

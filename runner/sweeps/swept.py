@@ -10,6 +10,7 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override, RangeSweep, Transformer
 
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.in_si import as_numbers
 from runner.errors import ConfigError
 from runner.store.axes import Counted
 
@@ -23,14 +24,22 @@ class SweptKey:
     Attributes:
         name: The key, such as "noise.position".
         overrides: The override of each value as Hydra takes it, such as "++noise.position=0.001".
-        values: The values themselves.
+        values: The values themselves; quantities, such as 1mrad, as numbers in SI units.
         option: Whether they choose an option of a config group, or delete a key: what needs composing anew.
+        in_si: Whether its values are numbers in place of quantities that were typed.
     """
 
     name: str
     overrides: Sequence[str]
     values: Sequence[Any]
     option: bool
+    in_si: bool = False
+
+    def text(self, number: int) -> str:
+        """Return the override of a value, given by its number, as a sweep keeps it."""
+        if self.in_si:
+            return f"{self.name}={self.values[number]!r}"
+        return self.overrides[number].removeprefix("++")
 
 
 def parse_sweep(arguments: Sequence[str], groups: Sequence[str], loader: ConfigLoader) -> list[SweptKey]:
@@ -90,6 +99,9 @@ def _read(override: Override, groups: Sequence[str]) -> SweptKey:
     else:
         value: Any = override.value()
         values, overrides = [value], [override.input_line or ""]
+    numbers = None if is_group else as_numbers(values, name)
+    if numbers is not None:
+        return SweptKey(name, overrides, numbers, option=False, in_si=True)
     mapping = any(isinstance(value, dict) for value in values)
     return SweptKey(name, overrides, values, (is_group and not mapping) or override.is_delete())
 

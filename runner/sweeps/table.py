@@ -1,6 +1,6 @@
 """A sweep as one tidy table, a row for each cell: Parquet and CSV, readable with pandas alone."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,8 +19,10 @@ _TEXTS = ["status", "failure", "caveats.rules"]  # columns of which many rows ar
 QUANTILES = (0.05, 0.25, 0.75, 0.95)
 
 
-def table(measurements: Measurements, rows: slice = slice(None)) -> "pd.DataFrame":
-    """Return the table of a sweep, or some of its rows.
+def table(
+    measurements: Measurements, metrics: Sequence[str] | None = None, rows: slice = slice(None)
+) -> "pd.DataFrame":
+    """Return the table of a sweep, or some of its metrics or rows.
 
     The columns are the swept axes under their keys; status, failure and hash; the number of caveats, and the
     rules that were sprung; and of every metric `NAME.median`;
@@ -29,6 +31,14 @@ def table(measurements: Measurements, rows: slice = slice(None)) -> "pd.DataFram
     without one counts as beyond every number; what is itself beyond every number is missing. A quantile is the
     smallest value that so large a share of the repetitions does not exceed, never a value between two of them: NumPy's
     inverted_cdf. The median of an even number is the mean of the two in the middle.
+
+    Args:
+        measurements: The cells.
+        metrics: Names of the metrics, in order; None takes all.
+        rows: Which cells.
+
+    Raises:
+        RunnerError: If a metric is none of the sweep's.
     """
     import pandas as pd
 
@@ -43,9 +53,15 @@ def table(measurements: Measurements, rows: slice = slice(None)) -> "pd.DataFram
     caveats = measurements.caveats[rows] or [()] * len(measurements.hashes[rows])
     columns["caveats"] = [len(found) for found in caveats]
     columns["caveats.rules"] = [" ".join(str(caveat["rule"]) for caveat in found) for found in caveats]
-    for name, values in measurements.values.items():
-        columns |= dict(_columns(name, values[rows]))
-    return pd.DataFrame(columns)
+    return pd.DataFrame(columns | metric_columns(measurements, metrics, rows))
+
+
+def metric_columns(
+    measurements: Measurements, metrics: Sequence[str] | None = None, rows: slice = slice(None)
+) -> dict[str, FloatArray]:
+    """Return the columns of the metrics alone, each of shape (cells,); see `table`."""
+    names = measurements.named(metrics)
+    return {key: column for name in names for key, column in _columns(name, measurements.values[name][rows])}
 
 
 def write_table(measurements: Measurements, folder: Path) -> int:
@@ -60,7 +76,7 @@ def write_table(measurements: Measurements, folder: Path) -> int:
     import pyarrow.csv
     import pyarrow.parquet
 
-    schema = _with_units(pyarrow.Table.from_pandas(table(measurements, slice(0, 1))).schema, measurements.units)
+    schema = with_units(pyarrow.Table.from_pandas(table(measurements, rows=slice(0, 1))).schema, measurements.units)
     named = pyarrow.schema([field.with_name(table_cell(field.name)) for field in schema])
     unquoted = pyarrow.csv.WriteOptions(quoting_style="needed")
     with (
@@ -70,7 +86,7 @@ def write_table(measurements: Measurements, folder: Path) -> int:
         pyarrow.csv.CSVWriter(csv_file, named, write_options=unquoted) as csv,
     ):
         for start in range(0, len(measurements.hashes), _ROWS):
-            frame = table(measurements, slice(start, start + _ROWS))
+            frame = table(measurements, rows=slice(start, start + _ROWS))
             parquet.write_table(pyarrow.Table.from_pandas(frame, schema, preserve_index=False))
             texts = [name for name in frame.select_dtypes(exclude="number").columns if name != "hash"]
             cells = {name: frame[name].map({text: table_cell(text) for text in frame[name].unique()}) for name in texts}
@@ -79,7 +95,8 @@ def write_table(measurements: Measurements, folder: Path) -> int:
     return len(schema)
 
 
-def _with_units(schema: Any, units: Mapping[str, str]) -> Any:
+def with_units(schema: Any, units: Mapping[str, str]) -> Any:
+    """Return the schema of a Parquet table with the unit of each column of a metric in its metadata."""
     for index, column in enumerate(schema.names):
         name, _, kind = column.rpartition(".")
         if name in units and kind != "n":

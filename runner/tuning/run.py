@@ -14,6 +14,7 @@ from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.options import groups
 from runner.config.overrides import force
 from runner.errors import ConfigError, StoreError
+from runner.latest import note
 from runner.store.names import Names
 from runner.sweeps.grid import Grid
 from runner.sweeps.loading import Loader
@@ -68,6 +69,7 @@ def tune(
         folder.mkdir(parents=True, exist_ok=True)
         journal = Journal(journal_path(folder), keys, objectives)
         study.write(folder, journal.trials)
+        note(folder)
         queue = TrialQueue(study, journal, loader, rules, trials, seed)
         try:
             _work_off(plan, checked, queue, engine, len(journal.trials))

@@ -9,9 +9,9 @@ from pydantic import Field
 from runner.data_file import read_data
 from runner.errors import RunnerError, nearest
 from runner.registry import StrictModel
+from runner.works.names import FILE
 from runner.works.profiles import Profile
 
-FILE = "work.yaml"
 _SUFFIXES = (".md", ".py")
 
 Text = Annotated[str, Field(min_length=1)]

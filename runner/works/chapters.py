@@ -8,10 +8,12 @@ from inspect import signature
 from pathlib import Path
 from typing import Any
 
+from runner import progress
 from runner.audit.audit import audit
 from runner.audit.sources import Source
 from runner.claims import FACTOR, Verdict, load_claims
 from runner.errors import RunnerError
+from runner.progress.stages import CHAPTERS
 from runner.reporting.audit.report import rows
 from runner.reporting.claim import Claim
 from runner.reporting.claims import RULE, judged_claims
@@ -66,6 +68,7 @@ class Chapters:
 
     def sections(self) -> list[Section]:
         """Return all chapters; one that needs what was not made says so in its place."""
+        progress.begin(CHAPTERS, None, _count(self._about.chapters), "chapters")
         return self._each(self._about.chapters)
 
     def concluded(self, name: str) -> tuple[list[Finding], Mapping[str, Any]]:
@@ -121,7 +124,13 @@ class Chapters:
         return Equations(caption, rows(judged), Origin(command=self._command), self._folder.name)
 
     def _each(self, chapters: Sequence[str | Part]) -> list[Section]:
-        return parts((_file(each), partial(self.section, each)) for each in chapters)
+        return parts((_file(each), partial(self._one, each)) for each in chapters)
+
+    def _one(self, chapter: str | Part) -> Section:
+        made = self.section(chapter)
+        if not isinstance(chapter, Part):
+            progress.step()
+        return made
 
     def section(self, chapter: str | Part) -> Section:
         """Return the chapter of a file, such as "turns.md", or of several."""
@@ -138,6 +147,11 @@ class Chapters:
 
     def _text(self, file: str) -> str:
         return (self._folder / file).read_text(encoding="utf-8")
+
+
+def _count(chapters: Sequence[str | Part]) -> int:
+    """Return the number of files that some chapters have."""
+    return sum(len(each.sections) if isinstance(each, Part) else 1 for each in chapters)
 
 
 def _file(chapter: str | Part) -> str:

@@ -12,7 +12,7 @@ from runner.reporting.job import MissingError
 from runner.reporting.prose.trying import never_failing
 from runner.reporting.prose.typed import levels_in, typed_numbers
 from runner.store import Calibration, Run
-from runner.works.about import FILE as ABOUT
+from runner.works.names import FILE as ABOUT
 from runner.works.work import Work
 
 

@@ -1,7 +1,7 @@
 """The runs and calibrations of a work, made by the engine of sweeps where they are not stored yet."""
 
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from runner import store
@@ -11,6 +11,7 @@ from runner.reporting.job import Made
 from runner.store import Calibration, Run
 from runner.sweeps.listed import Item, Listed
 from runner.sweeps.loading import Loader
+from runner.sweeps.plan import check
 from runner.sweeps.run import Engine, run_sweep
 from runner.works.work import Work
 
@@ -32,12 +33,10 @@ def make_all(
         RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
     """
     jobs, calibrations = work.jobs(), work.calibrations()
-    items = {name: Item(job.overrides) for name, job in jobs.items()}
-    items |= {name: Item(own, CALIBRATION) for name, own in calibrations.items()}
-    shared = [text for text in overrides if not text.startswith("hydra.")]
+    items = _items(work)
     loader = Loader(work.config_dirs)
     sweeper = loader.sweeper([text for text in overrides if text.startswith("hydra.")])
-    plan = Listed(items, [*shared, "sweep.trace=all", f"outputs={outputs}"], loader)
+    plan = _plan(items, outputs, overrides, loader)
     ended = run_sweep(plan, Engine(sweeper.workers, sweeper.address), command, accept_cut_short=False)
     places = dict(zip(items, ended.names, strict=True))
     ends = {name: ended.ends.get(place) for name, place in places.items()}
@@ -57,3 +56,20 @@ def make_all(
         Made(runs, {name: why for name, why in missing.items() if name in jobs}, work.dropped()),
         Made(found, {name: why for name, why in missing.items() if name in calibrations}, work.dropped()),
     )
+
+
+def count_missing(work: Work, outputs: Path) -> int:
+    """Return how many runs and calibrations of a work are not stored."""
+    names = set(check(_plan(_items(work), outputs, (), Loader(work.config_dirs))).names)
+    kept = ("runs/{}/metrics.json", "calibrations/{}/result.json")
+    return sum(not any((outputs / place.format(name)).exists() for place in kept) for name in names)
+
+
+def _items(work: Work) -> dict[str, Item]:
+    items = {name: Item(job.overrides) for name, job in work.jobs().items()}
+    return items | {name: Item(own, CALIBRATION) for name, own in work.calibrations().items()}
+
+
+def _plan(items: Mapping[str, Item], outputs: Path, overrides: Sequence[str], loader: Loader) -> Listed:
+    shared = [text for text in overrides if not text.startswith("hydra.")]
+    return Listed(items, [*shared, "sweep.trace=all", f"outputs={outputs}"], loader)

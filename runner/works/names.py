@@ -8,7 +8,9 @@ from pathlib import Path
 
 from runner.errors import RunnerError, nearest
 from runner.paths import works_dir, works_with
-from runner.works.about import FILE
+
+FILE = "work.yaml"
+"""The file that makes a folder a work."""
 
 GROUP = "runner.works"
 """The group of entry points by which an installed package says that it is a work."""

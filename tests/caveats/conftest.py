@@ -1,6 +1,6 @@
 import pytest
 
-from runner import run
+from runner.execution import run
 
 
 @pytest.fixture(scope="session")

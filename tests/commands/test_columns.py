@@ -1,4 +1,7 @@
-from runner.commands.columns import aligned
+import numpy as np
+
+from runner.commands.columns import COMPARED, aligned, comparison_cells, letter
+from runner.statistics import compare_paired
 
 
 def test_columns_are_aligned():
@@ -7,3 +10,15 @@ def test_columns_are_aligned():
 
 def test_no_cell_speaks_to_the_terminal():
     assert aligned([["robot.name", "\x1b]0;title\x07", "two\nlines"]]) == r"  robot.name  \x1b]0;title\x07  two\nlines"
+
+
+def test_a_comparison_fills_its_columns():
+    shifted = comparison_cells(compare_paired(np.arange(6.0), np.arange(6.0) + 2.0))
+    assert shifted == ["2", "2 to 2", "6", "1.00", "0.031", "larger"]
+    assert len(shifted) == 1 + len(COMPARED) + 1
+    few = comparison_cells(compare_paired(np.zeros(2), np.ones(2)))
+    assert few == ["1", "- to -", "2", "1.00", "-", "too few pairs to say (2 of 6)"]
+
+
+def test_folders_are_called_by_letters():
+    assert [letter(place) for place in (0, 1, 25, 26)] == ["A", "B", "Z", "27"]

@@ -14,7 +14,7 @@ def test_from_a_stranger_s_urdf_to_a_report_in_three_commands(cli):
     assert examined.out.splitlines()[-2:] == ["runner --config-dir mine robot=lbr_iiwa", "mine"]
     ran = cli("--config-dir", "mine", "robot=lbr_iiwa", "duration=0.2")
     assert ran.code == 0
-    assert runner.open_run(ran.folder).metrics["max_tracking_error"]["median"] < 1e-4
+    assert runner.open_run(ran.folder).metrics["max_tracking_error"].median < 1e-4
     assert cli("report", ran.folder, "--html").code == 0
 
 
@@ -44,7 +44,7 @@ def test_every_file_of_pybullet_runs_or_is_refused_with_the_reason(cli):
             name = next((ending.folder / "robot").iterdir()).stem
             run = runner.run(f"robot={name}", "duration=0.1", config_dirs=[ending.folder])
             assert run.status == "ok", path
-            assert run.metrics["max_tracking_error"]["median"] < 1e-4, path
+            assert run.metrics["max_tracking_error"].median < 1e-4, path
     assert {"kuka_iiwa/model.urdf", "xarm/xarm6_robot.urdf", "pendulum5.urdf", "cartpole.urdf"} <= fit
 
 
@@ -122,4 +122,4 @@ def test_columns_of_joints_that_slide_are_in_metres(cli):
     strangers.robot("crane")
     run = runner.run("robot=crane", "duration=0.1", config_dirs=[strangers.folder()])
     assert [run.units[name] for name in ("q1", "q3", "dq3", "tau2", "tau3")] == ["rad", "m", "m/s", "N m", "N"]
-    assert run.metrics["peak_joint_force"]["unit"] == "N"
+    assert run.metrics["peak_joint_force"].unit == "N"

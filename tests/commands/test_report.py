@@ -51,10 +51,36 @@ def test_a_sweep_has_a_report_of_its_own(cli, sweep):
     assert ending.folder != cli("report", sweep, "--html", "--metric", "peak_torque").folder
 
 
-def test_several_folders_are_reported_run_by_run(cli, sweep, stored):
-    page = cli("report", sweep, stored, "--html").folder.joinpath("report.html").read_text()
+def test_several_runs_are_reported_run_by_run(cli, stored):
+    other = cli(*SHORT, "seed=1").folder
+    page = cli("report", other, stored, "--html").folder.joinpath("report.html").read_text()
     assert "Overview" in page
-    assert "3 runs, all of them finished." in page
+    assert "2 runs, all of them finished." in page
+
+
+def test_several_sweeps_are_compared(cli):
+    folders = [
+        cli("-m", "hydra.sweeper.workers=0", *SHORT, "gravity=9.81,9.7", f"torque_limits.max={limit}").folder
+        for limit in (30, 31)
+    ]
+    ending = cli("report", *folders, "--html")
+    page = ending.folder.joinpath("report.html").read_text()
+    assert "2 sweeps compared" in page
+    assert "A and B differ in torque_limits.max alone: 30 against 31." in page
+    chosen = cli("report", *folders, "--html", "--metric", "energy").folder
+    assert chosen != ending.folder
+    assert "rms torque" not in chosen.joinpath("report.html").read_text()
+    refused = cli("report", *folders, "--metric", "enrgy")
+    assert (refused.code, refused.out) == (2, "")
+    assert "the runs have no metric 'enrgy' (did you mean energy?)" in refused.err
+
+
+def test_runs_and_sweeps_have_no_report_together(cli, sweep, stored):
+    ending = cli("report", sweep, stored, "--html")
+    assert (ending.code, ending.out) == (2, "")
+    assert (
+        ending.err == "runner: runs and sweeps have no report together; give runs alone, sweeps alone, or one folder\n"
+    )
 
 
 def test_the_links_of_a_report_lead_to_the_runs(cli, sweep):
@@ -66,8 +92,8 @@ def test_the_links_of_a_report_lead_to_the_runs(cli, sweep):
 def test_a_metric_is_asked_for_where_a_sweep_has_it(cli, sweep, stored):
     ending = cli("report", sweep, "--metric", "peak_torq")
     assert ending.code == 2
-    assert "--metric: the runs have no 'peak_torq' (did you mean peak_torque?)" in ending.err
-    assert "--metric is for the report on one sweep" in cli("report", stored, "--metric", "peak_torque").err
+    assert "the runs have no metric 'peak_torq' (did you mean peak_torque?)" in ending.err
+    assert "--metric is for the report on sweeps" in cli("report", stored, "--metric", "peak_torque").err
 
 
 @pytest.mark.parametrize(
@@ -75,7 +101,7 @@ def test_a_metric_is_asked_for_where_a_sweep_has_it(cli, sweep, stored):
     [
         ((), "the following arguments are required: DIR; usage: runner report"),
         (("nowhere",), "no folder nowhere"),
-        ((".",), "is no stored run: it has no metrics.json"),
+        ((".",), ". is nothing that is stored; needed: the folder of a run (`runner OVERRIDES` prints it), a sweep"),
     ],
 )
 def test_bad_input_is_told(cli, arguments, message):

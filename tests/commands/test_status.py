@@ -6,7 +6,6 @@ from printed import without_caveats
 from runner.store import open_runs
 from runner.store.seal import sealed_json
 from runner.sweeps.lock import at_work
-from runner.sweeps.status import in_words
 
 SWEEP = ("-m", "hydra.sweeper.workers=0", "robot=macro", "duration=0.05", "seed=0,1,2")
 
@@ -49,11 +48,4 @@ def test_failed_runs_are_counted_in_shards_too(cli):
 def test_a_folder_that_is_no_sweep(cli, tmp_path):
     ending = cli("status", tmp_path)
     assert ending.code == 2
-    assert "is no sweep: it has no sweep.json" in ending.err
-
-
-@pytest.mark.parametrize(
-    ("seconds", "words"), [(0.2, "1 s"), (89.4, "89 s"), (90.0, "2 min"), (5399.0, "90 min"), (9000.0, "2.5 h")]
-)
-def test_durations_in_words(seconds, words):
-    assert in_words(seconds) == words
+    assert "is nothing that is stored; needed: the folder of a sweep" in ending.err

@@ -1,3 +1,4 @@
+import math
 import re
 import shlex
 
@@ -29,6 +30,13 @@ def test_what_is_told_as_best_gives_the_same_run_again(cli, tmp_path):
     from runner.store import open_run
 
     assert float(f"{open_run(folder).metrics['peak_torque']['median']:.5g}") == told
+
+
+def test_a_range_may_have_units(cli):
+    ending = cli("tune", *SHORT, "controller.natural_frequency=interval(60rpm,600rpm)", *TUNE[-4:])
+    assert ending.code == 0
+    value = float(ending.out.splitlines()[0].rpartition("=")[2])
+    assert 2.0 * math.pi <= value <= 20.0 * math.pi
 
 
 def test_the_same_command_makes_the_same_report(cli):

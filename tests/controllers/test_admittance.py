@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from runner import open_run
+from runner.store import open_run
 from runner.works.meca500.admittance_response import step_response
 
 STILL = ("robot=meca500", "trajectory.start=[0.18,0.01,0.06]", "trajectory.goal=[0.18,0.01,0.06]")

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from engines import ASKED
 
-from runner import run
+from runner.execution import run
 from runner.reporting.figures import (
     columns,
     desired_motion,

@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -48,13 +49,24 @@ def test_all_maps_share_one_scale():
 
 
 def test_the_logarithm_is_coloured_and_the_value_is_written():
-    block = one_map([[1e-4, 1e-2]], log=True)
+    block = replace(one_map([[1e-4, 1e-2]], log=True), value_label="torque (N m)")
     (spec,) = maps_spec(block)
     assert spec["traces"][0]["z"] == [[-4.0, -2.0]]
-    assert spec["traces"][0]["text"] == [["1·10⁻⁴", "0.01"]]
+    assert spec["traces"][0]["text"] == [["0.0001", "0.01"]]
     places, marks = scale_marks(block)
     assert (places[0], places[-1]) == (-4.0, -2.0)
-    assert marks[2] == "1·10⁻³"
+    assert marks[2] == "0.001"
+    (wide,) = maps_spec(replace(block, panels=one_map([[1e-6, 1.0]]).panels))
+    assert wide["traces"][0]["text"] == [["1·10⁻⁶", "1·10⁰"]]
+
+
+def test_lengths_are_shown_in_the_unit_that_fits_the_largest():
+    block = replace(one_map([[1e-4, 1e-2]]), value_label="error (m)")
+    (spec,) = maps_spec(block)
+    heat = spec["traces"][0]
+    assert heat["z"] == [[0.1, 10.0]]
+    assert heat["colorbar"]["title"]["text"] == "error (mm)"
+    assert maps_spec(replace(block, value_label="torque (N m)"))[0]["traces"][0]["z"] == [[1e-4, 1e-2]]
 
 
 def test_a_value_beyond_every_number_is_never_and_a_failed_cell_is_crossed():

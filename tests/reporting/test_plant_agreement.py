@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from runner import run
+from runner.execution import run
 from runner.quantities import quantity
 from runner.reporting import plant_agreement
 from runner.reporting.figures import columns

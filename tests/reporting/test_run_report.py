@@ -3,7 +3,8 @@ from types import SimpleNamespace
 import pytest
 from engines import ASKED
 
-from runner import run
+from runner.execution import run
+from runner.quantities import quantity
 from runner.reporting import outline
 from runner.reporting.document import Curves, Notice, Playback, Provenance, Table, Text
 from runner.reporting.formulas import faulty
@@ -91,6 +92,11 @@ def test_a_sweep_is_led_by_what_distinguishes_its_runs(finished, diverged, outpu
     other = run(*case, "seed=1", ASKED, outputs)
     document = run_document([finished, other, diverged])
     assert document.abstract == "3 runs, 1 of them failed."
+    count, failed, least = document.key_numbers
+    assert (count[1], failed[1:]) == ("3", ("1", "run 3"))
+    error = [one.metrics["max_tracking_error"]["median"] for one in (finished, other)]
+    assert least[:2] == ("least largest tracking error, median", quantity(min(error), "m"))
+    assert least[2].startswith(f"run {1 + error.index(min(error))}: Macro")
     overview = blocks_of(document, Table)[0]
     assert [row[0] for row in overview.rows] == ["1", "2", "3"]
     column = {name: index for index, name in enumerate(overview.header)}

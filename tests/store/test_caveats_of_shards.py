@@ -6,7 +6,7 @@ import pyarrow
 import pyarrow.parquet
 from engines import ASKED
 
-from runner import run
+from runner.execution import run
 from runner.store import Finished, open_run
 from runner.store.seal import digest, sealed_json
 from runner.store.shards import ShardRun, read_outcomes, shard_files, shard_name, write_shard

@@ -12,7 +12,7 @@ import pytest
 import runner
 from runner.errors import StoreError
 from runner.reporting.run_report import provenance
-from runner.store import DamagedError, find_run, open_run, prepare
+from runner.store import DamagedError, Run, find_run, open_run, prepare
 from runner.store.atomic import write_atomically
 
 SHORT = ("robot=macro", "duration=0.05")
@@ -185,7 +185,7 @@ def test_a_damaged_urdf_is_said(run, content):
 
 def test_a_failed_run_says_why_in_words(run):
     failure = {"repetition": 1, "time": 0.12345, "joint": None, "reason": "singular"}
-    failed = runner.Run(run.folder, run.config, {**run.record, "status": "failed", "failure": failure})
+    failed = Run(run.folder, run.config, {**run.record, "status": "failed", "failure": failure})
     assert run.failure_text == ""
     assert failed.failure_text == "failed in repetition 1 at t = 0.1235 s: singular"
 

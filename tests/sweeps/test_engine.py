@@ -18,6 +18,7 @@ from runner.plugins import use_plugins
 from runner.store.identity import source_digest
 from runner.sweeps import engine
 from runner.sweeps.grid import plan_sweep
+from runner.sweeps.queue import Queue
 from runner.sweeps.run import Engine, run_sweep
 
 GRID = ("noise=thesis", "robot=macro,mini", "plant=rk4,default", "seed=range(0,4)", "repetitions=2", "duration=0.3")
@@ -98,16 +99,40 @@ def build(config):
 """
 
 
-def test_workers_of_a_cluster_take_the_parts_that_the_command_names(sweep, scheduler, tmp_path, monkeypatch):
-    (tmp_path / "mine/environment").mkdir(parents=True)
-    (tmp_path / "mine/environment/pull.yaml").write_text("kind: pull\n")
-    (tmp_path / "mine/pull.py").write_text(PULL)
-    monkeypatch.setenv("RUNNER_PLUGINS", "")
-    monkeypatch.setattr(sys, "path", [*sys.path])
-    use_plugins([f"environment={tmp_path}/mine/pull.py"])
+SLOW_PULL = "from time import sleep\n\n" + PULL.replace("        return", "        sleep(0.02)\n        return")
+
+
+@pytest.fixture
+def pulls(tmp_path, monkeypatch):
+    """Make an environment of the user's from its name and source; returns its config folder."""
+
+    def make(name, source):
+        (tmp_path / "mine/environment").mkdir(parents=True)
+        (tmp_path / f"mine/environment/{name}.yaml").write_text(f"kind: {name}\n")
+        (tmp_path / f"mine/{name}.py").write_text(source)
+        monkeypatch.setenv("RUNNER_PLUGINS", "")
+        monkeypatch.setattr(sys, "path", [*sys.path])
+        use_plugins([f"environment={tmp_path}/mine/{name}.py"])
+        return tmp_path / "mine"
+
+    return make
+
+
+def test_workers_of_a_cluster_take_the_parts_that_the_command_names(sweep, scheduler, pulls):
     grid = ("environment=pull", "duration=0.1", "seed=0,1")
-    ended = sweep(*grid, engine=Engine(0, scheduler[0]), config_dirs=[tmp_path / "mine"])
+    ended = sweep(*grid, engine=Engine(0, scheduler[0]), config_dirs=[pulls("pull", PULL)])
     assert [run.status for run in store.open_sweep(ended.folder).runs()] == ["ok", "ok"]
+
+
+def test_a_worker_tells_how_far_a_long_run_is(sweep, pulls, monkeypatch):
+    told = []
+    monkeypatch.setattr(Queue, "tell", lambda _, chunk, ticks: told.append((chunk, ticks)))
+    overrides = ("environment=slow_pull", "duration=1.5", "controller.period=0.01")
+    sweep(*overrides, engine=Engine(1, None), config_dirs=[pulls("slow_pull", SLOW_PULL)])
+    chunks, ticks = zip(*told, strict=True)
+    assert len(set(chunks)) == 1
+    assert list(ticks) == sorted(ticks)
+    assert 0 < ticks[-1] <= 150
 
 
 def test_a_scheduler_that_is_lost_is_said(sweep, scheduler, tmp_path):
@@ -134,6 +159,22 @@ def alive(group):
 
 
 @pytest.mark.usefixtures("interruptible")
+def test_an_interrupt_waits_until_the_processes_have_started():
+    """Else a part of a cluster would be left, and its processes, still without our code, would tell of it."""
+    before, began = signal.getsignal(signal.SIGINT), []
+
+    def start():
+        with engine._undisturbed():
+            signal.raise_signal(signal.SIGINT)
+            began.append(subprocess.run([sys.executable, "-c", "import signal; signal.raise_signal(2)"], check=False))
+
+    with pytest.raises(KeyboardInterrupt):
+        start()
+    assert [child.returncode for child in began] == [0]
+    assert signal.getsignal(signal.SIGINT) is before
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+
 @pytest.mark.parametrize(
     ("number", "code", "word", "workers"),
     [

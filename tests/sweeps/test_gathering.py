@@ -7,12 +7,19 @@ import pytest
 
 from runner import store
 from runner.errors import StoreError
+from runner.store import simulated_part
 from runner.store.seal import digest
 from runner.sweeps import gathering
 from runner.sweeps.measurements import Measurements, measure, measure_sweep
 
 MIXED = ("noise=thesis", "repetitions=2", "seed=range(0,3)")
 DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "trajectory=quintic", "controller.period=0.01,0.06")
+
+
+def by_cell(configs):
+    """Return what decides about each cell's results, but for its seed; runs of a shard share a config otherwise."""
+    parts = [({**simulated_part(config), "seed": None}, cells.tolist()) for config, cells in configs]
+    return {cell: part for part, cells in parts for cell in cells}
 
 
 def same(one, other):
@@ -25,6 +32,8 @@ def same(one, other):
             assert [(x.name, list(x.values), x.level.tolist()) for x in a] == [
                 (x.name, list(x.values), x.level.tolist()) for x in b
             ]
+        elif key == "configs":
+            assert by_cell(a) == by_cell(b)
         elif key == "caveats":
             assert [list(found) for found in a] == [list(found) for found in b]
         else:

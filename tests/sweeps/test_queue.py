@@ -20,18 +20,23 @@ class Cells:
         return Composed({"seed": cell}, (), {}, ())
 
 
-def drain(tmp_path, costs, seconds_per_tick, workers=2):
-    """Return the cells of each chunk, as a worker of some speed would get them."""
+def queue_of(tmp_path, costs):
     rules = Rules((), tmp_path, tmp_path, "never", True, True, False, 1, None)
     names = [f"{cell:024x}" for cell in range(len(costs))]
-    queue = Queue(Cells(), names, costs, np.arange(len(costs)), rules)
+    return Queue(Cells(), names, costs, np.arange(len(costs)), rules)
+
+
+def drain(tmp_path, costs, seconds_per_tick, workers=2):
+    """Return the cells of each chunk, as a worker of some speed would get them."""
+    queue = queue_of(tmp_path, costs)
     chunks = []
     while (chunk := queue.take(workers)) is not None:
         cells = [int(name, 16) for name, _ in chunk.jobs]
         chunks.append(cells)
         ends = [Outcome(name, "", False) for name, _ in chunk.jobs]
+        queue.end(chunk)
         queue.learn(Report(ends, "", seconds_per_tick * sum(costs[cell] for cell in cells)))
-    assert queue.ticks_done == sum(costs)
+    assert queue.ticks_made == sum(costs)
     return chunks
 
 
@@ -62,3 +67,15 @@ def test_fast_jobs_make_chunks_up_to_a_size(tmp_path, monkeypatch):
 
 def test_a_job_above_the_share_goes_alone(tmp_path):
     assert [len(cells) for cells in drain(tmp_path, [10**6, 10**6, 10, 10], 1e-4)[:3]] == [1, 1, 1]
+
+
+def test_ticks_of_chunks_under_way_count_until_the_chunk_has_ended(tmp_path):
+    queue = queue_of(tmp_path, [100, 200, 300])
+    first, second = queue.take(2), queue.take(2)
+    queue.tell(first.name, 40)
+    queue.tell(second.name, 70)
+    assert queue.ticks_made == 110
+    queue.end(first)
+    queue.learn(Report([Outcome(name, "", False) for name in first.names], "", 1.0))
+    queue.tell(first.name, 90)  # told late
+    assert queue.ticks_made == 100 + 70

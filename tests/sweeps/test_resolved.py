@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner import run
+from runner.execution import run
 from runner.robots.model import RobotModel
 from runner.sweeps.resolved import DISTANCE, Resolver
 

@@ -61,3 +61,20 @@ def test_too_many_cells_are_refused_before_they_are_written_out(argument):
         plan_sweep([argument])
     with pytest.raises(ConfigError, match=r"a sweep of 1\.1e\+07 cells"):
         plan_sweep(["seed=range(0,1100)", "noise.position=range(0,10000)"])
+
+
+def test_quantities_are_an_axis_of_numbers_in_si():
+    sweep = plan_sweep(["robot=macro", "controller.period=5ms,0.02,30 ms", "seed=0,1"])
+    numbers = plan_sweep(["robot=macro", "controller.period=0.005,0.02,0.03", "seed=0,1"])
+    assert [sweep.overrides(cell) for cell in range(6)] == [numbers.overrides(cell) for cell in range(6)]
+    assert list(sweep.axes()) == list(numbers.axes())
+    assert [sweep.composed(cell).resolved for cell in range(6)] == [
+        numbers.composed(cell).resolved for cell in range(6)
+    ]
+
+
+def test_a_quantity_that_does_not_fit_stays_as_typed():
+    sweep = plan_sweep(["robot=macro", "controller.period=5ms,5mm"])
+    assert sweep.overrides(1) == ("robot=macro", "controller.period=5mm")
+    assert sweep.composed(1).resolved["controller"]["period"] == "5mm"
+    assert sweep.composed(0).resolved["controller"]["period"] == 0.005

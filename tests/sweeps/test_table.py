@@ -5,7 +5,7 @@ import pandas as pd
 import pyarrow.parquet as pq
 import pytest
 
-from runner import run
+from runner.execution import run
 from runner.statistics import median_interval
 from runner.store import write_sweep
 from runner.sweeps.measurements import Axis, Measurements
@@ -119,8 +119,8 @@ def test_the_table_of_a_stored_sweep_holds_what_its_runs_hold(cli, tmp_path):
     ("arguments", "message"),
     [
         ((), "the following arguments are required: DIR; usage: runner table"),
-        (("nowhere",), "nowhere is no sweep: it has no sweep.json"),
-        ((".",), ". is no sweep: it has no sweep.json"),
+        (("nowhere",), "no folder nowhere; needed: the folder of a sweep"),
+        ((".",), ". is nothing that is stored; needed: the folder of a sweep"),
     ],
 )
 def test_bad_input_is_told(cli, arguments, message):

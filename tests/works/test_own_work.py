@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from runner import run
 from runner.cli import dispatch
 from runner.errors import RunnerError
+from runner.execution import run
 from runner.paths import example_work_dir
 from runner.reporting.document import Table
 from runner.works.check import problems

@@ -10,7 +10,7 @@ from study_sections import every_run, texts, unfinished_texts, whatever_has_fail
 from thin_plans import make_runs, stand_ins
 from work_plans import chapter, chapter_files, xarm7_moments, xarm7_studies
 
-from runner import run
+from runner.execution import run
 from runner.reporting import formulas
 from runner.reporting.document import Document
 from runner.reporting.prose.signals import largest_of

@@ -12,7 +12,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TypeVar
 
-from runner import calibrate, run, store
+from runner import store
+from runner.calibration_job import calibrate
+from runner.execution import run
 from runner.store import Calibration, Run
 
 Overrides = tuple[str, ...]

@@ -4,11 +4,12 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 
-from runner import provenance
+from runner import progress, provenance
 from runner.audit.audit import counts
 from runner.audit.inventory import inventory
 from runner.audit.rollout import run_rollout
 from runner.audit.verdict import SAMPLES, VERDICTS, Judged
+from runner.progress.stages import BELIEVING
 from runner.quantities import quantity
 from runner.reporting.audit.forms import forms_of
 from runner.reporting.audit.likeness import Likeness
@@ -50,6 +51,7 @@ def audit_document(judged: Mapping[str, Sequence[Judged]]) -> Document:
     """
     everything = [each for source in judged.values() for each in source]
     total = counts(everything)
+    progress.begin(BELIEVING, None, sum(len(_rollouts(each)) for each in judged.values()), "wrong formulas")
     return Document(
         title="Equations of three published works, checked by machine",
         subtitle="Every printed equation against the arm's true kinematics and dynamics",
@@ -127,8 +129,13 @@ def _source(source: str, judged: Sequence[Judged]) -> Section:
         Notice("finding", "What is wrong, and why", inventory(source).found),
         Equations(f"Equations of the {source} source.", rows(judged), source=source, data=DATA),
     ]
-    names = dict.fromkeys(each.entry.rollout for each in judged if each.entry.rollout)
+    names = _rollouts(judged)
     return Section(inventory(source).title, blocks, (_runs(source, names),) if names else ())
+
+
+def _rollouts(judged: Sequence[Judged]) -> Sequence[str]:
+    """Return the names of what a robot does that believes wrong formulas, each once."""
+    return list(dict.fromkeys(each.entry.rollout for each in judged if each.entry.rollout))
 
 
 def rows(judged: Sequence[Judged]) -> list[Equation]:
@@ -161,7 +168,10 @@ def _error(judged: Judged) -> str:
 
 def _runs(source: str, names: Iterable[str]) -> Section:
     """Return what a robot does that believes the wrong formulas: a sentence and a panel for each run."""
-    found = [run_rollout(source, name) for name in names]
+    found = []
+    for name in names:
+        found.append(run_rollout(source, name))
+        progress.step()
     told = [f"{marked(words.title, 'emphasis')}: {words.text}" for words, _ in found]
     panels = [
         Panel(

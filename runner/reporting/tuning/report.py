@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.config.meanings import key_unit
+from runner.config.key_units import key_unit
 from runner.quantities import quantity
 from runner.reporting.cover import cover
 from runner.reporting.document import Document, FloatArray, Notice, Origin, Provenance, RunList, Section, Table, Text

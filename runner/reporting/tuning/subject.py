@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from runner.config.meanings import key_unit
+from runner.config.key_units import key_unit
 from runner.quantities import labelled, number, quantity
 from runner.reporting.document import FloatArray
 from runner.reporting.metric_titles import metric_label, title

@@ -10,7 +10,7 @@ import pinocchio as pin
 
 from runner.controllers.admittance_filter import Admittance
 from runner.errors import ConfigError
-from runner.quantities import number, with_powers
+from runner.quantities import number, quantity, with_powers
 from runner.reporting.document import FloatArray
 from runner.reporting.figures import AXES, columns, joint_columns, model_of
 from runner.reporting.measured import ROUNDING, Measured
@@ -119,7 +119,7 @@ def vanishing(what: Callable[..., float], digits: int = 3, factor: float = 1.0) 
 
 def percent(what: Callable[..., float], digits: int = 3) -> Callable[..., str]:
     """Return the text of a share in per cent."""
-    return lambda *runs: f"{number(100.0 * what(*runs), digits)} %"
+    return lambda *runs: quantity(100.0 * what(*runs), "%", digits)
 
 
 def degrees(angle: float) -> float:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner import run
+from runner.execution import run
 from runner.reporting.job import Made, MissingError
 from runner.reporting.measured import Measured
 from runner.reporting.prose import read_chapter

@@ -1,0 +1,44 @@
+import shutil
+
+import pytest
+
+SHORT = ("robot=macro", "duration=0.1")
+SWEEP = ("-m", "hydra.sweeper.workers=0", *SHORT, "seed=0,1")
+
+
+def test_latest_is_the_run_or_sweep_made_or_found_last(cli):
+    first, second = cli(*SHORT).folder, cli(*SHORT, "seed=1").folder
+    assert str(second.name) in cli("compare", "latest", first).out.splitlines()[0]
+    cli(*SHORT)  # found stored
+    assert str(first.name) in cli("compare", "latest", second).out.splitlines()[0]
+    sweep = cli(*SWEEP).folder
+    assert cli("table", "latest").folder == sweep
+    assert "2 runs: 2 done" in cli("status", "latest").out
+    of_sweep = cli("report", "latest", "--html").folder
+    assert cli("report", sweep, "--html").folder == of_sweep
+    assert "is a run and" in cli("compare", "latest", second).err  # the sweep is meant, which was found last
+
+
+def test_latest_of_a_copied_outputs_folder_which_verify_finds_good(cli):
+    cli(*SWEEP)
+    shutil.copytree("outputs", "copy")
+    shutil.rmtree("outputs")
+    assert "2 runs: 2 done" in cli("status", "copy/latest").out
+    assert cli("verify", "copy").code == 0
+
+
+@pytest.mark.parametrize("command", ["report", "table", "status", "check"])
+def test_nothing_to_be_the_latest_is_one_line(cli, command):
+    ending = cli(command, "latest")
+    assert (ending.code, ending.out) == (2, "")
+    assert "was made in outputs yet that `latest` could mean; needed: the folder of" in ending.err
+    assert ending.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("command", ["status"])
+def test_a_run_in_place_of_a_sweep_is_one_line(cli, command):
+    run = cli(*SHORT).folder
+    ending = cli(command, run)
+    assert (ending.code, ending.out) == (2, "")
+    assert ending.err.startswith(f"runner: {run} is the folder of a run; needed: the folder of a sweep")
+    assert ending.err.count("\n") == 1
