@@ -1,7 +1,6 @@
 """A sweep as a user holds it."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -115,7 +114,7 @@ class Sweep:
         from runner.sweeps.table import table
 
         found, names = self._measurements, self._names(metrics)
-        wide = table(replace(found, values={name: found.values[name] for name in names}))
+        wide = table(found, names)
         keys = [axis.name for axis in found.axes]
         parts = []
         for name in names:
@@ -224,14 +223,8 @@ class Sweep:
     def _over(self) -> list[str]:
         return [f"{axis.name}: {few([axis.text(level) for level in range(len(axis.values))])}" for axis in self._axes]
 
-    def _names(self, metrics: str | Sequence[str] | None) -> list[str]:
-        known = self._measurements.values
-        wanted = list(known) if metrics is None else [metrics] if isinstance(metrics, str) else list(metrics)
-        for name in wanted:
-            if name not in known:
-                listed = ", ".join(known) or "none, as all runs failed"
-                raise RunnerError(f"the runs have no metric '{name}'{nearest(name, known)}; they have: {listed}")
-        return list(dict.fromkeys(wanted))
+    def _names(self, metrics: str | Sequence[str] | None) -> Sequence[str]:
+        return self._measurements.named([metrics] if isinstance(metrics, str) else metrics)
 
     def _axis(self, name: str) -> Axis:
         names = [axis.name for axis in self._axes]

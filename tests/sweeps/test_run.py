@@ -191,7 +191,7 @@ def test_an_invalid_cell_is_named_before_anything_starts(sweep, tmp_path, simula
     with pytest.raises(ConfigError) as raised:
         sweep("noise.position=1e-4,-1,1e-3", "seed=0,1")
     (problem,) = raised.value.problems
-    assert problem.endswith("noise.position=-1 seed=0] and 1 other cells: noise.position: must be 0 or more; found -1")
+    assert problem.endswith("noise.position=-1 seed=0] and 1 other cell: noise.position: must be 0 or more; found -1")
     assert "nothing was started" in str(raised.value)
     assert (simulated_runs, list(tmp_path.iterdir())) == ([], [])
 
