@@ -10,7 +10,7 @@ from typing import Any, Self, TextIO
 from runner.progress.work import Work
 
 _LONGEST = 20  # characters of the bar
-_WIDE = 80  # characters of a terminal that does not tell
+_WIDE, _HIGH = 80, 24  # characters and lines of a terminal that does not tell
 _EVERY = 1.0  # s between two looks at the work, and before the first one
 
 
@@ -126,7 +126,16 @@ def _bar(stream: TextIO) -> Any:
     class Bar(tqdm):  # type: ignore[type-arg]
         monitor_interval = 0  # no second thread
 
-    return Bar(total=1.0, file=stream, leave=False, dynamic_ncols=True, disable=False, bar_format="{bar}")
+    shape: dict[str, Any] = {"dynamic_ncols": True} if _has_size(stream) else {"ncols": _WIDE, "nrows": _HIGH}
+    return Bar(total=1.0, file=stream, leave=False, disable=False, bar_format="{bar}", **shape)
+
+
+def _has_size(stream: TextIO) -> bool:
+    """Tell whether a terminal knows how large it is; one that another program opened may have no columns or lines."""
+    try:
+        return min(os.get_terminal_size(stream.fileno())) > 0
+    except (OSError, ValueError):  # no file
+        return True
 
 
 def _clock(seconds: float) -> str:

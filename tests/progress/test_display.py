@@ -1,8 +1,12 @@
 """The line on a terminal, drawn on a stream that says it is one."""
 
 import contextlib
+import fcntl
 import io
+import os
+import struct
 import sys
+import termios
 import threading
 from types import SimpleNamespace
 
@@ -202,3 +206,19 @@ def test_a_notebook_shows_it_though_it_is_no_terminal(monkeypatch):
 )
 def test_durations_in_words(seconds, words):
     assert in_words(seconds) == words
+
+
+@pytest.mark.parametrize("size", [(0, 0), (30, 100)])
+def test_a_terminal_that_does_not_tell_its_size_is_drawn_on(monkeypatch, work, size):
+    """One that another program opened, such as a container, may say that it has no lines and no columns."""
+    monkeypatch.setattr(display, "_EVERY", 3600.0)
+    reader, writer = os.openpty()
+    os.set_blocking(reader, False)
+    fcntl.ioctl(writer, termios.TIOCSWINSZ, struct.pack("HHHH", *size, 0, 0))
+    with os.fdopen(writer, "w") as stream, Display(work, stream) as line:
+        work.step(10_000)
+        line.draw()
+        stream.flush()
+        shown = Screen(os.read(reader, 4096).decode()).shown[-1]
+    os.close(reader)
+    assert shown.startswith("a, 10.0 of 20.0 k ticks |")
