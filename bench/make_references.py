@@ -175,7 +175,7 @@ def run_seed(experiment: str, preset: str, seed: int) -> Path:
 def make_band(runs: list[Run], experiment: str, preset: str, metric: str) -> dict[str, float | str]:
     """Return the band of a metric from the runs of all seeds."""
     medians = [run.metrics[metric]["median"] for run in runs]
-    values = np.array([value for run in runs for value in run.metrics[metric]["values"]], dtype=float)
+    values = np.concatenate([run.values(metric) for run in runs])
     low, high = min(medians), max(medians)
     quartiles = np.nanpercentile(values, [25, 75])
     extra = EXTRA.get((experiment, metric), 0.5 * float(np.diff(quartiles)[0]) + MARGIN * high)

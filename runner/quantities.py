@@ -148,7 +148,7 @@ def spread(metric: Mapping[str, Any], beside: float | None = None) -> str:
         beside: A printed value that it is compared with, of which it takes the unit; see `ranged`.
     """
     median, low, high = metric["median"], metric["min"], metric["max"]
-    varies = len(metric["values"]) >= 2 and not low == high is not None
+    varies = len(metric.get("values", "many")) >= 2 and not low == high is not None
     if not varies:
         factor, name = _shared((median,), str(metric["unit"]), median if beside is None else beside)
         return _with_unit(_scaled(median, factor), name)

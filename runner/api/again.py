@@ -1,6 +1,7 @@
 """A repetition of a stored run, simulated again: a run keeps the trace of its first one alone."""
 
 import itertools
+import math
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -58,8 +59,9 @@ def _simulated(run: store.Run, repetition: int) -> Signals:
     config = _checked(run, repetition)
     trace = _simulate(config, repetition)
     found = evaluate(trace, metric_context(config), [])
-    for name, stored in run.metrics.items():
-        value = stored["values"][repetition]
+    for name in run.metrics:
+        stored = float(run.values(name)[repetition])
+        value = None if math.isnan(stored) else stored
         if found.get(name) != value:
             raise RunnerError(
                 f"repetition {repetition} of {run.hash}, simulated again, is another one: {name} is {found.get(name)}, "

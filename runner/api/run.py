@@ -71,7 +71,7 @@ class Run:
     @property
     def metrics(self) -> Metrics:
         """Its metrics by name, each a Metric with unit, median, min, max and values."""
-        return Metrics(self.stored.metrics)
+        return Metrics(self.stored)
 
     @property
     def caveats(self) -> Sequence[Mapping[str, Any]]:
@@ -100,10 +100,11 @@ class Run:
 
     def metrics_frame(self) -> "pd.DataFrame":
         """Return the metrics as a table: a row for each, with unit, median, min, max and n, the number of values."""
+        import numpy as np
         import pandas as pd
 
         rows = {
-            name: (one.unit, one.median, one.min, one.max, sum(value is not None for value in one.values))
+            name: (one.unit, one.median, one.min, one.max, int(np.count_nonzero(~np.isnan(one.read()))))
             for name, one in self.metrics.items()
         }
         frame = pd.DataFrame.from_dict(rows, orient="index", columns=["unit", "median", "min", "max", "n"])

@@ -110,7 +110,7 @@ def _paired(a: "Run", b: "Run", name: str, metrics: Sequence[str]) -> str:
     both = [metric for metric in metrics or a.metrics if metric in a.metrics and metric in b.metrics]
     if not both:
         return "not compared in pairs: no metric is in both"
-    rows = [_paired_row(metric, a.metrics[metric], b.metrics[metric]) for metric in both]
+    rows = [_paired_row(metric, a, b, min(counts)) for metric in both]
     header = ["metric", "unit", f"{name} - A", *COMPARED, f"{name} is"]
     head = (
         f"medians of the differences in {min(counts)} pairs on the same seeds (effect 1: {name} is larger in all of "
@@ -120,11 +120,11 @@ def _paired(a: "Run", b: "Run", name: str, metrics: Sequence[str]) -> str:
     return "\n".join([head, aligned([header, *rows]), at_once(len(rows)), *([NOISE_ALONE] if alone else [])])
 
 
-def _paired_row(name: str, a: Mapping[str, Any], b: Mapping[str, Any]) -> list[str]:
+def _paired_row(name: str, a: "Run", b: "Run", pairs: int) -> list[str]:
     import numpy as np
 
     from runner.statistics import compare_paired
 
-    pairs = list(zip(a["values"], b["values"], strict=False))
-    of_a, of_b = (np.array([np.inf if value is None else value for value in side]) for side in zip(*pairs, strict=True))
-    return [name, a["unit"], *comparison_cells(compare_paired(of_a, of_b))]
+    of_a, of_b = (run.values(name)[:pairs] for run in (a, b))
+    of_a, of_b = (np.where(np.isnan(side), np.inf, side) for side in (of_a, of_b))
+    return [name, a.metrics[name]["unit"], *comparison_cells(compare_paired(of_a, of_b))]

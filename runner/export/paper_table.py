@@ -107,8 +107,7 @@ def of_run(run: Run, metrics: Sequence[str] | None = None) -> PaperTable:
 def measured(run: Run) -> Measurements:
     """Return one run as a sweep of one cell."""
     values: dict[str, FloatArray] = {
-        name: np.array([[np.inf if value is None else float(value) for value in metric["values"]]])
-        for name, metric in run.metrics.items()
+        name: np.where(np.isnan(own := run.values(name)), np.inf, own)[None] for name in run.metrics
     }
     units = {name: str(metric["unit"]) for name, metric in run.metrics.items()}
     return Measurements([], [], [run.hash], [run.status], [run.failure_text], units, values, {}, [run.caveats])

@@ -73,7 +73,7 @@ def learn(sweep: Sweep, path: Path) -> int:
     for cell, run in zip(cell_names(sweep), sweep.runs(), strict=True):
         if run.failure is not None:
             raise StoreError(f"cannot learn from a failed run: [{cell}] {run.failure_text}")
-        cells[cell] = {name: _spread(metric).model_dump() for name, metric in run.metrics.items()}
+        cells[cell] = {name: _spread(run, metric).model_dump() for name, metric in run.metrics.items()}
     text = yaml.dump({"schema": SCHEMA, "cells": cells}, sort_keys=False, width=120, Dumper=yaml.CSafeDumper)
     head = f"# What each cell gave, over its seeds; made by `runner check DIR --learn {path.name}` after\n"
     write_atomically(path, f"{head}# {sweep.command}\n{text}".encode())
@@ -159,5 +159,6 @@ def _within(was: Spread, value: float | None) -> bool:
     return low <= (math.inf if value is None else value) <= high
 
 
-def _spread(metric: Mapping[str, Any]) -> Spread:
-    return Spread(seeds=len(metric["values"]), **{key: metric[key] for key in ("unit", "median", "min", "max")})
+def _spread(run: Run, metric: Mapping[str, Any]) -> Spread:
+    ends = {key: metric[key] for key in ("unit", "median", "min", "max")}
+    return Spread(seeds=int(run.record["repetitions"]), **ends)

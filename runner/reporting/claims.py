@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from runner.claims import FACTOR, Bound, PublishedClaim, PublishedStatement, Verdict, judge, judge_motion
 from runner.quantities import quantity, ranged, spread
 from runner.reporting.claim import Claim, ClaimResult, EquationVerdict, StatementVerdict
@@ -162,8 +164,8 @@ class _Claimed:
         """Return how many repetitions have not settled when the error at rest is taken; nothing where all have."""
         run = self._run(_named(self._claim), preset)
         band = float(run.config["robot"]["settling_band"])
-        errors = run.metrics.get("steady_state_error", {"values": ()})["values"]
-        late = sum(1 for error in errors if error is not None and error > band)
+        errors = run.values("steady_state_error") if "steady_state_error" in run.metrics else np.zeros(0)
+        late = np.count_nonzero(errors > band)
         if not late:
             return ""
         told = f"{late} of {len(errors)} repetitions{self._under(preset)}"

@@ -36,6 +36,15 @@ def float_column(values: NDArray[np.float64]) -> "pyarrow.Array":
     return _plain(pyarrow.float64(), np.ascontiguousarray(values, dtype=np.float64), len(values))
 
 
+def optional_column(values: NDArray[np.float64]) -> "pyarrow.Array":
+    """Return a column of numbers, shape (n,), in which NaN is null."""
+    import pyarrow
+
+    numbers = np.ascontiguousarray(values, dtype=np.float64)
+    buffers = [_unless_all(~np.isnan(numbers)), pyarrow.py_buffer(numbers)]
+    return pyarrow.Array.from_buffers(pyarrow.float64(), len(numbers), buffers)
+
+
 def whole_column(values: Sequence[int]) -> "pyarrow.Array":
     """Return a column of whole numbers of 32 bits."""
     import pyarrow
@@ -60,9 +69,7 @@ def list_column(values: NDArray[np.float64], sizes: NDArray[np.intp], present: N
     """
     import pyarrow
 
-    there = ~np.isnan(values)
-    found = pyarrow.py_buffer(np.ascontiguousarray(values, dtype=np.float64))
-    numbers = pyarrow.Array.from_buffers(pyarrow.float64(), len(values), [_unless_all(there), found])
+    numbers = optional_column(values)
     offsets = pyarrow.py_buffer(np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32))
     kind = pyarrow.list_(pyarrow.float64())
     return pyarrow.Array.from_buffers(kind, len(sizes), [_unless_all(present), offsets], children=[numbers])

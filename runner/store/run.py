@@ -6,13 +6,19 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from runner.errors import StoreError
 from runner.store.record import find_faults
 from runner.store.seal import DamagedError
 from runner.store.stored import MEND, Stored, read_job
+from runner.store.values import VALUES_FILE, open_parquet, read_column, read_table
 
 if TYPE_CHECKING:
     import pandas as pd
+
+FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -41,9 +47,30 @@ class Run(Stored):
 
     @property
     def metrics(self) -> Mapping[str, Mapping[str, Any]]:
-        """Metrics by name: unit, median, min, max and values of each repetition."""
+        """Metrics by name: unit, median, min, max, and for many repetitions quantiles; `values` gives all values."""
         metrics: Mapping[str, Mapping[str, Any]] = self.record["metrics"]
         return metrics
+
+    def values(self, metric: str) -> FloatArray:
+        """Return a metric in each repetition, shape (repetitions,), NaN where it has no value.
+
+        Args:
+            metric: Name of one of its metrics.
+
+        Raises:
+            KeyError: if it has no such metric.
+            DamagedError: if the values stand in a file of their own, and that is missing or damaged.
+        """
+        stored = self.metrics[metric].get("values")
+        return self._values_beside(metric) if stored is None else np.array(stored, dtype=np.float64)  # None is NaN
+
+    def _values_beside(self, metric: str) -> FloatArray:
+        """Return the values of a metric that do not stand in the record; see `values`."""
+        return read_column(self._values_file, self.folder / VALUES_FILE, metric)
+
+    @cached_property
+    def _values_file(self) -> Any:
+        return open_parquet(self.read(VALUES_FILE), self.folder / VALUES_FILE)
 
     @property
     def caveats(self) -> Sequence[Mapping[str, Any]]:
@@ -74,15 +101,8 @@ class Run(Stored):
 
     @cached_property
     def _table(self) -> Any:
-        import pyarrow
-        import pyarrow.parquet
-
-        content = pyarrow.BufferReader(self.read("trace.parquet"))
-        try:
-            return pyarrow.parquet.ParquetFile(content).read()  # read_table would import pandas, half a second
-        except (OSError, pyarrow.ArrowException) as error:
-            what = str(error).splitlines()[0]
-            raise DamagedError(f"cannot read {self.folder / 'trace.parquet'}: {what}; {MEND}") from error
+        path = self.folder / "trace.parquet"
+        return read_table(open_parquet(self.read(path.name), path), path)
 
 
 def units_of(table: Any) -> dict[str, str]:

@@ -141,8 +141,7 @@ def find_shards(outputs: Path, name: str) -> list[Path]:
 
 def _row_of(run: ShardRun) -> ShardRow:
     metrics = tuple((name, str(metric["unit"])) for name, metric in run.metrics.items())
-    values = np.array([metric["values"] for metric in run.metrics.values()], dtype=np.float64)  # None is NaN
-    values = values.T if metrics else np.zeros((0, 0))
+    values = np.array([run.values(name) for name in run.metrics]).T if metrics else np.zeros((0, 0))
     return ShardRow(outcome(run), json.dumps(run.config), run.urdf, encode_finite(run.record), metrics, values)
 
 

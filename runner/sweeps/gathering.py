@@ -56,8 +56,9 @@ class Gathered:
         self.changes.update(changes_since(run.caveat_rules))
         self._note(run)
         for name, metric in run.metrics.items():
-            row = [np.inf if value is None else value for value in metric["values"]]
-            self._put(name, str(metric["unit"]), np.array([cell]), np.array([row], dtype=float))
+            row = run.values(name)
+            row[np.isnan(row)] = np.inf
+            self._put(name, str(metric["unit"]), np.array([cell]), row[None])
         self.configs.append((self._resolver.resolve(run), [np.array([cell])]))
 
     def add_shard(self, path: Path, rows: Cells, cells: Cells) -> None:

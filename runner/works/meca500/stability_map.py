@@ -40,7 +40,7 @@ def contact(run: Run) -> dict[str, float]:
         any_wall = {**run.config, "environment": {**run.config["environment"], "stiffness": 1.0}}
         bound = _bound(json.dumps(any_wall, sort_keys=True), q)
     beyond, bouncing = radius > 1.0 if np.isfinite(radius) else wall > bound, bounces(run)
-    shares = (own["values"][0] for name, own in run.metrics.items() if name.startswith("saturation_fraction_q"))
+    shares = (run.values(name)[0] for name in run.metrics if name.startswith("saturation_fraction_q"))
     return {
         "wall": wall,
         "ideal": ideal,

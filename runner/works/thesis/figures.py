@@ -151,8 +151,10 @@ def diverges_at(runs: Mapping[str, Run], run: str, words: str) -> Measured:
 
 def at_rest(run: Run) -> list[float]:
     """Return the steady-state errors of the repetitions of a run that do not diverge, in m."""
-    values = run.metrics.get("steady_state_error", {}).get("values", ())
-    return [float(value) for value in values if value is not None]
+    if "steady_state_error" not in run.metrics:
+        return []
+    values = run.values("steady_state_error")
+    return [float(value) for value in values[~np.isnan(values)]]
 
 
 def of_repetitions(
