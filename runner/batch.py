@@ -86,31 +86,39 @@ class Batcher:
         self.memory = Memory(_MOST_KEPT)
         """What follows from parts that runs share."""
 
-    def repetitions(self, config: RunConfig) -> list[Wanted] | None:
-        """Return all repetitions of a run as they can be simulated together; None where they cannot be.
+    def repetitions(self, config: RunConfig, chosen: range | None = None) -> list[Wanted] | None:
+        """Return repetitions of a run as they can be simulated together; None where they cannot be.
+
+        Args:
+            config: The run's checked config.
+            chosen: Which repetitions; None for all.
 
         Raises:
             ConfigError: see assemble.
         """
         if added("metric"):  # they look at one trace
             return None
+        numbers = range(config.settings.repetitions) if chosen is None else chosen
+        if config.mismatch.spread == 0.0:
+            alike = self._loop(config, numbers[0])
+            return None if alike is None else [Wanted(config, number, *alike) for number in numbers]
         found = []
-        for repetition in range(config.settings.repetitions):
-            run = self._wanted(config, repetition)
-            if run is None:
+        for number in numbers:
+            own = self._loop(config, number)
+            if own is None:
                 return None
-            found.append(run)
+            found.append(Wanted(config, number, *own))
         return found
 
-    def _wanted(self, config: RunConfig, repetition: int) -> Wanted | None:
+    def _loop(self, config: RunConfig, repetition: int) -> tuple[Whole, FloatArray] | None:
+        """Return the closed loop of a repetition, and where it starts; see assemble_whole."""
         # Beliefs are drawn for each repetition; all else follows from these parts.
         drawn = (config.settings.seed, repetition) if config.mismatch.spread > 0.0 else ()
         parts = (
             *("whole", config.arm, config.loops, config.plant, config.controller, config.noise, config.torque_limits),
             *(config.path, config.mismatch, config.robot, config.environment, *astuple(config.timing), *drawn),
         )
-        found = self.memory.known(parts, lambda: assemble_whole(config, repetition))
-        return None if found is None else Wanted(config, repetition, *found)
+        return self.memory.known(parts, lambda: assemble_whole(config, repetition))
 
     def simulate(self, runs: Sequence[Wanted]) -> Iterator[Together | tuple[int, Trace]]:
         """Simulate runs; yield those that ended well, many at a time, and the place and trace of each that failed."""

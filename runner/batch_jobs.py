@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import astuple, dataclass
+from functools import cached_property
+from itertools import groupby
 
 import numpy as np
 
@@ -20,16 +22,16 @@ Job = tuple[RunConfig, Composed]
 
 @dataclass(frozen=True)
 class Simulated:
-    """A run all of whose repetitions are simulated.
+    """A run all of whose repetitions are simulated, or those that were asked for.
 
     Attributes:
         place: Which it is of those that were asked for.
         job: Its checked config, and what that was checked from.
         names: Names of its metrics; empty where no repetition ended well.
         values: Its metrics, shape (repetitions, metrics), NaN for none.
-        caveats: Why they may not be what they seem.
+        watch: What looked for reasons why they may not be what they seem.
         failure: The first failure and its repetition, or None.
-        trace: The trace of repetition 0.
+        trace: The trace of its first repetition.
         seconds: Its share of the time that a clock measured, in s.
     """
 
@@ -37,10 +39,15 @@ class Simulated:
     job: Job
     names: tuple[str, ...]
     values: FloatArray
-    caveats: Found
+    watch: Watch
     failure: tuple[int, Failure] | None
     trace: Trace
     seconds: float
+
+    @cached_property
+    def caveats(self) -> Found:
+        """Why they may not be what they seem."""
+        return self.watch.found()
 
     @property
     def timing(self) -> dict[str, float | None]:
@@ -64,10 +71,15 @@ class Simulated:
 
 
 class _Gathered:
-    """What is known so far of a run."""
+    """What is known so far of a run.
+
+    Attributes:
+        first: Its first repetition of those that were asked for.
+        watch: Looks for reasons why its result may not be what it seems.
+    """
 
     def __init__(self, place: int, job: Job, runs: Sequence[Wanted], batcher: Batcher) -> None:
-        self._place, self._job = place, job
+        self._place, self._job, self.first = place, job, runs[0].repetition
         self.watch = Watch(_setting(job[0], runs[0].q_start, batcher), job[0].caveats)
         self._names: tuple[str, ...] = ()
         self._values = np.zeros((len(runs), 0))
@@ -75,27 +87,32 @@ class _Gathered:
         self._trace: Trace | None = None
         self._left, self._seconds = len(runs), 0.0
 
-    def measured(self, repetition: int, names: tuple[str, ...], values: FloatArray) -> None:
-        """Take the metrics of a repetition that ended well."""
+    def measured(self, repetitions: Sequence[int], names: tuple[str, ...], values: FloatArray) -> None:
+        """Take the metrics of repetitions that ended well, shape (n, metrics)."""
         if not self._names:
             self._names, self._values = names, np.full((len(self._values), len(names)), np.nan)
-        self._values[repetition] = values
+        self._values[np.array(repetitions) - self.first] = values
 
     def failed(self, repetition: int, failure: Failure) -> None:
         """Take note of a repetition that failed."""
         if self._failure is None or repetition < self._failure[0]:
             self._failure = repetition, failure
 
-    def ended(self, seconds: float, trace: Trace | None) -> Simulated | None:
-        """Take note that a repetition has ended, with the trace of the first; return the run once all have."""
-        self._left -= 1
-        self._seconds += seconds
+    def ended(self, repetitions: int, seconds: float, trace: Trace | None) -> Simulated | None:
+        """Take note that repetitions have ended, with the trace of the first one; return the run once all have.
+
+        Args:
+            repetitions: Number of them.
+            seconds: The time that each took, in s.
+            trace: The trace of `first` if it is among them.
+        """
+        self._left -= repetitions
+        self._seconds += seconds * repetitions
         self._trace = self._trace if trace is None else trace
         if self._left or self._trace is None:
             return None
-        found = self.watch.found()
         return Simulated(
-            self._place, self._job, self._names, self._values, found, self._failure, self._trace, self._seconds
+            self._place, self._job, self._names, self._values, self.watch, self._failure, self._trace, self._seconds
         )
 
 
@@ -116,7 +133,7 @@ def simulate_together(
 
     Args:
         jobs: The runs.
-        runs: All repetitions of each.
+        runs: All repetitions of each, or some that follow on each other.
         batcher: Simulates them.
 
     Raises:
@@ -130,16 +147,20 @@ def simulate_together(
             (own, repetition), trace = owners[found[0]], found[1]
             assert trace.failure is not None  # noqa: S101 - such a trace has one
             own.failed(repetition, trace.failure)
-            ended.append(own.ended(trace.tick_seconds.sum(), None if repetition else trace))
+            ended.append(own.ended(1, trace.tick_seconds.sum(), trace if repetition == own.first else None))
         else:
-            metrics = measure(found.traces, found.context)
+            metrics, traces = measure(found.traces, found.context), found.traces
             names, values = tuple(metrics), np.stack(list(metrics.values()), axis=1)
             them = [owners[place] for place in found.places]
-            look_together([own.watch for own, _ in them], signals_of(found.traces, metrics))
-            seconds = float(found.traces.tick_seconds.sum())
-            for row, (own, repetition) in enumerate(them):
-                own.measured(repetition, names, values[row])
-                ended.append(own.ended(seconds, None if repetition else found.traces.run(row)))
+            apart = [(own, [repetition for _, repetition in group]) for own, group in groupby(them, lambda it: it[0])]
+            watches = [own.watch for own, _ in (them if len(apart) > 1 else apart)]
+            look_together(watches, signals_of(traces, metrics))
+            seconds, row = float(traces.tick_seconds.sum()), 0
+            for own, repetitions in apart:
+                own.measured(repetitions, names, values[row : row + len(repetitions)])
+                first = traces.run(row) if own.first == repetitions[0] else None
+                ended.append(own.ended(len(repetitions), seconds, first))
+                row += len(repetitions)
         complete = [run for run in ended if run is not None]
         if complete:
             yield complete

@@ -15,7 +15,6 @@ from runner.calibration.procedures import Outcome
 from runner.config.calibration import CalibrationConfig, validate_calibration
 from runner.config.compose import Composed, compose
 from runner.latest import note
-from runner.metrics.summary import Summary
 from runner.progress.ticks import add_ticks, counter
 from runner.robots.model import FloatArray
 
@@ -89,7 +88,13 @@ def _table(units: Mapping[str, str], rows: Iterable[FloatArray | Sequence[float]
     """Return a summary of each column by name."""
     columns = np.array(list(rows)).T
     return {
-        name: asdict(Summary(unit, column.tolist(), float(np.median(column)), float(column.min()), float(column.max())))
+        name: {
+            "unit": unit,
+            "values": column.tolist(),
+            "median": float(np.median(column)),
+            "min": float(column.min()),
+            "max": float(column.max()),
+        }
         for (name, unit), column in zip(units.items(), columns, strict=True)
     }
 

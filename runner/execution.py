@@ -1,5 +1,6 @@
 """One job: check a composed config, simulate its repetitions, store the result; or find it stored already."""
 
+import os
 import sys
 import time
 from collections.abc import Sequence
@@ -10,8 +11,7 @@ import numpy as np
 
 from runner import progress, store
 from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
-from runner.batch import Batcher
-from runner.batch_jobs import simulate_together
+from runner.batch_blocks import simulate_blocks
 from runner.caveats import Watch, setting_of, signals_of
 from runner.config.compose import Composed, compose
 from runner.config.limits import check_cpu_time
@@ -19,7 +19,8 @@ from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.errors import SimulationError
 from runner.latest import note
-from runner.metrics import MetricContext, evaluate, summarize
+from runner.metrics import Columns, MetricContext, evaluate
+from runner.plugins import has_users_parts
 from runner.progress.stages import SIMULATING, SOON
 from runner.progress.ticks import counter
 from runner.provenance import job_provenance
@@ -29,6 +30,7 @@ from runner.trace import Failure, Trace
 
 _PROBED_TICKS = 50
 _SURELY_ALLOWED = 200_000  # ticks, which take minutes at most
+_MOST_THREADS = 4  # each takes the memory of a block
 _CLOCKED_TICKS = 1_000_000  # ticks whose time is kept; more would tell nothing new
 
 
@@ -73,11 +75,17 @@ def find_or_make(composed: Composed) -> tuple[store.Run, bool]:
         check_cpu_time(config.limits, seconds, 1)
     store.prepare(outputs)
     progress.begin(SIMULATING, seconds, ticks, "ticks", counter())
-    result = simulate_job(config, composed)
+    result = simulate_job(config, composed, _threads())
     progress.begin("storing the run", SOON)
     made = store.write_run(outputs, name, result)
     note(made.folder)
     return made, True
+
+
+def _threads() -> int:
+    """Return how many threads simulate a run; parts of the user's are asked by one alone."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return 1 if has_users_parts() else min(cores, _MOST_THREADS)
 
 
 def seconds_per_tick(config: RunConfig) -> float:
@@ -93,28 +101,27 @@ def seconds_per_tick(config: RunConfig) -> float:
         whole.close()
 
 
-def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
+def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> store.RunResult:
     """Simulate the repetitions of a checked config.
 
     Args:
         config: The checked config.
         composed: What it was checked from, for provenance.
+        threads: Number of threads that simulate the repetitions of a run that is compiled as a whole.
 
     Raises:
         ConfigError: where the start of the trajectory cannot be reached, or a part refuses its config.
     """
-    batcher = Batcher()
-    runs = batcher.repetitions(config)
-    if runs is not None:
-        ((run,),) = simulate_together([(config, composed)], [runs], batcher)
-        return run.result()
+    together = simulate_blocks((config, composed), threads)
+    if together is not None:
+        return together
     wall, cpu = time.perf_counter(), time.process_time()
     loop = assemble(config)
     context = metric_context(config)
     watch = Watch(setting_of(config, loop.q_start), config.caveats)
     first: Trace | None = None
     failure: tuple[int, Failure] | None = None
-    metrics, ticks = [], []
+    columns, ticks = Columns(config.settings.repetitions), []
     clocked = 0
     notices: list[str] = []
     told: list[str] = []
@@ -131,7 +138,7 @@ def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
                 failure = (repetition, trace.failure)
             if trace.failure is None:
                 watch.look(signals_of(trace, measured))
-            metrics.append(measured)
+            columns.put(repetition, measured)
             if clocked < _CLOCKED_TICKS:
                 ticks.append(trace.tick_seconds)
                 clocked += len(trace.tick_seconds)
@@ -142,7 +149,7 @@ def simulate_job(config: RunConfig, composed: Composed) -> store.RunResult:
         resolved=config.resolved,
         urdf=config.arm.urdf,
         trace=first,
-        metrics=summarize(metrics),
+        metrics=columns.summarize(),
         caveats=watch.found(),
         repetitions=config.settings.repetitions,
         failure=failure,

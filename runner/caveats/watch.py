@@ -52,6 +52,15 @@ class Watch:
         """Look at the signals of one repetition, or of several that have an axis in front."""
         look_together([self], signals)
 
+    def join(self, later: "Watch") -> None:
+        """Take what the watch of later repetitions of the same run saw."""
+        self._seen += later._seen
+        for name, theirs in later._worst.items():
+            worst = self._worst.setdefault(name, _Worst())
+            worst.sprung += theirs.sprung
+            if theirs.value > worst.value:
+                worst.value, worst.joint = theirs.value, theirs.joint
+
     def found(self) -> Found:
         """Return what was found; of a run without a repetition that ended well only what its config says."""
         caveats = [
@@ -94,6 +103,10 @@ def look_together(watches: Sequence[Watch], signals: Signals) -> None:
             commands, periods, kind of path, environment and settling band are those of the first.
         signals: Those of all runs, which stand on the first axis, or of one; repetitions may stand on the next.
     """
+    if len(watches) == 1 and signals.q.ndim == 3 and len(signals.q) > _BLOCK:
+        for first in range(0, len(signals.q), _BLOCK):
+            look_together(watches, signals.part(first, first + _BLOCK))
+        return
     if len(watches) > _BLOCK:
         for first in range(0, len(watches), _BLOCK):
             last = first + _BLOCK

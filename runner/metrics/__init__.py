@@ -6,15 +6,15 @@ Names of single joints or axes carry a suffix (`peak_torque_q1`, `max_tracking_e
 """
 
 from runner.metrics.context import MetricContext
-from runner.metrics.summary import Summary, evaluate, measure, of_run, summarize, summarize_arrays, unit_of, units
+from runner.metrics.summary import Columns, Summary, evaluate, measure, of_run, summarize_arrays, unit_of, units
 
 __all__ = [
+    "Columns",
     "MetricContext",
     "Summary",
     "evaluate",
     "measure",
     "of_run",
-    "summarize",
     "summarize_arrays",
     "unit_of",
     "units",

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +18,10 @@ from runner.trace import FloatArray, Trace, Traces
 from runner.trajectories.shifted import Shifted
 
 _FAMILIES: tuple[OwnFamily, ...] = (positioning, tracking, effort, reaching, contact)
+MOST_LISTED = 2000
+"""Repetitions up to which a record lists a metric's values; above it has their quantiles, and they stand beside it."""
+
+_PERCENT = {"0.01": 1, "0.05": 5, "0.25": 25, "0.75": 75, "0.95": 95, "0.99": 99}  # levels of quantiles
 _BLOCK = 80_000  # values of a signal, of as many runs as give so many at a time: what caches hold
 
 
@@ -26,17 +31,32 @@ class Summary:
 
     Attributes:
         unit: Its unit.
-        values: Its value in each repetition; None where it has none (never settled, or the repetition failed).
+        values: Its value in each repetition, shape (repetitions,); NaN where it has none (never settled, or the
+            repetition failed).
         median: Median, a missing value counting as beyond every number; None when that is missing.
         min: Smallest value, None when there is none.
         max: Largest value, None as soon as one is missing.
+        quantiles: Of more than MOST_LISTED repetitions: quantiles by level, a missing value counting likewise.
     """
 
     unit: str
-    values: Sequence[float | None]
+    values: FloatArray
     median: float | None
     min: float | None
     max: float | None
+    quantiles: Mapping[str, float | None]
+
+    @property
+    def listed(self) -> bool:
+        """Whether its record lists the values."""
+        return len(self.values) <= MOST_LISTED
+
+    def record(self) -> dict[str, Any]:
+        """Return what is stored of it in a run's record."""
+        ends = {"median": self.median, "min": self.min, "max": self.max}
+        if self.listed:
+            return {"unit": self.unit, "values": [_present(value) for value in self.values.tolist()], **ends}
+        return {"unit": self.unit, **ends, "quantiles": dict(self.quantiles)}
 
 
 def families() -> tuple[OwnFamily | MetricFamily, ...]:
@@ -127,22 +147,42 @@ def of_run(measured: Mapping[str, FloatArray], run: int) -> dict[str, float | No
     return {name: _present(value) for name, value in values.items()}
 
 
-def summarize(repetitions: Sequence[Mapping[str, float | None]]) -> dict[str, Summary]:
-    """Summarize the metrics of a job's repetitions, given in order."""
-    names = tuple(dict.fromkeys(name for values in repetitions for name in values))
-    rows = [[values.get(name) for name in names] for values in repetitions]
-    values = np.array(rows, dtype=np.float64)  # None is NaN
-    return summarize_arrays(names, values.reshape(len(repetitions), len(names)))
+class Columns:
+    """The metrics of a job's repetitions, taken as they end: an array for each metric.
+
+    Args:
+        repetitions: Number of repetitions.
+    """
+
+    def __init__(self, repetitions: int) -> None:
+        self._repetitions = repetitions
+        self._columns: dict[str, FloatArray] = {}
+
+    def put(self, repetition: int, values: Mapping[str, float | None]) -> None:
+        """Take the metrics of a repetition by name."""
+        for name, value in values.items():
+            if name not in self._columns:
+                self._columns[name] = np.full(self._repetitions, np.nan)
+            self._columns[name][repetition] = np.nan if value is None else value
+
+    def summarize(self) -> dict[str, Summary]:
+        """Return the metrics over the repetitions; of one that was not taken a metric has no value."""
+        names = tuple(self._columns)
+        pairs = zip(names, units_of(names), strict=True)
+        return {name: _summarize(unit, self._columns[name]) for name, unit in pairs}
 
 
 def summarize_arrays(names: tuple[str, ...], values: FloatArray) -> dict[str, Summary]:
     """Summarize the metrics of a job's repetitions, given as an array of shape (repetitions, names), NaN for none."""
-    return {
-        name: Summary(unit, [_present(value) for value in row], *map(_present, ends))
-        for name, unit, row, ends in zip(
-            names, units_of(names), values.T.tolist(), over_repetitions(values.T).tolist(), strict=True
-        )
-    }
+    pairs = zip(names, units_of(names), values.T, strict=True)
+    return {name: _summarize(unit, own) for name, unit, own in pairs}
+
+
+def _summarize(unit: str, values: FloatArray) -> Summary:
+    """Summarize one metric, shape (repetitions,)."""
+    ordered = _ordered(values)
+    quantiles = _quantiles(ordered) if len(values) > MOST_LISTED else {}
+    return Summary(unit, values, *_present_ends(ordered), quantiles)
 
 
 def _present(value: float) -> float | None:
@@ -154,11 +194,40 @@ def over_repetitions(values: FloatArray) -> FloatArray:
 
     A missing value is NaN, and counts as beyond every number; what is beyond every number is NaN.
     """
-    ordered = np.sort(np.where(np.isnan(values), np.inf, values), axis=-1)
-    half = values.shape[-1] // 2
-    middle = ordered[..., half] if values.shape[-1] % 2 else (ordered[..., half - 1] + ordered[..., half]) / 2.0
+    return _ends(_ordered(values))
+
+
+def _ordered(values: FloatArray) -> FloatArray:
+    """Return values over the repetitions in ascending order, a missing one infinite, shape (..., repetitions)."""
+    ordered: FloatArray = np.sort(np.where(np.isnan(values), np.inf, values), axis=-1)
+    return ordered
+
+
+def _ends(ordered: FloatArray) -> FloatArray:
+    half = ordered.shape[-1] // 2
+    middle = ordered[..., half] if ordered.shape[-1] % 2 else (ordered[..., half - 1] + ordered[..., half]) / 2.0
     ends = np.stack([middle, ordered[..., 0], ordered[..., -1]], axis=-1)
     return np.where(np.isfinite(ends), ends, np.nan)
+
+
+def _present_ends(ordered: FloatArray) -> tuple[float | None, float | None, float | None]:
+    middle, low, high = map(_present, _ends(ordered).tolist())
+    return middle, low, high
+
+
+def _quantiles(ordered: FloatArray) -> dict[str, float | None]:
+    """Return quantiles by level of values in ascending order, infinite where missing, shape (repetitions,).
+
+    Between two values they are interpolated linearly; None for what is beyond every number.
+    """
+    found: dict[str, float | None] = {}
+    for level, percent in _PERCENT.items():
+        place, rest = divmod(percent * (len(ordered) - 1), 100)
+        value = float(ordered[place])
+        if rest and math.isfinite(value):
+            value += rest / 100.0 * (float(ordered[place + 1]) - value)
+        found[level] = value if math.isfinite(value) else None
+    return found
 
 
 def units_of(names: tuple[str, ...]) -> tuple[str, ...]:

@@ -19,6 +19,7 @@ class _Count:
 
 
 _count = _Count()
+_adding = threading.Lock()
 
 
 @contextmanager
@@ -33,8 +34,9 @@ def counted(clock: NDArray[np.int64], ticks: int) -> Iterator[None]:
 
 
 def add_ticks(ticks: int) -> None:
-    """Count ticks that were simulated at once."""
-    _count.ended += ticks
+    """Count ticks that were simulated at once, in any thread."""
+    with _adding:
+        _count.ended += ticks
 
 
 def made() -> int:

@@ -17,9 +17,9 @@ from runner.store.names import Names
 _LEFT_OUT = ("caveats", "limits", "outputs", "preset", "sweep")
 # The rooms and modules of the physics: what a run's result follows from. All others leave it as it is.
 _PHYSICS = (
-    "assembly.py", "batch.py", "batch_jobs.py", "calibration", "calibration_job.py", "compiled", "config",
-    "controllers", "environments", "execution.py", "feasibility.py", "guard", "interaction.py", "loop", "metrics",
-    "plants", "registry.py", "robots", "sensing", "simulation.py", "trace.py", "trajectories",
+    "assembly.py", "batch.py", "batch_blocks.py", "batch_jobs.py", "calibration", "calibration_job.py", "compiled",
+    "config", "controllers", "environments", "execution.py", "feasibility.py", "guard", "interaction.py", "loop",
+    "metrics", "plants", "registry.py", "robots", "sensing", "simulation.py", "trace.py", "trajectories",
 )  # fmt: skip
 
 _ENGINES = {"bullet": ("pybullet",), "mujoco": ("mujoco",), "kinematic": (), "rk4": (), "none": ()}  # of our plants

@@ -8,9 +8,9 @@ of two is known without a clock.
 
 import io
 import json
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -68,10 +68,12 @@ class ShardRun(Run):
     Attributes:
         text: The URDF's text.
         whole: Whether its shard has a digest.
+        beside: Gives the values of a metric, of so many repetitions that its record does not list them.
     """
 
     text: str
     whole: bool = True
+    beside: Callable[[str], FloatArray] | None = field(default=None, compare=False)
 
     @property
     def sealed(self) -> bool:
@@ -82,6 +84,10 @@ class ShardRun(Run):
     def urdf(self) -> str:
         """The URDF's text that was simulated."""
         return self.text
+
+    def _values_beside(self, metric: str) -> FloatArray:
+        assert self.beside is not None  # noqa: S101 - who makes one of many repetitions gives it
+        return self.beside(metric)
 
     @cached_property
     def _table(self) -> Any:
@@ -244,7 +250,15 @@ def open_row(path: Path, row: int) -> ShardRun:
     if fault:
         raise DamagedError(f"cannot read {path}: row {row} is no run: {fault}; {_MEND}")
     folder = path.parent.parent / "runs" / values["run"][row].as_py()
-    return ShardRun(folder, config, record, values["urdf"][row].as_py(), whole=is_sealed_shard(path))
+    urdf, beside = values["urdf"][row].as_py(), partial(_values_in, path, row)
+    return ShardRun(folder, config, record, urdf, whole=is_sealed_shard(path), beside=beside)
+
+
+def _values_in(path: Path, row: int, metric: str) -> FloatArray:
+    """Return the values of a metric of the run in a row of a shard, shape (repetitions,), NaN for none."""
+    column = _read(path, [METRIC + metric])[METRIC + metric]
+    values: FloatArray = column[row].values.to_numpy(zero_copy_only=False).astype(np.float64, copy=False)
+    return values
 
 
 def is_sealed_shard(path: Path) -> bool:

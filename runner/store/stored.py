@@ -1,6 +1,6 @@
 """What a run and a calibration have in common as they are stored."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -64,7 +64,7 @@ class Stored:
 
 
 def write_job(
-    folder: Path, record_name: str, record: Mapping[str, Any], files: Mapping[str, bytes], flushed: str = ""
+    folder: Path, record_name: str, record: Mapping[str, Any], files: Mapping[str, bytes], flushed: Sequence[str] = ()
 ) -> dict[str, Any]:
     """Store a job's files, its record last, whose presence means done; return the record with their digests.
 
@@ -73,13 +73,13 @@ def write_job(
         record_name: File name of the record.
         record: What came out.
         files: Content of its other files by name.
-        flushed: The one of them that is on the disk when this returns; the others a power cut may leave empty.
+        flushed: Those of them that are on the disk when this returns; the others a power cut may leave empty.
 
     Raises:
         StoreError: if the disk does not take them.
     """
     for name, content in files.items():
-        write_atomically(folder / name, content, flush=name == flushed)
+        write_atomically(folder / name, content, flush=name in flushed)
     whole = {"files": {name: digest(content) for name, content in files.items()}, **record}
     write_atomically(folder / record_name, sealed_json(whole))
     return {"schema": SCHEMA, **whole}

@@ -11,12 +11,13 @@ import yaml
 
 from runner.caveats import Found
 from runner.errors import StoreError
-from runner.metrics.summary import Summary, over_repetitions, units_of
+from runner.metrics.summary import MOST_LISTED, Summary, over_repetitions, summarize_arrays, units_of
 from runner.store.arrow_columns import float_column
 from runner.store.atomic import write_atomically
 from runner.store.json_texts import JsonTexts, encode_finite
 from runner.store.run import Run
 from runner.store.stored import write_job
+from runner.store.values import VALUES_FILE, values_parquet
 from runner.trace import Failure, FloatArray, Trace
 
 
@@ -74,7 +75,11 @@ def write_run(outputs: Path, name: str, result: RunResult) -> Run:
         "config.yaml": config.encode(),
         "robot.urdf": result.urdf.encode(),
     }
-    record = write_job(folder, "metrics.json", make_record(result), files, flushed="trace.parquet")
+    beside = {metric: summary.values for metric, summary in result.metrics.items() if not summary.listed}
+    if beside:
+        files[VALUES_FILE] = values_parquet(beside)
+    dear = ("trace.parquet", VALUES_FILE)
+    record = write_job(folder, "metrics.json", make_record(result), files, flushed=dear)
     return Run(folder, result.resolved, record)
 
 
@@ -88,7 +93,7 @@ def make_record(result: RunResult) -> dict[str, Any]:
         repetition, failure = result.failure
         record["failure"] = {**asdict(failure), "repetition": repetition}
     record |= result.caveats.record()
-    record["metrics"] = {metric: vars(summary) for metric, summary in result.metrics.items()}
+    record["metrics"] = {metric: summary.record() for metric, summary in result.metrics.items()}
     record["timing"] = dict(result.timing)
     record["provenance"] = dict(result.provenance)
     return record
@@ -137,6 +142,11 @@ def _metric_texts(metrics: Mapping[str, FloatArray]) -> Iterator[str]:
     if np.isinf(values).any():
         raise ValueError("a metric is infinite, which is no number in JSON")
     repetitions = values.shape[2]
+    if repetitions > MOST_LISTED:
+        for own in values:
+            summaries = summarize_arrays(names, own.T)
+            yield encode_finite({name: summary.record() for name, summary in summaries.items()})
+        return
     for own in values:
         each = _numbers(own.ravel().tolist())
         lists = middle = low = high = each

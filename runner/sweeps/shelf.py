@@ -60,7 +60,8 @@ def without_trace(name: str, result: store.RunResult, rules: Rules) -> store.Run
     """Return a result as it is kept: whole, or without its trace; then a failure is written down, too."""
     if rules.keeps_trace(name, result.failure is not None):
         return result
-    run = ShardRun(rules.outputs / "runs" / name, result.resolved, make_record(result), result.urdf)
+    folder, record = rules.outputs / "runs" / name, make_record(result)
+    run = ShardRun(folder, result.resolved, record, result.urdf, beside=lambda metric: result.metrics[metric].values)
     if run.failure:
         write_failure(run, "", rules)
     return run

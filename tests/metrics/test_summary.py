@@ -5,13 +5,21 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runner.metrics import MetricContext, evaluate, summarize, units
+from runner.metrics import Columns, MetricContext, evaluate, units
+from runner.metrics.summary import MOST_LISTED
 from runner.trace import Failure
 from runner.trajectories.goal import Goal
 from runner.trajectories.quintic import Quintic
 
 T = np.arange(401) * 0.01
 TRACKED = MetricContext(Quintic(np.zeros(3), np.ones(3), 3.0), 0.02, 0.01)
+
+
+def summarize(repetitions):
+    columns = Columns(len(repetitions))
+    for repetition, values in enumerate(repetitions):
+        columns.put(repetition, values)
+    return columns.summarize()
 
 
 def summary(*values, name="settling_time"):
@@ -35,7 +43,30 @@ def summary(*values, name="settling_time"):
 def test_missing_values_count_as_beyond_every_number(values, median, least, largest):
     found = summary(*values)
     assert (found.median, found.min, found.max) == (median, least, largest)
-    assert tuple(found.values) == values
+    assert tuple(found.record()["values"]) == values
+
+
+def test_many_repetitions_have_quantiles_in_place_of_their_values():
+    values = np.random.default_rng(0).permutation(MOST_LISTED + 1) + 1.0
+    found = summary(*values)
+    assert found.record() == {
+        "unit": "s",
+        **{"median": 1001.0, "min": 1.0, "max": 2001.0},
+        "quantiles": {"0.01": 21.0, "0.05": 101.0, "0.25": 501.0, "0.75": 1501.0, "0.95": 1901.0, "0.99": 1981.0},
+    }
+    assert np.array_equal(found.values, values)
+    assert "quantiles" not in summary(*values[:-1]).record()
+
+
+@pytest.mark.parametrize("missing", [0, 20, 21, 22, 1001, 1981, 2500])
+def test_quantiles_are_numpy_s_with_missing_values_beyond_every_number(missing):
+    values = np.random.default_rng(missing).normal(size=2500)
+    values[:missing] = np.nan
+    found = summary(*[None if np.isnan(value) else value for value in values]).quantiles
+    beyond = np.where(np.isnan(values), 1e300, values)
+    for level, value in found.items():
+        expected = np.quantile(beyond, float(level))
+        assert value == (None if expected > 1e6 else pytest.approx(expected, rel=1e-12))
 
 
 @given(st.lists(st.one_of(st.none(), st.floats(0.0, 1e6)), min_size=1, max_size=12), st.randoms())
@@ -75,7 +106,7 @@ def test_every_metric_of_a_run_has_a_unit(hand_made_trace, context):
     found = summarize([evaluate(hand_made_trace(T, desired=1.0), context)])
     assert {name.removesuffix("_q1").removesuffix("_x") for name in found} <= set(found)
     assert all(value.unit for value in found.values())
-    assert all(type(value.values[0]) in (float, type(None)) for value in found.values())
+    assert all(type(value.record()["values"][0]) in (float, type(None)) for value in found.values())
     assert ("max_tracking_error" in found) == (context is TRACKED)
 
 
@@ -90,7 +121,7 @@ def test_a_failed_repetition_gives_nulls(hand_made_trace, failed):
     found = summarize([{} if repetition == failed else good for repetition in range(3)])
     assert list(found) == list(good)
     for name, value in found.items():
-        assert [x is None for x in value.values] == [good[name] is None or r == failed for r in range(3)]
+        assert np.isnan(value.values).tolist() == [good[name] is None or r == failed for r in range(3)]
         assert value.max is None
     assert found["settling_time"].median == 0.0
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from runner.caveats import Caveat, Found
-from runner.metrics import of_run, summarize, unit_of
+from runner.metrics import summarize_arrays, unit_of
 from runner.store import Finished, Outcome
 from runner.store.json_texts import JsonTexts
 from runner.store.record import find_faults
@@ -35,22 +35,22 @@ def some_runs(runs, repetitions):
 
 def record_alone(metrics, run, found, provenance):
     repetitions = len(next(iter(metrics.values()))[run])
-    each = [of_run({name: values[run] for name, values in metrics.items()}, place) for place in range(repetitions)]
+    each = summarize_arrays(tuple(metrics), np.array([values[run] for values in metrics.values()]).T)
     result = SimpleNamespace(
-        failure=None, repetitions=repetitions, caveats=found, metrics=summarize(each), timing=TIMING,
+        failure=None, repetitions=repetitions, caveats=found, metrics=each, timing=TIMING,
         provenance=provenance,
     )  # fmt: skip
     return make_record(result)
 
 
-@pytest.mark.parametrize("repetitions", [1, 2, 5])
+@pytest.mark.parametrize("repetitions", [1, 2, 5, 2001])
 def test_the_records_of_many_runs_are_those_of_each_alone(repetitions):
     metrics, found, provenances = some_runs(7, repetitions)
     texts = record_texts(metrics, found, TIMING, provenances, JsonTexts())
     for run, text in enumerate(texts):
         alone = record_alone(metrics, run, found[run], provenances[run])
         assert text == json.dumps(alone)
-        assert not find_faults(json.loads(text))
+        assert repetitions > 2000 or not find_faults(json.loads(text))  # without digests there never were so many
 
 
 def test_an_infinite_metric_is_refused_as_in_a_run_alone():
