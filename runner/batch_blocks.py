@@ -17,9 +17,13 @@ import numpy as np
 from runner import store
 from runner.batch import Batcher
 from runner.batch_jobs import Job, Simulated, simulate_together
+from runner.config.limits import TICKS_AT_ONCE
 from runner.store.writing import timing
 
-TICKS = 250_000
+MOST_THREADS = 4
+"""More would wait for each other."""
+
+TICKS = TICKS_AT_ONCE // MOST_THREADS
 """Ticks of a block, about: a tenth of a second."""
 
 _AHEAD = 2  # blocks for each thread that are under way or wait to be taken
@@ -30,7 +34,7 @@ def simulate_blocks(job: Job, threads: int = 1, ticks: int = TICKS) -> store.Run
 
     Args:
         job: Its checked config, and what that was checked from.
-        threads: Number of threads; with 1 the caller's own.
+        threads: Number of threads; with 1, or where a repetition has more ticks than a block, the caller's own.
         ticks: Ticks of a block, about.
 
     Raises:
@@ -40,6 +44,7 @@ def simulate_blocks(job: Job, threads: int = 1, ticks: int = TICKS) -> store.Run
     config, batcher = job[0], Batcher()
     count, size = config.settings.repetitions, max(1, ticks // config.timing.ticks)
     blocks = [range(start, min(start + size, count)) for start in range(0, count, size)]
+    threads = threads if config.timing.ticks <= ticks else 1
     simulate = partial(_simulate, job, batcher)
     first = simulate(blocks[0])  # alone: it makes what all have in common
     if first is None:

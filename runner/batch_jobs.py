@@ -1,5 +1,6 @@
 """Runs that are simulated together, from their checked configs to what is stored of each."""
 
+import time
 from collections.abc import Iterator, Sequence
 from dataclasses import astuple, dataclass
 from functools import cached_property
@@ -124,6 +125,26 @@ def _setting(config: RunConfig, q_start: FloatArray, batcher: Batcher) -> Settin
         *(*astuple(config.timing), config.commands, config.settings.repetitions),
     )
     return batcher.memory.known(parts, lambda: setting_of(config, q_start))
+
+
+def seconds_together(job: Job, ticks: int) -> float | None:
+    """Return the time for a tick of a run in company, in s; None where it cannot be simulated together with others.
+
+    Args:
+        job: The run.
+        ticks: Ticks that are made for it, about, twice.
+    """
+    config, batcher = job[0], Batcher()
+    repetitions = range(min(config.settings.repetitions, max(1, ticks // config.timing.ticks)))
+    runs = batcher.repetitions(config, repetitions)
+    if runs is None:
+        return None
+    copies, start = max(1, ticks // (len(runs) * config.timing.ticks)), 0.0
+    for _ in range(2):  # the first time warms up
+        start = time.perf_counter()
+        for _ in simulate_together([job] * copies, [runs] * copies, batcher):
+            pass
+    return (time.perf_counter() - start) / (copies * len(runs) * config.timing.ticks)
 
 
 def simulate_together(

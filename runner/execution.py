@@ -11,7 +11,8 @@ import numpy as np
 
 from runner import progress, store
 from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
-from runner.batch_blocks import simulate_blocks
+from runner.batch_blocks import MOST_THREADS, simulate_blocks
+from runner.batch_jobs import seconds_together
 from runner.caveats import Watch, setting_of, signals_of
 from runner.config.compose import Composed, compose
 from runner.config.limits import check_cpu_time
@@ -30,7 +31,7 @@ from runner.trace import Failure, Trace
 
 _PROBED_TICKS = 50
 _SURELY_ALLOWED = 200_000  # ticks, which take minutes at most
-_MOST_THREADS = 4  # each takes the memory of a block
+_PROBED_TOGETHER = 100_000  # ticks, of repetitions that are simulated together
 _CLOCKED_TICKS = 1_000_000  # ticks whose time is kept; more would tell nothing new
 
 
@@ -71,7 +72,7 @@ def find_or_make(composed: Composed) -> tuple[store.Run, bool]:
         return stored, False
     ticks, seconds = config.timing.ticks * config.settings.repetitions, None
     if ticks > _SURELY_ALLOWED:
-        seconds = seconds_per_tick(config) * ticks
+        seconds = seconds_per_tick(config, composed) * ticks
         check_cpu_time(config.limits, seconds, 1)
     store.prepare(outputs)
     progress.begin(SIMULATING, seconds, ticks, "ticks", counter())
@@ -85,11 +86,15 @@ def find_or_make(composed: Composed) -> tuple[store.Run, bool]:
 def _threads() -> int:
     """Return how many threads simulate a run; parts of the user's are asked by one alone."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return 1 if has_users_parts() else min(cores, _MOST_THREADS)
+    return 1 if has_users_parts() else min(cores, MOST_THREADS)
 
 
-def seconds_per_tick(config: RunConfig) -> float:
-    """Return how long a tick of a run takes, in s, from its first ones, made twice."""
+def seconds_per_tick(config: RunConfig, composed: Composed) -> float:
+    """Return the CPU time of a tick of a run, in s, from its first ones, made twice."""
+    if config.timing.ticks <= _PROBED_TOGETHER:
+        together = seconds_together((config, composed), _PROBED_TOGETHER)
+        if together is not None:
+            return together
     whole = assemble(config)
     part = replace(whole, ticks=min(whole.ticks, _PROBED_TICKS))
     try:

@@ -11,7 +11,12 @@ _GB = 1e9  # bytes
 _NUMBER = 8  # bytes
 # Numbers that a run keeps of each tick, its stored trace and the metrics' arrays included: measured, rounded up.
 _OF_EACH_TICK, _OF_EACH_JOINT, _OF_WHAT_IS_FELT = 24, 13, 75
-_OF_EACH_REPETITION = 5_000  # bytes, of its metrics
+# Metrics of an arm, of each of its joints, and of each stage that carries another; and bytes of each in a repetition:
+# as it is gathered, and as it is stored.
+_METRICS, _METRICS_OF_JOINT, _METRICS_OF_CARRIER = 22, 4, 9
+_OF_EACH_METRIC = 12
+TICKS_AT_ONCE = 1_000_000
+"""Ticks of the repetitions of a run that are in memory at the same time; more where one alone has more."""
 
 
 class LimitsConfig(StrictModel):
@@ -36,23 +41,33 @@ def memory_of_run(arm: Robot, ticks: int, repetitions: int, feels: bool) -> floa
         feels: Whether the tip may feel something.
     """
     numbers = _OF_EACH_TICK + _OF_EACH_JOINT * arm.model.nq + (_OF_WHAT_IS_FELT if feels else 0)
-    return _NUMBER * numbers * ticks + _OF_EACH_REPETITION * repetitions
+    at_once = max(ticks, min(ticks * repetitions, TICKS_AT_ONCE))
+    return _NUMBER * numbers * at_once + _of_repetition(arm) * repetitions
+
+
+def _of_repetition(arm: Robot) -> float:
+    """Return the memory that the metrics of a repetition take, in bytes."""
+    metrics = _METRICS + _METRICS_OF_JOINT * arm.model.nq + _METRICS_OF_CARRIER * (len(arm.stages) - 1)
+    return float(_OF_EACH_METRIC * metrics)
 
 
 def check_memory(limits: LimitsConfig, arm: Robot, timing: Timing, repetitions: int, feels: bool) -> None:
     """Check that a run fits into memory; see memory_of_run.
 
     Raises:
-        ConfigError: if it would take more than `limits.memory`; gives the estimate.
+        ConfigError: if it would take more than `limits.memory`; gives the estimate, and how many repetitions would fit.
     """
     needed = memory_of_run(arm, timing.ticks, repetitions, feels) / _GB
     if limits.memory is not None and needed > limits.memory:
+        left = _GB * limits.memory - memory_of_run(arm, timing.ticks, repetitions, feels)
+        fit = repetitions + int(left // _of_repetition(arm))
+        fitting = f", in which {fit} repetitions fit" if fit > 0 else ""
         length = f"{timing.ticks * timing.tick:.3g} s ({timing.ticks:.3g} ticks of {timing.tick:g} s"
         raise ConfigError(
             [
                 f"limits.memory: a run of {length}, repetitions: {repetitions:.3g}) would take about {needed:.3g} GB; "
-                f"allowed: {limits.memory:g} GB; shorten duration or trajectory.duration, ask for fewer repetitions, "
-                "or set limits.memory"
+                f"allowed: {limits.memory:g} GB{fitting}; shorten duration or trajectory.duration, ask for fewer "
+                "repetitions, or set limits.memory"
             ]
         )
 

@@ -11,7 +11,7 @@ import yaml
 
 from runner.caveats import Found
 from runner.errors import StoreError
-from runner.metrics.summary import MOST_LISTED, Summary, over_repetitions, summarize_arrays, units_of
+from runner.metrics.summary import Summary, over_repetitions, units_of
 from runner.store.arrow_columns import float_column
 from runner.store.atomic import write_atomically
 from runner.store.json_texts import JsonTexts, encode_finite
@@ -109,7 +109,8 @@ def record_texts(
     """Return the records of runs that ended well, as `make_record` gives them, as JSON.
 
     Args:
-        metrics: Values in each repetition of each run, shape (runs, repetitions), by name; NaN for none.
+        metrics: Values in each repetition of each run, shape (runs, repetitions), by name; NaN for none. There are no
+            more repetitions than a record lists.
         found: Caveats of each run.
         timing: What a clock measured, of each run alike.
         provenances: Where each run comes from.
@@ -142,11 +143,6 @@ def _metric_texts(metrics: Mapping[str, FloatArray]) -> Iterator[str]:
     if np.isinf(values).any():
         raise ValueError("a metric is infinite, which is no number in JSON")
     repetitions = values.shape[2]
-    if repetitions > MOST_LISTED:
-        for own in values:
-            summaries = summarize_arrays(names, own.T)
-            yield encode_finite({name: summary.record() for name, summary in summaries.items()})
-        return
     for own in values:
         each = _numbers(own.ravel().tolist())
         lists = middle = low = high = each

@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.batch import Batcher
-from runner.batch_jobs import simulate_together
+from runner.batch_jobs import seconds_together
 from runner.config.compose import Composed
 from runner.config.validation import validate
 from runner.execution import seconds_per_tick
@@ -71,16 +70,9 @@ def _probe(composed: Composed, ticks: int) -> tuple[float, bool]:
     together = False
     try:
         with deadline(_PROBED_WITHIN):
-            batcher = Batcher()
-            runs = batcher.repetitions(config)
-            if runs is None:
-                return seconds_per_tick(config), False
-            together, copies, start = True, max(1, _TICKS_TOGETHER // ticks), 0.0
-            for _ in range(2):  # the first time warms up
-                start = time.perf_counter()
-                for _ in simulate_together([(config, composed)] * copies, [runs] * copies, batcher):
-                    pass
-            return (time.perf_counter() - start) / (copies * ticks), True
+            per_tick = seconds_together((config, composed), _TICKS_TOGETHER)
+            together = per_tick is not None
+            return (seconds_per_tick(config, composed) if per_tick is None else per_tick), together
     except TimeLimitError:
         return (config.sweep.time_limit or _PROBED_WITHIN) / ticks, together
     except Exception:  # an error of a part is stored when its run is made

@@ -9,7 +9,7 @@ from runner import store
 from runner.batch import Batcher
 from runner.batch_jobs import Job, Simulated, simulate_together
 from runner.errors import StoreError
-from runner.metrics.summary import units_of
+from runner.metrics.summary import MOST_LISTED, units_of
 from runner.provenance import command, job_provenance
 from runner.store.json_texts import JsonTexts
 from runner.store.shards import ShardRow
@@ -23,6 +23,8 @@ Named = tuple[str, Simulated]
 
 def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, shelf: Shelf) -> tuple[set[str], bool]:
     """Simulate those of some runs that can be simulated together; return which are made, and whether one failed.
+
+    Runs of so many repetitions that their records do not list them are left to be made one by one, block after block.
 
     Where anything goes wrong with them all, as a part of the user's may do, the rest is left to be made one by one,
     which tells whose fault it is.
@@ -38,7 +40,8 @@ def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, shelf: Shelf) -
     batcher, texts, made, failed = Batcher(), JsonTexts(), set[str](), False
     try:
         with deadline(rules.time_limit):
-            found = [(name, job, batcher.repetitions(job[0])) for name, job in jobs]
+            few = [(name, job) for name, job in jobs if job[0].settings.repetitions <= MOST_LISTED]
+            found = [(name, job, batcher.repetitions(job[0])) for name, job in few]
         chosen = [(name, job, runs) for name, job, runs in found if runs is not None]
         steps = simulate_together([job for _, job, _ in chosen], [runs for *_, runs in chosen], batcher)
         while True:

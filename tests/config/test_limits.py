@@ -2,7 +2,9 @@ import re
 
 import pytest
 
+from runner.config.compose import compose
 from runner.config.limits import LimitsConfig, check_cpu_time, memory_of_run
+from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.execution import seconds_per_tick
 from runner.store import simulated_part
@@ -15,7 +17,11 @@ from runner.store import simulated_part
             ("duration=90000",),
             r"limits.memory: a run of 9e\+04 s \(9e\+06 ticks of 0.01 s, .* 4.54 GB; allowed: 4",
         ),
-        (("repetitions=1000000000",), r"limits.memory: .* repetitions: 1e\+09\) would take about 5e\+03 GB"),
+        (
+            ("repetitions=1000000000",),
+            r"limits.memory: .* repetitions: 1e\+09\) would take about 409 GB; allowed: 4 GB, in which 8\d{6} "
+            "repetitions fit; shorten",
+        ),
         (("duration=4000", "limits.memory=0.1"), r"limits.memory: .* allowed: 0.1 GB; shorten duration"),
         (("repetitions=500000", "limits.cpu_hours=0.1"), r"limits.cpu_hours: the run would take about .* allowed: 0.1"),
     ],
@@ -58,5 +64,6 @@ def test_limits_are_no_part_of_a_result(checked_config):
     assert "limits" not in simulated_part(checked_config("robot=macro").resolved)
 
 
-def test_a_tick_takes_microseconds(checked_config):
-    assert 1e-7 < seconds_per_tick(checked_config("robot=macro", "plant=rk4")) < 0.1
+def test_a_tick_takes_microseconds():
+    composed = compose(["robot=macro", "plant=rk4", "controller=operational_space"])
+    assert 1e-8 < seconds_per_tick(validate(composed.resolved), composed) < 0.1

@@ -43,14 +43,14 @@ def record_alone(metrics, run, found, provenance):
     return make_record(result)
 
 
-@pytest.mark.parametrize("repetitions", [1, 2, 5, 2001])
+@pytest.mark.parametrize("repetitions", [1, 2, 5])
 def test_the_records_of_many_runs_are_those_of_each_alone(repetitions):
     metrics, found, provenances = some_runs(7, repetitions)
     texts = record_texts(metrics, found, TIMING, provenances, JsonTexts())
     for run, text in enumerate(texts):
         alone = record_alone(metrics, run, found[run], provenances[run])
         assert text == json.dumps(alone)
-        assert repetitions > 2000 or not find_faults(json.loads(text))  # without digests there never were so many
+        assert not find_faults(json.loads(text))
 
 
 def test_an_infinite_metric_is_refused_as_in_a_run_alone():
