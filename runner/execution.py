@@ -3,7 +3,7 @@
 import os
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,14 +13,15 @@ from runner import progress, store
 from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
 from runner.batch_blocks import MOST_THREADS, simulate_blocks
 from runner.batch_jobs import seconds_together
-from runner.caveats import Watch, setting_of, signals_of
+from runner.caveats import PlantStep, Watch, setting_of, signals_of
 from runner.config.compose import Composed, compose
 from runner.config.limits import check_cpu_time
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.errors import SimulationError
+from runner.errors import ConfigError, SimulationError
 from runner.latest import note
 from runner.metrics import Columns, MetricContext, evaluate
+from runner.plant_error import COMPARED, PlantError, compare, hindrance, on_runge_kutta
 from runner.plugins import has_users_parts
 from runner.progress.stages import SIMULATING, SOON
 from runner.progress.ticks import counter
@@ -125,6 +126,7 @@ def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> sto
     context = metric_context(config)
     watch = Watch(setting_of(config, loop.q_start), config.caveats)
     first: Trace | None = None
+    of_first: dict[str, float | None] = {}
     failure: tuple[int, Failure] | None = None
     columns, ticks = Columns(config.settings.repetitions), []
     clocked = 0
@@ -138,7 +140,8 @@ def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> sto
             ran, said = _simulate(loop, config, repetition)
             trace, measured = _judge(ran, context, told)
             notices = notices or said
-            first = trace if first is None else first
+            if first is None:
+                first, of_first = trace, measured
             if trace.failure is not None and failure is None:
                 failure = (repetition, trace.failure)
             if trace.failure is None:
@@ -150,17 +153,39 @@ def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> sto
     finally:
         loop.close()
     assert first is not None  # noqa: S101 - repetitions is at least 1
+    seconds = time.perf_counter() - wall, time.process_time() - cpu
+    error = _plant_error(config, composed, first, of_first)
+    step = PlantStep(config.plant.kind, config.timing.step, config.timing.tick, config.robot.settling_band)
     return store.RunResult(
         resolved=config.resolved,
         urdf=config.arm.urdf,
         trace=first,
         metrics=columns.summarize(),
-        caveats=watch.found(),
+        caveats=watch.found(error, step),
         repetitions=config.settings.repetitions,
         failure=failure,
-        timing=timing(np.concatenate(ticks), time.perf_counter() - wall, time.process_time() - cpu),
+        timing=timing(np.concatenate(ticks), *seconds),
         provenance=job_provenance(config, composed, [*notices, *dict.fromkeys(told)]),
+        plant_error=error,
     )
+
+
+def _plant_error(
+    config: RunConfig, composed: Composed, trace: Trace, measured: Mapping[str, float | None]
+) -> PlantError | None:
+    """Return what the plant's step is worth in repetition 0; None where nobody asks, or there is nothing to compare."""
+    if not config.settings.plant_error or config.plant.kind not in COMPARED:
+        return None
+    if reason := hindrance(config.environment.kind):
+        return PlantError(None, reason)
+    other = replace(composed, resolved=on_runge_kutta(config.resolved))
+    try:
+        checked = validate(other.resolved, other.config_dirs)
+        made = simulate_job(checked, other)
+    except ConfigError as error:
+        return PlantError(None, str(error))
+    others = {name: summary.median for name, summary in made.metrics.items()}
+    return compare(trace, measured, made.trace, others, config.robot.settling_band, checked.timing.step)
 
 
 def _judge(trace: Trace, context: MetricContext, told: list[str]) -> tuple[Trace, dict[str, float | None]]:

@@ -1,6 +1,7 @@
 """All rules, in the order in which they are told, and a digest of them."""
 
 import hashlib
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from runner.caveats.default_plant import DEFAULT_PLANT
 from runner.caveats.file import MJCF
 from runner.caveats.knowledge import EXACT_VELOCITY, FIXED_MISMATCH
 from runner.caveats.motion import DID_NOT_FOLLOW, JOINT_LIMITS
+from runner.caveats.plant_error import KEY, NAME
 from runner.caveats.rule import SettingRule, TraceRule
 from runner.caveats.torques import CHATTER, SATURATION
 
@@ -17,6 +19,12 @@ TRACE_RULES: tuple[TraceRule, ...] = (DID_NOT_FOLLOW, SATURATION, CHATTER, JOINT
 SETTING_RULES: tuple[SettingRule, ...] = (
     OVERLOAD, NO_EFFORT_LIMIT, EXACT_VELOCITY, FIXED_MISMATCH, UNSTABLE_CONTACT, DEFAULT_PLANT, MJCF,
 )  # fmt: skip
+KEYS: Mapping[str, str] = {
+    **{rule.name: rule.key for rule in TRACE_RULES},
+    **{rule.name: rule.key for rule in SETTING_RULES},
+    NAME: KEY,
+}
+"""The key of every rule's threshold, by the rule's name: `caveats.NAME.KEY`."""
 
 _HEX = 24
 

@@ -8,17 +8,19 @@ from operator import attrgetter
 
 import numpy as np
 
+from runner.caveats import plant_error
 from runner.caveats.caveat import Caveat, Found
-from runner.caveats.registry import SETTING_RULES, TRACE_RULES, rules_digest
+from runner.caveats.plant_error import PlantStep, caveat_of
+from runner.caveats.registry import KEYS, SETTING_RULES, TRACE_RULES, rules_digest
 from runner.caveats.rule import TraceRule
 from runner.caveats.setting import Setting
 from runner.caveats.signals import Signals
 from runner.config.caveats import CaveatsConfig
 from runner.config.memory import Memory
+from runner.plant_error import PlantError
 from runner.trace import FloatArray
 
-_RULES = {rule.name: rule.key for rule in TRACE_RULES} | {rule.name: rule.key for rule in SETTING_RULES}
-_KEYS = {name: _RULES[name] for name in CaveatsConfig.model_fields}
+_KEYS = {name: KEYS[name] for name in CaveatsConfig.model_fields}
 _values = attrgetter(*(f"{name}.{key}" for name, key in _KEYS.items()))
 
 _MEMORY = Memory(64)  # runs of a sweep share their setting
@@ -61,14 +63,22 @@ class Watch:
             if theirs.value > worst.value:
                 worst.value, worst.joint = theirs.value, theirs.joint
 
-    def found(self) -> Found:
-        """Return what was found; of a run without a repetition that ended well only what its config says."""
+    def found(self, error: PlantError | None = None, step: PlantStep | None = None) -> Found:
+        """Return what was found; of a run without a repetition that ended well only what its config says.
+
+        Args:
+            error: What the plant's step is worth, where that was measured.
+            step: That step.
+        """
         caveats = [
             Caveat(rule.name, self._told(rule, worst), worst.value, worst.sprung)
             for rule in TRACE_RULES
             if (worst := self._worst.get(rule.name))
         ]
         caveats += _MEMORY.recall(_of_setting, self._setting, self._thresholds)
+        if error is not None and step is not None:
+            threshold = self._thresholds[plant_error.NAME][plant_error.KEY]
+            caveats += filter(None, [caveat_of(error, step, threshold)])
         return Found(caveats, rules_digest(), self._thresholds)
 
     def _note(self, rule: TraceRule, values: FloatArray, sprung: int) -> None:

@@ -119,6 +119,16 @@ class MjcfThreshold(StrictModel):
     left_out: NonNegativeFloat
 
 
+class PlantErrorThreshold(StrictModel):
+    """Threshold of the rule on the plant's own error.
+
+    Attributes:
+        share: Share of a metric that the plant's step may be worth; 1 silences the rule.
+    """
+
+    share: Share
+
+
 class CaveatsConfig(StrictModel):
     """When a run tells that its result may mislead; a rule each, which is sprung by what is above its threshold.
 
@@ -134,6 +144,7 @@ class CaveatsConfig(StrictModel):
         unstable_contact: A wall too stiff for an admittance behind joint servos.
         default_plant: Another plant in place of the default one.
         mjcf: What is not taken from the robot's MJCF.
+        plant_error: What the plant's step is worth, of a run that was held against Runge-Kutta.
     """
 
     saturation: SaturationThreshold
@@ -147,3 +158,4 @@ class CaveatsConfig(StrictModel):
     unstable_contact: UnstableContactThreshold
     default_plant: DefaultPlantThreshold
     mjcf: MjcfThreshold
+    plant_error: PlantErrorThreshold

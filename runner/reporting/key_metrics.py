@@ -42,7 +42,7 @@ def key_metrics(run: Run, most: int) -> Sequence[KeyMetric]:
         run: The run; a failed one may have none.
         most: How many.
     """
-    return [_in_words(name, run) for name in _names(run)[:most]]
+    return [_in_words(name, run) for name in key_names(run)[:most]]
 
 
 def least(runs: Sequence[Run]) -> tuple[str, int] | None:
@@ -50,7 +50,7 @@ def least(runs: Sequence[Run]) -> tuple[str, int] | None:
 
     None where their tasks are told by different metrics, or no run has a value of it.
     """
-    names = {name for run in runs for name in _names(run)[:1]}
+    names = {name for run in runs for name in key_names(run)[:1]}
     if len(names) != 1:
         return None
     (name,) = names
@@ -59,7 +59,8 @@ def least(runs: Sequence[Run]) -> tuple[str, int] | None:
     return (name, min(found)[1]) if found else None
 
 
-def _names(run: Run) -> Sequence[str]:
+def key_names(run: Run) -> Sequence[str]:
+    """Return the names of the metrics that say most of a run's task, of those of which it has a value."""
     task = "contact" if "steady_force" in run.metrics else run.config["trajectory"]["kind"]
     names = dict.fromkeys((*_OF_TASK.get(task, ()), *_OF_MOTION))
     return [name for name in names if _says_something(name, run)]

@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from runner.caveats import changes_since
@@ -16,7 +16,7 @@ from runner.reporting.figures import desired_motion, playback, torque_and_error
 from runner.reporting.key_metrics import key_metrics, least
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
-from runner.reporting.plant_agreement import describe_agreement
+from runner.reporting.plant_step import describe_plant, percent
 from runner.reporting.words import PLANT, in_words
 from runner.store import Run
 
@@ -171,7 +171,7 @@ def _blocks(run: Run) -> list[Block]:
     blocks.append(playback(run, "The motion of repetition 0."))
     if run.metrics:
         blocks.append(_metrics(run))
-    return [*blocks, Text(describe_agreement(run))]
+    return [*blocks, Text(describe_plant(run))]
 
 
 def caveat_notices(run: Run) -> list[Block]:
@@ -192,18 +192,34 @@ def _sentence(text: str) -> str:
 
 
 def _metrics(run: Run) -> Table:
+    ends, worth = ("median", "min", "max"), (run.plant_error or {}).get("metrics", {})
     rows = [
-        [title(name), name, *(above_rounding(m[which], m["unit"]) for which in ("median", "min", "max"))]
+        [title(name), name, *(above_rounding(m[which], m["unit"]) for which in ends), *_of_step(worth, name)]
         for name, m in run.metrics.items()
     ]
     count = run.record["repetitions"]
     return Table(
         "Metrics of one repetition." if count == 1 else f"Metrics over {count} repetitions.",
-        ["metric", "name on the command line", "median", "smallest", "largest"],
+        [
+            "metric",
+            "name on the command line",
+            "median",
+            "smallest",
+            "largest",
+            *(["the plant's step"] if worth else []),
+        ],
         [literals(row) for row in rows],
-        (2, 3, 4),
+        (2, 3, 4, *([5] if worth else [])),
         code=(1,),
     )
+
+
+def _of_step(worth: Mapping[str, Any], metric: str) -> list[str]:
+    """Return the cell of what the plant's step is worth in a metric; none where it is known of no metric."""
+    if not worth:
+        return []
+    share = worth.get(metric, {}).get("share")
+    return ["not comparable" if share is None else percent(share)]
 
 
 def _config_sections(run: Run) -> list[Section]:

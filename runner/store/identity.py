@@ -19,7 +19,8 @@ _LEFT_OUT = ("caveats", "limits", "outputs", "preset", "sweep")
 _PHYSICS = (
     "assembly.py", "batch.py", "batch_blocks.py", "batch_jobs.py", "calibration", "calibration_job.py", "compiled",
     "config", "controllers", "environments", "execution.py", "feasibility.py", "guard", "interaction.py", "loop",
-    "metrics", "plants", "registry.py", "robots", "sensing", "simulation.py", "trace.py", "trajectories",
+    "metrics", "plant_error.py", "plants", "registry.py", "robots", "sensing", "simulation.py", "trace.py",
+    "trajectories",
 )  # fmt: skip
 
 _ENGINES = {"bullet": ("pybullet",), "mujoco": ("mujoco",), "kinematic": (), "rk4": (), "none": ()}  # of our plants

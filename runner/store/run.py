@@ -79,6 +79,12 @@ class Run(Stored):
         return caveats
 
     @property
+    def plant_error(self) -> Mapping[str, Any] | None:
+        """What the plant's step is worth in repetition 0, as docs/stored_runs.md says; None where nobody asked."""
+        error: Mapping[str, Any] | None = self.record.get("plant_error")
+        return error
+
+    @property
     def caveat_rules(self) -> Mapping[str, Any] | None:
         """Digest of the rules, and thresholds, that found its caveats; None where none has looked for any."""
         rules: Mapping[str, Any] | None = self.record.get("caveat_rules")

@@ -12,6 +12,7 @@ import yaml
 from runner.caveats import Found
 from runner.errors import StoreError
 from runner.metrics.summary import Summary, over_repetitions, units_of
+from runner.plant_error import PlantError
 from runner.store.arrow_columns import float_column
 from runner.store.atomic import write_atomically
 from runner.store.json_texts import JsonTexts, encode_finite
@@ -35,6 +36,7 @@ class RunResult:
         failure: The first failure and its repetition, or None.
         timing: What a clock measured.
         provenance: Commit, versions, machine, seed, command.
+        plant_error: What the plant's step is worth, where that was asked for and can be.
     """
 
     resolved: Mapping[str, Any]
@@ -46,6 +48,7 @@ class RunResult:
     failure: tuple[int, Failure] | None
     timing: Mapping[str, float | None]
     provenance: Mapping[str, Any]
+    plant_error: PlantError | None = None
 
 
 def prepare(outputs: Path) -> None:
@@ -94,6 +97,8 @@ def make_record(result: RunResult) -> dict[str, Any]:
         record["failure"] = {**asdict(failure), "repetition": repetition}
     record |= result.caveats.record()
     record["metrics"] = {metric: summary.record() for metric, summary in result.metrics.items()}
+    if result.plant_error is not None:
+        record["plant_error"] = result.plant_error.record()
     record["timing"] = dict(result.timing)
     record["provenance"] = dict(result.provenance)
     return record

@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field
 
 from runner.caveats.default_plant import DEFAULT_PLANT
-from runner.caveats.registry import SETTING_RULES, TRACE_RULES
+from runner.caveats.registry import KEYS
 from runner.data_file import read_data
 from runner.errors import RunnerError, nearest
 from runner.registry import StrictModel
@@ -43,9 +43,8 @@ def read_expected(folder: Path) -> tuple[ExpectedCaveat, ...]:
     if not path.is_file():
         return (_OF_THE_MACHINE,)
     entries = read_data(path, list[Entry])
-    known = [*(rule.name for rule in TRACE_RULES), *(rule.name for rule in SETTING_RULES)]
     for rule in (rule for entry in entries for rule in entry.rules):
-        if rule not in known:
-            raise RunnerError(f"{path}: there is no rule '{rule}'{nearest(rule, known)}; rules: {', '.join(known)}")
+        if rule not in KEYS:
+            raise RunnerError(f"{path}: there is no rule '{rule}'{nearest(rule, KEYS)}; rules: {', '.join(KEYS)}")
     listed = (ExpectedCaveat(rule, runs, entry.why) for entry in entries for runs in entry.runs for rule in entry.rules)
     return (*listed, _OF_THE_MACHINE)

@@ -19,7 +19,7 @@ ROBOTS = ("macro", "mini", "combined", "macro_mini_mini", "xarm7", "xarm7_mini",
 
 
 def test_every_rule_has_a_threshold_of_its_own():
-    rules = {rule.name: rule.key for rule in (*registry.TRACE_RULES, *registry.SETTING_RULES)}
+    rules = registry.KEYS
     keys = {name: tuple(values) for name, values in our_thresholds().items()}
     assert keys == {name: (key,) for name, key in rules.items()}
     assert set(CaveatsConfig.model_fields) == set(rules)

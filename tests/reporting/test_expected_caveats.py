@@ -2,7 +2,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from runner.caveats.registry import SETTING_RULES, TRACE_RULES
+from runner.caveats.registry import KEYS
 from runner.errors import RunnerError
 from runner.reporting.document import Notice, Table
 from runner.reporting.expected_caveats import (
@@ -62,7 +62,7 @@ def test_programs_get_every_caveat_with_why_it_is_expected():
 def test_what_a_work_expects_is_of_known_rules_and_of_runs_that_it_has(work):
     made = load_work(work)
     names = made.jobs()
-    rules = {rule.name for rule in (*TRACE_RULES, *SETTING_RULES)}
+    rules = set(KEYS)
     for expected in made.expected:
         assert expected.rule in rules
         assert any(expected.covers(name, {"rule": expected.rule}) for name in names), expected

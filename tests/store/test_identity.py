@@ -46,8 +46,9 @@ def test_where_it_is_kept_and_the_preset_do_not_count(keys):
 
 
 def test_neither_does_the_experiment_that_says_the_same():
-    overrides = ("robot=macro", "trajectory=quintic", "noise=thesis", "torque_limits=thesis")
-    spelled_out = compose([*overrides, "repetitions=40", "controller.singularity_damping=0.0"]).resolved
+    groups = ("robot=macro", "trajectory=quintic", "noise=thesis", "torque_limits=thesis")
+    overrides = (*groups, "repetitions=40", "plant_error=true", "controller.singularity_damping=0.0")
+    spelled_out = compose(overrides).resolved
     named = compose(["experiment=thesis/figure_3_9"]).resolved
     assert run_hash(named, "") == run_hash(spelled_out, "")
 

@@ -9,9 +9,8 @@ import pytest
 from runner.claims import load_claims
 from runner.reporting.words import PRESET
 from runner.store import Run
-from runner.works.thesis import engines
 from runner.works.thesis.compared import APART, Compared
-from runner.works.thesis.engines import agreement_of_both, parting
+from runner.works.thesis.engines import parting, step_of_both
 from runner.works.thesis.takeaways import takeaway
 
 CLAIMS = [claim for claim in load_claims("thesis") if claim.experiment == "thesis/figure_3_5"]
@@ -30,6 +29,7 @@ def run(error=1.0, ticks=400, settling=1.5, rest=0.008, plant="bullet", caveats=
         {"plant": {"kind": plant}, "robot": {"settling_band": 0.02}},
         {
             "status": "ok",
+            "repetitions": 1,
             "metrics": {
                 "settling_time": metric(settling, "s"),
                 "steady_state_error": metric(rest),
@@ -104,30 +104,45 @@ def test_long_curves_are_envelopes_and_the_last_ticks_are_shown_as_they_are():
     assert [Compared(both(run(caveats=found), run())).chatters() for found in ((), ("chatter",))] == [False, True]
 
 
-@pytest.fixture
-def twins(monkeypatch):
-    found = {}
-    for module in (engines,):
-        monkeypatch.setattr(module, "find_twin", lambda own: found.get(id(own)))
-    return found
+def held(parted=None, share=0.02, settling=1.4):
+    """What is stored of a run that was held against Runge-Kutta."""
+    value = {"value": settling, "difference": None, "share": None if parted else share}
+    return {
+        "plant": "rk4", "step": 0.01, "largest": 0.5, "at": 0.9, "end": 1e-6, "parted": parted,
+        "metrics": {"settling_time": value},
+    }  # fmt: skip
 
 
-def test_engines_that_part_are_told_with_what_became_of_them(twins):
-    near, far = run(1.0), run(1.0, settling=1.63)
-    twins[id(near)], twins[id(far)] = run(1.001, plant="rk4"), run(1.5, settling=1.4, plant="rk4")
-    named = both(near, far)
-    assert agreement_of_both(named).startswith("Runge-Kutta in place of PyBullet puts the tip at most 1.7 mm (as the")
+def compared(error, **of_run):
+    made = run(1.0, **of_run)
+    made.record["plant_error"] = error
+    return made
+
+
+def test_what_the_step_is_worth_is_told_of_both_presets():
+    named = both(compared(held()), compared(held(share=0.3)))
+    text = step_of_both(named, ["settling_time"])
+    assert text == (
+        "PyBullet's step of 1 ms is worth 2 % (as the thesis ran it) and 30 % (with its full equations) of the "
+        "settling time."
+    )
+    assert parting(named, {"settling_time": 8}) == []
+
+
+def test_motions_that_part_are_told_with_what_became_of_them():
+    named = both(compared(held()), compared(held(parted=0.4), settling=1.63))
+    assert step_of_both(named, ["settling_time"]).endswith("is worth 2 % (as the thesis ran it) of the settling time.")
     told, why = parting(named, {"settling_time": 8})
     assert told.startswith(
-        "With its full equations: some torque is at its limit for 30 % of the ticks; the engines are"
+        "With its full equations: some torque is at its limit for 30 % of the ticks; Runge-Kutta, with the same noise, "
+        "goes another way from 0.4 s on, 0.5 m away at 0.9 s, and"
     )
     assert "settles after 1.4 s, outside the 1.63 to 1.63 s of PyBullet's 1 repetitions" in told
     assert told.endswith("claim 8 would read holds in place of worse.")
     assert "PyBullet against Runge-Kutta" in why
-    twins[id(far)] = run(1.001, plant="rk4")
-    assert parting(named, {"settling_time": 8}) == []
+    assert step_of_both(both(*named.values()), ["overshoot"]) == ""
 
 
-def test_an_engine_that_was_not_run_is_told_with_the_way_to_it(twins, monkeypatch):
-    monkeypatch.setattr(engines, "describe_agreement", lambda own: "it has not been measured")
-    assert agreement_of_both(both(run(), run())).count("it has not been measured") == 2
+def test_a_run_that_was_not_held_against_runge_kutta_is_told_with_the_way_to_it():
+    text = step_of_both(both(run(), run()), ["settling_time"])
+    assert text.count("plant_error=true measures it") == 2

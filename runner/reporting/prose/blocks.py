@@ -12,7 +12,7 @@ from runner.quantities import number, quantity
 from runner.reporting import figures, run_values
 from runner.reporting.document import Block, Curves, Formula, Notice, Playback
 from runner.reporting.measured import Measured
-from runner.reporting.plant_agreement import describe_agreement
+from runner.reporting.plant_step import describe_plant
 from runner.reporting.prose.patterns import axes_of, called, found
 from runner.reporting.prose.reading import Signal, config_value, number_of
 from runner.reporting.words import PLANT
@@ -66,9 +66,9 @@ def plant_of(runs: Mapping[str, Run], run: str) -> str:
     return PLANT.get(kind, kind)
 
 
-def agreement(runs: Mapping[str, Run], run: str) -> str:
-    """Return a sentence on a run's plant and how far the other one is from it."""
-    return describe_agreement(runs[run])
+def step_worth(runs: Mapping[str, Run], run: str, *metrics: str) -> str:
+    """Return a run's plant, its step, and what that is worth in some metrics, in two sentences at most."""
+    return describe_plant(runs[run], metrics)
 
 
 def formula(typst: str, spoken: str, number: str = "") -> Formula:

@@ -18,7 +18,7 @@ from runner.reporting.words import PRESET, in_words
 from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.store import Run
 from runner.works.thesis.compared import Compared
-from runner.works.thesis.engines import agreement_of_both, parting
+from runner.works.thesis.engines import parting, step_of_both
 from runner.works.thesis.equations.truths.thesis_printed import compare
 from runner.works.thesis.takeaways import takeaway
 
@@ -86,7 +86,7 @@ def law(runs: Mapping[str, Run], run: str, caption: str, number: str) -> Picture
 def reproduced(
     runs: Mapping[str, Run], number: str, what: str, metrics: Sequence[str], until: float | None = None
 ) -> list[Block]:
-    """Return one published figure, such as "3.5", with both presets in it, and how far another engine is from it.
+    """Return one published figure, such as "3.5", with both presets in it, and what the plant's step is worth in it.
 
     Args:
         runs: The runs of the work by name.
@@ -109,7 +109,7 @@ def reproduced(
     if first.config["trajectory"]["kind"] == "goal":
         panels += figure.enlarged()
     told = {each.metric: each.number for each in claims}
-    text = " ".join([agreement_of_both(own), *parting(own, told)])
+    text = " ".join(filter(None, [step_of_both(own, metrics), *parting(own, told)]))
     caption = f"{takeaway(metrics, own)} {what}; curves of repetition 0, numbers are medians (smallest to largest)."
     return [Curves(f"{caption} {figure.scales()}".strip(), panels, 3, origin(first, f"figure {number}")), Text(text)]
 

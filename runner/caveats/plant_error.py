@@ -1,0 +1,71 @@
+"""Rule on the plant's own error: what its integration step is worth in a run that was held against Runge-Kutta."""
+
+from typing import NamedTuple
+
+from runner.caveats.caveat import Caveat
+from runner.caveats.rule import percent
+from runner.metrics.summary import unit_of
+from runner.plant_error import PLANT, PlantError, sufficient_step
+
+NAME, KEY = "plant_error", "share"
+_OF_BAND = 0.01  # of the settling band: smaller differences do not matter
+
+
+class PlantStep(NamedTuple):
+    """The step that the rule judges.
+
+    Attributes:
+        plant: Kind of the plant.
+        step: Its step, in s.
+        period: The fastest control period, in s.
+        band: Settling band of the robot, in m.
+    """
+
+    plant: str
+    step: float
+    period: float
+    band: float
+
+
+def caveat_of(error: PlantError, own: PlantStep, threshold: float) -> Caveat | None:
+    """Return what the plant's own error says of a run; None where it is small enough.
+
+    The rule is sprung where the motions part, which counts as all of a metric, and by the share of a metric in m of
+    which the difference is above a hundredth of the settling band, too. Others, such as a peak torque of a single tick
+    or a settling time, which goes from tick to tick, are stored and shown alone.
+
+    Args:
+        error: What the step is worth.
+        own: The step.
+        threshold: The share of a metric that the step may be worth.
+    """
+    if error.parted is not None:
+        return Caveat(NAME, _parted(error, own), 1.0, 1) if threshold < 1.0 else None
+    shares = {
+        name: worth.share
+        for name, worth in error.metrics.items()
+        if unit_of(name) == "m" and worth.share is not None and (worth.difference or 0.0) > _OF_BAND * own.band
+    }
+    worst = max(shares, key=shares.__getitem__, default=None)
+    if worst is None or shares[worst] <= threshold:
+        return None
+    return Caveat(NAME, _told(worst, shares[worst], own, threshold), shares[worst], 1)
+
+
+def _told(metric: str, share: float, own: PlantStep, threshold: float) -> str:
+    enough = sufficient_step(own.step, share, threshold, own.period)
+    smaller = "" if enough is None else f"plant.step={enough:.6g} would make it {percent(threshold)} or less, or "
+    return (
+        f"the step of {own.plant}, {own.step:g} s, makes {percent(share)} of {metric}: {smaller}"
+        f"plant={PLANT} all but nothing"
+    )
+
+
+def _parted(error: PlantError, own: PlantStep) -> str:
+    found = f"{own.plant} in steps of {own.step:g} s and {PLANT} part at t = {error.parted:.4g} s"
+    if error.failure:
+        return f"{found}: on {PLANT} the run fails: {error.failure}"
+    if error.largest is not None and error.largest > own.band:
+        apart = f"their tips are {error.largest:.3g} m apart at most, and {error.end:.3g} m at the end"
+        return f"{found}: {apart}; what is measured after that is one of several outcomes"
+    return f"{found}, where this run fails and that on {PLANT} does not"

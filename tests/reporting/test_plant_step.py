@@ -1,0 +1,74 @@
+import pytest
+
+from runner.engines import has_pybullet
+from runner.execution import run
+from runner.reporting.plant_step import describe_plant, percent
+from runner.reporting.run_report import run_document
+from runner.reporting.words import PLANT
+
+KIND = "bullet" if has_pybullet() else "mujoco"
+CASE = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "duration=1.5", f"plant={KIND}")
+
+
+@pytest.fixture(scope="module")
+def outputs(tmp_path_factory):
+    return f"outputs={tmp_path_factory.mktemp('outputs')}"
+
+
+@pytest.fixture(scope="module")
+def compared(outputs):
+    return run(*CASE, "plant_error=true", outputs)
+
+
+def test_what_the_step_is_worth_is_told_of_the_metrics_of_the_task(compared):
+    share = compared.plant_error["metrics"]["max_tracking_error"]["share"]
+    text = describe_plant(compared)
+    assert text.startswith(f"{PLANT[KIND]} is the plant, in steps of 1 ms. The step is worth {percent(share)} of the ")
+    assert f"{percent(share)} of the largest tracking error and " in text
+
+
+def test_metrics_may_be_asked_for(compared):
+    share = compared.plant_error["metrics"]["rms_tracking_error"]["share"]
+    assert describe_plant(compared, ["rms_tracking_error"]).endswith(
+        f"The step is worth {percent(share)} of the rms tracking error."
+    )
+
+
+def test_motions_that_part_are_not_compared(outputs):
+    text = describe_plant(run("experiment=thesis/figure_3_5", "repetitions=1", f"plant={KIND}", outputs))
+    assert "goes another way from" in text
+    assert text.endswith("Their metrics are not comparable.")
+
+
+def test_what_was_not_asked_for_is_told_with_the_way_to_it(outputs):
+    text = describe_plant(run(*CASE, outputs))
+    assert text.endswith("What the step is worth was not asked for: plant_error=true measures it.")
+
+
+def test_of_runge_kutta_there_is_nothing_to_tell(outputs):
+    text = describe_plant(run("robot=mini", "duration=0.01", "plant=rk4", outputs))
+    assert text == "Runge-Kutta is the plant, in steps of 1 ms."
+
+
+def test_the_report_of_a_run_has_a_column_for_it(compared, outputs):
+    def head(stored):
+        document = run_document([stored])
+        (table,) = [
+            block
+            for section in document.sections
+            for block in section.blocks
+            if getattr(block, "caption", "").startswith("Metrics of")
+        ]
+        return table.header[-1], {row[1]: row[-1] for row in table.rows}
+
+    name, cells = head(compared)
+    assert name == "the plant's step"
+    assert cells["max_tracking_error"] == percent(compared.plant_error["metrics"]["max_tracking_error"]["share"])
+    assert head(run(*CASE, outputs))[0] == "largest"
+
+
+@pytest.mark.parametrize(
+    ("share", "text"), [(0.366, "37 %"), (0.0031, "0.31 %"), (0.0, "less than 0.01 %"), (1.5, "150 %")]
+)
+def test_shares_are_written_in_two_digits(share, text):
+    assert percent(share) == text
