@@ -13,6 +13,7 @@ NAMES = (
     "agreement",
     "caveats",
     "around",
+    "repetitions",
     "cold_start",
     "reproduce",
     "sweep",

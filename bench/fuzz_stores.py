@@ -13,7 +13,10 @@ from pathlib import Path
 from runner import store
 from runner.calibration_job import calibrate
 from runner.cli import dispatch
+from runner.config.compose import compose
 from runner.errors import StoreError
+from runner.execution import execute
+from runner.metrics.summary import MOST_LISTED
 from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
 from runner.store.shards import open_row, read_outcomes, shard_files
@@ -56,6 +59,7 @@ def _things(outputs: Path) -> Iterator[tuple[str, object]]:
         yield f"{folder}", lambda folder=folder: _run(store.open_run(folder))
         yield f"{folder}/trace", lambda folder=folder: _trace(store.open_run(folder))
         yield f"{folder}/urdf", lambda folder=folder: store.open_run(folder).urdf
+        yield f"{folder}/values", lambda folder=folder: _values(store.open_run(folder))
     for path in shard_files(outputs):
         yield f"{path.parent}/{path.name[:27]}", lambda path=path: _shard(path)
     for folder in sorted((outputs / "sweeps").iterdir()):
@@ -75,6 +79,10 @@ def _run(run: store.Run | store.Calibration) -> object:
 
 def _trace(run: store.Run) -> object:
     return list(run.trace.columns), run.trace.to_numpy().tobytes(), run.units
+
+
+def _values(run: store.Run) -> object:
+    return {name: run.values(name).tobytes() for name in run.metrics}
 
 
 def _shard(path: Path) -> object:
@@ -138,6 +146,7 @@ def make_store(outputs: Path) -> None:
     for more in (("seed=0,1",), ("seed=2,3,4", "sweep.trace=never", "noise=thesis", "repetitions=3")):
         swept = run_sweep(plan_sweep([*given, *more]), here, "runner -m").folder
         write_atomically(swept / "progress.json", sealed_json({"seconds_per_run": 0.5}))
+    execute(compose([*given, "plant=rk4", "noise=thesis", f"repetitions={MOST_LISTED + 1}"]))
     key = "controller.damping_ratio=interval(0.5,1.5)"
     tune([*given, key, "hydra.sweeper.workers=0"], [Objective("peak_torque", "minimize")], 3, 2, "runner tune")
     calibrate("calibration=tool_direction", "repetitions=2", f"outputs={outputs}")

@@ -86,7 +86,8 @@ def _run(folder: Path) -> State:
     if not (folder / "metrics.json").exists():
         return "unfinished"
     run = open_run(folder)
-    _ = run.urdf, run.units  # reads their files, and compares them with their digests
+    # Reads their files, and compares them with their digests.
+    _ = run.urdf, run.units, [run.values(metric) for metric in run.metrics]
     return _state(run.sealed)
 
 

@@ -65,7 +65,7 @@ def check_memory(limits: LimitsConfig, arm: Robot, timing: Timing, repetitions: 
         length = f"{timing.ticks * timing.tick:.3g} s ({timing.ticks:.3g} ticks of {timing.tick:g} s"
         raise ConfigError(
             [
-                f"limits.memory: a run of {length}, repetitions: {repetitions:.3g}) would take about {needed:.3g} GB; "
+                f"limits.memory: a run of {length}, repetitions: {repetitions}) would take about {needed:.3g} GB; "
                 f"allowed: {limits.memory:g} GB{fitting}; shorten duration or trajectory.duration, ask for fewer "
                 "repetitions, or set limits.memory"
             ]

@@ -22,6 +22,7 @@ from runner.store import Run
 
 _KEY_METRICS = 4
 _AT_REST = 4.0  # times the settling time, after which an arm is taken to rest
+_LEVELS = {"0.01": "1 %", "0.99": "99 %"}  # quantiles that a table has room for
 _HEADLINE = ("settling_time", "steady_state_error", "max_tracking_error", "peak_torque", "saturation_fraction")
 
 
@@ -192,24 +193,21 @@ def _sentence(text: str) -> str:
 
 
 def _metrics(run: Run) -> Table:
-    ends, worth = ("median", "min", "max"), (run.plant_error or {}).get("metrics", {})
-    rows = [
-        [title(name), name, *(above_rounding(m[which], m["unit"]) for which in ends), *_of_step(worth, name)]
-        for name, m in run.metrics.items()
-    ]
+    many = all("quantiles" in metric for metric in run.metrics.values())
+    levels, worth = _LEVELS if many else {}, (run.plant_error or {}).get("metrics", {})
+    rows = []
+    for name, m in run.metrics.items():
+        found = [m["median"], m["min"], *(m["quantiles"][level] for level in levels), m["max"]]
+        rows.append([title(name), name, *(above_rounding(value, m["unit"]) for value in found), *_of_step(worth, name)])
     count = run.record["repetitions"]
+    told = "; levels are quantiles, a repetition without a value counting as beyond every number" if many else ""
+    header = ["metric", "name on the command line", "median", "smallest", *levels.values(), "largest"]
+    header += ["the plant's step"] if worth else []
     return Table(
-        "Metrics of one repetition." if count == 1 else f"Metrics over {count} repetitions.",
-        [
-            "metric",
-            "name on the command line",
-            "median",
-            "smallest",
-            "largest",
-            *(["the plant's step"] if worth else []),
-        ],
+        "Metrics of one repetition." if count == 1 else f"Metrics over {count} repetitions{told}.",
+        header,
         [literals(row) for row in rows],
-        (2, 3, 4, *([5] if worth else [])),
+        tuple(range(2, len(header))),
         code=(1,),
     )
 

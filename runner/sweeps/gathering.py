@@ -56,8 +56,8 @@ class Gathered:
         self.changes.update(changes_since(run.caveat_rules))
         self._note(run)
         for name, metric in run.metrics.items():
-            row = run.values(name)
-            row[np.isnan(row)] = np.inf
+            own = run.values(name)
+            row = np.where(np.isnan(own), np.inf, own)
             self._put(name, str(metric["unit"]), np.array([cell]), row[None])
         self.configs.append((self._resolver.resolve(run), [np.array([cell])]))
 

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -111,6 +112,24 @@ def test_repetitions_of_many_runs_stand_behind_them(checked_config):
     found = [watch.found() for watch in alone]
     assert [watch.found() for watch in together] == found
     assert {caveat.repetitions for own in found for caveat in own.caveats} == {1, 2, 3}
+
+
+@pytest.mark.parametrize("cuts", [(64,), (1, 2), (0, 70), (139,)])
+def test_watches_of_blocks_of_repetitions_join_to_that_of_all(checked_config, cuts):
+    config = checked_config("robot=macro", "trajectory=quintic", "torque_limits.max=5", "repetitions=140")
+    runs = [some_signals(5.0, seed) for seed in range(140)]
+    whole, at_once = (Watch(setting_of(config), config.caveats) for _ in range(2))
+    for run in runs:
+        whole.look(run)
+    at_once.look(stacked(*runs))
+    blocks = [runs[first:last] for first, last in pairwise((0, *cuts, 140)) if last > first]
+    joined, *later = [Watch(setting_of(config), config.caveats) for _ in blocks]
+    for watch, block in zip((joined, *later), blocks, strict=True):
+        watch.look(stacked(*block))
+    for watch in later:
+        joined.join(watch)
+    assert joined.found() == at_once.found() == whole.found()
+    assert "of 140 repetitions" in joined.found().caveats[0].text
 
 
 def test_an_arm_that_gives_way_has_nothing_to_follow_among_others(checked_config):

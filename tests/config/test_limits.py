@@ -19,7 +19,7 @@ from runner.store import simulated_part
         ),
         (
             ("repetitions=1000000000",),
-            r"limits.memory: .* repetitions: 1e\+09\) would take about 409 GB; allowed: 4 GB, in which 8\d{6} "
+            r"limits.memory: .* repetitions: 1000000000\) would take about 409 GB; allowed: 4 GB, in which 8\d{6} "
             "repetitions fit; shorten",
         ),
         (("duration=4000", "limits.memory=0.1"), r"limits.memory: .* allowed: 0.1 GB; shorten duration"),

@@ -20,7 +20,15 @@ def test_the_store_is_whole(outputs):
     kinds = {found.kind: found.state for found in verify(outputs)}
     assert kinds == dict.fromkeys(("runs", "shards", "sweeps", "tunings", "calibrations"), "good")
     names = {path.name for path in files_of(outputs)}
-    assert {"config.yaml", "robot.urdf", "trace.parquet", "metrics.json", "sweep.json", "progress.json"} <= names
+    assert {
+        "config.yaml",
+        "robot.urdf",
+        "trace.parquet",
+        "values.parquet",
+        "metrics.json",
+        "sweep.json",
+        "progress.json",
+    } <= names
     assert {"tuning.json", "journal.log", "result.json"} <= names
     assert any(path.parent.name == "shards" for path in files_of(outputs))
 

@@ -1,0 +1,51 @@
+"""CPU time and memory of a repetition among many: 10^5 of one run against 10^3 of it, noise and metrics included.
+
+Blocks of repetitions keep the time of each the same, and the memory that of its metrics alone.
+"""
+
+import resource
+import time
+
+from runner.batch_blocks import simulate_blocks
+from runner.config.compose import compose
+from runner.config.limits import memory_of_run
+from runner.config.validation import validate
+
+_FEW, _MANY = 1_000, 100_000
+_TIMES = 5  # that the few are made; the quickest counts
+_TARGET = 1.25
+_OVERRIDES = ("robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis", "torque_limits=thesis")
+
+
+def main() -> bool:
+    """Measure and print; return whether every target is met."""
+    few = min(_seconds(_FEW) for _ in range(_TIMES))
+    before = _peak()
+    many = _seconds(_MANY)
+    ratio, taken, allowed = many / few, _peak() - before, _memory(_MANY) - _memory(_FEW)
+    met = ratio <= _TARGET and taken <= allowed
+    print(f"CPU time of a repetition of {' '.join(_OVERRIDES)}, on 2 threads")
+    print(
+        f"  {_FEW} repetitions {1e6 * few:.0f} us, {_MANY} {1e6 * many:.0f} us: {ratio:.2f}  target {_TARGET:g}"
+        f"\n  {1e-6 * taken:.0f} MB more; limits.memory counts {1e-6 * allowed:.0f}: {'met' if met else 'MISSED'}"
+    )
+    return met
+
+
+def _seconds(repetitions: int) -> float:
+    """Return the CPU time of a repetition, in s."""
+    composed = compose([*_OVERRIDES, f"repetitions={repetitions}"])
+    config, start = validate(composed.resolved), time.process_time()
+    simulate_blocks((config, composed), threads=2)
+    return (time.process_time() - start) / repetitions
+
+
+def _memory(repetitions: int) -> float:
+    """Return how many bytes `limits.memory` counts."""
+    config = validate(compose([*_OVERRIDES, f"repetitions={repetitions}"]).resolved)
+    return memory_of_run(config.arm, config.timing.ticks, repetitions, config.feels)
+
+
+def _peak() -> float:
+    """Return the largest memory that this process has had, in bytes."""
+    return 1024.0 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

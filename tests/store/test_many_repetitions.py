@@ -1,0 +1,121 @@
+"""Runs of so many repetitions that their values stand beside the record."""
+
+import json
+
+import numpy as np
+import pyarrow.parquet
+import pytest
+
+import runner
+from runner.compiled.engine import evaluator
+from runner.metrics.summary import MOST_LISTED
+from runner.store import DamagedError, open_run
+from runner.sweeps.measurements import measure_sweep
+
+pytestmark = pytest.mark.skipif(not evaluator(), reason="so many repetitions are compiled as a whole by llvmlite")
+MANY = MOST_LISTED + 1
+SHORT = ("robot=macro", "plant=rk4", "trajectory=goal", "noise=thesis", "duration=0.05")
+
+
+@pytest.fixture
+def many(cli):
+    return open_run(cli(*SHORT, f"repetitions={MANY}").folder)
+
+
+def test_up_to_two_thousand_stand_in_the_record_and_more_beside_it(cli, many):
+    few = open_run(cli(*SHORT, f"repetitions={MOST_LISTED}").folder)
+    assert list(few.metrics) == list(many.metrics)
+    assert not (few.folder / "values.parquet").exists()
+    for name, metric in many.metrics.items():
+        assert list(metric) == ["unit", "median", "min", "max", "quantiles"]
+        values = many.values(name)
+        assert values.shape == (MANY,)
+        # A repetition's numbers follow from its seed alone.
+        assert np.array_equal(values[:-1], few.values(name), equal_nan=True)
+        listed = few.metrics[name]["values"]
+        assert np.array_equal(few.values(name), np.array(listed, dtype=float), equal_nan=True)
+        if not np.isnan(values).any():
+            assert (metric["median"], metric["min"], metric["max"]) == (np.median(values), values.min(), values.max())
+            assert metric["quantiles"]["0.95"] == pytest.approx(np.quantile(values, 0.95), rel=1e-12)
+
+
+def test_the_file_has_a_column_for_each_metric_and_null_for_none(many):
+    table = pyarrow.parquet.ParquetFile(many.folder / "values.parquet").read()
+    assert table.column_names == list(many.metrics)
+    assert table.num_rows == MANY
+    assert {str(kind) for kind in table.schema.types} == {"double"}
+    assert table["steady_state_error"].null_count == MANY  # the run ends before half a second
+    assert np.isnan(many.values("steady_state_error")).all()
+    assert many.metrics["steady_state_error"]["quantiles"]["0.01"] is None
+    assert table["energy"].null_count == 0
+
+
+def test_failed_repetitions_have_no_value(cli):
+    ending = cli(
+        *SHORT, f"repetitions={MANY}", "duration=0.3", "noise.position=0.1", "controller.natural_frequency=30",
+        "torque_limits=none",
+    )  # fmt: skip
+    assert ending.code == 1
+    run = open_run(ending.folder)
+    lost = np.isnan(run.values("energy"))
+    assert 0 < lost.sum() < MANY
+    assert run.failure["repetition"] == np.flatnonzero(lost)[0]
+    assert run.metrics["energy"]["max"] is None
+
+
+@pytest.mark.parametrize("spoil", ["flip", "remove"])
+def test_damage_to_the_values_is_found_and_mended(cli, many, spoil):
+    path, before = many.folder / "values.parquet", many.values("energy")
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    if spoil == "flip":
+        path.write_bytes(content)
+    else:
+        path.unlink()
+    with pytest.raises(DamagedError, match=r"values\.parquet"):
+        open_run(many.folder).values("energy")
+    assert cli("verify", many.folder.parent.parent).code == 1
+    made = cli(*SHORT, f"repetitions={MANY}")
+    assert "it is made again" in made.err
+    assert np.array_equal(open_run(many.folder).values("energy"), before)
+
+
+def test_commands_read_it(cli, many):
+    other = cli(*SHORT, f"repetitions={MANY}", "controller.natural_frequency=9").folder
+    assert cli("verify", many.folder.parent.parent).code == 0
+    assert f"n = {MANY} repetitions" in cli("table", many.folder).out
+    assert f"in {MANY} pairs on the same seeds" in cli("compare", many.folder, other).out
+    report = cli("report", many.folder, "--html").folder / "report.html"
+    text = report.read_text(encoding="utf-8")
+    assert f"Metrics over {MANY} repetitions; levels are quantiles" in text
+    assert "99 %" in text
+
+
+def test_python_reads_it(many):
+    run = runner.Run(many)
+    metric = run.metrics["energy"]
+    assert metric.quantiles == many.metrics["energy"]["quantiles"]
+    assert list(metric.values) == many.values("energy").tolist()
+    assert str(metric).count("J") == 1
+    assert run.metrics["steady_state_error"].values == (None,) * MANY
+    assert run.metrics_frame().loc[["energy", "steady_state_error"], "n"].tolist() == [MANY, 0]
+    assert len(run.trace(MANY - 1)) == 6  # simulated again, with the metrics that are stored
+
+
+@pytest.mark.parametrize("trace", ["never", "all"])
+def test_cells_of_a_sweep_have_the_values_that_each_has_alone(cli, many, trace):
+    swept = cli(
+        *("-m", "hydra.sweeper.workers=0", *SHORT, f"repetitions={MANY}", "seed=0,1", f"sweep.trace={trace}"),
+        "outputs=swept",
+    )
+    sweep = runner.open_sweep(swept.folder).stored
+    runs = list(sweep.runs())
+    assert [run.folder.exists() for run in runs] == [trace == "all"] * 2
+    found = measure_sweep(sweep)
+    for name in many.metrics:
+        expected = many.values(name)
+        assert np.array_equal(runs[0].values(name), expected, equal_nan=True)
+        assert np.array_equal(found.values[name][0], np.where(np.isnan(expected), np.inf, expected))
+        assert runs[0].metrics[name] == many.metrics[name]
+    assert not np.array_equal(runs[1].values("energy"), many.values("energy"))
+    assert json.dumps(runs[1].record["metrics"]).count("values") == 0
