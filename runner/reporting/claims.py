@@ -1,10 +1,12 @@
 """A work's published numbers and statements beside the stored runs, with verdicts."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
-from runner.claims import FACTOR, Bound, PublishedClaim, PublishedStatement, Verdict, judge, judge_motion
+from runner.claims import FACTOR, PublishedClaim, PublishedStatement, Verdict, judge_motion
+from runner.claims.judging import scaled, simulated_by, verdict_on
 from runner.quantities import quantity, ranged, spread
 from runner.reporting.claim import Claim, ClaimResult, EquationVerdict, StatementVerdict
 from runner.reporting.figures import columns
@@ -105,7 +107,7 @@ class _Claimed:
 
     def _finding(self, preset: str) -> ClaimResult:
         claim, run = self._claim, self._run(_named(self._claim), preset)
-        verdict = self._of_motion(run) if claim.extents else self._of_number(run, preset)
+        verdict = self._of_motion(run) if claim.extents else self._of_number(preset)
         words = self._presets[preset]
         if run.status == "failed":
             return ClaimResult(preset, run.failure_text, verdict, words)
@@ -122,39 +124,22 @@ class _Claimed:
         paths = {extent.axis: tip[:, "xyz".index(extent.axis)] for extent in self._claim.extents}
         return ", ".join(f"{axis} {path.min():.4f} to {path.max():.4f} m" for axis, path in paths.items())
 
-    def _of_number(self, run: Run, preset: str) -> Verdict:
-        return judge(self._value(preset), median(run, self._claim.metric), self._expected(preset))
+    def _of_number(self, preset: str) -> Verdict:
+        verdict = verdict_on(self._claim, self._claims, partial(self._median, preset))
+        if verdict is None:
+            raise MissingError(f"claim {self._claim.number}: there is nothing to compare it with under {preset}")
+        return verdict
 
-    def _value(self, preset: str) -> float:
-        """Return what the simulation is compared with: the printed value, or the run that it is said to be like."""
-        claim, like = self._claim, self._claim.like
-        value = claim.value if like is None else median(self._run(like.experiment, preset), like.metric)
-        if value is None:
-            raise MissingError(f"claim {claim.number}: there is nothing to compare it with under {preset}")
-        return value
-
-    def _expected(self, preset: str) -> float | None:
-        """Return what the source's other number, or the simulated one in its place where larger, lets one expect."""
-        bound = self._claim.bound
-        if bound is None:
-            return None
-        printed = self._other(bound).value
-        expected = [None if printed is None else printed * bound.scale, self._scaled(bound, preset)]
-        return max((value for value in expected if value is not None), default=None)
-
-    def _scaled(self, bound: Bound, preset: str) -> float | None:
-        other = self._other(bound)
-        simulated = median(self._run(_named(other), preset), other.metric)
-        return None if simulated is None else simulated * bound.scale
-
-    def _other(self, bound: Bound) -> PublishedClaim:
-        return next(claim for claim in self._claims if claim.number == bound.claim)
+    def _median(self, preset: str, experiment: str, metric: str) -> float | None:
+        return median(self._run(experiment, preset), metric)
 
     def _reason(self) -> str:
         claim, told = self._claim, [self._claim.reason]
         if claim.bound is not None:
-            scaled = {preset: quantity(self._scaled(claim.bound, preset), claim.unit) for preset in self._presets}
-            times = " and ".join(f"{text}{self._under(preset)}" for preset, text in scaled.items())
+            found = {
+                preset: scaled(claim.bound, self._claims, partial(self._median, preset)) for preset in self._presets
+            }
+            times = " and ".join(f"{quantity(one, claim.unit)}{self._under(preset)}" for preset, one in found.items())
             told = [f"{claim.bound.reason} {claim.bound.name} is {times}."]
         if claim.metric == "steady_state_error":
             told += [self._late(preset) for preset in self._presets]
@@ -179,7 +164,7 @@ class _Claimed:
 
 
 def _named(claim: PublishedClaim) -> str:
-    return claim.experiment or claim.run
+    return simulated_by(claim)[0]
 
 
 def _printed(claim: PublishedClaim) -> str:

@@ -132,7 +132,7 @@ class Work:
             cover=self._cover(runs),
             bibtex=self.about.bibtex,
         )
-        return made if not self.profile else replace(made, sections=[_smaller(self.profile), *made.sections])
+        return made if not self.profile else replace(made, sections=[_by_profile(self.profile), *made.sections])
 
     def _cover(self, runs: Mapping[str, Run]) -> Cover | None:
         """Return the picture of the first screen; None where there is none, or its run was not made."""
@@ -166,8 +166,8 @@ def load_work(name: str, allow_code: bool = False, profile: str = "", others: Se
     return Work(find_work(name, others), allow_code, profile)
 
 
-def _smaller(profile: str) -> Section:
+def _by_profile(profile: str) -> Section:
     text = (
         f"This report was made with the profile {profile}: its runs differ from the whole work's in levels or number."
     )
-    return Section("Not the whole work", (Notice("warning", f"Profile {profile}", text),))
+    return Section("Made with a profile", (Notice("warning", f"Profile {profile}", text),))

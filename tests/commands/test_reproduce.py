@@ -43,8 +43,8 @@ def small_work(tmp_path):
 def test_an_unknown_work_names_the_nearest(cli, tmp_path):
     ending = cli("reproduce", "thesys")
     assert ending.code == 2
-    told = "runner: no work 'thesys' (did you mean thesis?); works: engines, meca500, thesis, xarm7, audit, all, or"
-    assert ending.err == f"{told} a folder with a work.yaml\n"
+    works = "engines, meca500, precision, thesis, xarm7, audit, all, or a folder with a work.yaml"
+    assert ending.err == f"runner: no work 'thesys' (did you mean thesis?); works: {works}\n"
     assert list(tmp_path.iterdir()) == []
 
 

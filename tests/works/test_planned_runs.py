@@ -60,12 +60,19 @@ SOME = {
         "payload/0.6043/asked/5": ("robot=xarm7", "robot.start=[0.6043,-0.2,0.1508]",
                                    "robot.goal=[0.6043,0.2,0.1508]", "duration=5", "robot.payload.mass=5"),
     },
+    "precision": {
+        "free/macro/PyBullet/0.002": ("robot=macro", "robot.home=[0.3,0.6,0.8]", "controller=held_torques",
+                                      "controller.torques=0", "controller.period=0.008", "trajectory=goal",
+                                      "duration=0.24", "plant=bullet", "plant.step=0.002"),
+        "control/xarm7/Runge-Kutta/0.01": ("robot=xarm7", "controller=computed_torque", "trajectory=quintic",
+                                           "trajectory.duration=1", "duration=1", "plant=rk4", "plant.step=0.01"),
+    },
 }  # fmt: skip
 
 
 @pytest.mark.parametrize(
     ("work", "runs", "calibrations"),
-    [("thesis", 314, 0), ("xarm7", 119, 0), ("meca500", 244, 36), ("engines", 309, 0)],
+    [("thesis", 334, 0), ("xarm7", 119, 0), ("meca500", 244, 36), ("engines", 309, 0), ("precision", 90, 0)],
 )
 def test_a_work_has_its_runs(work, runs, calibrations):
     planned = load_work(work)
@@ -76,4 +83,4 @@ def test_a_work_has_its_runs(work, runs, calibrations):
 
 
 def test_every_work_is_counted():
-    assert set(work_names()) == {"thesis", "xarm7", "meca500", "engines"}
+    assert set(work_names()) == {"thesis", "xarm7", "meca500", "engines", "precision"}

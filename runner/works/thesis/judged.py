@@ -1,0 +1,137 @@
+"""A claim judged by many seeds: by all of them, by each alone, and by as many as the work's own run has."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.claims import PublishedClaim, Verdict
+from runner.claims.judging import compared_with, simulated_by, verdict_on
+from runner.metrics.summary import over_repetitions
+from runner.reporting.claims import run_name
+from runner.reporting.document import FloatArray
+from runner.reporting.run_values import median
+from runner.store import Run
+
+DRAWN = 2000
+"""Groups of seeds drawn with replacement."""
+_SEED = 0  # of what draws them: the same for all claims, so that what one is compared with has the same seeds
+_ENDS = (0.01, 0.99)
+_Places = NDArray[np.intp]
+_Verdicts = Sequence[Verdict | None]
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A claim under one preset; of a run that failed without it has no value and no verdicts.
+
+    Attributes:
+        claim: The claim.
+        preset: The preset.
+        values: Simulated value of each seed, shape (seeds,); infinite where it has none.
+        printed: What the median of all seeds is compared with; None where there is nothing.
+        verdict: Verdict on that median.
+        alone: Verdict on each seed alone.
+        drawn: Verdicts on the medians of groups that are as large as the work's own run, drawn with replacement.
+        apart: Verdicts on the medians of such groups that share no seed.
+        own: Median of the work's own run, on the plant by which its claims are judged.
+        own_verdict: Verdict on that.
+    """
+
+    claim: PublishedClaim
+    preset: str
+    values: FloatArray
+    printed: float | None
+    verdict: Verdict | None
+    alone: _Verdicts
+    drawn: _Verdicts
+    apart: _Verdicts
+    own: float | None
+    own_verdict: Verdict | None
+
+    def otherwise(self, verdicts: _Verdicts) -> int:
+        """Return how many verdicts are not that of all seeds."""
+        return sum(verdict != self.verdict for verdict in verdicts)
+
+    def share_otherwise(self, verdicts: _Verdicts) -> float | None:
+        """Return the share of these in per cent; None where there are none."""
+        return 100.0 * self.otherwise(verdicts) / len(verdicts) if verdicts else None
+
+    def quantiles(self) -> FloatArray:
+        """Return median, 1 % and 99 % quantile; infinite where so many seeds have no value, empty of a failed run."""
+        return np.quantile(self.values, (0.5, *_ENDS), method="inverted_cdf") if self.values.size else self.values
+
+    def moved_by_plant(self) -> float | None:
+        """Return by which factor, 1 or more, the work's own median and that of the seeds differ."""
+        if self.own is None or not self.values.size or not np.isfinite(self.quantiles()[0]):
+            return None
+        ratio = self.own / float(self.quantiles()[0])
+        return max(ratio, 1.0 / ratio)
+
+
+def judge_by_seeds(
+    claim: PublishedClaim,
+    claims: Sequence[PublishedClaim],
+    seeds: Mapping[str, Run],
+    own: Mapping[str, Run],
+    preset: str,
+) -> Judged:
+    """Return a claim judged by seeds.
+
+    Args:
+        claim: The claim.
+        claims: All claims of the work.
+        seeds: The runs of many seeds, by the end of the experiment's name.
+        own: The work's own runs likewise.
+        preset: The preset that both have.
+    """
+
+    def stored(experiment: str, metric: str) -> FloatArray:
+        return _values(seeds[run_name(experiment, "")], metric)
+
+    def by(groups: _Places) -> list[Verdict | None]:
+        if not groups.size:
+            return []
+        medians: dict[tuple[str, str], list[float]] = {}
+
+        def simulated(group: int, experiment: str, metric: str) -> float | None:
+            key = experiment, metric
+            if key not in medians:
+                values = stored(*key)
+                medians[key] = (
+                    over_repetitions(values[groups])[:, 0].tolist() if values.size else [np.nan] * len(groups)
+                )
+            value = medians[key][group]
+            return None if np.isnan(value) else value
+
+        return [verdict_on(claim, claims, lambda *key, at=at: simulated(at, *key)) for at in range(len(groups))]
+
+    def of_work(experiment: str, metric: str) -> float | None:
+        return median(own[run_name(experiment, "")], metric)
+
+    def of_seeds(experiment: str, metric: str) -> float | None:
+        return median(seeds[run_name(experiment, "")], metric)
+
+    values = stored(*simulated_by(claim))
+    count = values.size
+    size = int(own[run_name(claim.experiment, "")].config["repetitions"])
+    every = np.arange(count)
+    drawn = np.random.default_rng(_SEED).integers(0, count, (DRAWN, size)) if count else every
+    return Judged(
+        claim=claim,
+        preset=preset,
+        values=np.where(np.isnan(values), np.inf, values),
+        printed=compared_with(claim, of_seeds),
+        verdict=verdict_on(claim, claims, of_seeds) if count else None,
+        alone=by(every[:, None]),
+        drawn=by(drawn),
+        apart=by(every[: count // size * size].reshape(-1, size)),
+        own=of_work(*simulated_by(claim)),
+        own_verdict=verdict_on(claim, claims, of_work),
+    )
+
+
+def _values(run: Run, metric: str) -> FloatArray:
+    """Return a metric's value in each repetition of a run, NaN for none; nothing where the run has no metrics."""
+    return run.values(metric) if run.metrics else np.zeros(0)

@@ -1,0 +1,226 @@
+"""The report on what precision costs: its solutions by closed forms, and its chapters from motions of known errors."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.special import ellipk
+from study_sections import texts, unfinished_texts, whatever_has_failed
+from thin_plans import make_runs
+from work_plans import chapter, chapter_files, conditions_that_never_fail, cut
+
+from runner.commands.reproduce import _chosen, _Way
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.execution import run
+from runner.plants.rk4 import Rk4
+from runner.reporting.document import Document, Table
+from runner.reporting.findings import findings
+from runner.reporting.formulas import faulty
+from runner.reporting.job import MissingError
+from runner.robots.model import RobotModel
+from runner.store import Run
+from runner.store.atomic import write_atomically
+from runner.store.seal import sealed_json
+from runner.works.precision import measure, tried
+from runner.works.precision.exact import Adaptive, Collocation, energy_drift
+from runner.works.work import load_work
+
+WORK = load_work("precision")
+LENGTH, ANGLE = 0.5, 2.0  # m, rad from hanging
+PENDULUM = f"""<robot name="pendulum">
+  <link name="base"/>
+  <link name="bob"><inertial><origin xyz="0 0 {-LENGTH}"/><mass value="2"/>
+    <inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="tip"/>
+  <joint name="q1" type="revolute"><parent link="base"/><child link="bob"/><axis xyz="1 0 0"/>
+    <limit lower="-10" upper="10" effort="100" velocity="100"/></joint>
+  <joint name="end" type="fixed"><origin xyz="0 0 {-LENGTH}"/><parent link="bob"/><child link="tip"/></joint>
+</robot>"""
+FIRST, FOURTH, OFF = 0.1, 50.0, 1e-15  # errors by the step: rad/s, rad/s^4; how far both ways of one scheme are apart
+
+
+@pytest.fixture(scope="module")
+def model() -> RobotModel:
+    return RobotModel(PENDULUM, "tip")
+
+
+def error(plant: str, step: float) -> float:
+    return FOURTH * step**4 if plant == measure.PLANT else FIRST * step
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
+    """Every run of the plan: a moment's motion of each arm and case, put off by an error that follows from its step."""
+    outputs = tmp_path_factory.mktemp("outputs")
+    jobs = WORK.jobs()
+    first: dict[str, Run] = {}
+    made, cases = {}, {}
+    for name in jobs:
+        case, arm, plant, step = name.split("/")
+        base = f"{case}/{arm}"
+        if base not in first:
+            ours = next(own.overrides for each, own in jobs.items() if each.startswith(f"{base}/{measure.PLANT}/"))
+            first[base] = run(*cut(ours, 0.016 if case == "free" else 0.02), f"outputs={outputs}")
+        trace = first[base].trace.copy()
+        for column in ("q1", "tip_x"):
+            trace[column] += np.linspace(0.0, error(plant, float(step)), len(trace))
+        made[name] = replace(first[base])
+        made[name].__dict__["trace"] = trace
+    for base, exact in first.items():
+        steps = [name.rpartition("/")[2] for name in jobs if name.startswith(f"{base}/{measure.PLANT}/")]
+        errors = {step: error(measure.PLANT, float(step)) for step in steps}
+        cases[base] = {
+            "q": exact.trace.filter(regex=r"^q\d+$").to_numpy().tolist(),
+            "tip": exact.trace[["tip_x", "tip_y", "tip_z"]].to_numpy().tolist(),
+            "apart": {"tolerance": 2e-15, "collocation": 1e-15},
+            "energy": 1e-15 if base.startswith("free") else None,
+            "compiled_seconds": {step: 1e-6 / float(step) for step in steps},
+            "interpreted": {
+                step: {"joints": off + OFF, "tip": off + OFF, "seconds": 1e-4 / float(step)}
+                for step, off in errors.items()
+            },
+        }
+    of = {name: run.hash for name, run in made.items() if f"/{measure.PLANT}/" in name}
+    write_atomically(outputs / measure.FILE, sealed_json({"runs": of, "cases": cases}))
+    return made
+
+
+def test_it_is_not_made_with_all_works(tmp_path: Path) -> None:
+    assert "precision" not in {work.name for work in _chosen("all", _Way(tmp_path, (), "")) if work is not None}
+
+
+@pytest.mark.parametrize("way", ["adaptive", "collocation"])
+def test_a_pendulum_hangs_after_a_quarter_of_its_period(model: RobotModel, way: str) -> None:
+    """From rest at an angle it swings with the period 4 K(sin^2 (angle / 2)) / omega, by the elliptic integral."""
+    omega = np.sqrt(9.81 / LENGTH)
+    assert np.linalg.norm(model.gravity) == pytest.approx(9.81)
+    quarter = float(ellipk(np.sin(0.5 * ANGLE) ** 2)) / omega
+    plant = Adaptive(model, quarter, 1e-15) if way == "adaptive" else Collocation(model, quarter)
+    plant.reset(np.array([ANGLE]), np.zeros(1))
+    plant.advance(np.zeros(1))
+    assert plant.q[0] == pytest.approx(0.0, abs=1e-13)
+    assert plant.dq[0] == pytest.approx(-2.0 * omega * np.sin(0.5 * ANGLE), rel=1e-13)
+
+
+def test_a_held_torque_does_its_work(model: RobotModel) -> None:
+    """What the energy gains is torque times way, by both methods."""
+    for plant in (Adaptive(model, 0.3, 1e-15), Collocation(model, 0.3)):
+        plant.reset(np.array([ANGLE]), np.zeros(1))
+        plant.advance(np.array([5.0]))
+        q, dq = float(plant.q[0]), float(plant.dq[0])
+        kinetic = 0.5 * 2.0 * (LENGTH * dq) ** 2
+        potential = -2.0 * 9.81 * LENGTH * (np.cos(q) - np.cos(ANGLE))
+        assert kinetic + potential == pytest.approx(5.0 * (q - ANGLE), rel=1e-12)
+
+
+def test_the_drift_of_energy_is_told_over_the_largest_kinetic_energy(model: RobotModel) -> None:
+    """Twice as fast at one place of two: the energy there is four times the kinetic one, and the drift its gain."""
+    still, moving = np.array([[0.0], [0.0]]), np.array([[1.0], [2.0]])
+    assert energy_drift(model, still, moving) == pytest.approx((4.0 - 1.0) / 4.0)
+    assert energy_drift(model, still, moving[[0, 0]]) == 0.0
+
+
+def test_runge_kutta_by_pinocchio_is_the_compiled_scheme(model: RobotModel) -> None:
+    plants = [kind(model, 0.01, 20) for kind in (Rk4, measure.Interpreted)]
+    for plant in plants:
+        plant.reset(np.array([ANGLE]), np.zeros(1))
+        plant.advance(np.zeros(1))
+    np.testing.assert_allclose(plants[0].q, plants[1].q, rtol=0.0, atol=1e-13)
+    np.testing.assert_allclose(plants[0].dq, plants[1].dq, rtol=0.0, atol=1e-12)
+
+
+def test_what_is_worked_out_of_a_case_is_of_fourth_order_and_two_methods_agree() -> None:
+    jobs = WORK.jobs()
+    steps = {
+        step: validate(compose(cut(jobs[f"control/macro/Runge-Kutta/{step}"].overrides, 0.1)).resolved)
+        for step in ("0.01", "0.0025")
+    }
+    solved = measure._solved(steps)
+    assert solved["energy"] is None
+    assert max(solved["apart"].values()) < 1e-13
+    coarse, fine = (solved["interpreted"][step]["joints"] for step in steps)
+    assert np.log(coarse / fine) / np.log(4.0) == pytest.approx(4.0, abs=0.4)
+    assert set(solved["compiled_seconds"]) == set(steps)
+
+
+def tried_by(errors: Mapping[float, float]) -> list[tried.Tried]:
+    return [tried.Tried(step, off, off, 1.0) for step, off in errors.items()]
+
+
+def test_the_order_is_the_power_between_the_two_largest_steps() -> None:
+    assert tried.order(tried_by({0.08: 8.0, 0.02: 0.5, 0.01: 9.0})) == pytest.approx(2.0)
+    assert tried.order(tried_by({0.08: np.nan, 0.02: 0.5})) is None
+
+
+@pytest.mark.parametrize(
+    ("errors", "step"),
+    [
+        ({0.4: 1e-3, 0.2: 5e-4, 0.1: 2.5e-4}, None),  # first order gains what it costs
+        ({0.4: 1e-9, 0.1: 4e-12, 0.025: 3e-14, 0.00625: 4e-14}, 0.025),
+        ({0.4: 1e-15, 0.2: 2e-15}, 0.4),
+        ({0.4: np.nan, 0.2: np.nan}, 0.4),
+    ],
+)
+def test_the_knee_is_where_the_error_no_longer_falls_in_proportion(errors: dict[float, float], step: float) -> None:
+    at = tried.knee(tried_by(errors))
+    assert (None if at is None else at.step) == step
+
+
+def test_the_largest_step_that_does_is_found() -> None:
+    steps = tried_by({0.4: 3.0, 0.2: 1.5, 0.1: 0.7})
+    at = tried.large_enough(steps, 2.0)
+    assert at is not None
+    assert at.step == 0.2
+    assert tried.large_enough(steps, 0.7) is None
+    assert tried.large_enough(tried_by({0.4: np.nan}), 1.0) is None
+
+
+def test_errors_are_those_of_the_motions(runs: dict[str, Run]) -> None:
+    for plant, own in (("PyBullet", "PyBullet"), (tried.COMPILED, measure.PLANT)):
+        for one in tried.by_steps(runs, "control", "combined", plant):
+            assert one.joints == pytest.approx(error(own, one.step), rel=1e-6, abs=1e-15)
+            assert one.tip == pytest.approx(error(own, one.step), rel=1e-6, abs=1e-15)
+
+
+def test_the_orders_are_those_of_the_motions(runs: dict[str, Run]) -> None:
+    section = chapter("precision", "accuracy.md")(runs)
+    (table,) = (block for block in section.blocks if isinstance(block, Table))
+    assert len(table.rows) == 6
+    for row in table.rows:
+        assert [float(cell) for cell in row[2:]] == pytest.approx([1.0, 1.0, 4.0, 4.0], abs=1e-2)
+
+
+def test_solutions_of_other_runs_are_refused(runs: dict[str, Run]) -> None:
+    others = dict(runs)
+    name = "free/macro/Runge-Kutta/0.008"
+    others[name] = runs["control/macro/Runge-Kutta/0.01"]
+    with pytest.raises(MissingError, match="not worked out for these runs; runner reproduce precision does it"):
+        tried.solutions(others)
+
+
+@pytest.mark.parametrize("file", chapter_files("precision"))
+def test_each_condition_of_a_chapter_can_fail(runs: dict[str, Run], file: str) -> None:
+    assert conditions_that_never_fail("precision", file, runs) == []
+
+
+@whatever_has_failed
+@pytest.mark.parametrize("file", chapter_files("precision"))
+def test_a_chapter_bears_failed_runs(runs, file, spoil) -> None:
+    section = chapter("precision", file)(spoil(runs))
+    assert unfinished_texts(section) == []
+    assert list(texts(section))
+    assert faulty(Document("", "", "", [section], "2026-01-01")) == []
+
+
+@pytest.mark.slow
+def test_every_finding_holds_with_the_whole_runs(shared_store: Path) -> None:
+    pytest.importorskip("pybullet", reason="PyBullet is not installed")
+    jobs = {name: job.overrides for name, job in WORK.jobs().items()}
+    made = make_runs(shared_store, jobs)
+    measure.measure(shared_store / "outputs")
+    held = [found for _, found in findings(WORK.document(made, {}))]
+    assert len(held) == 4
+    assert [found.text for found in held if not found.holds] == []
