@@ -27,6 +27,7 @@ from runner.config.options import group_options
 from runner.config.preset import PresetConfig
 from runner.config.robot import OneArmConfig, StageConfig
 from runner.config.run import RunSettings
+from runner.config.spec import Bound
 from runner.config.sweep import SweepConfig
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.config.units import WRITTEN
@@ -130,6 +131,9 @@ def _keys() -> Iterator[str]:
     for group, (model, option) in _PLAIN.items():
         yield f"### {group}\n\n{_options(group)}Defaults are those of `{group}={option}`.\n\n"
         yield _table(group, model, _read(f"{group}/{option}"))
+    yield "### spec\n\n" + _options("spec")
+    yield "[Bounds](how_sure.md) on metrics: of each as many as are wanted, by the metric's name.\n\n"
+    yield _table("spec.metrics.NAME", Bound, {name: field.default for name, field in Bound.model_fields.items()})
 
 
 def _sweeper() -> Iterator[str]:

@@ -70,7 +70,7 @@ def find_or_make(composed: Composed) -> tuple[store.Run, bool]:
         stored = None
     if stored is not None:
         note(stored.folder)
-        return stored, False
+        return store.judged(stored, config.spec.metrics), False
     ticks, seconds = config.timing.ticks * config.settings.repetitions, None
     if ticks > _SURELY_ALLOWED:
         seconds = seconds_per_tick(config, composed) * ticks

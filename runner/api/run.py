@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from runner.reporting.key_metrics import KeyMetric
+    from runner.spec import Spec
 
 _IN_TEXT, _ON_PAGE = 1, 6
 
@@ -77,6 +78,14 @@ class Run:
     def caveats(self) -> Sequence[Mapping[str, Any]]:
         """Why the metrics may not be what they seem: rule, text, value and number of repetitions of each."""
         return self.stored.caveats
+
+    @property
+    def spec(self) -> "Spec | None":
+        """The bounds on its metrics, how many repetitions keep them, and its probability of failing them, `failing`.
+
+        None where it was made and found without bounds.
+        """
+        return self.stored.spec
 
     @property
     def config(self) -> Mapping[str, Any]:

@@ -1,8 +1,13 @@
-"""`runner check DIR [--reference FILE]`: do the metrics of a run or sweep lie where a reference has them?
+"""`runner check DIR [--reference FILE]`: do the metrics of a run or sweep lie where a spec or a reference has them?
+
+A run with a spec is checked by that where no reference is given: no repetition may break a bound, or with `--at-most P`
+the whole 95 % interval of the probability of failing has to lie below P.
 
 With `--learn FILE` a sweep becomes a reference itself; what moved since is told by `--reference FILE [--markdown]`.
 """
 
+import argparse
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -29,14 +34,20 @@ def main(arguments: Sequence[str]) -> int:
         help="folder of a run or a sweep, or latest",
     )
     parser.add_argument(
-        "--reference", type=Path, metavar="FILE", help="reference file; default: the one for the run's experiment"
+        "--reference",
+        type=Path,
+        metavar="FILE",
+        help="reference file; default: the spec, or that of the experiment",
+    )
+    parser.add_argument(
+        "--at-most", type=_probability, metavar="P", help="probability of failing a bound of the spec that is allowed"
     )
     parser.add_argument("--learn", type=Path, metavar="FILE", help="write a reference of the whole sweep")
     parser.add_argument("--markdown", action="store_true", help="tell what moved as a Markdown table")
     options = parser.parse_args(arguments)
     quiet_environment()
     from runner import store
-    from runner.references import learn, load_learned
+    from runner.references import cell_names, learn, load_learned
 
     if options.learn:
         count = learn(store.open_sweep(options.folder), options.learn)
@@ -47,7 +58,26 @@ def main(arguments: Sequence[str]) -> int:
         return _check_sweep(store.open_sweep(options.folder), learned, options.markdown)
     if options.markdown:
         parser.error("--markdown needs a reference of a sweep, made by --learn")
-    return _check_bands(options.folder, options.reference)
+    runs = store.open_runs(options.folder)
+    judged = options.reference is None and runs[0].spec is not None
+    if options.at_most is not None and not judged:
+        parser.error("--at-most needs a run with a spec, as by spec.metrics.settling_time.max=1.6, no --reference")
+    if judged:
+        from runner.commands.check_spec import check_spec
+
+        cells = cell_names(store.open_sweep(options.folder)) if store.is_sweep(options.folder) else []
+        return check_spec(runs, cells, options.at_most)
+    return _check_bands(runs, options.reference)
+
+
+def _probability(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value < 1.0:
+        raise argparse.ArgumentTypeError(f"must be a number above 0 and below 1; found '{text}'")
+    return value
 
 
 def _check_sweep(sweep: "Sweep", learned: "Learned", markdown: bool) -> int:
@@ -94,12 +124,10 @@ def _markdown(rows: "Sequence[Sequence[str]]") -> list[str]:
     return [head, "|" + "---|" * len(rows[0]), *others]
 
 
-def _check_bands(folder: Path, path: Path | None) -> int:
+def _check_bands(runs: "Sequence[Run]", path: Path | None) -> int:
     """Check the medians of all runs; print one line if all hold, else a table of those that do not."""
-    from runner import store
     from runner.references import check_run, find_shipped, load_reference
 
-    runs = store.open_runs(folder)
     given = load_reference(path) if path else None
     pairs = [(run, given or find_shipped(run)) for run in runs]
     results = [(run, reference, check_run(run, reference)) for run, reference in pairs]

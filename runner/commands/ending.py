@@ -29,6 +29,7 @@ def tell_run(run: "Run", made: bool, thresholds: Any) -> int:
     """
     if not run.failure:
         _tell_metrics(run, made)
+    _tell_spec(run)
     for warning in run.provenance["warnings"]:
         print(one_line(f"runner: warning: {warning}"), file=sys.stderr)
     _tell_caveats(run, thresholds)
@@ -51,6 +52,19 @@ def _tell_metrics(run: "Run", made: bool) -> None:
     rows = [[metric.title, metric.value, metric.remark] for metric in key_metrics(run, _METRICS)]
     if rows:
         print(aligned(rows), file=sys.stderr)
+
+
+def _tell_spec(run: "Run") -> None:
+    """Print how often the bounds of a run's spec are kept, where it has any."""
+    if run.spec is None:
+        return
+    from runner.commands.columns import aligned
+    from runner.reporting.spec_words import HEADER, lacking_text, spec_rows
+
+    print(aligned([HEADER, *spec_rows(run.spec)]), file=sys.stderr)
+    lacking = lacking_text(run.spec, run.metrics)
+    if lacking:
+        print(one_line(f"runner: {lacking}"), file=sys.stderr)
 
 
 def _tell_caveats(run: "Run", thresholds: Any) -> None:
@@ -90,19 +104,25 @@ def tell_sweep(ended: "Ended") -> int:
 def _tell_cells(ended: "Ended") -> None:
     """Print how many runs were made, which cell is the best, and what may be typed next."""
     from runner import store
+    from runner.reporting.sweep.spec import summary
     from runner.reporting.sweep.subject import choose
     from runner.sweeps.measurements import measure_sweep
 
     made, failed = len(ended.ends) - ended.stored, len(ended.failures)
     runs = "1 run" if len(ended.ends) == 1 else f"{len(ended.ends)} runs"
     text = f"{runs}: {made} made, {ended.stored} stored before, {failed or 'none'} of them failed"
-    best = None
+    best, kept = None, ""
     if len(ended.names) <= _MOST_RANKED and not (ended.left or failed == len(ended.names)):
-        best = choose(measure_sweep(store.open_sweep(ended.folder))).best
+        sweep = store.open_sweep(ended.folder)
+        subject = choose(measure_sweep(sweep))
+        best = subject.best
+        kept = summary(subject, sweep.spec) if sweep.spec else ""
     if best is not None:
         metric, value, cell = best
         text += f"; least {metric}: {value} (median), {cell}"
     print(one_line(f"runner: {text}"), file=sys.stderr)
+    if kept:
+        print(f"runner: {kept}", file=sys.stderr)
     here = ended.outputs.resolve() == Path("outputs").resolve()
     name = WORD if here else str(ended.folder)
     compared = next((axis.name for axis in _axes(ended) if axis.name != "seed"), None)

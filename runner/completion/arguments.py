@@ -107,6 +107,10 @@ def _topics(_: str) -> Iterable[str]:
 
 
 def _metrics(_: str) -> Iterable[str]:
+    return metric_names()
+
+
+def metric_names() -> Iterable[str]:
     """Return the names of our metrics, kept as long as the source is as it is: NumPy comes with their modules."""
     key = basis(["metrics"], [])
     known: list[str] | None = None if key is None else recall(key)

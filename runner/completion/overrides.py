@@ -12,6 +12,7 @@ _SIGN = re.compile(r"[+~]*")
 _FILE = re.compile(r"^  - (\w+)\s*(?:#.*)?$", re.MULTILINE)  # of a root's defaults: a file whose keys lie at the top
 _GROUP = re.compile(r"^  - (\w+): ", re.MULTILINE)
 _KEY = re.compile(r"^(\w+):[ \t]*([^\s#]?)", re.MULTILINE)
+_SPEC = "spec.metrics."
 _GLOBAL = "# @package _global_"  # begins a file whose keys lie at the top of the config
 
 
@@ -27,6 +28,8 @@ def override_words(line: Line, root: str) -> Iterator[str]:
     key, given, value = word.partition("=")
     if given and key in groups(line.config_dirs):
         found = _options(line, key, value)
+    elif word.startswith(_SPEC) and not given and root == "config":
+        found = _bounds(word.removeprefix(_SPEC))
     elif given or "." in word:
         from runner.completion.keys import keys
 
@@ -34,6 +37,17 @@ def override_words(line: Line, root: str) -> Iterator[str]:
     else:
         found = _top(root)
     yield from (sign + each for each in found)
+
+
+def _bounds(word: str) -> Iterator[str]:
+    """Yield the metrics that a spec may bound, and behind one of them what a bound has."""
+    from runner.completion.arguments import metric_names
+
+    metric, dot, _ = word.partition(".")
+    if dot:
+        yield from (f"{_SPEC}{metric}.{key}=" for key in ("min", "max", "reason"))
+    else:
+        yield from (f"{_SPEC}{name}." for name in metric_names())
 
 
 def _options(line: Line, group: str, value: str) -> Iterator[str]:

@@ -12,6 +12,7 @@ from runner.config.preset import PresetConfig
 from runner.config.problems import Problems
 from runner.config.robot import OneArmConfig, RobotConfig
 from runner.config.settings import RunSettings
+from runner.config.spec import SpecConfig
 from runner.config.sweep import SweepConfig
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS, ControllerConfig
@@ -36,6 +37,7 @@ GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
     "sweep": SweepConfig,
     "limits": LimitsConfig,
     "caveats": CaveatsConfig,
+    "spec": SpecConfig,
 }
 _SETTINGS = tuple(RunSettings.model_fields)
 
@@ -58,6 +60,7 @@ class Groups:
         sweep: How a sweep that the run is part of is run.
         limits: What a command may cost.
         caveats: When a run tells that its result may mislead.
+        spec: Bounds on metrics.
     """
 
     settings: RunSettings | None
@@ -73,6 +76,7 @@ class Groups:
     sweep: SweepConfig | None
     limits: LimitsConfig | None
     caveats: CaveatsConfig | None
+    spec: SpecConfig | None
 
 
 def read_groups(resolved: Mapping[str, object], problems: Problems) -> Groups:
@@ -106,6 +110,7 @@ def read_groups(resolved: Mapping[str, object], problems: Problems) -> Groups:
         sweep=read(SweepConfig, "sweep"),
         limits=read(LimitsConfig, "limits"),
         caveats=read(CaveatsConfig, "caveats"),
+        spec=read(SpecConfig, "spec"),
     )
 
 

@@ -4,7 +4,7 @@ import inspect
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any, Protocol, get_args, runtime_checkable
 
 from runner.registry import StrictModel
 
@@ -37,6 +37,16 @@ class Units:
         return tuple(unit for unit in (self.first, self.sliding) if unit)
 
 
+@runtime_checkable
+class TellsUnits(Protocol):
+    """A model whose keys count in units that follow from their names."""
+
+    @classmethod
+    def find_units(cls, path: Sequence[str]) -> Units | None:
+        """Return the units of a key below it, given by the keys that lead to it; None where it has no such key."""
+        ...
+
+
 def meanings(model: type[StrictModel]) -> dict[str, str]:
     """Return what the docstrings of a model and its bases say of its keys."""
     found: dict[str, str] = {}
@@ -62,6 +72,8 @@ def find_units(model: type[StrictModel], path: Sequence[str]) -> Units | None:
         model: The model of its group.
         path: The keys that lead to it, such as ["stages", "macro", "home"]; what stands behind it has no influence.
     """
+    if issubclass(model, TellsUnits):
+        return model.find_units(path)
     name, *rest = path[2:] if path[0] == "stages" and len(path) > 2 else path
     if name not in model.model_fields:
         return None

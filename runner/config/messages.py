@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from runner.config.meanings import Units, find_units
+from runner.config.meanings import find_units, nested_model
 from runner.config.units import explain_quantity, quantities_in
 from runner.errors import nearest
 from runner.registry import StrictModel
@@ -54,11 +54,11 @@ def describe(group: str, model: type[StrictModel], error: ValidationError) -> It
 def _explain(model: type[StrictModel], location: list[str], item: dict[str, Any]) -> str:
     kind, found, context = item["type"], item["input"], item.get("ctx", {})
     quantity = next(quantities_in(found), None) if kind in _OF_NUMBERS and location else None
-    if quantity is not None:
-        units = find_units(model, location) or Units()
+    units = find_units(model, location) if quantity is not None else None
+    if quantity is not None and units is not None:
         return explain_quantity(quantity, units.at([int(part) if part.isdecimal() else part for part in location]))
     if kind == "extra_forbidden":
-        keys = [field.alias or name for name, field in model.model_fields.items()]
+        keys = [field.alias or name for name, field in _innermost(model, location).model_fields.items()]
         return f"unknown key{nearest(location[-1], keys)}; keys: {', '.join(keys)}"
     if kind == "missing":
         return "missing"
@@ -74,3 +74,11 @@ def _explain(model: type[StrictModel], location: list[str], item: dict[str, Any]
     if wanted == _NUMBERS["int_type"] and isinstance(found, float) and found.is_integer():
         return f"{wanted}; found {quoted(found)}; write {int(found)}"
     return f"{wanted.format(**context) if wanted else item['msg']}; found {quoted(found)}"
+
+
+def _innermost(model: type[StrictModel], location: list[str]) -> type[StrictModel]:
+    """Return the model of the group of keys that the last of some keys stands in."""
+    for part in location[:-1]:
+        field = model.model_fields.get(part)
+        model = (nested_model(field.annotation) if field is not None else None) or model
+    return model

@@ -7,6 +7,7 @@ from runner.config.caveats import CaveatsConfig
 from runner.config.limits import LimitsConfig
 from runner.config.robot import RobotConfig
 from runner.config.settings import RunSettings
+from runner.config.spec import SpecConfig
 from runner.config.sweep import SweepConfig
 from runner.config.timing import Timing
 from runner.controllers import ControllerConfig, Loop
@@ -42,6 +43,7 @@ class RunConfig:
         sweep: How a sweep that the run is part of is run.
         limits: What a command may cost.
         caveats: When a run tells that its result may mislead.
+        spec: Bounds on metrics, of which it tells how often they are kept.
         resolved: The composed config as plain data, interpolations resolved.
     """
 
@@ -63,6 +65,7 @@ class RunConfig:
     sweep: SweepConfig
     limits: LimitsConfig
     caveats: CaveatsConfig
+    spec: SpecConfig
     resolved: Mapping[str, object]
 
     def with_seed(self, resolved: Mapping[str, object]) -> "RunConfig":

@@ -85,6 +85,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         sweep=sure(groups.sweep),
         limits=sure(groups.limits),
         caveats=sure(groups.caveats),
+        spec=sure(groups.spec),
         resolved=resolved,
     )
     check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.feels)

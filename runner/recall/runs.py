@@ -25,9 +25,10 @@ def find_again(arguments: Sequence[str]) -> "tuple[Run, Any] | None":
     """
     key = line_key(arguments)
     answer = None if key is None else recall(key)
-    if not (isinstance(answer, dict) and answer.keys() == {"run", "outputs", "thresholds"}):
+    if not (isinstance(answer, dict) and answer.keys() == {"run", "outputs", "thresholds", "spec"}):
         return None
-    from runner.store import DamagedError, find_run
+    from runner.spec import bounds_of
+    from runner.store import DamagedError, find_run, judged
 
     try:
         run = find_run(Path(answer["outputs"]), answer["run"])
@@ -36,7 +37,7 @@ def find_again(arguments: Sequence[str]) -> "tuple[Run, Any] | None":
     if run is None:
         return None
     note(run.folder)
-    return run, answer["thresholds"]
+    return judged(run, bounds_of(answer)), answer["thresholds"]
 
 
 def keep_run(
@@ -54,7 +55,8 @@ def keep_run(
     resolved = composed.resolved
     alone = set(sources) <= _READ and not has_users_parts() and all(map(_is_read, _arms(resolved.get("robot"))))
     if key is not None and alone and key == line_key(arguments):
-        keep(key, {"run": run.folder.name, "outputs": resolved["outputs"], "thresholds": resolved.get("caveats")})
+        told = {"thresholds": resolved.get("caveats"), "spec": resolved.get("spec")}
+        keep(key, {"run": run.folder.name, "outputs": resolved["outputs"], **told})
 
 
 def line_key(arguments: Sequence[str]) -> str | None:

@@ -1,6 +1,6 @@
 """Reference bands: what a run's metrics are checked against."""
 
-from runner.references.learned import Learned, Move, find_moves, learn, load_learned
+from runner.references.learned import Learned, Move, cell_names, find_moves, learn, load_learned
 from runner.references.reference import Band, Finding, Reference, check_run, load_reference
 from runner.references.shipped import find_shipped, shipped_references
 
@@ -10,6 +10,7 @@ __all__ = [
     "Learned",
     "Move",
     "Reference",
+    "cell_names",
     "check_run",
     "find_moves",
     "find_shipped",

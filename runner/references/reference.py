@@ -1,20 +1,19 @@
 """A reference: a band for each metric, with the reason for its width."""
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any
 
 import yaml
 from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, ValidationError
 
 from runner.config.messages import describe
+from runner.config.spec import Bound
 from runner.errors import StoreError, nearest
 from runner.metrics import unit_of, units
-from runner.registry import StrictModel
 
 if TYPE_CHECKING:
     from runner.store import Run
@@ -22,32 +21,14 @@ if TYPE_CHECKING:
 SCHEMA = 1
 
 
-class Band(StrictModel):
+class Band(Bound):
     """Where a metric's median has to lie, ends included.
 
     Attributes:
-        min: Lower end, in the metric's unit; left out or null, the band is open below.
-        max: Upper end, likewise.
         reason: Why the band is where it is and as wide as it is.
     """
 
-    min: float | None = None
-    max: float | None = None
     reason: Annotated[str, Field(min_length=1)]
-
-    @model_validator(mode="after")
-    def _check_ends(self) -> Self:
-        if self.min is None and self.max is None:
-            raise ValueError("needs min, max or both")
-        if self.min is not None and self.max is not None and self.min > self.max:
-            raise ValueError(f"min {self.min:g} is above max {self.max:g}")
-        return self
-
-    def holds(self, value: float) -> bool:
-        """Tell whether a value lies in the band."""
-        low = -math.inf if self.min is None else self.min
-        high = math.inf if self.max is None else self.max
-        return low <= value <= high
 
 
 @dataclass(frozen=True)

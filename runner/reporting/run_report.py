@@ -17,6 +17,7 @@ from runner.reporting.key_metrics import key_metrics, least
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
 from runner.reporting.plant_step import describe_plant, percent
+from runner.reporting.spec_blocks import spec_abstract, spec_blocks, spec_of_several
 from runner.reporting.words import PLANT, in_words
 from runner.store import Run
 
@@ -37,7 +38,10 @@ def run_document(runs: Sequence[Run]) -> Document:
         title=f"{len(runs)} runs compared",
         subtitle=", ".join(dict.fromkeys(str(run.config["robot"]["name"]) for run in runs)),
         abstract=f"{len(runs)} runs, {ends}.",
-        sections=[Section("Overview", (_overview(runs),)), *map(_section, runs, range(1, len(runs) + 1))],
+        sections=[
+            Section("Overview", (_overview(runs), *spec_of_several(runs))),
+            *map(_section, runs, range(1, len(runs) + 1)),
+        ],
         date=date,
         key_numbers=_numbers_of_several(runs),
         figures_float=False,
@@ -92,7 +96,7 @@ def _spaced(name: object) -> str:
 
 
 def _abstract(run: Run) -> str:
-    """Return how the run ended, and whether it lies in the bands of the reference that comes for its experiment."""
+    """Return how the run ended, how often it keeps its spec, and whether it lies in the bands of its reference."""
     count = run.record["repetitions"]
     if run.status == "failed":
         ended = f"The run {run.failure_text}."
@@ -102,6 +106,8 @@ def _abstract(run: Run) -> str:
             if count == 1
             else f"{count} repetitions, all of them finished; smallest to largest in brackets."
         )
+    if run.spec is not None:
+        ended += f" {spec_abstract(run.spec)}"
     try:
         reference = find_shipped(run)
     except RunnerError:
@@ -170,6 +176,7 @@ def _blocks(run: Run) -> list[Block]:
     if config["trajectory"]["kind"] != "goal":
         blocks.append(desired_motion(run, "Desired motion of the tip."))
     blocks.append(playback(run, "The motion of repetition 0."))
+    blocks += spec_blocks(run)
     if run.metrics:
         blocks.append(_metrics(run))
     return [*blocks, Text(describe_plant(run))]
@@ -287,7 +294,7 @@ def _seeds(seeds: set[int]) -> str:
 def _varying(runs: Sequence[Run]) -> list[str]:
     flat = [flatten(run.config) for run in runs]
     keys = dict.fromkeys(
-        key for config in flat for key in config if key != "outputs" and not key.startswith("caveats.")
+        key for config in flat for key in config if key != "outputs" and not key.startswith(("caveats.", "spec."))
     )
     return [
         key

@@ -1,10 +1,18 @@
 """Confidence interval of a share: how often something happens, from how often it did."""
 
+import math
 from dataclasses import dataclass
 
-from scipy import stats
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import betaincinv
 
-from runner.statistics.interval import CONFIDENCE
+from runner.statistics.interval import CONFIDENCE, FloatArray
+
+IntArray = NDArray[np.integer]
+
+_TAIL = (1.0 - CONFIDENCE) / 2.0  # of either side
+_MOST = 10**15  # repetitions; of more nobody would speak
 
 
 @dataclass(frozen=True)
@@ -23,18 +31,68 @@ class Share:
     low: float
     high: float
 
+    @property
+    def share(self) -> float:
+        """The share of them."""
+        return self.kept / self.of
+
+    @property
+    def rest(self) -> "Share":
+        """The others, of which it does not hold."""
+        return count_share(self.of - self.kept, self.of)
+
 
 def count_share(kept: int, of: int) -> Share:
     """Return a share with the exact 95 % interval of the probability behind it.
 
     Clopper and Pearson, "The Use of Confidence or Fiducial Limits Illustrated in the Case of the Binomial",
-    Biometrika 26, 1934: it covers the probability in 95 % of cases or more, however small that is.
+    Biometrika 26, 1934: the lower end is the probability with which so many or more happen in 2.5 % of all cases, the
+    upper end that with which so many or fewer do. Both are quantiles of beta distributions. The interval covers the
+    probability in 95 % of cases or more, whatever that is; in more, as a count is a whole number.
 
     Args:
         kept: How many, 0 to `of`.
         of: Number of repetitions, one or more.
     """
-    tail = (1.0 - CONFIDENCE) / 2.0
-    low = 0.0 if kept == 0 else float(stats.beta.ppf(tail, kept, of - kept + 1))
-    high = 1.0 if kept == of else float(stats.beta.ppf(1.0 - tail, kept + 1, of - kept))
-    return Share(kept, of, low, high)
+    low, high = share_ends(np.array([kept]), np.array([of]))
+    return Share(kept, of, float(low[0]), float(high[0]))
+
+
+def share_ends(kept: IntArray, of: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return the ends of the intervals of several shares, as `count_share` has them.
+
+    Args:
+        kept: How many, shape (n,).
+        of: Number of repetitions of each, one or more, shape (n,).
+    """
+    none, every = kept == 0, kept == of
+    low = np.where(none, 0.0, betaincinv(np.where(none, 1, kept), of - kept + 1, _TAIL))
+    high = np.where(every, 1.0, betaincinv(kept + 1, np.where(every, 1, of - kept), 1.0 - _TAIL))
+    return low, high
+
+
+def needed(seen: Share, probability: float) -> int | None:
+    """Return how many repetitions in all tell a share from a probability, where it stays what it is.
+
+    None where no number does: the share is the probability itself. Of a share of 0 it is ln(0.025) / ln(1 - p).
+
+    Args:
+        seen: The share so far.
+        probability: The probability, above 0 and below 1.
+    """
+    if seen.kept == 0:
+        return math.ceil(math.log(_TAIL) / math.log1p(-probability))
+    few, many = seen.of, seen.of
+    while not _tells(seen, probability, many):
+        few, many = many, 2 * many
+        if many > _MOST:
+            return None
+    while many - few > max(1, few // 1000):
+        middle = (few + many) // 2
+        few, many = (few, middle) if _tells(seen, probability, middle) else (middle, many)
+    return many
+
+
+def _tells(seen: Share, probability: float, of: int) -> bool:
+    found = count_share(round(seen.kept / seen.of * of), of)
+    return found.high < probability or found.low > probability

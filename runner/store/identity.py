@@ -14,7 +14,7 @@ from runner.plugins import GROUPS, added, source_files
 from runner.store.names import Names
 
 # These say where and under which name a run is kept, and what is told of it, not what is simulated.
-_LEFT_OUT = ("caveats", "limits", "outputs", "preset", "sweep")
+_LEFT_OUT = ("caveats", "limits", "outputs", "preset", "spec", "sweep")
 # The rooms and modules of the physics: what a run's result follows from. All others leave it as it is.
 _PHYSICS = (
     "assembly.py", "batch.py", "batch_blocks.py", "batch_jobs.py", "calibration", "calibration_job.py", "compiled",
@@ -33,7 +33,7 @@ _PLACES = 12  # bytes of a digest that make a name
 def run_hash(resolved: Mapping[str, Any], urdf: str) -> str:
     """Return the name of a run's folder: SHA-256 over all that its result follows from.
 
-    That is the resolved config (without outputs, sweep, limits, caveats, and preset, whose values the groups have
+    That is the resolved config (without outputs, sweep, limits, caveats, spec, and preset, whose values the groups have
     taken), the URDF's text, the source of the physics and of the user's parts that it uses, and the versions of the
     plant's engine, Pinocchio and what evaluates compiled laws. It is hashed as JSON with sorted keys; the text of a
     group is kept for others that share it, which must not be changed.

@@ -18,6 +18,9 @@ from runner.store.values import VALUES_FILE, open_parquet, read_column, read_tab
 if TYPE_CHECKING:
     import pandas as pd
 
+    from runner.config.spec import Bound
+    from runner.spec import Spec
+
 FloatArray = NDArray[np.float64]
 
 
@@ -89,6 +92,21 @@ class Run(Stored):
         """Digest of the rules, and thresholds, that found its caveats; None where none has looked for any."""
         rules: Mapping[str, Any] | None = self.record.get("caveat_rules")
         return rules
+
+    @cached_property
+    def spec(self) -> "Spec | None":
+        """The bounds on its metrics, and how many repetitions keep them; None where there are no bounds."""
+        from runner.spec import read_spec
+
+        stored = self.record.get("spec")
+        return None if stored is None else read_spec(stored)
+
+    def judged_by(self, bounds: "Mapping[str, Bound]") -> "Run":
+        """Return this run with other bounds on its metrics, one or more, and how many repetitions keep them."""
+        from runner.spec import judge
+
+        spec = judge(bounds, self.record["repetitions"], self.metrics, self.values)
+        return replace(self, record={**self.record, "spec": spec.record()})
 
     @cached_property
     def trace(self) -> "pd.DataFrame":

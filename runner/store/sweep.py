@@ -3,14 +3,16 @@
 import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
+from runner.config.spec import Bound
 from runner.errors import StoreError
 from runner.store.atomic import write_atomically
 from runner.store.axes import Counted, GridOverrides, read_axes
@@ -23,6 +25,7 @@ _FILE = "sweep.json"
 _RUNS = "runs.bin"  # of a grid: the hash of each cell's run, 12 bytes each
 _AT_ONCE = 10_000  # rows
 _MEND = "the sweep's command writes it again"
+_NO_SPEC: Mapping[str, Bound] = {}
 
 
 @dataclass(frozen=True)
@@ -35,6 +38,7 @@ class Sweep:
         hashes: Hash of each job's run.
         command: The command that makes it and goes on with it.
         sealed: Whether its file has a digest; one of schema 1 has none.
+        spec: Bounds on metrics, by which its runs are judged, whatever they were made with; none for none.
     """
 
     folder: Path
@@ -42,6 +46,7 @@ class Sweep:
     hashes: Sequence[str]
     command: str
     sealed: bool = True
+    spec: Mapping[str, Bound] = field(default_factory=dict)
 
     @property
     def outputs(self) -> Path:
@@ -78,9 +83,10 @@ class Sweep:
 
     def _open(self, finished: Finished, name: str) -> Run:
         try:
-            return finished.open(name)
+            run = finished.open(name)
         except StoreError as error:
             raise StoreError(f"{error}; `runner status {self.folder}` says what is left of the sweep") from error
+        return run.judged_by(self.spec) if self.spec else run
 
 
 @dataclass(frozen=True)
@@ -98,24 +104,29 @@ class InShard:
     cells: NDArray[np.intp]
 
 
-def write_sweep(outputs: Path, jobs: Sequence[tuple[Sequence[str], str]], command: str) -> Path:
+def write_sweep(
+    outputs: Path, jobs: Sequence[tuple[Sequence[str], str]], command: str, spec: Mapping[str, Bound] = _NO_SPEC
+) -> Path:
     """Store which overrides lead to which run, job by job, and return the sweep's folder.
 
     Args:
         outputs: The outputs folder.
         jobs: Overrides and hash of each run.
         command: The command that makes the sweep; no part of its name.
+        spec: Bounds on metrics; no part of its name either.
 
     Raises:
         StoreError: if the disk does not take it.
     """
     rows = list(_rows(jobs))
     folder = outputs / "sweeps" / _name(rows)
-    write_atomically(folder / _FILE, _sealed_sweep(rows, command))
+    write_atomically(folder / _FILE, _sealed_sweep(rows, command, spec))
     return folder
 
 
-def write_grid(outputs: Path, axes: GridOverrides, names: Names, command: str) -> Path:
+def write_grid(
+    outputs: Path, axes: GridOverrides, names: Names, command: str, spec: Mapping[str, Bound] = _NO_SPEC
+) -> Path:
     """Store a sweep over a grid by its axes, with the runs' names in a file beside, and return the sweep's folder.
 
     Args:
@@ -123,6 +134,7 @@ def write_grid(outputs: Path, axes: GridOverrides, names: Names, command: str) -
         axes: Overrides of each cell.
         names: Hash of each cell's run.
         command: The command that makes the sweep; no part of its name.
+        spec: Bounds on metrics; no part of its name either.
 
     Raises:
         StoreError: if the disk does not take it.
@@ -130,18 +142,24 @@ def write_grid(outputs: Path, axes: GridOverrides, names: Names, command: str) -
     folder = outputs / "sweeps" / _name(_grid_rows(axes, names))
     runs = names.packed()
     write_atomically(folder / _RUNS, runs)
-    content = {**head(), "command": command, "axes": axes.content(), "cells": len(names), "runs": digest(runs)}
+    content = {**_head(command, spec), "axes": axes.content(), "cells": len(names), "runs": digest(runs)}
     write_atomically(folder / _FILE, sealed(json.dumps(content, indent=1) + "\n"))
     return folder
 
 
 def write_jobs(folder: Path, jobs: Sequence[tuple[Sequence[str], str]], command: str) -> None:
     """Store which overrides lead to which run in a folder of another kind, such as a tuning's: see write_sweep."""
-    write_atomically(folder / _FILE, _sealed_sweep(list(_rows(jobs)), command))
+    write_atomically(folder / _FILE, _sealed_sweep(list(_rows(jobs)), command, _NO_SPEC))
 
 
-def _sealed_sweep(rows: Sequence[str], command: str) -> bytes:
-    start = json.dumps({**head(), "command": command})[:-1]
+def _head(command: str, spec: Mapping[str, Bound]) -> dict[str, Any]:
+    """Return what the file of a sweep begins with."""
+    bounds = {metric: bound.model_dump() for metric, bound in spec.items()}
+    return {**head(), "command": command, **({"spec": bounds} if bounds else {})}
+
+
+def _sealed_sweep(rows: Sequence[str], command: str, spec: Mapping[str, Bound]) -> bytes:
+    start = json.dumps(_head(command, spec))[:-1]
     return sealed(f'{start}, "jobs": [\n' + ",\n".join(rows) + "\n]}\n")
 
 
@@ -213,7 +231,14 @@ def open_sweep(folder: Path) -> Sweep:
     place = folder.resolve()
     if place.parent.name == "sweeps" and _name(rows) != place.name:
         raise DamagedError(f"cannot read {path}: it is of another sweep than its folder is named after; {_MEND}")
-    return Sweep(folder, overrides, hashes, command, is_sealed(content))
+    return Sweep(folder, overrides, hashes, command, is_sealed(content), _read_spec(path, content))
+
+
+def _read_spec(path: Path, content: Mapping[str, Any]) -> dict[str, Bound]:
+    try:
+        return {metric: Bound.model_validate(bound) for metric, bound in content.get("spec", {}).items()}
+    except (AttributeError, ValidationError) as error:
+        raise DamagedError(f"cannot read {path}: its spec holds no bounds; {_MEND}") from error
 
 
 def _read_jobs(path: Path, content: Mapping[str, Any]) -> tuple[Sequence[Sequence[str]], Sequence[str], Iterator[str]]:

@@ -13,6 +13,7 @@ from runner.caveats import Found
 from runner.errors import StoreError
 from runner.metrics.summary import Summary, over_repetitions, units_of
 from runner.plant_error import PlantError
+from runner.spec import bounds_of, judge
 from runner.store.arrow_columns import float_column
 from runner.store.atomic import write_atomically
 from runner.store.json_texts import JsonTexts, encode_finite
@@ -96,6 +97,10 @@ def make_record(result: RunResult) -> dict[str, Any]:
         repetition, failure = result.failure
         record["failure"] = {**asdict(failure), "repetition": repetition}
     record |= result.caveats.record()
+    bounds = bounds_of(result.resolved)
+    if bounds:
+        values = {metric: summary.values for metric, summary in result.metrics.items()}
+        record["spec"] = judge(bounds, result.repetitions, values, values.__getitem__).record()
     record["metrics"] = {metric: summary.record() for metric, summary in result.metrics.items()}
     if result.plant_error is not None:
         record["plant_error"] = result.plant_error.record()

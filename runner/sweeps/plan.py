@@ -1,6 +1,6 @@
 """What is to be made: cells, each with its config; composed, checked and named before anything starts."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn, Protocol
@@ -15,6 +15,7 @@ from runner.config.calibration import validate_calibration
 from runner.config.compose import Composed
 from runner.config.limits import LimitsConfig
 from runner.config.run import RunConfig
+from runner.config.spec import Bound
 from runner.config.sweep import SweepConfig
 from runner.config.validation import validate
 from runner.errors import ConfigError
@@ -72,6 +73,7 @@ class Checked:
         outputs: Folder in which they are stored.
         settings: How the runs are made.
         limits: What they may cost.
+        spec: Bounds on metrics.
         resolved: What differs between the configs of the runs.
     """
 
@@ -81,6 +83,7 @@ class Checked:
     outputs: Path
     settings: SweepConfig
     limits: LimitsConfig
+    spec: Mapping[str, Bound]
     resolved: Resolved
 
 
@@ -121,7 +124,8 @@ def check(plan: Plan) -> Checked:
     if problems or first is None:
         problems.report(plan)
     outputs = Path(first.settings.outputs)
-    return Checked(Names(names), costs, frozenset(calibrations), outputs, first.sweep, first.limits, resolved)
+    bounds = first.spec.metrics
+    return Checked(Names(names), costs, frozenset(calibrations), outputs, first.sweep, first.limits, bounds, resolved)
 
 
 class _Problems:
@@ -167,12 +171,12 @@ def _check_calibration(composed: Composed) -> tuple[str, int]:
 
 def _check_alike(first: RunConfig, other: RunConfig) -> None:
     if _shared(first) != _shared(other):
-        raise ConfigError(["outputs, sweep.*, limits.*, caveats.*: must have one value in all runs of a sweep"])
+        raise ConfigError(["outputs, sweep.*, limits.*, caveats.*, spec.*: must have one value in all runs of a sweep"])
 
 
 def _shared(config: RunConfig) -> tuple[object, ...]:
     """Return what is the same in all runs of a sweep."""
-    return config.settings.outputs, config.sweep, config.limits, config.caveats
+    return config.settings.outputs, config.sweep, config.limits, config.caveats, config.spec
 
 
 def _check_assembly(

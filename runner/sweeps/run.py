@@ -123,9 +123,9 @@ def _write_sweep(plan: Plan, checked: Checked, command: str) -> Path:
     """Store which overrides lead to which run, and return the sweep's folder."""
     axes = plan.axes()
     if axes is not None:
-        return store.write_grid(checked.outputs, axes, checked.names, command)
+        return store.write_grid(checked.outputs, axes, checked.names, command, checked.spec)
     runs = [(plan.overrides(i), name) for i, name in enumerate(checked.names) if i not in checked.calibrations]
-    return store.write_sweep(checked.outputs, runs, command)
+    return store.write_sweep(checked.outputs, runs, command, checked.spec)
 
 
 def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:

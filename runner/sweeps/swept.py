@@ -81,7 +81,7 @@ def _check_cells(cells: float) -> None:
 
 def is_simulated(key: str) -> bool:
     """Tell whether a key says what is simulated, not how and where that is done."""
-    return key.partition(".")[0] not in ("caveats", "hydra", "limits", "outputs", "sweep")
+    return key.partition(".")[0] not in ("caveats", "hydra", "limits", "outputs", "spec", "sweep")
 
 
 def _read(override: Override, groups: Sequence[str]) -> SweptKey:

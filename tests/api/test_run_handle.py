@@ -40,6 +40,15 @@ def test_metrics_are_typed_and_named(run):
         _ = run.metrics["peak_torqe"]
 
 
+def test_a_spec_tells_how_probable_it_is_that_it_is_broken(run):
+    assert run.spec is None
+    bound = {"spec.metrics.peak_torque.max": "1N m"}
+    judged = runner.run(*WORDS, outputs=run.folder.parents[1], **bound)
+    assert judged.folder == run.folder
+    assert (judged.spec.failing.kept, judged.spec.failing.of, judged.spec.failing.high) == (3, 3, 1.0)
+    assert judged.spec.bounds[0].failing == judged.spec.failing
+
+
 def test_the_frame_of_metrics(run):
     frame = run.metrics_frame()
     assert list(frame.columns) == ["unit", "median", "min", "max", "n"]

@@ -170,3 +170,11 @@ def test_values_are_typed_as_in_an_override(tmp_path):
     assert words("--config-dir mine robot=odd robot.name=") == ["robot.name=true"]
     assert words("--config-dir mine robot=odd robot.tip=") == []
     assert words("--config-dir mine robot=odd robot.ti") == ["robot.tip="]
+
+
+def test_a_spec_offers_the_metrics_and_what_a_bound_has():
+    assert words("robot=macro spec.metrics.settl") == ["spec.metrics.settling_time."]
+    assert len(words("spec.metrics.")) == len(units())
+    ends = [f"spec.metrics.overshoot.{key}=" for key in ("max", "min", "reason")]
+    assert words("spec.metrics.overshoot.") == ends
+    assert words("spec=") == ["spec=none"]

@@ -201,3 +201,14 @@ def test_a_stored_run_imports_no_simulator(tmp_path):
     ]
     assert told[0][-1] != "set()"  # the first time it is simulated
     assert told[1] == [told[0][0], "set()"]
+
+
+def test_a_run_that_is_found_again_is_judged_by_its_lines_spec(cli, composed):
+    line = (*LINE, "spec.metrics.peak_torque.max=1")
+    cli(*line)
+    other = cli(*LINE, "spec.metrics.peak_torque.max=1e6")
+    first = cli(*line)
+    assert len(composed) == 2
+    assert "1 of 1" in other.err
+    assert "stored before with another spec; the shares are worked out from its stored values" in first.err
+    assert "0 of 1" in first.err

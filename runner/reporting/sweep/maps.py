@@ -13,7 +13,7 @@ from runner.reporting.sweep import theory
 from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_names
 from runner.sweeps.measurements import Axis, FloatArray
 
-_POOLED = "seed"  # the one axis over which maps take a median: its values mean nothing
+POOLED = "seed"  # the one axis over which maps take a median: its values mean nothing
 _FEWEST_FOR_CONTOURS = 3
 _MOST_MULTIPLES = 9
 _MOST_VALUES = 200  # of an axis of a map
@@ -22,7 +22,7 @@ _MOST_POINTED = 5000  # cells that tell about themselves; a page with more would
 
 def section(subject: Subject) -> Section:
     """Return the maps of a sweep over two axes or more, in which every value is that of one cell."""
-    x, y, *others = _chosen(subject)
+    x, y, *others = chosen(subject)
     blocks: list[Block] = [
         _maps(subject, metric, x, y, others) for metric in subject.metrics if np.isfinite(subject.medians[metric]).any()
     ]
@@ -31,12 +31,12 @@ def section(subject: Subject) -> Section:
 
 def is_readable(subject: Subject) -> bool:
     """Tell whether maps of a sweep can be read: over two axes or more, and of few enough values."""
-    return len(subject.axes) > 1 and all(len(axis.values) <= _MOST_VALUES for axis in _chosen(subject)[:2])
+    return len(subject.axes) > 1 and all(len(axis.values) <= _MOST_VALUES for axis in chosen(subject)[:2])
 
 
-def _chosen(subject: Subject) -> list[Axis]:
+def chosen(subject: Subject) -> list[Axis]:
     """Return the axes of the maps: horizontal, vertical, and where there are more those of the multiples."""
-    axes = [axis for axis in subject.axes if axis.name != _POOLED]
+    axes = [axis for axis in subject.axes if axis.name != POOLED]
     if len(axes) < 2:
         return list(subject.axes)
     if len(axes) == 2:
@@ -57,7 +57,7 @@ def _chosen(subject: Subject) -> list[Axis]:
 def _maps(subject: Subject, metric: str, x: Axis, y: Axis, others: Sequence[Axis]) -> Maps:
     """Return a map for each combination of the values of the other axes, as tasks or arms are not to be averaged."""
     medians, columns = subject.medians[metric], 1
-    pooled = next((axis for axis in subject.axes if axis.name == _POOLED and axis not in (x, y)), None)
+    pooled = next((axis for axis in subject.axes if axis.name == POOLED and axis not in (x, y)), None)
     what = "Median of each cell" if pooled is None else (
         f"Of the medians of the cells of {len(pooled.values)} seeds the middle one, of an even number the lower"
     )  # fmt: skip

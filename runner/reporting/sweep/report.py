@@ -9,7 +9,18 @@ import numpy as np
 from runner.reporting.document import Document, Provenance, RunList, Section, Text
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
-from runner.reporting.sweep import axes, caveats, distributions, effects, extremes, failures, maps, pairs, tradeoff
+from runner.reporting.sweep import (
+    axes,
+    caveats,
+    distributions,
+    effects,
+    extremes,
+    failures,
+    maps,
+    pairs,
+    spec,
+    tradeoff,
+)
 from runner.reporting.sweep.subject import Subject, choose
 from runner.store import Sweep
 from runner.sweeps.measurements import measure_sweep
@@ -37,6 +48,8 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     measurements = subject.measurements
     doubts = [caveats.section(subject)] if caveats.is_needed(subject) else []
     sections = [*doubts, axes.section(subject, sweep.command)]
+    if sweep.spec:
+        sections.append(spec.section(subject, sweep.spec))
     ranked = subject.ranked
     if subject.metrics and subject.axes:
         sections.append(effects.section(subject))
@@ -58,7 +71,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     return Document(
         title="Sweep over " + (" × ".join(axis.name for axis in subject.axes) or "nothing"),
         subtitle=", ".join(measurements.fixed),
-        abstract=literal(_abstract(subject)),
+        abstract=literal(_abstract(subject, sweep)),
         sections=sections,
         date=max(measurements.provenance["made on"]),
         key_numbers=_key_numbers(subject),
@@ -80,7 +93,7 @@ def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
     return numbers
 
 
-def _abstract(subject: Subject) -> str:
+def _abstract(subject: Subject, sweep: Sweep) -> str:
     measurements = subject.measurements
     cells, failed = len(measurements.hashes), sum(status != "ok" for status in measurements.statuses)
     sizes = " × ".join(f"{axis.name} ({len(axis.values)})" for axis in subject.axes)
@@ -91,6 +104,8 @@ def _abstract(subject: Subject) -> str:
     if doubted:
         texts.append(f"{doubted} of {cells} cells have caveats.")
     ranked = subject.ranked
+    if sweep.spec:
+        texts.append(spec.summary(subject, sweep.spec))
     if ranked and subject.axes:
         metric = subject.metrics[0]
         texts.append(f"Least {title(metric)}: {subject.cell_name(ranked[0])}; most: {subject.cell_name(ranked[-1])}.")

@@ -1,0 +1,76 @@
+"""Config of the spec: bounds on metrics, of which a run tells how often its repetitions keep them."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, Self
+
+from pydantic import field_validator, model_validator
+
+from runner.config.meanings import Units
+from runner.errors import nearest
+from runner.registry import StrictModel
+from runner.texts import quoted
+
+_METRICS = "metrics"
+
+
+class Bound(StrictModel):
+    """Where a metric has to lie, ends included.
+
+    Attributes:
+        min: Lower end, in the metric's unit; left out or null, it is open below.
+        max: Upper end, likewise.
+        reason: Why it lies there; may be left out.
+    """
+
+    min: float | None = None
+    max: float | None = None
+    reason: str = ""
+
+    @model_validator(mode="after")
+    def _check_ends(self) -> Self:
+        if self.min is None and self.max is None:
+            raise ValueError("needs min, max or both")
+        if self.min is not None and self.max is not None and self.min > self.max:
+            raise ValueError(f"min {self.min:g} is above max {self.max:g}")
+        return self
+
+    def holds(self, value: float) -> bool:
+        """Tell whether a value lies there; NaN, that is none, does not."""
+        low = -math.inf if self.min is None else self.min
+        high = math.inf if self.max is None else self.max
+        return low <= value <= high
+
+
+class SpecConfig(StrictModel):
+    """Bounds on metrics.
+
+    Attributes:
+        metrics: The bound of each metric, by its name; it may carry a stage in front and a joint or axis behind.
+    """
+
+    metrics: dict[str, Bound]
+
+    @field_validator("metrics", mode="before")
+    @classmethod
+    def _check_names(cls, value: Any) -> Any:
+        """Refuse what is no metric at all; which of them a run has shows when it has ended."""
+        if not isinstance(value, Mapping) or not value:
+            return value
+        from runner.metrics import unit_of, units
+
+        known = units()
+        wrong = [f"{quoted(name)}{nearest(str(name), known)}" for name in value if unit_of(str(name)) is None]
+        if wrong:
+            raise ValueError(f"no metric is called {', '.join(wrong)}; metrics: {', '.join(known)}")
+        return value
+
+    @classmethod
+    def find_units(cls, path: Sequence[str]) -> Units | None:
+        """Return the units of a key: an end of a bound counts in the unit of its metric."""
+        from runner.metrics import unit_of
+
+        if len(path) != len(("metrics", "NAME", "max")) or path[0] != _METRICS or path[2] not in ("min", "max"):
+            return None
+        unit = unit_of(path[1])
+        return None if unit is None else Units("" if unit == "1" else unit)

@@ -1,0 +1,134 @@
+"""How many repetitions of a run keep each bound of a spec, and all of them: worked out from values, as stored."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.config.spec import Bound
+
+if TYPE_CHECKING:
+    from runner.statistics.share import Share
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Kept:
+    """One bound.
+
+    Attributes:
+        metric: Name of the metric.
+        bound: Where it has to lie.
+        share: The repetitions that keep it; None where the run has no such metric.
+    """
+
+    metric: str
+    bound: Bound
+    share: "Share | None"
+
+    @property
+    def failing(self) -> "Share | None":
+        """The repetitions that do not keep it."""
+        return None if self.share is None else self.share.rest
+
+
+@dataclass(frozen=True)
+class Spec:
+    """The bounds of a run, and how often they are kept.
+
+    Attributes:
+        bounds: Each bound, in the order of the spec.
+        whole: The repetitions that keep all bounds; None where the run lacks one of the metrics.
+    """
+
+    bounds: tuple[Kept, ...]
+    whole: "Share | None"
+
+    @property
+    def failing(self) -> "Share | None":
+        """The repetitions that do not keep all bounds."""
+        return None if self.whole is None else self.whole.rest
+
+    @property
+    def config(self) -> dict[str, Bound]:
+        """The bounds by metric, as the config has them."""
+        return {one.metric: one.bound for one in self.bounds}
+
+    @property
+    def lacking(self) -> list[str]:
+        """Names of the metrics that the run has none of."""
+        return [one.metric for one in self.bounds if one.share is None]
+
+    def record(self) -> dict[str, Any]:
+        """Return what is stored: for each bound its ends and its share, and the share that keeps all."""
+        bounds = {one.metric: {**one.bound.model_dump(), **_record(one.share)} for one in self.bounds}
+        return {"bounds": bounds, "all": _record(self.whole)}
+
+
+def bounds_of(config: Mapping[str, Any]) -> dict[str, Bound]:
+    """Return the bounds by metric of a checked config; none of one from before there were any."""
+    stored = config.get("spec", {}).get("metrics", {})
+    return {metric: Bound.model_validate(bound) for metric, bound in stored.items()}
+
+
+def judge(
+    bounds: Mapping[str, Bound], repetitions: int, metrics: Mapping[str, Any], values: Callable[[str], FloatArray]
+) -> Spec:
+    """Return how many repetitions of a run keep some bounds.
+
+    One that failed, or has no value, as it never settled, does not keep its bound.
+
+    Args:
+        bounds: The bounds by metric, one or more.
+        repetitions: Number of repetitions.
+        metrics: The metrics that the run has; none of a run of which every repetition failed.
+        values: Gives one of these in each repetition, shape (repetitions,), NaN where it has no value.
+    """
+    kept: dict[str, NDArray[np.bool_] | None] = {}
+    for metric, bound in bounds.items():
+        if metric in metrics:
+            kept[metric] = within(bound, values(metric))
+        else:
+            kept[metric] = None if metrics else np.zeros(repetitions, dtype=bool)
+    there = [one for one in kept.values() if one is not None]
+    whole = _count(np.logical_and.reduce(there)) if len(there) == len(kept) else None
+    shares = {metric: None if one is None else _count(one) for metric, one in kept.items()}
+    return Spec(tuple(Kept(metric, bound, shares[metric]) for metric, bound in bounds.items()), whole)
+
+
+def within(bound: Bound, values: FloatArray) -> NDArray[np.bool_]:
+    """Return which values keep a bound, shape of the values; NaN, which is none, does not."""
+    low = -np.inf if bound.min is None else bound.min
+    high = np.inf if bound.max is None else bound.max
+    kept: NDArray[np.bool_] = np.isfinite(values) & (values >= low) & (values <= high)
+    return kept
+
+
+def read_spec(record: Mapping[str, Any]) -> Spec:
+    """Return what `Spec.record` gave."""
+    bounds = []
+    for metric, stored in record["bounds"].items():
+        bound = Bound(min=stored["min"], max=stored["max"], reason=stored["reason"])
+        bounds.append(Kept(metric, bound, _share(stored)))
+    return Spec(tuple(bounds), _share(record["all"]))
+
+
+def _count(kept: NDArray[np.bool_]) -> "Share":
+    from runner.statistics.share import count_share  # SciPy, a second, which runs without bounds do without
+
+    return count_share(int(np.count_nonzero(kept)), kept.size)
+
+
+def _record(share: "Share | None") -> dict[str, float | None]:
+    if share is None:
+        return dict.fromkeys(("kept", "of", "share", "low", "high"))
+    return {"kept": share.kept, "of": share.of, "share": share.share, "low": share.low, "high": share.high}
+
+
+def _share(stored: Mapping[str, Any]) -> "Share | None":
+    from runner.statistics.share import Share
+
+    return None if stored["kept"] is None else Share(*(stored[key] for key in ("kept", "of", "low", "high")))

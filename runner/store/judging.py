@@ -1,0 +1,28 @@
+"""A stored run that is found again with another spec: how often it keeps the bounds is worked out anew."""
+
+import sys
+from collections.abc import Mapping
+
+from runner.config.spec import Bound
+from runner.store.run import Run
+from runner.store.stored import write_job
+
+
+def judged(run: Run, bounds: Mapping[str, Bound]) -> Run:
+    """Return a run with the shares of its repetitions that keep some bounds, stored with it; new ones are told.
+
+    Nothing is simulated: the shares follow from the stored values. Without bounds those that it was judged by stay.
+
+    Raises:
+        StoreError: if the disk does not take them.
+    """
+    before = run.spec
+    if not bounds or (before is not None and before.config == bounds):
+        return run
+    found = run.judged_by(bounds)
+    if found.sealed:  # one from before there were digests is left as it is
+        record = {key: value for key, value in found.record.items() if key != "schema"}
+        write_job(run.folder, "metrics.json", record, {})
+    what = "without a spec" if before is None else "with another spec"
+    print(f"runner: stored before {what}; the shares are worked out from its stored values", file=sys.stderr)
+    return found

@@ -1,0 +1,77 @@
+"""What reports on runs show of their spec."""
+
+import pytest
+
+from runner.config.spec import Bound
+from runner.execution import run
+from runner.reporting import outline
+from runner.reporting.document import Notice, Table
+from runner.reporting.formulas import faulty
+from runner.reporting.render import write_report
+from runner.reporting.run_report import run_document
+from runner.reporting.spec_words import HEADER, bound_text
+
+SHORT = ("robot=macro", "plant=rk4", "noise=thesis", "duration=0.3", "repetitions=20")
+TORQUE = "spec.metrics.peak_torque={max: 1, reason: 'gear <b>2</b>'}"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    outputs = f"outputs={tmp_path_factory.mktemp('outputs')}"
+    return [
+        run(*SHORT, outputs, TORQUE, "spec.metrics.cross_track_error.max=1"),
+        run(*SHORT, "seed=1", outputs, "spec.metrics.max_tracking_error.max=1"),
+        run(*SHORT, "seed=2", outputs),
+    ]
+
+
+def specs(document):
+    found = [block for block in outline.blocks(document) if isinstance(block, Table)]
+    return [block for block in found if "Clopper and Pearson" in block.caption]
+
+
+def test_the_report_on_a_run_has_its_bounds_with_reasons(made, tmp_path):
+    document = run_document([made[0]])
+    (table,) = specs(document)
+    assert list(table.header) == [*HEADER, "reason"]
+    assert [row[1] for row in table.rows] == ["0 of 20", "20 of 20", "0 of 20"]
+    assert table.rows[0][2:4] == ["1", "0.832 to 1"]
+    assert "0 of 20 repetitions keep all 2 bounds of the spec: the probability of failing is 1" in document.abstract
+    assert not faulty(document)
+    html = write_report(document, tmp_path, ["html"])[0].read_text()
+    assert "gear <b>2</b>" not in html
+    assert "gear &lt;b&gt;2&lt;/b&gt;" in html
+
+
+def test_a_metric_that_the_run_lacks_is_a_notice(made):
+    document = run_document([made[1]])
+    titles = [block.title for block in outline.blocks(document) if isinstance(block, Notice)]
+    assert "The run lacks a metric of its spec" in titles
+    assert "The run lacks a metric of its spec." in document.abstract
+
+
+def test_a_run_without_a_spec_has_nothing_of_it(made):
+    document = run_document([made[2]])
+    assert not specs(document)
+    assert "spec" not in document.abstract
+
+
+def test_the_report_on_several_runs_has_one_table_of_all_bounds(made):
+    document = run_document(made)
+    overall, *own = specs(document)
+    assert [row[0] for row in overall.rows] == ["1", "1", "1", "2"]
+    assert len(own) == 2
+    header = next(block for block in outline.blocks(document) if isinstance(block, Table)).header
+    assert not any(name.startswith("spec") for name in header)  # a spec is no difference between runs
+
+
+@pytest.mark.parametrize(
+    ("bound", "text"),
+    [
+        ({"max": 8e-4}, "steady-state error at most 0.8 mm"),
+        ({"min": 0.25}, "steady-state error at least 0.25 m"),
+        ({"min": 0.001, "max": 0.002}, "steady-state error 1 to 2 mm"),
+    ],
+)
+def test_a_bound_in_words(bound, text):
+    assert bound_text("steady_state_error", Bound(**bound)) == text

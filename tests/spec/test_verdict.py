@@ -1,0 +1,24 @@
+"""What some repetitions say of a probability of failing that is allowed."""
+
+import pytest
+
+from runner.spec.verdict import Verdict, judge_share
+from runner.statistics.share import count_share
+
+
+@pytest.mark.parametrize(("failed", "says"), [(0, "kept"), (1, "broken")])
+def test_without_a_probability_no_repetition_may_fail(failed, says):
+    assert judge_share(count_share(1000 - failed, 1000), None) == Verdict(says)
+
+
+@pytest.mark.parametrize(("failed", "says"), [(0, "kept"), (3, "kept"), (5, "untold"), (30, "broken")])
+def test_the_whole_interval_has_to_lie_below(failed, says):
+    share = count_share(1000 - failed, 1000)
+    verdict = judge_share(share, 0.01)
+    assert verdict.says == says
+    assert (share.rest.high < 0.01, share.rest.low > 0.01) == (says == "kept", says == "broken")
+
+
+def test_too_few_name_how_many_would_do():
+    assert judge_share(count_share(1000, 1000), 1e-4) == Verdict("untold", 36_887)
+    assert judge_share(count_share(990, 1000), 0.01) == Verdict("untold", None)
