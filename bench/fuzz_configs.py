@@ -19,7 +19,7 @@ from runner.config.compose import Composed, compose
 from runner.config.options import group_options, groups
 from runner.config.validation import validate
 from runner.errors import RunnerError
-from runner.execution import simulate_job
+from runner.job import simulate_job
 from runner.store import run_hash
 from runner.store.writing import make_record
 

@@ -19,7 +19,7 @@ from runner import store
 from runner.assembly import assemble, make_encoders
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.execution import simulate_job
+from runner.job import simulate_job
 from runner.quiet import quiet_environment
 from runner.simulation import simulate
 

@@ -4,6 +4,7 @@ A block takes bounded memory, whatever the number of repetitions. Compiled ticks
 lock alone for most of the time, so that threads use the cores. What is stored is the same whatever blocks and threads.
 """
 
+import os
 import time
 from collections import deque
 from collections.abc import Iterator, Sequence
@@ -18,6 +19,7 @@ from runner import store
 from runner.batch import Batcher
 from runner.batch_jobs import Job, Simulated, simulate_together
 from runner.config.limits import TICKS_AT_ONCE
+from runner.plugins import has_users_parts
 from runner.store.writing import timing
 
 MOST_THREADS = 4
@@ -90,3 +92,9 @@ def _in_order(simulate: partial[Simulated | None], blocks: Sequence[range], thre
             yield under_way.popleft().result()
     finally:  # Ctrl-C waits for the blocks under way alone
         pool.shutdown(cancel_futures=True)
+
+
+def threads_allowed() -> int:
+    """Return how many threads simulate a run; parts of the user's are asked by one alone."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return 1 if has_users_parts() else min(cores, MOST_THREADS)

@@ -1,39 +1,20 @@
-"""One job: check a composed config, simulate its repetitions, store the result; or find it stored already."""
+"""One run: check a composed config, simulate its repetitions, store the result; or find it stored already."""
 
-import os
 import sys
-import time
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-
 from runner import progress, store
-from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
-from runner.batch_blocks import MOST_THREADS, simulate_blocks
-from runner.batch_jobs import seconds_together
-from runner.caveats import PlantStep, Watch, setting_of, signals_of
+from runner.batch_blocks import threads_allowed
 from runner.config.compose import Composed, compose
 from runner.config.limits import check_cpu_time
-from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.errors import ConfigError, SimulationError
+from runner.job import seconds_per_tick, simulate_job
 from runner.latest import note
-from runner.metrics import Columns, MetricContext, evaluate
-from runner.plant_error import COMPARED, PlantError, compare, hindrance, on_runge_kutta
-from runner.plugins import has_users_parts
 from runner.progress.stages import SIMULATING, SOON
 from runner.progress.ticks import counter
-from runner.provenance import job_provenance
-from runner.simulation import ClosedLoop, simulate
-from runner.store.writing import timing
-from runner.trace import Failure, Trace
 
-_PROBED_TICKS = 50
 _SURELY_ALLOWED = 200_000  # ticks, which take minutes at most
-_PROBED_TOGETHER = 100_000  # ticks, of repetitions that are simulated together
-_CLOCKED_TICKS = 1_000_000  # ticks whose time is kept; more would tell nothing new
 
 
 def run(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Run:
@@ -77,129 +58,8 @@ def find_or_make(composed: Composed) -> tuple[store.Run, bool]:
         check_cpu_time(config.limits, seconds, 1)
     store.prepare(outputs)
     progress.begin(SIMULATING, seconds, ticks, "ticks", counter())
-    result = simulate_job(config, composed, _threads())
+    result = simulate_job(config, composed, threads_allowed())
     progress.begin("storing the run", SOON)
     made = store.write_run(outputs, name, result)
     note(made.folder)
     return made, True
-
-
-def _threads() -> int:
-    """Return how many threads simulate a run; parts of the user's are asked by one alone."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return 1 if has_users_parts() else min(cores, MOST_THREADS)
-
-
-def seconds_per_tick(config: RunConfig, composed: Composed) -> float:
-    """Return the CPU time of a tick of a run, in s, from its first ones, made twice."""
-    if config.timing.ticks <= _PROBED_TOGETHER:
-        together = seconds_together((config, composed), _PROBED_TOGETHER)
-        if together is not None:
-            return together
-    whole = assemble(config)
-    part = replace(whole, ticks=min(whole.ticks, _PROBED_TICKS))
-    try:
-        for _ in range(2):  # the first time warms up
-            start = time.perf_counter()
-            _simulate(part, config, 0)
-        return (time.perf_counter() - start) / (part.ticks + 1)
-    finally:
-        whole.close()
-
-
-def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> store.RunResult:
-    """Simulate the repetitions of a checked config.
-
-    Args:
-        config: The checked config.
-        composed: What it was checked from, for provenance.
-        threads: Number of threads that simulate the repetitions of a run that is compiled as a whole.
-
-    Raises:
-        ConfigError: where the start of the trajectory cannot be reached, or a part refuses its config.
-    """
-    together = simulate_blocks((config, composed), threads)
-    if together is not None:
-        return together
-    wall, cpu = time.perf_counter(), time.process_time()
-    loop = assemble(config)
-    context = metric_context(config)
-    watch = Watch(setting_of(config, loop.q_start), config.caveats)
-    first: Trace | None = None
-    of_first: dict[str, float | None] = {}
-    failure: tuple[int, Failure] | None = None
-    columns, ticks = Columns(config.settings.repetitions), []
-    clocked = 0
-    notices: list[str] = []
-    told: list[str] = []
-    try:
-        for repetition in range(config.settings.repetitions):
-            if repetition > 0 and config.mismatch.spread > 0.0:  # other beliefs
-                last, loop = loop, assemble(config, repetition)
-                last.close()
-            ran, said = _simulate(loop, config, repetition)
-            trace, measured = _judge(ran, context, told)
-            notices = notices or said
-            if first is None:
-                first, of_first = trace, measured
-            if trace.failure is not None and failure is None:
-                failure = (repetition, trace.failure)
-            if trace.failure is None:
-                watch.look(signals_of(trace, measured))
-            columns.put(repetition, measured)
-            if clocked < _CLOCKED_TICKS:
-                ticks.append(trace.tick_seconds)
-                clocked += len(trace.tick_seconds)
-    finally:
-        loop.close()
-    assert first is not None  # noqa: S101 - repetitions is at least 1
-    seconds = time.perf_counter() - wall, time.process_time() - cpu
-    error = _plant_error(config, composed, first, of_first)
-    step = PlantStep(config.plant.kind, config.timing.step, config.timing.tick, config.robot.settling_band)
-    return store.RunResult(
-        resolved=config.resolved,
-        urdf=config.arm.urdf,
-        trace=first,
-        metrics=columns.summarize(),
-        caveats=watch.found(error, step),
-        repetitions=config.settings.repetitions,
-        failure=failure,
-        timing=timing(np.concatenate(ticks), *seconds),
-        provenance=job_provenance(config, composed, [*notices, *dict.fromkeys(told)]),
-        plant_error=error,
-    )
-
-
-def _plant_error(
-    config: RunConfig, composed: Composed, trace: Trace, measured: Mapping[str, float | None]
-) -> PlantError | None:
-    """Return what the plant's step is worth in repetition 0; None where nobody asks, or there is nothing to compare."""
-    if not config.settings.plant_error or config.plant.kind not in COMPARED:
-        return None
-    if reason := hindrance(config.environment.kind):
-        return PlantError(None, reason)
-    other = replace(composed, resolved=on_runge_kutta(config.resolved))
-    try:
-        checked = validate(other.resolved, other.config_dirs)
-        made = simulate_job(checked, other)
-    except ConfigError as error:
-        return PlantError(None, str(error))
-    others = {name: summary.median for name, summary in made.metrics.items()}
-    return compare(trace, measured, made.trace, others, config.robot.settling_band, checked.timing.step)
-
-
-def _judge(trace: Trace, context: MetricContext, told: list[str]) -> tuple[Trace, dict[str, float | None]]:
-    """Return a trace and its metrics; where a part of the user's spoils these, the trace with that as its failure."""
-    try:
-        return trace, evaluate(trace, context, told)
-    except SimulationError as error:
-        return replace(trace, failure=Failure(error.reason, float(trace.t[-1]))), {}
-
-
-def _simulate(closed: ClosedLoop, config: RunConfig, repetition: int) -> tuple[Trace, list[str]]:
-    """Simulate a repetition; return its trace, and what the controllers and the wrist's sensor tell of it."""
-    seed = config.settings.seed
-    wrist = make_wrist_sensor(closed, config.wrist_sensor, seed, repetition)
-    trace = simulate(closed, make_encoders(closed, config.noise, seed, repetition), wrist)
-    told = [notice for loop in closed.loops if loop.feeling is not None for notice in loop.feeling.notices()]
-    return trace, told + ([] if wrist is None else wrist.overloads())

@@ -50,7 +50,8 @@ class PlantError:
         end: Distance between the tips at the end, in m.
         parted: When the motions part, in s: the tips are farther apart than the settling band, or one of the runs fails
             where the other does not; None where they never do. From then on each goes a way of its own, and the
-            difference of a metric is no longer an error of integration.
+            difference of a metric is no longer an error of integration. Tips of the thesis' figures that stay together
+            are at most 0.41 bands apart, of those that part 11 to 55.
         failure: Why the run on Runge-Kutta failed; empty where it did not.
         metrics: What the step is worth in each metric.
     """

@@ -5,7 +5,7 @@ import threading
 import numpy as np
 import pytest
 
-from runner import execution
+from runner import batch_blocks
 from runner.batch import Batcher
 from runner.batch_blocks import MOST_THREADS, simulate_blocks
 from runner.compiled.engine import evaluator
@@ -97,9 +97,9 @@ def test_an_error_in_a_block_ends_the_run_and_its_threads(monkeypatch):
 def test_parts_of_the_user_s_are_asked_by_one_thread_alone(monkeypatch):
     monkeypatch.setattr("os.cpu_count", lambda: 64)
     monkeypatch.delattr("os.sched_getaffinity", raising=False)
-    assert execution._threads() == MOST_THREADS
-    monkeypatch.setattr(execution, "has_users_parts", lambda: True)
-    assert execution._threads() == 1
+    assert batch_blocks.threads_allowed() == MOST_THREADS
+    monkeypatch.setattr(batch_blocks, "has_users_parts", lambda: True)
+    assert batch_blocks.threads_allowed() == 1
 
 
 def test_what_is_not_compiled_as_a_whole_is_left_to_the_loop():

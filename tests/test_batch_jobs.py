@@ -7,7 +7,7 @@ from runner.batch_jobs import simulate_together
 from runner.compiled.engine import evaluator
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.execution import simulate_job
+from runner.job import simulate_job
 from runner.store.writing import make_record
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a whole by llvmlite")

@@ -14,7 +14,7 @@ import yaml
 from engines import ASKED
 from printed import without_caveats, without_results
 
-from runner import execution
+from runner import job
 from runner.cli import COMMANDS, GUIDE, HELP
 from runner.config.options import group_options
 from runner.store import open_sweep
@@ -105,7 +105,7 @@ def test_a_run_prints_its_folder_and_writes_nothing_but_outputs(cli, tmp_path):
 
 def test_the_same_command_again_simulates_nothing(cli, monkeypatch):
     first = cli(*SHORT)
-    monkeypatch.setattr(execution, "simulate", None)
+    monkeypatch.setattr(job, "simulate", None)
     again = cli(*SHORT)
     assert (again.code, again.out) == (first.code, first.out)
     assert again.err == first.err.replace(", stored in", ", stored before in")
@@ -220,7 +220,7 @@ def test_an_error_of_ours_is_no_problem_of_the_config(cli, monkeypatch):
     def break_down(*_):
         raise ValueError("a bug")
 
-    monkeypatch.setattr(execution, "simulate", break_down)
+    monkeypatch.setattr(job, "simulate", break_down)
     with pytest.raises(ValueError, match="a bug"):
         cli(*SHORT)
 
@@ -229,7 +229,7 @@ def test_too_little_memory_is_said(cli, monkeypatch):
     def run_out(*_):
         raise MemoryError("unable to allocate 2 TiB")
 
-    monkeypatch.setattr(execution, "simulate", run_out)
+    monkeypatch.setattr(job, "simulate", run_out)
     ending = cli(*SHORT)
     assert ending.code == 2
     assert ending.err == (

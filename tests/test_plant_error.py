@@ -7,7 +7,8 @@ import pytest
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.engines import has_pybullet
-from runner.execution import run, simulate_job
+from runner.execution import run
+from runner.job import simulate_job
 from runner.plant_error import compare, on_runge_kutta, sufficient_step
 from runner.trace import Failure
 
@@ -129,7 +130,7 @@ def test_nothing_is_stored_where_nobody_asks_or_nothing_is_to_be_compared(tmp_pa
 
 
 def test_what_runge_kutta_cannot_make_is_told(tmp_path, monkeypatch):
-    from runner import execution
+    from runner import job
     from runner.errors import ConfigError
 
     def refuse(resolved, config_dirs):
@@ -137,7 +138,7 @@ def test_what_runge_kutta_cannot_make_is_told(tmp_path, monkeypatch):
             raise ConfigError(["plant.kind: rk4 cannot do that"])
         return validate(resolved, config_dirs)
 
-    monkeypatch.setattr(execution, "validate", refuse)
+    monkeypatch.setattr(job, "validate", refuse)
     stored = measured(tmp_path, f"plant={OTHER}")
     assert stored.plant_error["plant"] == "rk4"
     assert "rk4 cannot do that" in stored.plant_error["reason"]

@@ -4,7 +4,6 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
@@ -51,7 +50,7 @@ class Summary:
         """Whether its record lists the values."""
         return len(self.values) <= MOST_LISTED
 
-    def record(self) -> dict[str, Any]:
+    def record(self) -> dict[str, object]:
         """Return what is stored of it in a run's record."""
         ends = {"median": self.median, "min": self.min, "max": self.max}
         if self.listed:

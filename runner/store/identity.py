@@ -18,8 +18,8 @@ _LEFT_OUT = ("caveats", "limits", "outputs", "preset", "spec", "sweep")
 # The rooms and modules of the physics: what a run's result follows from. All others leave it as it is.
 _PHYSICS = (
     "assembly.py", "batch.py", "batch_blocks.py", "batch_jobs.py", "calibration", "calibration_job.py", "compiled",
-    "config", "controllers", "environments", "execution.py", "feasibility.py", "guard", "interaction.py", "loop",
-    "metrics", "plant_error.py", "plants", "registry.py", "robots", "sensing", "simulation.py", "trace.py",
+    "config", "controllers", "environments", "execution.py", "feasibility.py", "guard", "interaction.py", "job.py",
+    "loop", "metrics", "plant_error.py", "plants", "registry.py", "robots", "sensing", "simulation.py", "trace.py",
     "trajectories",
 )  # fmt: skip
 

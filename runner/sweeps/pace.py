@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from runner.batch_jobs import seconds_together
 from runner.config.compose import Composed
 from runner.config.validation import validate
-from runner.execution import seconds_per_tick
+from runner.job import seconds_per_tick
 from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
 from runner.sweeps.deadline import TimeLimitError, deadline

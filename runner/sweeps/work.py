@@ -19,7 +19,7 @@ from runner.config.compose import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.errors import RunnerError, StoreError, user_place
-from runner.execution import simulate_job
+from runner.job import simulate_job
 from runner.plugins import use_plugins
 from runner.progress.ticks import told
 from runner.provenance import job_provenance

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import runner
-from runner import execution
+from runner import job
 from runner.errors import ConfigError, RunnerError, StoreError
 
 SHORT = ("robot=macro", "duration=0.05", "noise=thesis", "repetitions=2")
@@ -43,7 +43,7 @@ def test_keywords_and_texts_make_the_same_run():
 
 def test_a_second_call_returns_the_stored_run_without_simulating(monkeypatch):
     first = runner.run(*SHORT)
-    monkeypatch.setattr(execution, "simulate", None)
+    monkeypatch.setattr(job, "simulate", None)
     second = runner.run(*SHORT)
     assert second.folder == first.folder
     assert second.stored.record == first.stored.record
@@ -51,7 +51,7 @@ def test_a_second_call_returns_the_stored_run_without_simulating(monkeypatch):
 
 def test_the_command_line_finds_what_python_stored(cli, monkeypatch):
     run = runner.run(*SHORT)
-    monkeypatch.setattr(execution, "simulate", None)
+    monkeypatch.setattr(job, "simulate", None)
     assert cli(*SHORT).folder == run.folder.resolve()
 
 

@@ -6,7 +6,7 @@ from runner.config.compose import compose
 from runner.config.limits import LimitsConfig, check_cpu_time, memory_of_run
 from runner.config.validation import validate
 from runner.errors import ConfigError
-from runner.execution import seconds_per_tick
+from runner.job import seconds_per_tick
 from runner.store import simulated_part
 
 

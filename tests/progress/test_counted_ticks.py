@@ -7,7 +7,7 @@ import pytest
 
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.execution import simulate_job
+from runner.job import simulate_job
 from runner.progress import ticks
 
 

@@ -38,7 +38,7 @@ def record_alone(metrics, run, found, provenance):
     each = summarize_arrays(tuple(metrics), np.array([values[run] for values in metrics.values()]).T)
     result = SimpleNamespace(
         failure=None, repetitions=repetitions, caveats=found, metrics=each, timing=TIMING,
-        provenance=provenance, resolved={},
+        provenance=provenance, resolved={}, plant_error=None,
     )  # fmt: skip
     return make_record(result)
 
