@@ -11,6 +11,7 @@ NAMES = (
     "laws",
     "mujoco_tick",
     "agreement",
+    "derivatives",
     "caveats",
     "around",
     "repetitions",

@@ -6,7 +6,7 @@ from contextlib import ExitStack
 import numpy as np
 
 from runner.compiled.closed_loop import CompiledCommands, Whole
-from runner.compiled.compile import compile_commands, compile_whole, find_commands
+from runner.compiled.compile import compile_commands, compile_whole, describe_whole, find_commands
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.controllers.admittance_stability import check_wall
@@ -88,6 +88,21 @@ def assemble_whole(config: RunConfig, repetition: int = 0) -> tuple[Whole, Float
         return None
     compiled = _compile(config, _believe(config, repetition)[1])
     return (compiled, _find_start(config)) if isinstance(compiled, Whole) else None
+
+
+def describe_loop(config: RunConfig, repetition: int = 0) -> Whole | None:
+    """Return a closed loop whose code could be made as a whole, without making it; None where there is none.
+
+    Args:
+        config: The checked config.
+        repetition: Number of the repetition, of which the beliefs follow.
+    """
+    if config.commands != "torque" or config.feels:
+        return None
+    loops = _believe(config, repetition)[1]
+    commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
+    motion = PLANTS.motion(config.plant, config.arm)
+    return None if commands is None or motion is None else describe_whole(commands, motion, config.timing)
 
 
 def _find_start(config: RunConfig) -> FloatArray:

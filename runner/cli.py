@@ -36,6 +36,8 @@ runner: config-driven experiments for robot-arm control, with reports
   runner compare A B...                          runs or sweeps side by side: what differs, every metric in pairs;
                                                  compare SWEEP --by controller: the levels of an axis;
                                                  runner diff is its former name
+  runner sensitivity RUN [--metric NAME] [--of gains|masses|lengths|...] [--check]
+                                                 which parameter a run's metrics depend on most, by exact derivatives
   runner work new FOLDER                         write a first work of your own, to reproduce another paper;
                                                  check FOLDER looks through it, diff OLD NEW compares two makings
   runner calibrate [OVERRIDES]                   calibrate tool or sensor against the truth: calibration=gravity
@@ -72,8 +74,8 @@ All commands: runner --help. All keys of a run: runner --cfg job. The pages are 
 first.
 """
 COMMANDS = (
-    "reproduce", "report", "table", "figures", "status", "tune", "verify", "check", "compare", "diff", "calibrate",
-    "audit",
+    "reproduce", "report", "table", "figures", "status", "tune", "verify", "check", "compare", "diff", "sensitivity",
+    "calibrate", "audit",
     "doctor", "list", "work",
 )  # fmt: skip
 

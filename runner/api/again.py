@@ -1,11 +1,8 @@
 """A repetition of a stored run, simulated again: a run keeps the trace of its first one alone."""
 
-import itertools
 import math
-import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner import store
@@ -82,7 +79,7 @@ def _checked(run: store.Run, repetition: int) -> "RunConfig":
             "plug-in of it is not in use; make the run anew by runner.run"
         )
     try:
-        config = validate(run.config, _own_folders(str(run.provenance["command"])))
+        config = validate(run.config, run.config_dirs)
     except ConfigError as error:
         raise RunnerError(f"{cannot}{'; '.join(error.problems)}") from None
     if config.arm.urdf != run.urdf:
@@ -100,9 +97,3 @@ def _simulate(config: "RunConfig", repetition: int) -> "Trace":
         return simulate(loop, make_encoders(loop, config.noise, seed, repetition), wrist)
     finally:
         loop.close()
-
-
-def _own_folders(command: str) -> Sequence[Path]:
-    """Return the config folders that a command names, in which the file of its robot is looked for."""
-    words = shlex.split(command)
-    return [Path(after) for before, after in itertools.pairwise(words) if before == "--config-dir"]

@@ -17,6 +17,21 @@ _AXES = np.eye(3)
 
 
 @dataclass(frozen=True)
+class Unfolded:
+    """Makes scalars as a plain function does, and is asked for 0, 1 and -1, too.
+
+    Attributes:
+        make: The function.
+    """
+
+    make: Callable[[float], Scalar]
+
+    def __call__(self, value: float) -> Scalar:
+        """Return the scalar that stands for a number."""
+        return self.make(value)
+
+
+@dataclass(frozen=True)
 class Body:
     """A moving link, in the frame of the joint that moves it, whose axis is z.
 
@@ -66,7 +81,8 @@ def constants_of(
 
     Args:
         model: The arm, which does not change any more.
-        number: Makes the scalar that stands for a constant; it is not asked for 0, 1 and -1, which stay floats.
+        number: Makes the scalar that stands for a constant; it is not asked for 0, 1 and -1, which stay floats,
+            unless it is Unfolded.
         gravity: In the base frame, shape (3,), in m/s^2, as scalars; None is the model's.
         tip: Name of the frame that is taken for the tip; None is the model's.
     """
@@ -156,7 +172,7 @@ def known(values: Any, number: Callable[[float], Scalar]) -> Any:
 
 
 def _scalar(value: float, number: Callable[[float], Scalar]) -> Scalar:
-    return value if value in (0.0, 1.0, -1.0) else number(value)
+    return number(value) if value not in (0.0, 1.0, -1.0) or isinstance(number, Unfolded) else value
 
 
 def _rounded(values: Any) -> Any:

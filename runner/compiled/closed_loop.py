@@ -1,15 +1,17 @@
 """Closed loops as compiled code: what loops ask in a tick, or whole runs, one alone or many together."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from runner.compiled.arm import Unfolded
 from runner.compiled.code import ACTING
-from runner.compiled.commands import Commands, expressed_commands
+from runner.compiled.commands import Commands, CommandScalars, expressed_commands
 from runner.compiled.expression import places
-from runner.compiled.motion import expressed_motion, motion_pattern, motion_scalars
+from runner.compiled.motion import MotionScalars, expressed_motion, motion_pattern, motion_scalars
 from runner.compiled.places import Places
 from runner.compiled.program import LANES, Expressed, FloatArray, Frame, Program, program
 from runner.compiled.structure import Values
@@ -137,12 +139,7 @@ class Whole:
 
         def express() -> Expressed:
             at = Places()
-            commands = self.commands.scalars(at.number)
-            numbers = motion_scalars(self.motion, self.step, self.tick, at.number)
-            torques, kept, errors = expressed_commands(self.commands, commands, at)
-            nq = len(torques)
-            moved = expressed_motion(self.motion, numbers, at, places(ACTING, 2 * nq, nq))
-            return Expressed([kept], moved, at.widths, errors)
+            return self.express(at, at.number)
 
         return program(
             self.pattern,
@@ -152,13 +149,34 @@ class Whole:
             self.commands.are_ours,
         )
 
+    def express(self, at: Places, number: Callable[[float], Any]) -> Expressed:
+        """Return its expressions, in fresh places, with its numbers as `number` makes them.
+
+        Raises:
+            CannotCompileError: where a law has no compiled form.
+        """
+        commands, numbers = self._scalars(number)
+        torques, kept, errors = expressed_commands(self.commands, commands, at)
+        nq = len(torques)
+        moved = expressed_motion(self.motion, numbers, at, places(ACTING, 2 * nq, nq))
+        return Expressed([kept], moved, at.widths, errors)
+
     @cached_property
     def values(self) -> FloatArray:
         """The parameters of its code."""
         values = Values()
-        self.commands.scalars(values.number)
-        motion_scalars(self.motion, self.step, self.tick, values.number)
+        self._scalars(values.number)
         return np.array(values.values)
+
+    @cached_property
+    def numbers(self) -> FloatArray:
+        """All its numbers, in the order of the parameters: these, and those that are 0, 1 or -1."""
+        values = Values()
+        self._scalars(Unfolded(values.number))
+        return np.array(values.values)
+
+    def _scalars(self, number: Callable[[float], Any]) -> tuple[CommandScalars, MotionScalars]:
+        return self.commands.scalars(number), motion_scalars(self.motion, self.step, self.tick, number)
 
 
 @dataclass(frozen=True)

@@ -66,12 +66,17 @@ def compile_whole(commands: Commands | None, motion: Motion, timing: Timing) -> 
     """Return a closed loop compiled as a whole, with what moves; None where it cannot be."""
     if commands is None:
         return None
-    whole = Whole(commands, motion, timing.tick, timing.step, timing.steps_per_tick, timing.delay)
+    whole = describe_whole(commands, motion, timing)
     try:
         whole.program(1)
     except CannotCompileError:
         return None  # the commands alone have no compiled form either, and say why
     return whole
+
+
+def describe_whole(commands: Commands, motion: Motion, timing: Timing) -> Whole:
+    """Return a closed loop, of which code can be made as a whole."""
+    return Whole(commands, motion, timing.tick, timing.step, timing.steps_per_tick, timing.delay)
 
 
 def compile_motion(model: RobotModel, step: float) -> CompiledStep | None:

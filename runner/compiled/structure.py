@@ -57,6 +57,15 @@ def pattern_of(law: TorqueLaw[Any]) -> str:
     )
 
 
+def fixed_text(law: TorqueLaw[Any]) -> str:
+    """Return a text of what is fixed in a law's code: it is the same for laws that differ in their numbers alone.
+
+    Raises:
+        CannotCompileError: where the law has kept what cannot be compared.
+    """
+    return repr(_structure("", law.structure()))
+
+
 def arm_pattern(model: RobotModel) -> str:
     """Return a text that is the same for two arms with the same zeros and ones among their constants."""
     return repr(constants_of(model, any_number))

@@ -7,7 +7,7 @@ from runner.trace import FloatArray, Traces
 from runner.trajectories.vectors import component
 
 UNITS = {"settling_time": "s", "steady_state_error": "m", "overshoot": "m"}
-_STEADY_WINDOW = 0.5  # s, at the end of the run
+STEADY_WINDOW = 0.5  # s, at the end of the run
 
 
 def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
@@ -38,7 +38,7 @@ def _settling_time(t: FloatArray, beyond: np.ndarray) -> FloatArray:
 
 
 def _steady_state_error(t: FloatArray, worst: FloatArray, t_f: float) -> FloatArray:
-    first = t[-1] - _STEADY_WINDOW
+    first = t[-1] - STEADY_WINDOW
     if first < t_f - 1e-9:
         return np.full(len(worst), np.nan)
     steady: FloatArray = worst[:, np.searchsorted(t, first - 1e-9) :].max(axis=1)

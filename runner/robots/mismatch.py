@@ -55,7 +55,8 @@ def believe(
 
     def change(model: RobotModel, joints: slice, bears_payload: bool) -> RobotModel:
         loaded = model.with_payload(mismatch.payload, payload_position) if bears_payload else model
-        return _change(loaded, mismatch, *(factors[joints] * (mismatch.mass, mismatch.centre_of_mass)).T)
+        masses, centres = (factors[joints] * (mismatch.mass, mismatch.centre_of_mass)).T
+        return scaled(loaded, masses, centres, np.full(len(masses) + 1, mismatch.length), mismatch.gravity)
 
     last = robot.stages[-1]
     stages = tuple(replace(stage, model=change(stage.model, stage.joints, stage is last)) for stage in robot.stages)
@@ -63,24 +64,35 @@ def believe(
     return replace(robot, model=whole, stages=stages)
 
 
-def _change(model: RobotModel, mismatch: MismatchConfig, masses: FloatArray, centres: FloatArray) -> RobotModel:
-    """Return a model with masses and centres of mass of its links scaled by factors, shapes (nq,), and the rest."""
-    believed = pin.Model(model.pin_model)
+def scaled(
+    model: RobotModel, masses: FloatArray, centres: FloatArray, lengths: FloatArray, gravity: float = 1.0
+) -> RobotModel:
+    """Return a model with its numbers scaled.
+
+    Args:
+        model: The model.
+        masses: Factor on mass and inertia of each moving link, what it carries included, shape (nq,).
+        centres: Factor on the distance of each link's centre of mass from its joint, shape (nq,).
+        lengths: Factor on all lengths of the base and of each link, from its joint to what it carries, shape
+            (nq + 1,).
+        gravity: Factor on gravity.
+    """
+    changed_model = pin.Model(model.pin_model)
     for joint, (mass, centre) in enumerate(zip(masses, centres, strict=True), start=1):
-        believed.inertias[joint] = _scale(believed.inertias[joint], mass, centre)
-        believed.jointPlacements[joint].translation *= mismatch.length
-    for frame in believed.frames:
+        changed_model.inertias[joint] = _scale(changed_model.inertias[joint], mass, centre)
+        changed_model.jointPlacements[joint].translation *= lengths[changed_model.parents[joint]]
+    for frame in changed_model.frames:
         if frame.parentJoint:  # the inertia of what is fixed on a link, such as a tool, is part of the link's
             place = frame.placement
             inertia = _scale(place.act(frame.inertia), masses[frame.parentJoint - 1], centres[frame.parentJoint - 1])
             frame.inertia = place.actInv(inertia)
-        frame.placement.translation *= mismatch.length
-    believed.gravity.linear = mismatch.gravity * model.gravity
+        frame.placement.translation *= lengths[frame.parentJoint]
+    changed_model.gravity.linear = gravity * model.gravity
     changed = copy.copy(model)
     for remembered in ("reach", "shoulder", "kinematics"):  # of the true lengths
         changed.__dict__.pop(remembered, None)
-    changed.pin_model = believed
-    changed._data = believed.createData()
+    changed.pin_model = changed_model
+    changed._data = changed_model.createData()
     return changed
 
 

@@ -1,5 +1,7 @@
 """Reading a stored run."""
 
+import itertools
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -47,6 +49,12 @@ class Run(Stored):
     def failure_text(self) -> str:
         """When, where and why a failed run failed, in words; empty for a good one."""
         return "" if self.failure is None else describe_failure(self.failure)
+
+    @property
+    def config_dirs(self) -> Sequence[Path]:
+        """Config folders that its command names, in which the file of its robot is looked for."""
+        words = shlex.split(str(self.provenance["command"]))
+        return [Path(after) for before, after in itertools.pairwise(words) if before == "--config-dir"]
 
     @property
     def metrics(self) -> Mapping[str, Mapping[str, Any]]:

@@ -1,0 +1,53 @@
+"""Derivatives of a run by all its parameters, against the run: both as compiled code alone."""
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from runner.compiled.closed_loop import run_all
+from runner.compiled.directed import tangents
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.sensitivity import GROUPS
+from runner.sensitivity.analysis import scene_of, slopes_of
+from runner.sensitivity.parameters import find_parameters
+
+RUNS = {
+    "macro": ("robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis"),
+    "xarm7": ("robot=xarm7", "controller=operational_space", "plant=rk4", "trajectory=quintic", "noise=thesis"),
+}
+TARGET = {"macro": 2.0, "xarm7": 4.0}
+"""Times of a run that a derivative by one parameter may take."""
+TURNS = 15
+
+
+def main() -> bool:
+    """Print the cost of derivatives in runs; return whether the targets are met."""
+    met = True
+    for name, overrides in RUNS.items():
+        config = validate(compose(overrides).resolved)
+        scene = scene_of(config, 0)
+        parameters, slopes, _ = slopes_of(scene, find_parameters(config, GROUPS, validate))
+        whole, setting, times = scene.whole, scene.setting, np.arange(config.timing.ticks + 1) * config.timing.tick
+        shared, errors = whole.commands.shared(times, config.path.sample(times)), [e[None] for e in setting.errors]
+        run = _best(lambda: run_all(whole, whole.values[None], shared, errors, setting.start[None]))  # noqa: B023
+        all_ = _best(lambda: tangents(whole, setting, slopes, shared))  # noqa: B023
+        each = all_ / run / len(parameters)
+        good = each <= TARGET[name]
+        met &= good
+        print(
+            f"{name}: {len(slopes)} parameters in {1e3 * all_:.2f} ms, {all_ / run:.1f} runs of {1e3 * run:.2f} ms; "
+            f"{each:.2f} runs each, target {TARGET[name]:g}: {'met' if good else 'missed'}"
+        )
+    return met
+
+
+def _best(work: Callable[[], object]) -> float:
+    work()
+    found = []
+    for _ in range(TURNS):
+        began = time.perf_counter()
+        work()
+        found.append(time.perf_counter() - began)
+    return min(found)

@@ -1,0 +1,136 @@
+"""Closed loops with the tangents of their signals: how a run changes with its numbers, several directions at once."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.compiled.arm import Unfolded
+from runner.compiled.closed_loop import Whole
+from runner.compiled.code import GIVEN, PARS, ROWS, STATE
+from runner.compiled.places import Places
+from runner.compiled.program import LANES, Expressed, FloatArray, Frame, program
+from runner.compiled.tangent import with_tangents
+
+_FOLDED = (0.0, 1.0, -1.0)
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What a run follows from, or how it changes with a parameter.
+
+    Attributes:
+        numbers: All numbers of the closed loop, shape (k,); see Whole.numbers.
+        start: The state of the first tick, shape (entries,); see Commands.start.
+        errors: Errors of the positions at the ticks of each loop, shapes (n, nq), in rad.
+    """
+
+    numbers: FloatArray
+    start: FloatArray
+    errors: Sequence[FloatArray]
+
+
+@dataclass(frozen=True)
+class Motions:
+    """Signals of a run, or their derivatives by some parameters, first of all by runs or parameters.
+
+    Attributes:
+        q: Joint positions, shape (runs, T, nq), in rad.
+        dq: Joint velocities, shape (runs, T, nq), in rad/s.
+        torque: Torques asked for, within their limits, shape (runs, T, nq), in N m.
+        end_points: End point of each stage, shape (stages, runs, T, 3), in m.
+    """
+
+    q: FloatArray
+    dq: FloatArray
+    torque: FloatArray
+    end_points: FloatArray
+
+
+def tangents(whole: Whole, setting: Setting, slopes: Sequence[Setting], shared: FloatArray) -> Motions:
+    """Return the derivatives of a run's signals by parameters.
+
+    Args:
+        whole: The closed loop.
+        setting: What the run follows from.
+        slopes: The derivative of that by each parameter.
+        shared: What each tick is given of time and path, shape (T, entries).
+
+    Raises:
+        CannotCompileError: where a law has no compiled form.
+    """
+    by_number = np.array([slope.numbers for slope in slopes])
+    varied: NDArray[np.bool_] = (by_number != 0.0).any(axis=0)
+    kept = varied | ~np.isin(setting.numbers, _FOLDED)
+    noisy = any(wrong.any() for slope in slopes for wrong in slope.errors)
+    frame = _frame(whole, setting.numbers, kept, varied[kept], noisy, shared)
+    ticks, wide, long, count = len(shared), shared.shape[1], len(setting.start), int(kept.sum())
+    given, state = frame.given.shape[1] // 2, frame.state.shape[0] // 2
+    frame.given[:, :wide] = shared[:, :, None]
+    frame.given[:, wide:given] = whole.commands.measured_wrong(setting.errors, ticks)[:, :, None]
+    frame.pars[:count] = setting.numbers[kept][:, None]
+    parts = []
+    for first in range(0, len(slopes), LANES):
+        own = slopes[first : first + LANES]
+        frame.state[:] = 0.0
+        frame.state[:long] = setting.start[:, None]
+        for lane, slope in enumerate(own):
+            frame.state[state : state + long, lane] = slope.start
+            frame.given[:, given + wide :, lane] = whole.commands.measured_wrong(slope.errors, ticks)
+            frame.pars[count:, lane] = slope.numbers[kept]
+        frame.call()
+        rows = frame.rows[:, frame.rows.shape[1] // 2 :, : len(own)]
+        parts.append(rows.transpose(2, 0, 1).copy())
+    return _motions(np.concatenate(parts), len(whole.commands.limits))
+
+
+def _frame(
+    whole: Whole,
+    numbers: FloatArray,
+    kept: NDArray[np.bool_],
+    varied: NDArray[np.bool_],
+    noisy: bool,
+    shared: FloatArray,
+) -> Frame:
+    """Return the program with tangents, and its arrays.
+
+    Args:
+        whole: The closed loop.
+        numbers: All its numbers, shape (k,).
+        kept: Which of them are parameters of the code, shape (k,); others are 0, 1 or -1 in it.
+        varied: Which of these change with what is asked for.
+        noisy: Whether the errors of the positions do.
+        shared: What each tick is given of time and path, shape (T, entries).
+    """
+    folded = np.where(kept, np.nan, numbers)
+
+    def express() -> Expressed:
+        at, known = Places(), iter(folded.tolist())
+
+        def number(value: float) -> Any:
+            constant = next(known)
+            return at.number(value) if np.isnan(constant) else constant
+
+        whole_program = whole.express(at, Unfolded(number))
+        return with_tangents(whole_program, varies)
+
+    def varies(space: str, index: int) -> bool:
+        if space == GIVEN:
+            return noisy and index >= shared.shape[1]
+        return space != PARS or bool(varied[index])
+
+    pattern = f"tangents {whole.pattern} {folded.tolist()} {varied.tolist()} {noisy}"
+    joints = len(whole.commands.limits)
+    code = program(pattern, f"the derivatives of {joints} joints", express, LANES, whole.commands.are_ours)
+    assert code.widths[PARS] == 2 * len(varied)  # noqa: S101 - the numbers are asked for in the same order
+    assert code.widths[STATE] % 2 == code.widths[ROWS] % 2 == 0  # noqa: S101
+    return code.frame(len(shared), whole.delay, whole.steps)
+
+
+def _motions(rows: FloatArray, nq: int) -> Motions:
+    """Return the signals in rows, shape (runs, T, entries)."""
+    q, dq, torque = (rows[:, :, part * nq : (part + 1) * nq] for part in range(3))
+    points = rows[:, :, 3 * nq + 1 :].reshape(*rows.shape[:2], -1, 3).transpose(2, 0, 1, 3)
+    return Motions(q, dq, torque, points)

@@ -1,0 +1,93 @@
+r"""Programs whose numbers carry a tangent: how each changes with a parameter, beside its value.
+
+Forward mode: each operation is followed by its rule, as in Griewank and Walther, Evaluating Derivatives (2008), table
+3.3. A choice has the tangent of the branch that is taken, and what is rounded to whole numbers has none: so a clipped
+torque does not change with what asked for it, and sines are those of their own quadrant.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from runner.compiled.code import ACTING, ROWS, TABLE, Block, Part, Repeat
+from runner.compiled.expression import Expression, Value, expression, in_order, less, place, select
+from runner.compiled.program import Expressed
+
+_STEPS = ("less", "equal", "and", "not", "rint", "floor", "constant")
+
+
+def with_tangents(program: Expressed, varies: Callable[[str, int], bool]) -> Expressed:
+    """Return a program in whose spaces, the table excepted, the tangents of all numbers follow these.
+
+    Args:
+        program: The program.
+        varies: Whether the number at a place of a space may have another tangent than 0.
+    """
+    widths = {space: width if space == TABLE else 2 * width for space, width in program.widths.items()}
+    tangents = _Tangents(program.widths, varies)
+    ticks, between = tangents.of_parts(program.ticks), tangents.of_parts(program.between)
+    return Expressed(ticks, between, widths, program.errors)
+
+
+class _Tangents:
+    def __init__(self, widths: Any, varies: Callable[[str, int], bool]) -> None:
+        self._widths, self._varies = widths, varies
+        self._known: dict[int, Value] = {}
+
+    def of_parts(self, parts: Sequence[Part]) -> list[Part]:
+        """Return parts that compute the tangents, too."""
+        found: list[Part] = []
+        for part in parts:
+            if isinstance(part, Repeat):
+                found.append(Repeat(self.of_parts(part.parts), part.times, part.until_zero, part.tabled))
+            else:
+                own = [(space, self._widths[space] + index, self.of(value)) for space, index, value in part.outputs]
+                found.append(Block([*part.outputs, *own]))
+        return found
+
+    def of(self, value: Value) -> Value:
+        """Return the tangent of a value; the float 0 where it is known to be zero."""
+        if not isinstance(value, Expression):
+            return 0.0
+        for node in in_order([value]):
+            if id(node) not in self._known:
+                self._known[id(node)] = self._rule(node)
+        return self._known[id(value)]
+
+    def _rule(self, node: Expression) -> Value:
+        operation, operands = node.operation, node.operands
+        if operation == "place":
+            space, index = operands
+            own = ROWS if space == ACTING else space
+            varies = space != TABLE and self._varies(own, index)
+            return place(space, self._widths[own] + index) if varies else 0.0
+        if operation in _STEPS:
+            return 0.0
+        if operation == "select":
+            condition, yes, no = operands
+            return _chosen(condition, self._known[id(yes)], self._known[id(no)])
+        changes = [self._known[id(operand)] for operand in operands]
+        if all(not isinstance(change, Expression) for change in changes):
+            return 0.0
+        return _RULES[operation](node, *operands, *changes)
+
+
+def _chosen(condition: Expression, yes: Value, no: Value) -> Value:
+    if not (isinstance(yes, Expression) or isinstance(no, Expression)):
+        return 0.0
+    return select(condition, expression(yes), expression(no))
+
+
+def _root(node: Value, a: Value, da: Value) -> Value:
+    # At 0 the slope is infinite: what is left of it there is 0, so that no NaN spreads.
+    return select(less(0.0, a), da / (2.0 * node), 0.0)
+
+
+_RULES: dict[str, Callable[..., Value]] = {
+    "fadd": lambda _, a, b, da, db: da + db,
+    "fsub": lambda _, a, b, da, db: da - db,
+    "fmul": lambda _, a, b, da, db: da * b + a * db,
+    "fdiv": lambda node, a, b, da, db: (da - node * db) / b,
+    "fneg": lambda _, a, da: -da,
+    "fabs": lambda _, a, da: select(less(a, 0.0), -da, da),
+    "sqrt": _root,
+}

@@ -1,0 +1,147 @@
+"""Derivatives of metrics that are smooth functionals of a run's signals; see the families of runner/metrics.
+
+A largest value changes as the sample does in which it is reached, which is exact where that is one alone.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.errors import RunnerError, nearest
+from runner.metrics import MetricContext
+from runner.metrics.positioning import STEADY_WINDOW
+from runner.trace import FloatArray, Trace
+from runner.trajectories.shifted import Shifted
+
+WITHOUT = {
+    "settling_time": "it jumps from one tick to another, and stays in between",
+    "saturation_fraction": "it counts ticks",
+    "reach_loss_fraction": "it counts ticks",
+    "cross_track_error": "it is the distance to the nearest point of a curve, whose change is not worked out",
+}
+"""Metrics without a derivative, and why."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """How the signals of a run change with parameters: derivatives, first of all by parameters.
+
+    Attributes:
+        q: Of joint positions, shape (parameters, T, nq).
+        dq: Of joint velocities, likewise.
+        tau: Of torques, likewise, a row as in the trace.
+        end_points: Of the end points of the stages, shape (stages, parameters, T, 3).
+    """
+
+    q: FloatArray
+    dq: FloatArray
+    tau: FloatArray
+    end_points: FloatArray
+
+
+def derivatives(trace: Trace, change: Change, context: MetricContext) -> dict[str, FloatArray]:
+    """Return the derivative of each smooth metric of a run by each parameter, shapes (parameters,), by name.
+
+    Args:
+        trace: The run's trace.
+        change: How it changes.
+        context: What the run's metrics need to know.
+    """
+    found = _of_tip(trace, change.end_points[-1], context) | _of_joints(trace, change, context.period)
+    for index, stage in enumerate(trace.stage_names[:-1]):
+        carrier = replace(context, trajectory=Shifted(context.trajectory, trace.offsets[index]))
+        of_stage = _of_tip(trace.at_stage(index), change.end_points[index], carrier)
+        found |= {f"{stage}_{name}": values for name, values in of_stage.items()}
+    return found
+
+
+def check_smooth(name: str, known: Mapping[str, object]) -> None:
+    """Refuse a metric that has no derivative.
+
+    Raises:
+        RunnerError: with the reason, and the metrics that have one.
+    """
+    if name in known:
+        return
+    why = next((reason for base, reason in WITHOUT.items() if f"_{base}_" in f"_{name}_"), None)
+    have = f"metrics with one: {', '.join(known)}"
+    if why is None:
+        raise RunnerError(f"--metric: no '{name}'{nearest(name, known)} with a derivative; {have}")
+    raise RunnerError(f"--metric: {name} has no derivative: {why}; it is not approximated; {have}")
+
+
+def _of_tip(trace: Trace, tip: FloatArray, context: MetricContext) -> dict[str, FloatArray]:
+    """Return the derivatives of what is measured of an end point, which changes by `tip`, shape (parameters, T, 3)."""
+    trajectory, error, found = context.trajectory, trace.error, dict[str, FloatArray]()
+
+    def largest(rows: slice, axes: slice) -> FloatArray:
+        size = np.abs(error[rows, axes])
+        row, axis = np.unravel_index(int(np.argmax(size)), size.shape)
+        changed: FloatArray = -np.sign(error[rows, axes][row, axis]) * tip[:, rows, axes][:, row, axis]
+        return changed
+
+    if trajectory.tracked:
+        ticks = int(np.searchsorted(trace.t, trajectory.duration + 1e-9, side="right"))
+        on_way = slice(0, ticks)
+        found["max_tracking_error"] = largest(on_way, slice(0, 3))
+        for axis, letter in enumerate("xyz"):
+            found[f"max_tracking_error_{letter}"] = largest(on_way, slice(axis, axis + 1))
+        rms = np.sqrt((error[on_way] ** 2).sum() / ticks)
+        found["rms_tracking_error"] = _ratio(-np.einsum("ta,pta->p", error[on_way], tip[:, on_way]), ticks * rms)
+    goal, end = trajectory.goal, trace.t[-1] - STEADY_WINDOW
+    if goal is None:
+        return found
+    if end >= trajectory.duration - 1e-9:
+        found["steady_state_error"] = largest(slice(int(np.searchsorted(trace.t, end - 1e-9)), None), slice(0, 3))
+    distance = float(np.linalg.norm(goal - trajectory.start))
+    if distance > 0.0:
+        along = (goal - trajectory.start) / distance
+        past, wanted = (trace.tip - goal) @ along, (trace.desired[:, 0] - goal) @ along
+        row, beyond = int(np.argmax(past)), past.max() > max(wanted.max(), 0.0)
+        found["overshoot"] = tip[:, row] @ along if beyond else np.zeros(len(tip))
+    return found
+
+
+def _of_joints(trace: Trace, change: Change, period: float) -> dict[str, FloatArray]:
+    held, d_held = trace.tau[:-1], change.tau[:, :-1]
+    moved, d_moved = np.diff(trace.q, axis=0), np.diff(change.q, axis=1)
+    side = np.sign(held * moved)
+    found = {"energy": np.einsum("tj,ptj->p", side, d_held * moved + held * d_moved)}
+    squares = 2.0 * np.einsum("tj,ptj->pj", held, d_held)
+    slides = np.array([unit == "m" for unit in trace.joint_units])
+    for peak, rms, fastest, effort, chosen in (
+        ("peak_torque", "rms_torque", "peak_joint_speed", "control_effort", ~slides),
+        ("peak_joint_force", "rms_joint_force", "peak_sliding_speed", "force_effort", slides),
+    ):
+        joints = np.flatnonzero(chosen)
+        if not len(joints):
+            continue
+        found[effort] = squares[:, joints].sum(axis=1) * period
+        found |= _over_joints(peak, _largest, held, d_held, joints)
+        found |= _over_joints(fastest, _largest, trace.dq, change.dq, joints)
+        found |= _over_joints(rms, _root_mean_square, held, d_held, joints)
+    return found
+
+
+def _over_joints(
+    name: str, derivative: Callable[..., FloatArray], signal: FloatArray, changed: FloatArray, joints: NDArray[np.intp]
+) -> dict[str, FloatArray]:
+    """Return the derivatives of a metric over joints, and of each alone."""
+    alone = {f"{name}_q{j + 1}": derivative(signal[:, [j]], changed[:, :, [j]]) for j in joints}
+    return {name: derivative(signal[:, joints], changed[:, :, joints]), **alone}
+
+
+def _largest(signal: FloatArray, changed: FloatArray) -> FloatArray:
+    row, joint = np.unravel_index(int(np.argmax(np.abs(signal))), signal.shape)
+    found: FloatArray = np.sign(signal[row, joint]) * changed[:, row, joint]
+    return found
+
+
+def _root_mean_square(signal: FloatArray, changed: FloatArray) -> FloatArray:
+    return _ratio(np.einsum("tj,ptj->p", signal, changed), signal.size * np.sqrt((signal**2).mean()))
+
+
+def _ratio(numerator: FloatArray, denominator: float) -> FloatArray:
+    return numerator / denominator if denominator > 0.0 else np.zeros_like(numerator)

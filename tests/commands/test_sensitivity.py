@@ -1,0 +1,103 @@
+"""`runner sensitivity`: tables, the check, and what it refuses."""
+
+import pytest
+
+MACRO = ("robot=macro", "plant=rk4", "trajectory=quintic", "duration=0.2", "noise=thesis")
+
+
+@pytest.fixture
+def run(cli):
+    return cli(*MACRO).folder
+
+
+def test_a_table_for_each_metric_the_largest_first(cli, run):
+    ending = cli("sensitivity", run, "--metric", "peak_torque", "--metric", "energy", "--of", "masses", "--of", "gains")
+    assert (ending.code, ending.err) == (0, "")
+    head, *tables = ending.out.split("\n\n")
+    assert head == "macro, operational_space, repetition 0"
+    assert [table.split(":")[0] for table in tables] == ["peak_torque", "energy"]
+    rows = [line.split() for line in tables[0].splitlines()[2:]]
+    assert {row[0] for row in rows} == {
+        "mass.q2", "mass.q3", "controller.natural_frequency", "controller.damping_ratio",
+        "controller.singularity_damping",
+    }  # fmt: skip
+    sizes = [abs(float(row[-1])) for row in rows]
+    assert sizes == sorted(sizes, reverse=True)
+
+
+def test_differences_stand_beside_where_they_are_asked_for(cli, run):
+    ending = cli("sensitivity", "latest", "--metric", "rms_tracking_error", "--of", "gains", "--check")
+    assert ending.code == 0
+    *_, count, gap = ending.out.splitlines()
+    assert count.endswith("central differences are sure to 1e-07 of the derivative or better")
+    assert gap.startswith("largest gap among these:")
+    assert gap.endswith("within 1e-06")
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("settling_time", "settling_time has no derivative: it jumps from one tick to another, and stays in between"),
+        ("saturation_fraction_q1", "saturation_fraction_q1 has no derivative: it counts ticks"),
+        ("peak_torq", "no 'peak_torq' (did you mean peak_torque?) with a derivative"),
+    ],
+)
+def test_a_metric_without_derivative_is_not_approximated(cli, run, name, why):
+    ending = cli("sensitivity", run, "--metric", name)
+    assert ending.code == 2
+    assert f"--metric: {why}" in ending.err
+    assert "metrics with one: " in ending.err
+    assert "rms_tracking_error" in ending.err
+
+
+@pytest.mark.parametrize(
+    ("overrides", "why"),
+    [
+        (("robot=meca500", "controller=admittance"), "controller admittance commands joint positions"),
+        (("robot=macro", "noise.resolution=1e-3"), "noise.resolution rounds the measured positions"),
+        (("robot=macro", "environment=push"), "environment push: runs in which the tip feels something"),
+    ],
+)
+def test_runs_without_derivatives_are_refused_with_the_reason(cli, overrides, why):
+    folder = cli(*overrides, "duration=0.05").folder
+    ending = cli("sensitivity", folder)
+    assert ending.code == 2
+    assert f"no derivatives of this run: {why}" in ending.err
+
+
+def test_a_run_on_another_plant_has_those_of_its_counterpart(cli, run):
+    one = ("--metric", "peak_torque", "--of", "masses")
+    other = cli("robot=macro", "plant=mujoco", *MACRO[2:]).folder
+    told, same = cli("sensitivity", other, *one).out, cli("sensitivity", run, *one).out
+    assert "derivatives of the same run on rk4, as those of mujoco are not to be had" in told
+    assert told.split("\n\n")[1] == same.split("\n\n")[1]
+
+
+def test_bad_arguments(cli, run):
+    assert "--of: no 'mases' (did you mean masses?)" in cli("sensitivity", run, "--of", "mases").err
+    ending = cli("sensitivity", run, "--repetition", 3)
+    assert (ending.code, "no repetition 3 of" in ending.err, "allowed: 0 to 0" in ending.err) == (2, True, True)
+    assert "depends on no parameter of payload" in cli("sensitivity", run, "--of", "payload").err
+
+
+def test_another_repetition_has_its_own_noise(cli):
+    folder = cli(*MACRO, "repetitions=2").folder
+    asked = ("sensitivity", folder, "--metric", "max_tracking_error", "--of", "noise")
+    first, second = (cli(*asked, "--repetition", number).out.split("\n\n")[1] for number in (0, 1))
+    assert first != second
+
+
+def test_from_python_it_is_arrays(run):
+    import runner.sensitivity
+    from runner import store
+
+    found = runner.sensitivity.of_run(store.open_run(run), ["masses"])
+    assert found.derivatives["peak_torque"].shape == (2,)
+    assert [parameter.name for parameter in found.parameters] == ["mass.q2", "mass.q3"]
+
+
+def test_the_command_knows_all_groups_without_importing_the_simulator():
+    from runner.commands.sensitivity import _GROUPS
+    from runner.sensitivity import GROUPS
+
+    assert _GROUPS == GROUPS
