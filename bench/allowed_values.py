@@ -4,20 +4,24 @@ from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from runner.config.per_stage import FinitePerStage, NonNegativePerStage, PositivePerStage, TorquePerStage
+from runner.config.robot import RotorInertia
 from runner.registry import StrictModel
+from runner.trajectories.posture import Posture
 
-_BY_STAGE = {
+_IN_WORDS = {
     FinitePerStage: "number, by stage",
     PositivePerStage: "number above 0, by stage",
     NonNegativePerStage: "number of 0 or more, by stage",
     TorquePerStage: "number above 0, or a list with one for each joint, by stage",
+    Posture: "number, or a list with one for each joint",
+    RotorInertia: "number of 0 or more, or a list with one for each joint, or the name of a set",
 }
 _BOUNDS = {"gt": "above {:g}", "ge": "of {:g} or more", "lt": "below {:g}", "le": "of {:g} or less"}
 
 
 def describe(annotation: Any, metadata: list[Any] | tuple[Any, ...] = ()) -> str:
     """Return what a type and its constraints allow."""
-    for known, words in _BY_STAGE.items():
+    for known, words in _IN_WORDS.items():
         if any(item in get_args(known)[1:] for item in metadata):
             return words
     origin, parts = get_origin(annotation), get_args(annotation)

@@ -20,6 +20,7 @@ from runner.loop.closed_loop import ClosedLoop
 from runner.metrics import MetricContext
 from runner.plants import PLANTS, ContactPlant, Plant, PositionPlant, innermost
 from runner.plants.kinds import HasServo
+from runner.plants.payload_changes import PayloadChanges
 from runner.plants.servo import JointServo, ServoLaw
 from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.mismatch import believe
@@ -27,6 +28,7 @@ from runner.robots.robot import Robot, end_points
 from runner.sensing import EncoderNoise, ForceTorqueConfig, ForceTorqueSensor, JointEncoders
 from runner.servo_contact import ServoContact
 from runner.trace import FloatArray
+from runner.trajectories.joint_motion import TipOfJoints
 
 _BELIEFS = 2**32 - 1  # in the seeds of what controllers believe; the loops' places count from 0
 
@@ -84,7 +86,9 @@ def assemble_whole(config: RunConfig, repetition: int = 0) -> tuple[Whole, Float
     Raises:
         ConfigError: see assemble.
     """
-    if config.commands != "torque" or config.feels or PLANTS.motion(config.plant, config.arm) is None:
+    if config.commands != "torque" or config.feels or config.loaded:
+        return None
+    if PLANTS.motion(config.plant, config.arm) is None:
         return None
     compiled = _compile(config, _believe(config, repetition)[1])
     return (compiled, _find_start(config)) if isinstance(compiled, Whole) else None
@@ -108,7 +112,10 @@ def describe_loop(config: RunConfig, repetition: int = 0) -> Whole | None:
 def _find_start(config: RunConfig) -> FloatArray:
     """Return where the arm starts, shape (nq,), in rad."""
     arm, path = config.arm, config.path
-    q_start = _start_posture(config.controller, arm, path.start, config.parallel)
+    if isinstance(path, TipOfJoints):
+        q_start = path.q_start
+    else:
+        q_start = _start_posture(config.controller, arm, path.start, config.parallel)
     if CONTROLLERS.follows_paths(config.controller.kind):
         check_path(config.controller, arm, path, q_start, config.robot.settling_band)
     return q_start
@@ -118,7 +125,10 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
     """Return the robot as its controllers believe it to be, and the loops that they make for it."""
     generator = np.random.default_rng([config.settings.seed, repetition, _BELIEFS])
     believed = believe(config.arm, config.mismatch, np.array(config.robot.payload.position), generator)
-    return believed, config.loops if believed is config.arm else CONTROLLERS.build(config.controller, believed)
+    joints = isinstance(config.path, TipOfJoints)
+    return believed, config.loops if believed is config.arm else CONTROLLERS.build_for(
+        config.controller, believed, joints
+    )
 
 
 def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledCommands | None:
@@ -127,7 +137,7 @@ def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledComm
         return None
     tick, limits = config.timing.tick, config.torque_limits
     commands = find_commands(config.arm, config.parallel, loops, tick, config.noise, limits)
-    motion = None if config.feels else PLANTS.motion(config.plant, config.arm)
+    motion = None if config.feels or config.loaded else PLANTS.motion(config.plant, config.arm)
     whole = None if motion is None else compile_whole(commands, motion, config.timing)
     return compile_commands(commands) if whole is None else whole
 
@@ -160,7 +170,7 @@ def _make_plant(config: RunConfig, believed: Robot, period: float) -> Plant | Po
     ticks_per_command = round(period / timing.tick)
     if PLANTS.commands(config.plant.kind) == "position":
         return PLANTS.build(config.plant, arm, timing.tick, ticks_per_command)
-    plant = PLANTS.build(config.plant, arm, timing.step, timing.steps_per_tick)
+    plant = _make_torque_plant(config)
     if config.commands == "torque" or not isinstance(config.plant, HasServo):
         return plant
     with ExitStack() as on_error:
@@ -169,6 +179,19 @@ def _make_plant(config: RunConfig, believed: Robot, period: float) -> Plant | Po
         driven = JointServo(plant, believed.model, servo, arm.home, limits, ticks_per_command, timing.delay)
         on_error.pop_all()
     return driven
+
+
+def _make_torque_plant(config: RunConfig) -> Plant:
+    """Return the plant; one of each payload where that changes on the way."""
+    timing = config.timing
+    with ExitStack() as on_error:
+        plants: list[Plant] = []
+        for arm in (config.arm, *(robot for _, robot in config.loaded)):
+            plants.append(PLANTS.build(config.plant, arm, timing.step, timing.steps_per_tick))
+            on_error.callback(plants[-1].close)
+        ticks = [math.ceil(at / timing.tick - 1e-9) for at, _ in config.loaded]
+        on_error.pop_all()
+    return PayloadChanges(plants, ticks) if ticks else plants[0]
 
 
 def _put_up(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:

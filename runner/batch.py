@@ -21,6 +21,7 @@ from runner.progress.ticks import add_ticks
 from runner.robots.robot import Robot, end_points
 from runner.sensing.encoders import encoder_errors
 from runner.trace import FloatArray, Trace, Traces
+from runner.trajectories.trajectory import joint_reference
 
 _MOST_BYTES = 32e6  # of the signals of runs that are simulated together
 _GROWTH = math.log(1.25)  # of the longest run over the shortest that are simulated together
@@ -153,7 +154,7 @@ class Batcher:
         signals = run_all(
             whole,
             np.array([run.whole.values for run in runs]),
-            whole.commands.shared(times, paths[0] if alike else np.array(paths)),
+            self._shared(runs if not alike else runs[:1], times, paths),
             errors,
             _start(runs, [wrong[:, 0] for wrong in errors]),
         )
@@ -173,6 +174,14 @@ class Batcher:
             if good:
                 kept = traces if len(good) == len(places) else traces.part(good)
                 yield Together([places[index] for index in good], kept, metric_context(one.config))
+
+    def _shared(self, runs: Sequence[Wanted], times: FloatArray, paths: Sequence[FloatArray]) -> FloatArray:
+        """Return what ticks are given of time and path, of one run for all alike or of each."""
+        commands, one = runs[0].whole.commands, len(runs) == 1
+        joints = [joint_reference(run.config.path, times) for run in runs] if commands.follow_joints else []
+        return commands.shared(
+            times, paths[0] if one else np.array(paths), (joints[0] if one else np.array(joints)) if joints else None
+        )
 
     def _desired(self, run: Wanted, times: FloatArray) -> FloatArray:
         path = run.config.path

@@ -15,6 +15,7 @@ from runner.loop.recorder import Recorder
 from runner.progress.ticks import counted
 from runner.sensing import ForceTorqueSensor, JointEncoders
 from runner.trace import Trace
+from runner.trajectories.trajectory import joint_reference
 
 __all__ = ["ClosedLoop", "simulate"]
 
@@ -39,6 +40,7 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
     recorder, contact = Recorder(closed), None
     try:
         recorder.desired[:] = closed.trajectory.sample(recorder.times)
+        recorder.joints = joint_reference(closed.trajectory, recorder.times)
         if closed.interaction is not None and wrist is not None:
             contact = Contact(closed, closed.interaction, wrist)
         # A diverging run ends as a failure, not as a warning.

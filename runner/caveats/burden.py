@@ -23,7 +23,7 @@ def _tell_overload(value: float, setting: Setting) -> str:
 
 def _lifted(setting: Setting) -> float | None:
     """Return the payload, in kg, where a joint has no torque limit."""
-    return None if all(map(math.isfinite, setting.torque_limits.tolist())) else setting.robot.payload.mass
+    return None if all(map(math.isfinite, setting.torque_limits.tolist())) else setting.robot.payload.largest
 
 
 def _tell_lifted(value: float, setting: Setting) -> str:

@@ -44,7 +44,12 @@ class CompiledCommands:
         self._values = values.values
 
     def begin(
-        self, times: FloatArray, desired: FloatArray, errors: Sequence[FloatArray], q: FloatArray
+        self,
+        times: FloatArray,
+        desired: FloatArray,
+        errors: Sequence[FloatArray],
+        q: FloatArray,
+        joints: FloatArray | None = None,
     ) -> "CommandsRun":
         """Begin a run at rest.
 
@@ -53,10 +58,11 @@ class CompiledCommands:
             desired: Desired motion of the tip, shape (T, 3, 3).
             errors: Errors of the positions at the ticks of each loop, shape (n, nq), in rad.
             q: Joint positions at the start, shape (nq,), in rad.
+            joints: Desired motion of the joints, shape (T, 3, nq); None where no loop follows it.
         """
         commands, frame = self._commands, self._program.frame(len(times))
         wrong = commands.measured_wrong(errors, len(times))
-        frame.given[:, :, 0] = np.hstack([commands.shared(times, desired), wrong])
+        frame.given[:, :, 0] = np.hstack([commands.shared(times, desired, joints), wrong])
         frame.state[:, 0] = commands.start(q[None], [each[:1] for each in errors])[0]
         frame.pars[:, 0] = self._values
         return CommandsRun(frame, self._commands, times, self._program.errors)

@@ -23,6 +23,7 @@ from runner.errors import SimulationError
 from runner.guard.faults import find_fault, place
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
+from runner.sensing.velocity import first_state, gains, next_velocity
 
 _OURS = ("runner", "abc", "typing", "builtins")
 
@@ -36,12 +37,14 @@ class LoopCode:
         joints: Joints that it commands.
         every: Ticks between two of its own.
         period: Time between them, in s.
+        follows_joints: Whether its reference is the desired motion of the joints.
     """
 
     law: TorqueLaw[Any]
     joints: slice
     every: int
     period: float
+    follows_joints: bool = False
 
 
 @dataclass(frozen=True)
@@ -67,9 +70,9 @@ class Commands:
     @cached_property
     def pattern(self) -> str:
         """A text that is the same for two whose code is the same."""
-        loops = [(pattern_of(loop.law), loop.joints, loop.every > 1) for loop in self.loops]
+        loops = [(pattern_of(loop.law), loop.joints, loop.every > 1, loop.follows_joints) for loop in self.loops]
         points = point_scalars(self.robot, self.parallel, any_number)
-        return repr((loops, points, self._rounded.tolist(), self.differenced))
+        return repr((loops, points, self._rounded.tolist(), self.noise.velocity))
 
     @property
     def are_ours(self) -> bool:
@@ -83,9 +86,9 @@ class Commands:
         return rounded
 
     @property
-    def differenced(self) -> bool:
-        """Whether velocities are differences of the measured positions."""
-        return self.noise.velocity == "finite_difference"
+    def follow_joints(self) -> bool:
+        """Whether one of them follows the desired motion of the joints."""
+        return any(loop.follows_joints for loop in self.loops)
 
     def scalars(self, number: Callable[[float], Any]) -> "CommandScalars":
         """Return the numbers of the loops as scalars, as `number` makes them."""
@@ -94,6 +97,10 @@ class Commands:
             {joint: number(self.noise.resolution[joint]) for joint in np.flatnonzero(self._rounded).tolist()},
             [law_scalars(loop.law, loop.period, number) for loop in self.loops],
             point_scalars(self.robot, self.parallel, number),
+            [
+                [number(gain) for gain in gains(self.noise.velocity, self.noise.velocity_bandwidth, loop.period)]
+                for loop in self.loops
+            ],
         )
 
     def fault(self, torque: FloatArray, time: float) -> SimulationError | None:
@@ -106,17 +113,20 @@ class Commands:
                 return SimulationError(f"{place(loop.law.evaluate)} gave {text}", time)
         return None
 
-    def shared(self, times: FloatArray, desired: FloatArray) -> FloatArray:
+    def shared(self, times: FloatArray, desired: FloatArray, joints: FloatArray | None = None) -> FloatArray:
         """Return what ticks are given of time and path, shape (..., T, entries): the space `given`'s first entries.
 
         Args:
             times: Time of each tick, shape (T,), in s.
             desired: Desired motion of the tip, shape (..., T, 3, 3), of one run or of several.
+            joints: Desired motion of the joints, shape (..., T, 3, nq); needed where a loop follows it.
         """
-        ticks = np.arange(len(times))
+        ticks, lead = np.arange(len(times)), desired.shape[:-2]
         own = [times, *(ticks % loop.every == 0 for loop in self.loops)]
-        columns = np.broadcast_to(np.stack(own, axis=-1, dtype=float), (*desired.shape[:-2], len(own)))
-        return np.concatenate([columns, desired.reshape(*desired.shape[:-2], 9)], axis=-1)
+        parts = [np.broadcast_to(np.stack(own, axis=-1, dtype=float), (*lead, len(own))), desired.reshape(*lead, 9)]
+        if self.follow_joints and joints is not None:
+            parts.append(joints.reshape(*lead, 3 * len(self.limits)))
+        return np.concatenate(parts, axis=-1)
 
     def measured_wrong(self, errors: Sequence[FloatArray], ticks: int) -> FloatArray:
         """Return the errors of the positions in each tick, shape (..., T, entries): what follows in `given`.
@@ -144,8 +154,7 @@ class Commands:
         for loop, wrong in zip(self.loops, errors, strict=True):
             measured = q + wrong
             measured[:, some] = np.round(measured[:, some] / steps) * steps
-            if self.differenced:
-                parts.append(measured)
+            parts += first_state(self.noise.velocity, measured)
             if len(loop.law.start(measured[0])):
                 parts.append(np.array([loop.law.start(own) for own in measured]))
             if loop.every > 1:
@@ -161,12 +170,14 @@ class CommandScalars(NamedTuple):
         resolution: Step of the encoders of some joints, in rad.
         laws: Those of each loop.
         points: What the end points of the stages follow from.
+        velocity: Gains of each loop's velocities.
     """
 
     limits: Sequence[Value]
     resolution: dict[int, Value]
     laws: Sequence[LawScalars]
     points: tuple[PointScalars, ...]
+    velocity: Sequence[Sequence[Value]]
 
 
 def expressed_commands(commands: Commands, numbers: CommandScalars, at: Places) -> tuple[list[Value], Block, list[str]]:
@@ -180,16 +191,18 @@ def expressed_commands(commands: Commands, numbers: CommandScalars, at: Places) 
     """
     nq, loops = len(commands.limits), range(len(commands.loops))
     (time,), due = at.take(GIVEN, 1)[1], at.take(GIVEN, len(loops))[1]
-    reference = as_array(at.take(GIVEN, 9)[1]).reshape(3, 3)
+    tip = as_array(at.take(GIVEN, 9)[1]).reshape(3, 3)
+    joints = as_array(at.take(GIVEN, 3 * nq)[1]).reshape(3, nq) if commands.follow_joints else tip
     errors = [at.take(GIVEN, nq)[1] for _ in loops]
     q, dq = at.take(STATE, nq)[1], at.take(STATE, nq)[1]
-    given = [_Given(time, due[loop], reference, q, dq, errors[loop]) for loop in loops]
+    references = [joints if loop.follows_joints else tip for loop in commands.loops]
+    given = [_Given(time, due[loop], references[loop], q, dq, errors[loop]) for loop in loops]
     torques: list[Value] = [0.0] * nq
     kept: list[tuple[str, int, Any]] = []
     texts: list[str] = []
     fault: Value = 0.0
-    for loop, own, its in zip(commands.loops, numbers.laws, given, strict=True):
-        asked, changes, maths = _asked(commands, loop, own, numbers, its, at)
+    for loop, own, gain, its in zip(commands.loops, numbers.laws, numbers.velocity, given, strict=True):
+        asked, changes, maths = _asked(commands, loop, own, gain, numbers, its, at)
         torques[loop.joints] = asked
         kept += changes
         failed = both(equal(fault, 0.0), less(0.0, maths.fault))
@@ -214,7 +227,13 @@ class _Given(NamedTuple):
 
 
 def _asked(
-    commands: Commands, loop: LoopCode, own: LawScalars, numbers: CommandScalars, given: _Given, at: Places
+    commands: Commands,
+    loop: LoopCode,
+    own: LawScalars,
+    gain: Sequence[Value],
+    numbers: CommandScalars,
+    given: _Given,
+    at: Places,
 ) -> tuple[list[Value], list[tuple[str, int, Any]], Expressions]:
     """Return the torques that a loop asks for, how the state goes on, and what may go wrong."""
     measured = [position + wrong for position, wrong in zip(given.q, given.errors, strict=True)]
@@ -222,13 +241,17 @@ def _asked(
         measured[joint] = rounded(measured[joint] / step) * step
     velocity: Sequence[Value] = given.dq
     changes: list[tuple[str, int, Any]] = []
-    if commands.differenced:
-        first, last = at.take(STATE, len(measured))
-        velocity = [(a - b) / own.period for a, b in zip(measured, last, strict=True)]
-        changes += _at(STATE, first, _in_own_ticks(loop, given, last, measured))
+    way, count = commands.noise.velocity, len(measured)
+    if way != "exact":
+        kept = [at.take(STATE, count) for _ in first_state(way, np.zeros(count))]
+        before = [as_array(values) for _, values in kept]
+        found, after = next_velocity(way, gain, own.period, as_array(measured), before)
+        velocity = found.tolist()
+        for (first, values), new in zip(kept, after, strict=True):
+            changes += _at(STATE, first, _in_own_ticks(loop, given, values, new.tolist()))
     first, memory = at.take(STATE, len(loop.law.start(np.zeros(len(measured)))))
-    asked, after, maths = expressed_torque(loop.law, own, given.time, measured, velocity, given.reference, memory)
-    changes += _at(STATE, first, _in_own_ticks(loop, given, memory, after))
+    asked, goes_on, maths = expressed_torque(loop.law, own, given.time, measured, velocity, given.reference, memory)
+    changes += _at(STATE, first, _in_own_ticks(loop, given, memory, goes_on))
     torques = [_clip(value, limit) for value, limit in zip(asked, numbers.limits[loop.joints], strict=True)]
     if loop.every > 1:
         first, held = at.take(STATE, len(torques))

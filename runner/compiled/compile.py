@@ -44,7 +44,9 @@ def find_commands(
         return None
     joints = range(len(limits))
     codes = [
-        LoopCode(law, slice(*loop.joints.indices(len(joints))), round(loop.period / tick), loop.period)
+        LoopCode(
+            law, slice(*loop.joints.indices(len(joints))), round(loop.period / tick), loop.period, loop.follows_joints
+        )
         for law, loop in zip(laws, loops, strict=True)
     ]
     watched = any(isinstance(loop.controller, WatchedController) for loop in loops)

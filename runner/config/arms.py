@@ -15,6 +15,7 @@ from runner.robots.mjcf_files import is_mjcf
 from runner.robots.model import FloatArray, RobotModel
 from runner.robots.mounting import Mount, mount
 from runner.robots.robot import Robot, Stage
+from runner.robots.rotors import rotor_file
 from runner.robots.tool_link import TOOL_TIP, ToolBody, mount_tool
 from runner.sensing.force_torque import ForceTorqueConfig
 
@@ -43,7 +44,7 @@ def build_robot(
     files = [
         file
         for path, arm in zip(paths, config.arms.values(), strict=True)
-        for file in (*(mjcf_of(path).files if arm.mjcf else [path]), set_file(path))
+        for file in (*(mjcf_of(path).files if arm.mjcf else [path]), set_file(path), rotor_file(path))
         if file.exists()
     ]
     key = (
@@ -57,6 +58,16 @@ def build_robot(
             _built.clear()
         _built[key] = _build(config, gravity, paths, sensor)
     return _built[key]
+
+
+def build_loaded(
+    config: RobotConfig, gravity: float, config_dirs: Sequence[Path] = (), sensor: ForceTorqueConfig | None = None
+) -> tuple[tuple[float, Robot], ...]:
+    """Return when a robot's payload changes, in s, and the robot with it from then on; see build_robot."""
+    changes = config.payload.schedule
+    loads = [config.payload.model_copy(update={"mass": change.mass, "schedule": []}) for change in changes]
+    robots = [build_robot(config.model_copy(update={"payload": load}), gravity, config_dirs, sensor) for load in loads]
+    return tuple((change.at, robot) for change, robot in zip(changes, robots, strict=True))
 
 
 def _build(config: RobotConfig, gravity: float, paths: Sequence[Path], sensor: ForceTorqueConfig | None) -> Robot:

@@ -10,6 +10,7 @@ from hydra import initialize_config_dir
 from omegaconf import DictConfig, OmegaConf
 
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.data_files import take_data_file
 from runner.config.in_si import put_in_si
 from runner.config.no_code import code_refused
 from runner.config.overrides import force
@@ -93,6 +94,7 @@ def from_hydra(
     if problems:
         raise ConfigError(problems)
     put_in_si(resolved, config_dirs)
+    take_data_file(resolved, config_dirs)
     return Composed(resolved, tuple(overrides), choices, tuple(config_dirs), root)
 
 

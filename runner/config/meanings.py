@@ -78,8 +78,9 @@ def find_units(model: type[StrictModel], path: Sequence[str]) -> Units | None:
     if name not in model.model_fields:
         return None
     inner = nested_model(model.model_fields[name].annotation)
-    if inner is not None and rest:
-        return find_units(inner, rest)
+    of_one = rest[1:] if rest and rest[0].isdecimal() else rest  # of a list of groups
+    if inner is not None and of_one:
+        return find_units(inner, of_one)
     text = meanings(model).get(name, "")
     found = _UNIT.search(text)
     if found is None:

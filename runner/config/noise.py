@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
+from pydantic import PositiveFloat
 
 from runner.config.per_stage import FinitePerStage, NonNegativePerStage, by_stage
 from runner.config.problems import Problems
@@ -12,6 +13,7 @@ from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
+from runner.sensing.velocity import DEFAULT_BANDWIDTH, Velocity
 
 
 class NoiseConfig(StrictModel):
@@ -25,14 +27,17 @@ class NoiseConfig(StrictModel):
             has several: the same at every tick and in every repetition, as of a zero that is set wrong; of either sign.
         resolution: Step to which the biased, noisy joint positions are rounded, in rad; m where a joint slides. By
             stage likewise; 0 for none.
-        velocity: Whether joint velocities are exact or differences of the measured positions.
+        velocity: Whether joint velocities are exact, differences of the measured positions, these behind a first-order
+            low-pass, or those of a Luenberger observer of each joint.
+        velocity_bandwidth: Cut-off of the low-pass, and both poles of the observer, in rad/s.
     """
 
     position: NonNegativePerStage
     distribution: Literal["uniform", "gaussian", "none"]
     bias: FinitePerStage = 0.0
     resolution: NonNegativePerStage = 0.0
-    velocity: Literal["exact", "finite_difference"]
+    velocity: Velocity
+    velocity_bandwidth: PositiveFloat = DEFAULT_BANDWIDTH
 
     def by_joint(self, arm: Robot) -> EncoderNoise:
         """Return the noise, bias and step of each joint of a robot.
@@ -60,6 +65,7 @@ class NoiseConfig(StrictModel):
             np.repeat(resolution, joints),
             self.distribution,
             self.velocity,
+            self.velocity_bandwidth,
         )
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from runner.config.joint_limits import check_joints
 from runner.errors import ConfigError
 from runner.registry import KindConfig
 from runner.robots.robot import Robot
@@ -40,8 +41,10 @@ def check_path(arm: Robot, path: Trajectory) -> None:
     """Check the whole path.
 
     Raises:
-        ConfigError: if it leads out of reach, or beside what the joints of a planar arm can reach; says when.
+        ConfigError: if it leads out of reach, beside what the joints of a planar arm can reach, or joints beyond their
+            limits; says when.
     """
+    check_joints(arm, path)
     model, times = arm.model, np.linspace(0.0, path.duration, _SAMPLES)
     points = path.sample(times)[:, 0]
     distance = np.linalg.norm(points - model.shoulder, axis=1)

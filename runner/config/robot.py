@@ -1,16 +1,31 @@
 """Config of the robot: one arm, or arms riding on each other."""
 
+import math
 from collections.abc import Mapping
-from typing import Annotated
+from itertools import pairwise
+from typing import Annotated, Any
 
-from pydantic import Field, NonNegativeFloat, PositiveFloat
+from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat, field_validator
 
 from runner.config.per_stage import NonNegativePerStage, PositivePerStage, TorquePerStage
 from runner.registry import StrictModel
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
-Name = Annotated[str, Field(min_length=1, max_length=200)]
+_LONGEST_NAME = 200
+Name = Annotated[str, Field(min_length=1, max_length=_LONGEST_NAME)]
 FileName = Annotated[str, Field(min_length=1)]
+
+
+def _rotor(value: Any) -> float | list[float] | str:
+    numbers = value if isinstance(value, list) else [value]
+    if isinstance(value, str) and 0 < len(value) <= _LONGEST_NAME and value[0].isalpha():
+        return value
+    if all(isinstance(n, int | float) and not isinstance(n, bool) and 0.0 <= n < math.inf for n in numbers):
+        return [float(n) for n in numbers] if isinstance(value, list) else float(value)
+    raise ValueError("must be a number of 0 or more, a list of such with one for each joint, or the name of a set")
+
+
+RotorInertia = Annotated[float | list[float] | str, BeforeValidator(_rotor)]
 
 
 class ArmConfig(StrictModel):
@@ -25,7 +40,8 @@ class ArmConfig(StrictModel):
         inertials: Set of masses, centres of mass and inertias, of those in `<urdf>.inertials.yaml`, in place of the
             file's; None keeps these.
         masses: Mass of links by name, in kg, in place of the file's or the set's.
-        rotor_inertia: Inertia added to each moving link about its joint's axis, in kg m^2.
+        rotor_inertia: Inertia added to each moving link about its joint's axis, in kg m^2. One for all joints, a list
+            with one for each, or the name of a set of those in `<urdf>.rotors.yaml`.
         velocity_limits: Largest speed of joints by name, in rad/s; m/s where a joint slides. They stand in place of the
             file's; an MJCF has none.
     """
@@ -36,7 +52,7 @@ class ArmConfig(StrictModel):
     home: list[float]
     inertials: Name | None
     masses: dict[str, PositiveFloat]
-    rotor_inertia: NonNegativeFloat
+    rotor_inertia: RotorInertia
     velocity_limits: dict[str, PositiveFloat]
 
 
@@ -64,16 +80,44 @@ class StageConfig(ArmConfig):
     mount: MountConfig | None
 
 
+class PayloadChange(StrictModel):
+    """Another payload from some time on.
+
+    Attributes:
+        at: Time of the change, in s: the first tick then or later.
+        mass: The payload's mass from then on, in kg.
+    """
+
+    at: PositiveFloat
+    mass: NonNegativeFloat
+
+
 class PayloadConfig(StrictModel):
     """A point mass fixed at the tip, which both the plant and the controllers' model hold.
 
     Attributes:
         mass: Its mass, in kg.
         position: Its place in the tip frame, in m.
+        schedule: Changes of the true arm's payload on the way, as `{at: 1.5, mass: 2.0}`, in s and kg, one after
+            another; the controllers go on to believe `mass`.
     """
 
     mass: NonNegativeFloat
     position: Vector
+    schedule: list[PayloadChange] = Field(default_factory=list)
+
+    @field_validator("schedule")
+    @classmethod
+    def _check_schedule(cls, value: list[PayloadChange]) -> list[PayloadChange]:
+        for before, change in pairwise(value):
+            if change.at <= before.at:
+                raise ValueError(f"must run forward in time; {change.at:g} s comes after {before.at:g} s")
+        return value
+
+    @property
+    def largest(self) -> float:
+        """The largest mass of all times, in kg."""
+        return max([self.mass, *(change.mass for change in self.schedule)])
 
 
 class ToolConfig(StrictModel):
@@ -137,8 +181,8 @@ class RobotConfig(StrictModel):
 
     @property
     def burden(self) -> float:
-        """Mass of what its tip carries, tool and payload, in kg."""
-        return self.payload.mass + (0.0 if self.tool is None else self.tool.mass)
+        """Largest mass of what its tip carries, tool and payload, in kg."""
+        return self.payload.largest + (0.0 if self.tool is None else self.tool.mass)
 
     @property
     def warnings(self) -> list[str]:
@@ -147,9 +191,9 @@ class RobotConfig(StrictModel):
         if self.rated_payload is None or self.burden <= self.rated_payload:
             return []
         borne = (
-            f"robot.payload.mass: {self.payload.mass:g} kg is"
+            f"robot.payload.mass: {self.payload.largest:g} kg is"
             if self.tool is None
-            else (f"robot.tool.mass and robot.payload.mass: {tool:g} and {self.payload.mass:g} kg are")
+            else (f"robot.tool.mass and robot.payload.mass: {tool:g} and {self.payload.largest:g} kg are")
         )
         return [
             f"{borne} more than the {self.rated_payload:g} kg that {self.name} is rated for; the run goes on and shows "

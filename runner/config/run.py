@@ -28,6 +28,7 @@ class RunConfig:
         settings: The keys at the root.
         robot: Config of the robot.
         arm: Its rigid-body model, stage by stage.
+        loaded: When the true arm's payload changes, in s, and the robot with it from then on.
         plant: Config of the plant, of the model that its kind names.
         controller: Config of the controller, likewise.
         loops: The control loops that it makes for the robot as it is.
@@ -50,6 +51,7 @@ class RunConfig:
     settings: RunSettings
     robot: RobotConfig
     arm: Robot
+    loaded: tuple[tuple[float, Robot], ...]
     plant: PlantConfig
     controller: ControllerConfig
     loops: tuple[Loop, ...]

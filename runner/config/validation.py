@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.config.arms import build_robot
+from runner.config.arms import build_loaded, build_robot
 from runner.config.groups import read_groups
 from runner.config.limits import check_memory
 from runner.config.memory import Memory
@@ -25,6 +25,7 @@ from runner.robots.mismatch import MismatchConfig
 from runner.robots.model import STANDARD_GRAVITY
 from runner.robots.robot import Robot, end_points
 from runner.trajectories import TRAJECTORIES, Trajectory
+from runner.trajectories.joint_motion import TipOfJoints
 from runner.trajectories.kinds import HasStart
 
 _MEMORY = Memory(4096)
@@ -47,8 +48,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     groups = read_groups(resolved, problems)
     problems.recall(_check_payload, groups.robot, groups.mismatch)
     gravity = STANDARD_GRAVITY if groups.settings is None else groups.settings.gravity
-    sensor = groups.wrist_sensor
-    borne = () if sensor is None else (sensor,)
+    borne = () if groups.wrist_sensor is None else (groups.wrist_sensor,)
     arm = problems.recall(build_robot, groups.robot, gravity, config_dirs, *borne)
     noise = problems.recall(NoiseConfig.by_joint, groups.noise, arm)
     torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.torque_limits, arm)
@@ -60,9 +60,10 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     # What follows is made from parts that are sound, each for itself. Parts of the user's may remember other runs.
     build_loops = problems.recall if CONTROLLERS.is_ours(sure(groups.controller).kind) else problems.attempt
     build_path = problems.recall if TRAJECTORIES.is_ours(sure(groups.trajectory).kind) else problems.attempt
-    loops = build_loops(CONTROLLERS.build, groups.controller, arm)
+    loaded = problems.recall(build_loaded, groups.robot, gravity, config_dirs, *borne)
     parallel = problems.recall(_is_parallel, arm, groups.plant)
     path = build_path(_build_path, arm, groups.trajectory, parallel)
+    loops = build_loops(CONTROLLERS.build_for, groups.controller, arm, isinstance(path, TipOfJoints))
     build_path(check_path, arm, path)
     ticks = problems.attempt(count_ticks, groups.settings, steps, path)
     problems.report()
@@ -70,6 +71,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         settings=sure(groups.settings),
         robot=sure(groups.robot),
         arm=sure(arm),
+        loaded=sure(loaded),
         plant=sure(groups.plant),
         controller=sure(groups.controller),
         loops=sure(loops),
@@ -78,7 +80,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         environment=sure(groups.environment),
         noise=sure(noise),
         torque_limits=sure(torque_limits),
-        wrist_sensor=sure(sensor),
+        wrist_sensor=sure(groups.wrist_sensor),
         mismatch=sure(groups.mismatch),
         timing=Timing(*sure(steps), sure(delay), sure(ticks)),
         parallel=sure(parallel),
@@ -88,7 +90,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         spec=sure(groups.spec),
         resolved=resolved,
     )
-    check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.feels)
+    _check_whole(config)
     return config
 
 
@@ -98,6 +100,29 @@ def _check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
             [
                 f"mismatch.payload: {mismatch.payload:g} kg is less than nothing of the true payload, "
                 f"robot.payload.mass with {robot.payload.mass:g} kg; allowed: {-robot.payload.mass:g} or more"
+            ]
+        )
+
+
+def _check_whole(config: RunConfig) -> None:
+    """Check what only the whole config tells."""
+    _check_schedule(config)
+    check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.feels)
+
+
+def _check_schedule(config: RunConfig) -> None:
+    """Check that a payload that changes on the way meets a plant that can take it up."""
+    if not config.loaded:
+        return
+    key = "robot.payload.schedule: the payload cannot change on the way"
+    if PLANTS.commands(config.plant.kind) == "position":
+        fit = " or plant=".join(kind for kind in PLANTS.names() if PLANTS.commands(kind) == "torque")
+        raise ConfigError([f"{key} of plant={config.plant.kind}, whose joints no mass moves; take plant={fit}, or []"])
+    if config.feels:
+        raise ConfigError(
+            [
+                f"{key} where the tip touches something or its sensor is read, which would have to tell the payload "
+                "from the touch; take environment=free and a controller that feels nothing, or []"
             ]
         )
 
@@ -128,6 +153,9 @@ def _is_parallel(arm: Robot, plant: PlantConfig) -> bool:
 
 def _build_path(arm: Robot, trajectory: KindConfig, parallel: bool) -> Trajectory:
     """Return the desired motion, which starts at the tip of home where the config does not say."""
+    joints = TRAJECTORIES.joint_motion(trajectory, arm)
+    if joints is not None:
+        return TipOfJoints(arm, joints, parallel)
     start = trajectory.start if isinstance(trajectory, HasStart) else None
     place = end_points(arm, arm.home[None], parallel)[-1, 0] if start is None else np.array(start)
     return TRAJECTORIES.build(trajectory, place)

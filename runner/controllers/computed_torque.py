@@ -87,16 +87,21 @@ class ComputedTorque(TorqueLaw[ComputedTorqueNumbers]):
 
     Near a singular posture the inverse is damped as in the other tip laws: J^T (J J^T + lambda^2)^-1.
 
+    Where the desired motion is one of the joints, q_d and its derivatives are that motion, and nothing is resolved;
+    without feedforward the law sees the posture q_d at rest.
+
     Args:
         model: The arm.
         config: The law's numbers.
         rest: Posture of the null space, shape (nq,), in rad.
+        joints: Whether the desired motion is one of the joints.
 
     Raises:
         ConfigError: if the arm has fewer joints than the task has dimensions.
     """
 
-    def __init__(self, model: RobotModel, config: ComputedTorqueConfig, rest: FloatArray) -> None:
+    def __init__(self, model: RobotModel, config: ComputedTorqueConfig, rest: FloatArray, joints: bool = False) -> None:
+        self._joints, self._feedforward = joints, config.feedforward
         self._task = TipTask(
             model,
             held_orientation(config.task, model, rest),
@@ -118,7 +123,12 @@ class ComputedTorque(TorqueLaw[ComputedTorqueNumbers]):
         super().__init__([model], config.gravity_compensation, numbers)
 
     def start(self, q: FloatArray) -> FloatArray:
-        """Return the joint motion where it starts, at rest, and no integral: q_d, dq_d/dt and z, shape (3 nq,)."""
+        """Return the joint motion where it starts, at rest, and no integral: q_d, dq_d/dt and z, shape (3 nq,).
+
+        Of a law that follows joints, z alone, shape (nq,).
+        """
+        if self._joints:
+            return np.zeros(len(q))
         return np.concatenate([q, np.zeros(2 * len(q))])
 
     def evaluate(
@@ -133,6 +143,8 @@ class ComputedTorque(TorqueLaw[ComputedTorqueNumbers]):
     ) -> tuple[Array, Array]:
         """Return the torques of the law above, and the joint motion at the next tick; see TorqueLaw."""
         (arm,), h, n = arms, numbers.period, len(q)
+        if self._joints:
+            return self._follow_joints(arm, numbers, q, dq, reference, memory)
         q_d, dq_d, z = memory[:n], memory[n : 2 * n], memory[2 * n :]
         ddq_d = self._resolved_acceleration(arm, numbers, q_d, dq_d, reference)
         error = q_d - q
@@ -141,6 +153,17 @@ class ComputedTorque(TorqueLaw[ComputedTorqueNumbers]):
             ddq, z = ddq + numbers.k_i * z, z + h * error
         goes_on = np.concatenate([q_d + h * dq_d + 0.5 * h**2 * ddq_d, dq_d + h * ddq_d, z])
         return arm.inverse_dynamics(q, dq, ddq), goes_on
+
+    def _follow_joints(
+        self, arm: Arm, numbers: ComputedTorqueNumbers, q: Array, dq: Array, reference: Array, z: Array
+    ) -> tuple[Array, Array]:
+        """Return the torques towards a joint motion, and the integral for the next tick."""
+        error = reference[0] - q
+        led = (reference[1] - dq, reference[2]) if self._feedforward else (-dq, 0.0 * q)
+        ddq = led[1] + numbers.k_v * led[0] + numbers.k_p * error
+        if self._integrates:
+            ddq, z = ddq + numbers.k_i * z, z + numbers.period * error
+        return arm.inverse_dynamics(q, dq, ddq), z
 
     def _resolved_acceleration(
         self, arm: Arm, numbers: ComputedTorqueNumbers, q_d: Array, dq_d: Array, reference: Array
@@ -155,15 +178,17 @@ class ComputedTorque(TorqueLaw[ComputedTorqueNumbers]):
 
 
 CONFIG = ComputedTorqueConfig
+FOLLOWS_JOINTS = True
 
 
-def build(config: ComputedTorqueConfig, robot: Robot) -> tuple[Loop, ...]:
-    """Make the one loop that a config describes; it commands every joint.
+def build(config: ComputedTorqueConfig, robot: Robot, joints: bool = False) -> tuple[Loop, ...]:
+    """Make the one loop that a config describes; it commands every joint. See FollowsJoints.
 
     Raises:
         ConfigError: see ComputedTorque.
     """
-    return (Loop("whole", slice(0, robot.model.nq), config.period, ComputedTorque(robot.model, config, robot.home)),)
+    law = ComputedTorque(robot.model, config, robot.home, joints)
+    return (Loop("whole", slice(0, robot.model.nq), config.period, law, follows_joints=joints),)
 
 
 def start_posture(config: ComputedTorqueConfig, robot: Robot, start: FloatArray) -> FloatArray | None:

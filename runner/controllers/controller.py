@@ -23,7 +23,8 @@ class Controller(Protocol):
             q: Measured joint positions, shape (nq,), in rad.
             dq: Measured joint velocities, shape (nq,), in rad/s; of every joint, those of other stages included.
             reference: Desired tip position, velocity and acceleration in the base frame, shape (3, 3): a row each,
-                in m, m/s, m/s^2.
+                in m, m/s, m/s^2. Of a loop that follows joints: desired joint positions, velocities and accelerations,
+                shape (3, nq), in rad, rad/s, rad/s^2.
 
         Returns:
             Torques of the joints it commands before any limit, in N m; valid until the next call.
@@ -87,6 +88,7 @@ class Loop:
         period: Time between two of its ticks, in s.
         controller: The control law; it is given the measurement of every joint.
         feels: Whether it is given the wrist sensor's reading too, by its `feel`.
+        follows_joints: Whether its reference is the desired motion of the joints, shape (3, nq), in place of the tip's.
     """
 
     name: str
@@ -94,6 +96,7 @@ class Loop:
     period: float
     controller: Controller | PositionController
     feels: bool = False
+    follows_joints: bool = False
 
     @property
     def feeling(self) -> FeelingController | None:

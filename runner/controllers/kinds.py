@@ -45,6 +45,20 @@ class ChoosesStart(Protocol):
 
 
 @runtime_checkable
+class FollowsJoints(Protocol):
+    """A module whose laws follow a motion of the joints where the desired motion is one; all others follow the tip's.
+
+    The reference of such a law has shape (3, nq): joint positions, velocities and accelerations.
+    """
+
+    FOLLOWS_JOINTS: bool
+
+    def build(self, config: ControllerConfig, robot: Robot, joints: bool = False) -> tuple[Loop, ...]:
+        """Make the loops; with `joints` they are those of a law that follows joints, and say so."""
+        ...
+
+
+@runtime_checkable
 class FollowsWithinReach(Protocol):
     """A config of controllers whose rider follows its target up to a distance; a metric tells how often it is out."""
 
@@ -80,6 +94,18 @@ class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
 
     def __init__(self, modules: Mapping[str, str]) -> None:
         super().__init__("controller", modules, watch_loops)
+
+    def build_for(self, config: ControllerConfig, robot: Robot, joints: bool) -> tuple[Loop, ...]:
+        """Make the loops of a config, of a law of ours that follows joints where the desired motion is one of joints.
+
+        Raises:
+            ConfigError: see `build`.
+        """
+        module = self.module(config.kind)
+        if joints and self.is_ours(config.kind) and isinstance(module, FollowsJoints) and module.FOLLOWS_JOINTS:
+            loops: tuple[Loop, ...] = module.build(config, robot, joints=True)
+            return loops
+        return self.build(config, robot)
 
     def follows_paths(self, kind: str) -> bool:
         """Tell whether a kind follows any path that the arm can follow; see FollowsPaths."""

@@ -170,7 +170,7 @@ class TorqueLaw(ABC, Generic[N]):
             time: Time since the start, in s.
             q: Measured joint positions, shape (measured,), in rad.
             dq: Measured joint velocities, shape (measured,), in rad/s.
-            reference: Desired tip position, velocity and acceleration, shape (3, 3); see Controller.torque.
+            reference: Desired motion of the tip, shape (3, 3), or of the joints, (3, nq); see Controller.torque.
             memory: What the last tick left, or `start`.
         """
 

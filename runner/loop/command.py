@@ -31,7 +31,8 @@ class Command:
         self.every = closed.every(loop)
         self._law = _reset(closed, loop)
         self._measure = encoders.measure
-        self._times, self._desired = recorder.times, recorder.desired
+        self._times = recorder.times
+        self._desired = recorder.joints if loop.follows_joints and recorder.joints is not None else recorder.desired
         self._held: FloatArray = recorder.command[loop.joints]  # a view: what is written there is what is asked for
         self._highest: FloatArray = closed.limits[loop.joints]
         self._lowest: FloatArray = -self._highest

@@ -31,7 +31,8 @@ def run_commands(
         contact: What the tip feels; None where there is nothing to feel.
         recorder: Holds times and reference, and takes the rows.
     """
-    run = compiled.begin(recorder.times, recorder.desired, [each.errors for each in encoders], closed.q_start)
+    errors = [each.errors for each in encoders]
+    run = compiled.begin(recorder.times, recorder.desired, errors, closed.q_start, recorder.joints)
     recorder.q, recorder.dq, recorder.commands, recorder.end_points = run.q, run.dq, run.torque, run.end_points
     drive, plant, tick, clock, now = make_drive(closed, recorder), closed.plant, run.tick, recorder.clock, recorder.now
     load, k = None, 0
@@ -65,7 +66,7 @@ def run_whole(whole: Whole, closed: ClosedLoop, encoders: Sequence[JointEncoders
     signals = run_all(
         whole,
         whole.values[None],
-        commands.shared(recorder.times, recorder.desired),
+        commands.shared(recorder.times, recorder.desired, recorder.joints),
         [wrong[None] for wrong in errors],
         commands.start(closed.q_start[None], [wrong[:1] for wrong in errors]),
     )

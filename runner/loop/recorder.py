@@ -24,6 +24,8 @@ class Recorder:
     Attributes:
         times: Time of each row, shape (T,), in s.
         desired: Desired motion of the tip, shape (T, 3, 3): position, velocity, acceleration.
+        joints: Desired motion of the joints, shape (T, 3, nq), in rad, rad/s, rad/s^2; None where it is of
+            the tip alone.
         command: What the loops ask for now, shape (nq,): torques in N m, or joint positions in rad.
         commands: What they asked for in each tick, shape (T, nq).
         torques: Torques of a plant that follows positions, shape (T, nq), in N m.
@@ -39,6 +41,7 @@ class Recorder:
         self._closed, self._plant, self.now = closed, closed.plant, time.perf_counter_ns
         self.times: FloatArray = np.arange(rows, dtype=np.float64) * closed.tick
         self.desired: FloatArray = np.zeros((rows, 3, 3))
+        self.joints: FloatArray | None = None
         self.command: FloatArray = closed.q_start.copy() if closed.commands == "position" else np.zeros(nq)
         self.q, self.dq, self.commands, self.torques = (np.zeros((rows, nq)) for _ in range(4))
         self.q[0] = closed.q_start

@@ -4,8 +4,15 @@ import numpy as np
 
 from runner.metrics.context import MetricContext
 from runner.trace import FloatArray, Traces
+from runner.trajectories.trajectory import Trajectory, joint_reference
 
-UNITS = {"max_tracking_error": "m", "rms_tracking_error": "m", "cross_track_error": "m"}
+UNITS = {
+    "max_tracking_error": "m",
+    "rms_tracking_error": "m",
+    "cross_track_error": "m",
+    "max_joint_error": "rad",
+    "rms_joint_error": "rad",
+}
 
 
 def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
@@ -14,6 +21,8 @@ def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
     - max_tracking_error, and _x, _y, _z: largest axis error over 0..t_f.
     - rms_tracking_error: root mean square of the error's norm over 0..t_f.
     - cross_track_error: largest distance to the path taken as a curve, over the whole run.
+    - max_joint_error, rms_joint_error: largest error of a joint, and root mean square of their norm, over 0..t_f, where
+      the desired motion is one of the joints; of those that turn.
     """
     distance = context.trajectory.distance_to_path(traces.tip.swapaxes(-1, -2))
     cross_track: dict[str, FloatArray] = {"cross_track_error": distance.max(axis=-1)}
@@ -28,4 +37,17 @@ def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
         **{f"max_tracking_error_{axis}": axes[:, index] for index, axis in enumerate("xyz")},
         "rms_tracking_error": np.sqrt(squared.sum(axis=1) / ticks),
         **cross_track,
+        **_of_joints(traces, context.trajectory, ticks),
+    }
+
+
+def _of_joints(traces: Traces, path: Trajectory, ticks: int) -> dict[str, FloatArray]:
+    turn = np.array([unit == "rad" for unit in traces.joint_units])
+    desired = joint_reference(path, traces.t[:ticks])
+    if desired is None or not turn.any():
+        return {}
+    error = (desired[:, 0] - traces.q[:, :ticks])[:, :, turn]
+    return {
+        "max_joint_error": np.abs(error).max(axis=(1, 2)),
+        "rms_joint_error": np.sqrt((error**2).sum(axis=2).sum(axis=1) / ticks),
     }

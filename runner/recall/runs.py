@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from runner.config.data_files import has_data_file
 from runner.latest import note
 from runner.plugins import has_users_parts, in_use
 from runner.recall.answers import keep, recall
@@ -54,6 +55,7 @@ def keep_run(
     """
     resolved = composed.resolved
     alone = set(sources) <= _READ and not has_users_parts() and all(map(_is_read, _arms(resolved.get("robot"))))
+    alone = alone and not has_data_file(resolved)  # which may lie anywhere, and change
     if key is not None and alone and key == line_key(arguments):
         told = {"thresholds": resolved.get("caveats"), "spec": resolved.get("spec")}
         keep(key, {"run": run.folder.name, "outputs": resolved["outputs"], **told})

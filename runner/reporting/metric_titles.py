@@ -13,6 +13,8 @@ TITLES = {
     "max_tracking_error": "largest tracking error",
     "rms_tracking_error": "rms tracking error",
     "cross_track_error": "largest distance from the path",
+    "max_joint_error": "largest joint error",
+    "rms_joint_error": "rms joint error",
     "peak_torque": "largest torque",
     "rms_torque": "rms torque",
     "peak_joint_speed": "largest joint speed",

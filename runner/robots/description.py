@@ -19,6 +19,7 @@ from runner.robots.inertials import (
     scale_inertial,
 )
 from runner.robots.mjcf_files import is_mjcf
+from runner.robots.rotors import rotor_inertias
 from runner.robots.tree import UrdfTree, make_tree, moves, read_tree
 from runner.robots.urdf_values import TENSOR, absurd_inertial, number, wrong_limits, wrong_places
 
@@ -78,7 +79,7 @@ def mjcf_of(path: Path) -> "Mjcf":
 def read_urdf(
     path: Path,
     masses: Mapping[str, float],
-    rotor_inertia: float = 0.0,
+    rotor_inertia: float | Sequence[float] | str = 0.0,
     inertials: str | None = None,
     velocity_limits: Mapping[str, float] | None = None,
     payloads: Sequence[Payload] = (),
@@ -90,7 +91,8 @@ def read_urdf(
         masses: Mass of links by name, in kg, inertias scaled along (a uniform change of density); links not named keep
             theirs.
         rotor_inertia: Inertia added to each moving link about its joint's axis, in kg m^2, and half of it across: a
-            rotor, a thin disc, that turns with the link, without gear.
+            rotor, a thin disc, that turns with the link, without gear. One for all joints, a list with one for each, or
+            the name of a set; see rotor_inertias.
         inertials: Set of inertials that comes in place of the file's own, before `masses`; see replace_inertials.
         velocity_limits: Largest speed of joints by name, in rad/s; joints not named keep theirs.
         payloads: Point masses that links carry.
@@ -124,8 +126,9 @@ def read_urdf(
     for name, mass in masses.items():
         scale_inertial(links[name], mass)
     if rotor_inertia:
-        for joint in tree.joints.values():
-            add_rotor(joint, links, rotor_inertia)
+        for name, inertia in rotor_inertias(tree, path, rotor_inertia).items():
+            if inertia:
+                add_rotor(tree.joints[name], links, inertia)
     for payload in payloads:
         if payload.mass:
             add_payload(links, payload)

@@ -1,4 +1,4 @@
-"""Joint encoders: joint positions noisy, biased and in steps, and velocities exact or differenced."""
+"""Joint encoders: joint positions noisy, biased and in steps, and velocities exact or from these positions."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.sensing.streams import generators
+from runner.sensing.velocity import DEFAULT_BANDWIDTH, State, Velocity, first_state, gains, next_velocity
 
 FloatArray = NDArray[np.float64]
 
@@ -22,14 +23,16 @@ class EncoderNoise:
         bias: Constant error of each joint's measured position, shape (nq,), in rad: a zero that is set wrong.
         resolution: Step to which each joint's biased, noisy position is rounded, shape (nq,), in rad; 0 for none.
         distribution: Shape of the position noise.
-        velocity: Whether velocities are exact, or differences of the measured positions over the loop's period.
+        velocity: How velocities are known: exactly, or from the measured positions at the loop's ticks.
+        velocity_bandwidth: Bandwidth of that, in rad/s, where it has one.
     """
 
     position: FloatArray
     bias: FloatArray
     resolution: FloatArray
     distribution: Literal["uniform", "gaussian", "none"]
-    velocity: Literal["exact", "finite_difference"]
+    velocity: Velocity
+    velocity_bandwidth: float = DEFAULT_BANDWIDTH
 
 
 class JointEncoders:
@@ -50,22 +53,23 @@ class JointEncoders:
         self._rounded = noise.resolution > 0.0
         self._resolution = noise.resolution[self._rounded]
         self._period = period
-        self._differenced = noise.velocity == "finite_difference"
-        self._last: FloatArray | None = None
+        self._way = noise.velocity
+        self._gains = gains(noise.velocity, noise.velocity_bandwidth, period)
+        self._state: State | None = None
 
     def measure(self, tick: int, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return measured joint positions and velocities, shapes (nq,), from the true ones at a tick.
 
-        A differenced velocity starts from the first measurement: it is zero there, as the arm starts at rest. So
+        A velocity that is not exact starts from the first measurement: it is zero there, as the arm starts at rest. So
         a bias is not in it.
         """
         measured = q + self.errors[tick]
         if len(self._resolution):
             measured[self._rounded] = np.round(measured[self._rounded] / self._resolution) * self._resolution
-        if not self._differenced:
+        if self._way == "exact":
             return measured, dq
-        velocity = np.zeros_like(q) if self._last is None else (measured - self._last) / self._period
-        self._last = measured
+        state = first_state(self._way, measured) if self._state is None else self._state
+        velocity, self._state = next_velocity(self._way, self._gains, self._period, measured, state)
         return measured, velocity
 
 

@@ -7,6 +7,7 @@ from functools import cache, lru_cache
 from typing import Any
 
 from runner.compiled.engine import evaluator
+from runner.config.data_files import has_data_file, unnamed
 from runner.config.memory import Memory
 from runner.engines import installed
 from runner.paths import package_dir
@@ -80,8 +81,9 @@ _key_text = lru_cache(maxsize=256)(_sorted_text)
 
 
 def simulated_part(resolved: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keys of a config that decide about the result."""
-    return {key: value for key, value in resolved.items() if key not in _LEFT_OUT}
+    """Return the keys of a config that decide about the result: of a data file its content, and not its name."""
+    kept = {key: value for key, value in resolved.items() if key not in _LEFT_OUT}
+    return kept | {"trajectory": _MEMORY.recall(unnamed, kept["trajectory"])} if has_data_file(kept) else kept
 
 
 def _parts(resolved: Mapping[str, Any]) -> set[str]:

@@ -6,7 +6,11 @@ from runner.trajectories.trajectory import Trajectory
 TRAJECTORIES = Trajectories(
     {
         "circle": "runner.trajectories.circle",
+        "from_file": "runner.trajectories.from_file",
         "goal": "runner.trajectories.goal",
+        "joint_quintic": "runner.trajectories.joint_quintic",
+        "joint_sinusoids": "runner.trajectories.joint_sinusoids",
+        "joint_waypoints": "runner.trajectories.joint_waypoints",
         "line": "runner.trajectories.line",
         "lissajous": "runner.trajectories.lissajous",
         "quintic": "runner.trajectories.quintic",

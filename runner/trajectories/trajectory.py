@@ -1,6 +1,6 @@
 """What every trajectory offers."""
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,3 +46,17 @@ class Trajectory(Protocol):
         Ours take points of any shape (..., 3) and give (...), each as if it were alone.
         """
         ...
+
+
+@runtime_checkable
+class LeadsJoints(Protocol):
+    """A trajectory of the tip that follows from a desired motion of the joints."""
+
+    def sample_joints(self, times: FloatArray) -> FloatArray:
+        """Return q, dq/dt and d2q/dt2, shape (T, 3, nq): rows in rad, rad/s, rad/s^2; m where a joint slides."""
+        ...
+
+
+def joint_reference(path: Trajectory, times: FloatArray) -> FloatArray | None:
+    """Return the motion of the joints that a path follows from, shape (T, 3, nq); None where there is none."""
+    return path.sample_joints(times) if isinstance(path, LeadsJoints) else None

@@ -18,6 +18,20 @@ _SAMPLES = 64  # between two way-points, from which the nearest point is refined
 _CLOSEST = 1e-9  # share of the duration or the length between two way-points, below which rounding would tell
 
 
+def check_time_shares(value: list[float] | None, info: ValidationInfo, places: str) -> list[float] | None:
+    """Return time shares that fit the field of way-points, by its name, which stands before them.
+
+    Raises:
+        ValueError: if they do not.
+    """
+    if value is None or places not in info.data:
+        return value
+    count = len(info.data[places])
+    if len(value) != count or value[-1] != 1.0 or any(b - a < _CLOSEST for a, b in pairwise(value)):
+        raise ValueError(f"must be {count} ascending numbers, one for each of the {places}, the last of them 1")
+    return value
+
+
 class WaypointsConfig(StrictModel):
     """Config of a motion through way-points; the first is the start.
 
@@ -50,12 +64,7 @@ class WaypointsConfig(StrictModel):
     @field_validator("time_shares")
     @classmethod
     def _check_time_shares(cls, value: list[float] | None, info: ValidationInfo) -> list[float] | None:
-        if value is None or "points" not in info.data:
-            return value
-        count = len(info.data["points"])
-        if len(value) != count or value[-1] != 1.0 or any(b - a < _CLOSEST for a, b in pairwise(value)):
-            raise ValueError(f"must be {count} ascending numbers, one for each of the points, the last of them 1")
-        return value
+        return check_time_shares(value, info, "points")
 
 
 @dataclass(frozen=True)
@@ -110,8 +119,13 @@ class Waypoints:
 
 def least_jerk(points: FloatArray, times: FloatArray) -> Waypoints:
     """Return the motion of least jerk through points at times; see Waypoints for both."""
-    rest = [(1, np.zeros(3)), (2, np.zeros(3))]
-    return Waypoints(points, times, make_interp_spline(times, points, k=5, bc_type=(rest, rest)))
+    return Waypoints(points, times, least_jerk_spline(points, times))
+
+
+def least_jerk_spline(points: FloatArray, times: FloatArray) -> BSpline:
+    """Return the spline of least jerk from rest to rest through points at times, shapes (N, k) and (N,)."""
+    rest = [(order, np.zeros(points.shape[1])) for order in (1, 2)]
+    return make_interp_spline(times, points, k=5, bc_type=(rest, rest))
 
 
 CONFIG = WaypointsConfig

@@ -1,5 +1,7 @@
 """Every option that there is composes and runs, with what it does not run without."""
 
+from pathlib import Path
+
 import pytest
 from printed import without_caveats, without_results
 
@@ -8,6 +10,7 @@ from runner.config.options import group_options, groups
 from runner.config.validation import validate
 from runner.execution import run
 
+SWING = Path(__file__).parents[2] / "examples" / "swing.csv"
 OPTIONS = [f"{group}={name}" for group in groups() if group != "calibration" for name in group_options(group)]
 NEEDS = {  # what an option does not run without
     "controller=admittance": ("robot=meca500",),
@@ -17,6 +20,7 @@ NEEDS = {  # what an option does not run without
     "environment=wall": ("robot=meca500",),
     "experiment=xarm7/as_printed": ("controller.inverse=right",),
     "plant=kinematic": ("robot=xarm7",),
+    "trajectory=from_file": (f"trajectory.file={SWING}",),
 }
 
 

@@ -1,0 +1,50 @@
+"""The data file of a trajectory, whose content becomes part of the config, so that a stored run needs no file."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from runner.errors import ConfigError
+
+
+def has_data_file(resolved: Mapping[str, Any]) -> bool:
+    """Tell whether a config names a data file of its trajectory."""
+    group = resolved.get("trajectory")
+    return isinstance(group, Mapping) and group.get("kind") == "from_file" and isinstance(group.get("file"), str)
+
+
+def take_data_file(resolved: Mapping[str, Any], config_dirs: Sequence[Path]) -> None:
+    """Put the content of a trajectory's data file into a composed config, in place.
+
+    Args:
+        resolved: The config as plain data.
+        config_dirs: Config folders of the user's, searched before the working folder.
+
+    Raises:
+        ConfigError: if there is no such file, or it holds no motion.
+    """
+    if not has_data_file(resolved):
+        return
+    from runner.trajectories.table import read_table  # for few configs
+
+    group = resolved["trajectory"]
+    group["columns"] = read_table(_find(group["file"], config_dirs))
+    if group.get("duration") is None:
+        group["duration"] = group["columns"]["t"][-1]
+
+
+def unnamed(trajectory: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the group of a trajectory without the name of its file."""
+    return {key: value for key, value in trajectory.items() if key != "file"}
+
+
+def _find(name: str, config_dirs: Sequence[Path]) -> Path:
+    if ".." in Path(name).parts:
+        raise ConfigError([f"trajectory.file: '{name}' leads out of its folder; give its whole path"])
+    places = [Path(name)] if Path(name).is_absolute() else [folder / name for folder in (*config_dirs, Path.cwd())]
+    for place in places:
+        if place.is_file():
+            return place
+    raise ConfigError(
+        [f"trajectory.file: no file '{name}'; looked in {', '.join(str(each.parent) for each in places)}"]
+    )

@@ -1,0 +1,58 @@
+"""An arm whose payload changes on the way."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from runner.plants.plant import FloatArray, Plant
+
+
+class PayloadChanges:
+    """Plants of one arm with one payload after another.
+
+    At a change the arm goes on from where it is and as fast as it is: the new payload has the speed that the tip has,
+    so that nothing jolts. What is picked up at rest while the tip moves would.
+
+    Args:
+        plants: The plant of each payload, in their order.
+        ticks: Tick from which each of them but the first moves, ascending.
+    """
+
+    def __init__(self, plants: Sequence[Plant], ticks: Sequence[int]) -> None:
+        self._plants, self._ticks = plants, ticks
+        self._tick = self._now = 0
+        self.q, self.dq = plants[0].q.copy(), plants[0].dq.copy()
+
+    @property
+    def plant(self) -> Plant:
+        """The plant that moves now."""
+        return self._plants[self._now]
+
+    def reset(self, q: FloatArray, dq: FloatArray) -> None:
+        """Put the arm into a state, with its first payload; see Plant."""
+        self._tick = self._now = 0
+        self._put(q, dq)
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector; see Plant."""
+        for plant in self._plants:
+            plant.set_gravity(gravity)
+
+    def advance(self, tau: FloatArray) -> None:
+        """Hold the torques for one tick; see Plant."""
+        now = int(np.searchsorted(self._ticks, self._tick, side="right"))
+        if now != self._now:
+            self._now = now
+            self._put(self.q, self.dq)
+        self.plant.advance(tau)
+        self.q[:], self.dq[:] = self.plant.q, self.plant.dq
+        self._tick += 1
+
+    def close(self) -> None:
+        """Release what the plants hold."""
+        for plant in self._plants:
+            plant.close()
+
+    def _put(self, q: FloatArray, dq: FloatArray) -> None:
+        self.plant.reset(q, dq)
+        self.q[:], self.dq[:] = q, dq

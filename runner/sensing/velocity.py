@@ -1,0 +1,63 @@
+r"""Joint velocities from measured positions, tick by tick; over floats, or whatever scalar their arguments hold.
+
+`finite_difference` is d_k = (q_k - q_{k-1}) / h. `low_pass` lets it through a first-order filter of bandwidth w:
+
+.. math:: v_k = v_{k-1} + a (d_k - v_{k-1}), \quad a = 1 - e^{-w h}, \qquad
+    \frac{V}{Q} = \frac{a}{h} \frac{1 - z^{-1}}{1 - (1 - a) z^{-1}}
+
+`luenberger` is the observer of a joint that keeps its velocity (Luenberger, IEEE Transactions on Military Electronics
+8(2), 1964), with both poles at p = e^{-w h}, and so no gain but its bandwidth w:
+
+.. math:: e_k = q_k - \hat q_{k-1} - h \hat v_{k-1}, \quad \hat q_k = q_k - p^2 e_k, \quad
+    \hat v_k = \hat v_{k-1} + \frac{(1 - p)^2}{h} e_k, \qquad \frac{V}{Q} = \frac{(1 - p)^2}{h}
+    \frac{1 - z^{-1}}{(1 - p z^{-1})^2}
+
+All three give a constant velocity exactly in the end. Under a constant acceleration A they are late by h/2, by
+h/2 + h (1 - a)/a, and by h/2 + 2 h p/(1 - p), times A. Noise of the positions falls with the bandwidth.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any, Literal
+
+import numpy as np
+
+Velocity = Literal["exact", "finite_difference", "low_pass", "luenberger"]
+"""How joint velocities are known: as they are, or by one of the ways above."""
+
+DEFAULT_BANDWIDTH = 200.0
+"""Of a way that has one, in rad/s, where a config names none."""
+
+State = list[Any]
+"""What a way keeps from tick to tick: arrays of shape (nq,)."""
+
+
+def gains(way: Velocity, bandwidth: float, h: float) -> tuple[float, ...]:
+    """Return the numbers of a way for its bandwidth in rad/s and the time between two measurements in s."""
+    if way == "low_pass":
+        return (-math.expm1(-bandwidth * h),)
+    if way == "luenberger":
+        p = math.exp(-bandwidth * h)
+        return (p * p, math.expm1(-bandwidth * h) ** 2)
+    return ()
+
+
+def first_state(way: Velocity, measured: Any) -> State:
+    """Return what stands before the first measurement, shape (nq,), of an arm at rest; nothing where it is exact."""
+    if way == "exact":
+        return []
+    return [measured] if way == "finite_difference" else [measured, np.zeros_like(measured)]
+
+
+def next_velocity(way: Velocity, numbers: Sequence[Any], h: Any, measured: Any, state: State) -> tuple[Any, State]:
+    """Return the velocity after a measurement, shape (nq,), and what is kept; of a way that is not exact."""
+    if way == "luenberger":
+        p_squared, gain = numbers
+        error = measured - state[0] - h * state[1]
+        velocity = state[1] + gain / h * error
+        return velocity, [measured - p_squared * error, velocity]
+    difference = (measured - state[0]) / h
+    if way == "finite_difference":
+        return difference, [measured]
+    velocity = state[1] + numbers[0] * (difference - state[1])
+    return velocity, [measured, velocity]

@@ -1,0 +1,168 @@
+"""A motion from a data file, of the tip or of the joints."""
+
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, PositiveFloat, ValidationInfo, field_validator
+
+from runner.errors import ConfigError
+from runner.registry import StrictModel
+from runner.robots.robot import Robot
+from runner.trajectories.interpolation import Interpolated, Interpolation, interpolate
+from runner.trajectories.joint_motion import JointMotion
+from runner.trajectories.nearest import distance_to_curve
+from runner.trajectories.table import parts_of, wrong_columns
+from runner.trajectories.trajectory import FloatArray, Trajectory
+
+
+def _check_interpolation(value: Any) -> Any:
+    if value == "linear":
+        raise ValueError("jumps in velocity at every row, an acceleration without bound; allowed: spline, hermite")
+    return value
+
+
+class FromFileConfig(StrictModel):
+    """Config of a motion from a data file.
+
+    Attributes:
+        kind: Its name in the registry.
+        file: The file, CSV or Parquet: in a config folder of the user's or the working folder, or an absolute path.
+        interpolation: Between its rows: "spline", the cubic spline through positions, at rest at both ends; "hermite"
+            with the file's velocities, and its accelerations where it has them.
+        columns: What the file holds, by column, in s, m, m/s and m/s^2, or rad, rad/s and rad/s^2; taken from it when
+            the config is composed, so that a stored run needs no file.
+        duration: t_f, in s, the file's last time; None takes it.
+    """
+
+    kind: Literal["from_file"]
+    file: str | None
+    interpolation: Annotated[Interpolation, BeforeValidator(_check_interpolation)]
+    columns: dict[str, list[float]] | None
+    duration: PositiveFloat | None
+
+    @field_validator("columns")
+    @classmethod
+    def _check_columns(cls, value: dict[str, list[float]] | None, info: ValidationInfo) -> dict[str, list[float]]:
+        if value is None:
+            raise ValueError("missing; name a CSV or Parquet file, as in trajectory.file=motion.csv")
+        problems = list(wrong_columns(value, lambda row: f"row {row + 1}"))
+        orders = len(parts_of(list(value)))
+        kind = info.data.get("interpolation")
+        if not problems and kind == "spline" and orders > 1:
+            problems.append("the file has velocities, which interpolation=spline would not take; take hermite")
+        if not problems and kind == "hermite" and orders == 1:
+            problems.append("the file has no velocities, which interpolation=hermite needs; take spline")
+        if problems:
+            raise ValueError(problems[0])
+        return value
+
+    @field_validator("duration")
+    @classmethod
+    def _check_duration(cls, value: float | None, info: ValidationInfo) -> float | None:
+        columns = info.data.get("columns")
+        if columns and value not in (None, columns["t"][-1]):
+            raise ValueError(f"the file lasts {columns['t'][-1]:g} s; allowed: null")
+        return value
+
+    def motion(self) -> Interpolated:
+        """Return what its rows give, of the tip or of the joints."""
+        columns = self.columns or {}
+        rows = [[columns[name] for name in part] for part in parts_of(list(columns))]  # (orders, k, N)
+        return interpolate(np.array(columns["t"]), np.moveaxis(np.array(rows), -1, 0), self.interpolation)
+
+
+@dataclass(frozen=True)
+class TipMotion:
+    """A motion of the tip through rows; see Trajectory for the attributes.
+
+    Attributes:
+        rows: The motion, in m.
+    """
+
+    rows: Interpolated
+    tracked: bool = True
+
+    @property
+    def start(self) -> FloatArray:
+        """The first row."""
+        start: FloatArray = self.rows.sample(np.zeros(1))[0, 0]
+        return start
+
+    @property
+    def goal(self) -> FloatArray:
+        """The last row."""
+        goal: FloatArray = self.rows.sample(self.rows.times[-1:])[0, 0]
+        return goal
+
+    @property
+    def duration(self) -> float:
+        """Time t_f of the last row, in s."""
+        return self.rows.duration
+
+    @property
+    def run_duration(self) -> float:
+        """One second more than the motion, so that the arm's rest is seen."""
+        return self.duration + 1.0
+
+    def sample(self, times: FloatArray) -> FloatArray:
+        """Return the motion, at rest in the last row after t_f."""
+        return self.rows.sample(times)
+
+    def distance_to_path(self, points: FloatArray) -> FloatArray:
+        """Return the distance to the curve through the rows."""
+        even = np.linspace(0.0, self.duration, self.rows.samples + 1)
+        return distance_to_curve(points, self.sample, np.union1d(even, self.rows.times))
+
+
+@dataclass(frozen=True)
+class JointRows:
+    """A motion of the joints through rows; see JointMotion.
+
+    Attributes:
+        rows: The motion, in rad.
+    """
+
+    rows: Interpolated
+
+    @property
+    def duration(self) -> float:
+        """Time t_f of the last row, in s."""
+        return self.rows.duration
+
+    @property
+    def samples(self) -> int:
+        """Samples by the number of rows."""
+        return self.rows.samples
+
+    def sample_joints(self, times: FloatArray) -> FloatArray:
+        """Return the motion, at rest in the last row after t_f."""
+        return self.rows.sample(times)
+
+
+CONFIG = FromFileConfig
+
+
+def build(config: FromFileConfig, _: FloatArray) -> Trajectory:
+    """Make the motion of the tip that a file holds; it starts in its first row."""
+    return TipMotion(config.motion())
+
+
+def joint_motion(config: FromFileConfig, robot: Robot) -> JointMotion | None:
+    """Make the motion of the joints that a file holds; None where it holds one of the tip.
+
+    Raises:
+        ConfigError: if it has not as many joints as the robot.
+    """
+    (positions, *_) = parts_of(list(config.columns or {}))
+    if positions == ["x", "y", "z"]:
+        return None
+    names = robot.model.joint_names
+    if len(positions) != len(names):
+        raise ConfigError(
+            [
+                f"trajectory.file: has {len(positions)} joints, q1 to q{len(positions)}; the robot has {len(names)}: "
+                f"{', '.join(names)}"
+            ]
+        )
+    return JointRows(config.motion())

@@ -1,0 +1,63 @@
+"""Motions between rows of a table, twice differentiable."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.interpolate import BPoly, CubicSpline
+
+from runner.trajectories.trajectory import FloatArray
+
+Interpolation = Literal["spline", "hermite"]
+
+_LEAST, _PER_ROW, _MOST = 512, 64, 4096  # samples
+
+
+@dataclass(frozen=True)
+class Interpolated:
+    """A motion through rows, from rest to rest.
+
+    Attributes:
+        times: Time of each row, ascending from 0, shape (N,), in s.
+        orders: The motion and its first two derivatives, as functions of time.
+    """
+
+    times: FloatArray
+    orders: Sequence[CubicSpline | BPoly]
+
+    @property
+    def duration(self) -> float:
+        """Time of the last row, in s."""
+        return float(self.times[-1])
+
+    @property
+    def samples(self) -> int:
+        """Number of even samples between which its path bends but once."""
+        return min(max(_PER_ROW * (len(self.times) - 1), _LEAST), _MOST)
+
+    def sample(self, times: FloatArray) -> FloatArray:
+        """Return the motion and two derivatives, shape (T, 3, k); it stays in the last row after its duration."""
+        within = np.clip(times, 0.0, self.duration)
+        motion: FloatArray = np.stack([order(within) for order in self.orders], axis=1)
+        motion[times > self.duration, 1:] = 0.0
+        return motion
+
+
+def interpolate(times: FloatArray, rows: FloatArray, kind: Interpolation) -> Interpolated:
+    """Return the motion through rows, which pass each at its time.
+
+    `spline` is the cubic spline through positions alone with velocity 0 at both ends: velocities and accelerations are
+    continuous. `hermite` takes velocities as given, and accelerations where there are any: cubic between rows, with
+    continuous velocities, or of fifth order, with continuous accelerations.
+
+    Args:
+        times: Time of each row, shape (N,), in s.
+        rows: Positions and given derivatives, shape (N, orders, k).
+        kind: Which of them.
+    """
+    if kind == "spline":
+        spline = CubicSpline(times, rows[:, 0], bc_type="clamped")
+        return Interpolated(times, (spline, spline.derivative(1), spline.derivative(2)))
+    curve = BPoly.from_derivatives(times, rows)
+    return Interpolated(times, (curve, curve.derivative(1), curve.derivative(2)))

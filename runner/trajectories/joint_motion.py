@@ -1,0 +1,127 @@
+"""Desired motions of the joints, and the motion of the tip that follows from them."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+import pinocchio as pin
+from scipy.interpolate import BPoly
+
+from runner.robots.model import RobotModel
+from runner.robots.robot import Robot, StageBase
+from runner.trajectories.nearest import distance_to_curve
+from runner.trajectories.trajectory import FloatArray
+
+
+class JointMotion(Protocol):
+    """A desired motion of a robot's joints, from rest to rest."""
+
+    @property
+    def duration(self) -> float:
+        """Time t_f after which the joints rest, in s."""
+        ...
+
+    @property
+    def samples(self) -> int:
+        """Number of even samples so close that the tip's path bends but once between two."""
+        ...
+
+    def sample_joints(self, times: FloatArray) -> FloatArray:
+        """Return q, dq/dt and d2q/dt2, shape (T, 3, nq): rows in rad, rad/s, rad/s^2; m where a joint slides."""
+        ...
+
+
+@dataclass(frozen=True)
+class TipOfJoints:
+    r"""The motion of the tip that follows from one of the joints; see Trajectory for the attributes.
+
+    .. math:: x = f(q), \qquad \dot x = J \dot q, \qquad \ddot x = J \ddot q + \dot J \dot q
+
+    Attributes:
+        robot: The robot.
+        joints: The motion of its joints.
+        parallel: Whether riding stages keep the orientation of home.
+    """
+
+    robot: Robot
+    joints: JointMotion
+    parallel: bool
+    tracked: bool = True
+
+    @property
+    def q_start(self) -> FloatArray:
+        """Joint positions at t = 0, shape (nq,), in rad."""
+        start: FloatArray = self.joints.sample_joints(np.zeros(1))[0, 0]
+        return start
+
+    @property
+    def start(self) -> FloatArray:
+        """Tip position at t = 0."""
+        start: FloatArray = self.sample(np.zeros(1))[0, 0]
+        return start
+
+    @property
+    def goal(self) -> FloatArray:
+        """Tip position where the joints rest in the end."""
+        goal: FloatArray = self.sample(np.array([self.duration]))[0, 0]
+        return goal
+
+    @property
+    def duration(self) -> float:
+        """Time t_f of the joints' motion, in s."""
+        return self.joints.duration
+
+    @property
+    def run_duration(self) -> float:
+        """One second more than the motion, so that the arm's rest is seen."""
+        return self.duration + 1.0
+
+    def sample_joints(self, times: FloatArray) -> FloatArray:
+        """Return the motion of the joints; see JointMotion."""
+        return self.joints.sample_joints(times)
+
+    def sample(self, times: FloatArray) -> FloatArray:
+        """Return the motion of the tip, at rest at the end after t_f."""
+        joints = self.joints.sample_joints(times)
+        robot = self.robot
+        if not self.parallel:
+            return _tip_motion(robot.model, joints)
+        motion = _tip_motion(robot.model.with_tip(str(robot.stages[1].base_frame)), joints)
+        for index, stage in enumerate(robot.stages[1:], start=1):
+            R = StageBase(robot, index, parallel=True).rotation
+            motion += _tip_motion(stage.model, joints[:, :, stage.joints]) @ R.T
+        return motion
+
+    def distance_to_path(self, points: FloatArray) -> FloatArray:
+        """Return the distance to the curve of the tip, as the spline through its samples has it."""
+        curve, derivatives = self._curve
+        within = self._samples
+
+        def motion(times: FloatArray) -> FloatArray:
+            return np.stack([part(times) for part in (curve, *derivatives)], axis=1)
+
+        return distance_to_curve(points, motion, within)
+
+    @cached_property
+    def _samples(self) -> FloatArray:
+        return np.linspace(0.0, self.duration, self.joints.samples + 1)
+
+    @cached_property
+    def _curve(self) -> tuple[BPoly, tuple[BPoly, BPoly]]:
+        """The tip over time, between samples by the polynomial of fifth order with their first two derivatives."""
+        curve = BPoly.from_derivatives(self._samples, self.sample(self._samples))
+        return curve, (curve.derivative(1), curve.derivative(2))
+
+
+def _tip_motion(model: RobotModel, joints: FloatArray) -> FloatArray:
+    """Return position, velocity and acceleration of an arm's tip, shape (T, 3, 3), from those of its joints."""
+    arm, data, tip = model.pin_model, model.pin_model.createData(), model.tip_frame
+    motion = np.empty((len(joints), 3, 3))
+    for row, (q, dq, ddq) in zip(motion, np.ascontiguousarray(joints), strict=True):
+        pin.forwardKinematics(arm, data, q, dq, ddq)
+        pin.updateFramePlacement(arm, data, tip)
+        row[0] = data.oMf[tip].translation
+        row[1] = pin.getFrameVelocity(arm, data, tip, pin.LOCAL_WORLD_ALIGNED).linear
+        row[2] = pin.getFrameClassicalAcceleration(arm, data, tip, pin.LOCAL_WORLD_ALIGNED).linear
+    return motion

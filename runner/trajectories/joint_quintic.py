@@ -1,0 +1,75 @@
+"""Rest to rest between two postures, each joint by a polynomial of fifth order in time."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from pydantic import PositiveFloat
+
+from runner.registry import StrictModel
+from runner.robots.robot import Robot
+from runner.trajectories.blend import quintic_blend
+from runner.trajectories.joint_motion import JointMotion
+from runner.trajectories.posture import Posture, posture_of, start_of
+from runner.trajectories.trajectory import FloatArray
+
+_SAMPLES = 512
+
+
+class JointQuinticConfig(StrictModel):
+    """Config of a quintic between postures.
+
+    Attributes:
+        kind: Its name in the registry.
+        start_posture: Joint positions at t = 0, in rad; m where a joint slides. One for all joints or a list with one
+            for each; None is home.
+        goal_posture: Joint positions at t_f, in rad; m where a joint slides. One for all joints or a list with one for
+            each.
+        duration: t_f, in s.
+    """
+
+    kind: Literal["joint_quintic"]
+    start_posture: Posture | None
+    goal_posture: Posture
+    duration: PositiveFloat
+
+
+@dataclass(frozen=True)
+class JointQuintic:
+    r"""All joints from rest to rest at once, with u = t / t_f; see JointMotion for the attributes.
+
+    .. math:: q(t) = q_0 + (q_f - q_0) (10 u^3 - 15 u^4 + 6 u^5)
+
+    Peak speed is 1.875 |q_f - q_0| / t_f at half time, joint by joint.
+
+    Attributes:
+        start: q_0, shape (nq,), in rad.
+        goal: q_f, likewise.
+        duration: t_f, in s.
+    """
+
+    start: FloatArray
+    goal: FloatArray
+    duration: float
+    samples: int = _SAMPLES
+
+    def sample_joints(self, times: FloatArray) -> FloatArray:
+        """Return the motion, at rest at the goal after t_f."""
+        blend, rate = quintic_blend(times / self.duration), 1.0 / self.duration
+        D = self.goal - self.start
+        motion = np.stack([np.outer(s * rate**order, D) for order, s in enumerate(blend)], axis=1)
+        motion[:, 0] += self.start
+        return motion
+
+
+CONFIG = JointQuinticConfig
+
+
+def joint_motion(config: JointQuinticConfig, robot: Robot) -> JointMotion:
+    """Make the motion that a config describes.
+
+    Raises:
+        ConfigError: for a posture that has not as many values as the robot has joints.
+    """
+    goal = posture_of("trajectory.goal_posture", config.goal_posture, robot)
+    return JointQuintic(start_of(config.start_posture, robot), goal, config.duration)

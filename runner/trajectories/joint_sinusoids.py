@@ -1,0 +1,160 @@
+"""Sums of sinusoids of every joint, which excite the parameters of an arm, from rest to rest."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field, PositiveFloat, ValidationInfo, field_validator
+
+from runner.config.per_joint import NonNegativePerJoint, expand
+from runner.errors import ConfigError
+from runner.registry import StrictModel
+from runner.robots.robot import Robot
+from runner.trajectories.blend import quintic_blend
+from runner.trajectories.joint_motion import JointMotion
+from runner.trajectories.posture import Posture, start_of
+from runner.trajectories.trajectory import FloatArray
+
+_SAMPLES = 64  # in a period of the highest harmonic
+
+Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
+
+
+class JointSinusoidsConfig(StrictModel):
+    """Config of sums of sinusoids about a posture.
+
+    Attributes:
+        kind: Its name in the registry.
+        start_posture: Posture about which the joints swing, in rad; m where a joint slides. One for all joints or a
+            list with one for each; None is home.
+        frequency: Fundamental frequency, in Hz.
+        harmonics: Number of harmonics, the fundamental included.
+        amplitude: Largest displacement of each joint that drawn coefficients can give, in rad; m where a joint slides.
+            One for all joints or a list with one for each.
+        seed: Seed of the drawn coefficients.
+        coefficients: For each joint a list with the factor of sine and of cosine of each harmonic, in rad; m where a
+            joint slides. None draws them.
+        ramp: Time in which the swing grows from rest, and comes to rest, in s.
+        duration: t_f, both ramps included, in s.
+    """
+
+    kind: Literal["joint_sinusoids"]
+    start_posture: Posture | None
+    frequency: PositiveFloat
+    harmonics: Annotated[int, Field(ge=1, le=100)]
+    amplitude: NonNegativePerJoint
+    seed: Annotated[int, Field(ge=0)]
+    coefficients: list[list[Pair]] | None
+    ramp: PositiveFloat
+    duration: PositiveFloat
+
+    @field_validator("duration")
+    @classmethod
+    def _check_duration(cls, value: float, info: ValidationInfo) -> float:
+        ramp = info.data.get("ramp", 0.0)
+        if value < 2.0 * ramp:
+            raise ValueError(f"must have room for both ramps, {2.0 * ramp:g} s or more")
+        return value
+
+
+@dataclass(frozen=True)
+class JointSinusoids:
+    r"""A Fourier series about a posture, behind a window that opens and closes; see JointMotion for the attributes.
+
+    .. math:: q_i(t) = q_{0i} + w(t) \sum_k a_{ik} \sin k \omega (t - t_r) + b_{ik} \cos k \omega (t - t_r)
+
+    is periodic between the ramps (Swevers, Ganseman, Tuekel, De Schutter and Van Brussel, IEEE Transactions on Robotics
+    and Automation 13(5), 1997, without the window). w is the quintic blend from 0 to 1 in the ramp's time t_r, and back
+    at the end, so that the arm starts and ends at rest in q_0.
+
+    Attributes:
+        centre: q_0, shape (nq,), in rad.
+        coefficients: a and b, shape (nq, N, 2), in rad.
+        omega: Of the fundamental, in rad/s.
+        ramp: t_r, in s.
+        duration: t_f, in s.
+    """
+
+    centre: FloatArray
+    coefficients: FloatArray
+    omega: float
+    ramp: float
+    duration: float
+
+    @property
+    def samples(self) -> int:
+        """Samples by the highest harmonic."""
+        highest = self.coefficients.shape[1] * self.omega / (2.0 * np.pi)
+        return int(np.ceil(_SAMPLES * (self.duration * highest + 2.0)))
+
+    def sample_joints(self, times: FloatArray) -> FloatArray:
+        """Return the motion, at rest in q_0 after t_f."""
+        rate = self.omega * np.arange(1, self.coefficients.shape[1] + 1)
+        phase = np.outer(times - self.ramp, rate)
+        sine, cosine = np.sin(phase), np.cos(phase)
+        a, b = self.coefficients[:, :, 0].T, self.coefficients[:, :, 1].T  # (N, nq)
+        f = sine @ a + cosine @ b
+        df = (rate * cosine) @ a - (rate * sine) @ b
+        ddf = -(rate**2 * sine) @ a - (rate**2 * cosine) @ b
+        w, dw, ddw = self._window(times)
+        return np.stack(
+            [self.centre + w * f, dw * f + w * df, ddw * f + 2.0 * dw * df + w * ddf],
+            axis=1,
+        )
+
+    def _window(self, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return w and its first two derivatives, each of shape (T, 1)."""
+        opens = quintic_blend(times / self.ramp)
+        closes = quintic_blend((self.duration - times) / self.ramp)
+        signs = (1.0, -1.0, 1.0)
+        w, dw, ddw = (
+            (one + sign * other)[:, None] / self.ramp**order
+            for order, (one, other, sign) in enumerate(zip(opens, closes, signs, strict=True))
+        )
+        return w - 1.0, dw, ddw
+
+
+CONFIG = JointSinusoidsConfig
+
+
+def joint_motion(config: JointSinusoidsConfig, robot: Robot) -> JointMotion:
+    """Make the motion that a config describes.
+
+    Raises:
+        ConfigError: for values that are not as many as the robot has joints.
+    """
+    names = robot.model.joint_names
+    if config.coefficients is None:
+        amplitude = np.array(expand("trajectory.amplitude", config.amplitude, names))
+        coefficients = _draw(amplitude, config.harmonics, np.random.default_rng(config.seed))
+    else:
+        _check(config.coefficients, config.harmonics, names)
+        coefficients = np.array(config.coefficients)
+    return JointSinusoids(
+        start_of(config.start_posture, robot),
+        coefficients,
+        2.0 * np.pi * config.frequency,
+        config.ramp,
+        config.duration,
+    )
+
+
+def _draw(amplitude: FloatArray, harmonics: int, generator: np.random.Generator) -> FloatArray:
+    """Return coefficients drawn evenly, scaled so that no joint can leave its amplitude, shape (nq, N, 2)."""
+    drawn = generator.uniform(-1.0, 1.0, (len(amplitude), harmonics, 2))
+    largest = np.linalg.norm(drawn, axis=2).sum(axis=1)  # all harmonics at their peaks at once
+    coefficients: FloatArray = drawn * (amplitude / largest)[:, None, None]
+    return coefficients
+
+
+def _check(coefficients: list[list[Pair]], harmonics: int, names: tuple[str, ...]) -> None:
+    key = "trajectory.coefficients"
+    if len(coefficients) != len(names):
+        raise ConfigError([f"{key}: {len(coefficients)} lists for {len(names)} joints ({', '.join(names)})"])
+    problems = [
+        f"{key}.{joint}: {len(own)} pairs for trajectory.harmonics, {harmonics}"
+        for joint, own in enumerate(coefficients)
+        if len(own) != harmonics
+    ]
+    if problems:
+        raise ConfigError(problems)
