@@ -121,7 +121,7 @@ MUTANTS = [
     *_of(
         "sensing/encoders.py",
         "sensing/test_encoders.py",
-        ("differences of true positions", "self._last = measured", "self._last = q.copy()"),
+        ("differences of true positions", "self._period, measured, state)", "self._period, q, state)"),
     ),
     *_of(
         "statistics/permutation.py",

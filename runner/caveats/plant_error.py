@@ -63,9 +63,9 @@ def _told(metric: str, share: float, own: PlantStep, threshold: float) -> str:
 
 def _parted(error: PlantError, own: PlantStep) -> str:
     found = f"{own.plant} in steps of {own.step:g} s and {PLANT} part at t = {error.parted:.4g} s"
-    if error.failure:
-        return f"{found}: on {PLANT} the run fails: {error.failure}"
+    fails = f"on {PLANT} the run fails: {error.failure}"
     if error.largest is not None and error.largest > own.band:
         apart = f"their tips are {error.largest:.3g} m apart at most, and {error.end:.3g} m at the end"
-        return f"{found}: {apart}; what is measured after that is one of several outcomes"
-    return f"{found}, where this run fails and that on {PLANT} does not"
+        told = f"{found}: {apart}; what is measured after that is one of several outcomes"
+        return f"{told}; {fails}" if error.failure else told
+    return f"{found}: {fails}" if error.failure else f"{found}, where this run fails and that on {PLANT} does not"

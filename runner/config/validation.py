@@ -34,8 +34,7 @@ _MEMORY = Memory(4096)
 def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -> RunConfig:
     """Check a composed config.
 
-    What the groups of a config give is kept for others that share them, as the cells of a sweep do: they must not be
-    changed.
+    What groups give is kept for configs that share them, as a sweep's cells do: they must not be changed.
 
     Args:
         resolved: The config as plain data, interpolations resolved.
@@ -48,8 +47,8 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     groups = read_groups(resolved, problems)
     problems.recall(_check_payload, groups.robot, groups.mismatch)
     gravity = STANDARD_GRAVITY if groups.settings is None else groups.settings.gravity
-    borne = () if groups.wrist_sensor is None else (groups.wrist_sensor,)
-    arm = problems.recall(build_robot, groups.robot, gravity, config_dirs, *borne)
+    made_of = (groups.robot, gravity, config_dirs, *([] if groups.wrist_sensor is None else [groups.wrist_sensor]))
+    arm = problems.recall(build_robot, *made_of)
     noise = problems.recall(NoiseConfig.by_joint, groups.noise, arm)
     torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.torque_limits, arm)
     problems.recall(check_points, arm, groups.trajectory)
@@ -60,7 +59,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     # What follows is made from parts that are sound, each for itself. Parts of the user's may remember other runs.
     build_loops = problems.recall if CONTROLLERS.is_ours(sure(groups.controller).kind) else problems.attempt
     build_path = problems.recall if TRAJECTORIES.is_ours(sure(groups.trajectory).kind) else problems.attempt
-    loaded = problems.recall(build_loaded, groups.robot, gravity, config_dirs, *borne)
+    loaded = problems.recall(build_loaded, *made_of)
     parallel = problems.recall(_is_parallel, arm, groups.plant)
     path = build_path(_build_path, arm, groups.trajectory, parallel)
     loops = build_loops(CONTROLLERS.build_for, groups.controller, arm, isinstance(path, TipOfJoints))

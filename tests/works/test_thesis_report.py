@@ -93,7 +93,9 @@ def test_the_first_screen_shows_the_arm_and_counts_the_verdicts(document):
 
 def test_what_the_plants_step_is_worth_is_told_of_every_compared_figure(document):
     texts = [block.text for block in blocks_of(document, Text)]
-    told = [text for text in texts if re.search("step of .* ms is worth", text) or "goes another way from" in text]
+    told = [
+        text for text in texts if re.search("step of .* ms (is worth|moves)", text) or "goes another way from" in text
+    ]
     assert len(told) == len(FOR_BOTH_PRESETS)
 
 

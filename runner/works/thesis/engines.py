@@ -17,7 +17,8 @@ _METRICS = {"settling_time": "settles after", "steady_state_error": "rests withi
 def step_of_both(named: Mapping[str, Run], metrics: Sequence[str]) -> str:
     """Return what the plant's step is worth in a figure's metrics, under both presets, in a sentence.
 
-    Nothing is said here of runs whose motion parts from that on Runge-Kutta; see `parting`.
+    Where none of the metrics has a value, it is how far the step moves the tip. Nothing is said here of runs whose
+    motion parts from that on Runge-Kutta; see `parting`.
     """
     errors = {words: run.plant_error or {"reason": ""} for words, run in named.items()}
     if any("reason" in error for error in errors.values()):
@@ -31,7 +32,14 @@ def step_of_both(named: Mapping[str, Run], metrics: Sequence[str]) -> str:
         told += [f"{' and '.join(known)} of the {title(metric)}"] if known else []
     first = next(iter(named.values()))
     step = f"{_plant(first)}'s step of {quantity(first.provenance['plant_step'], 's')}"
-    return f"{step} is worth {'; '.join(told)}." if told else ""
+    if told:
+        return f"{step} is worth {'; '.join(told)}."
+    moved = [
+        f"{above_rounding(error['largest'], 'm', 2)} ({words})"
+        for words, error in errors.items()
+        if error["parted"] is None
+    ]
+    return f"{step} moves the tip by {' and '.join(moved)} at most." if moved else ""
 
 
 def parting(named: Mapping[str, Run], claims: Mapping[str, int]) -> list[str]:
