@@ -75,7 +75,7 @@ def analyse(
         ConfigError: where it cannot start.
     """
     scene = scene_of(by_runge_kutta(config, validated), repetition)
-    trace, metrics = simulated(scene.wanted)
+    trace, metrics = simulated(scene)
     parameters, slopes, left_out = slopes_of(scene, find_parameters(scene.config, groups, validated))
     if not parameters:
         raise RunnerError(f"the run depends on no parameter of {', '.join(groups)}; allowed: {', '.join(GROUPS)}")

@@ -41,7 +41,7 @@ def differences(found: Sensitivity, names: Sequence[str]) -> dict[str, Differenc
     first = _LARGEST * np.minimum(1.0, found.error / np.maximum(found.moves, 1e-300))
     steps = first[:, None] * 0.5 ** np.arange(_STEPS)
     runs = [
-        found.scene.at(parameter, parameter.value * (1.0 + side)).wanted
+        found.scene.at(parameter, parameter.value * (1.0 + side))
         for parameter, own in zip(found.parameters, steps.tolist(), strict=True)
         for step in own
         for side in (-step, step)

@@ -2,7 +2,7 @@
 
 import copy
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,7 +11,6 @@ from runner.batch import Wanted
 from runner.compiled.closed_loop import Whole
 from runner.compiled.directed import Setting
 from runner.compiled.structure import fixed_text
-from runner.config.run import RunConfig
 from runner.errors import RunnerError
 from runner.sensing.encoders import encoder_errors
 from runner.sensitivity.parameters import Parameter
@@ -27,21 +26,8 @@ class NotSmoothError(RunnerError):
     """The numbers of a closed loop are no smooth functions of a parameter, or its code changes with it."""
 
 
-@dataclass(frozen=True)
-class Scene:
-    """One repetition of a run.
-
-    Attributes:
-        config: The run's checked config.
-        repetition: Number of the repetition.
-        whole: Its closed loop.
-        q_start: Where the arm starts, shape (nq,), in rad.
-    """
-
-    config: RunConfig
-    repetition: int
-    whole: Whole
-    q_start: FloatArray
+class Scene(Wanted):
+    """One repetition of a run, and how what it follows from changes with parameters."""
 
     @property
     def setting(self) -> Setting:
@@ -57,11 +43,6 @@ class Scene:
         ]
         start = self.whole.commands.start(self.q_start[None], [wrong[:1] for wrong in errors])[0]
         return Setting(self.whole.numbers, start, errors)
-
-    @property
-    def wanted(self) -> Wanted:
-        """The run as it is simulated."""
-        return Wanted(self.config, self.repetition, self.whole, self.q_start)
 
     def at(self, parameter: Parameter, value: float) -> "Scene":
         """Return the run with another value of a parameter; where the arm starts and the desired motion are held.

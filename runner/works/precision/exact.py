@@ -12,7 +12,27 @@ _STAGES, _STEP = 8, 0.0025  # of the collocation; its longest step, in s
 _ITERATIONS, _SETTLED = 60, 4e-16  # at most; the change relative to the state at which its stages are taken as solved
 
 
-class Adaptive:
+class _Arm:
+    """The state of an arm that stands on the ground; see Plant.
+
+    Args:
+        model: The arm.
+    """
+
+    def __init__(self, model: RobotModel) -> None:
+        self._model, self._data = model.pin_model, model.pin_model.createData()
+        self.q, self.dq = np.zeros(model.nq), np.zeros(model.nq)
+
+    def reset(self, q: FloatArray, dq: FloatArray) -> None:
+        """Put the arm into a state; see Plant."""
+        self.q[:], self.dq[:] = q, dq
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Refuse: the arm stands on the ground."""
+        raise NotImplementedError("the gravity of a rider's base")
+
+
+class Adaptive(_Arm):
     """Dormand and Prince's pair of order 8 with step control (DOP853), on the articulated-body algorithm.
 
     Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd edition, 1993, section II.10.
@@ -24,17 +44,8 @@ class Adaptive:
     """
 
     def __init__(self, model: RobotModel, tick: float, tolerance: float) -> None:
-        self._model, self._data = model.pin_model, model.pin_model.createData()
+        super().__init__(model)
         self._tick, self._tolerance = tick, tolerance
-        self.q, self.dq = np.zeros(model.nq), np.zeros(model.nq)
-
-    def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the arm into a state; see Plant."""
-        self.q[:], self.dq[:] = q, dq
-
-    def set_gravity(self, gravity: FloatArray) -> None:
-        """Refuse: the arm stands on the ground."""
-        raise NotImplementedError("the gravity of a rider's base")
 
     def advance(self, tau: FloatArray) -> None:
         """Hold the torques for one tick; see Plant."""
@@ -53,7 +64,7 @@ class Adaptive:
         """Hold nothing, release nothing."""
 
 
-class Collocation:
+class Collocation(_Arm):
     r"""Gauss' collocation of order 16, on mass matrix and bias of recursive Newton-Euler.
 
     A polynomial through the stages' accelerations is integrated twice, to velocities and positions:
@@ -71,7 +82,7 @@ class Collocation:
     """
 
     def __init__(self, model: RobotModel, tick: float) -> None:
-        self._model, self._data = model.pin_model, model.pin_model.createData()
+        super().__init__(model)
         self._steps = int(np.ceil(tick / _STEP - 1e-9))
         self._h = tick / self._steps
         nodes, weights = np.polynomial.legendre.leggauss(_STAGES)
@@ -80,15 +91,6 @@ class Collocation:
         powers = np.arange(1, _STAGES + 1)
         self._A = np.linalg.solve((self._c[:, None] ** (powers - 1)).T, (self._c[:, None] ** powers / powers).T).T
         self._AA = self._A @ self._A
-        self.q, self.dq = np.zeros(model.nq), np.zeros(model.nq)
-
-    def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the arm into a state; see Plant."""
-        self.q[:], self.dq[:] = q, dq
-
-    def set_gravity(self, gravity: FloatArray) -> None:
-        """Refuse: the arm stands on the ground."""
-        raise NotImplementedError("the gravity of a rider's base")
 
     def advance(self, tau: FloatArray) -> None:
         """Hold the torques for one tick; see Plant."""
