@@ -8,6 +8,7 @@ CONTROLLERS = Controllers(
         "admittance": "runner.controllers.admittance",
         "computed_torque": "runner.controllers.computed_torque",
         "differential_inverse_kinematics": "runner.controllers.differential_inverse_kinematics",
+        "joint_pd": "runner.controllers.joint_pd",
         "macro_mini": "runner.controllers.macro_mini",
         "operational_space": "runner.controllers.operational_space",
         "whole_body": "runner.controllers.whole_body",

@@ -21,6 +21,7 @@ _WORDS = {
     "joint_limits": "joint limits",
     "operational_space": "operational space",
     "computed_torque": "computed torque",
+    "joint_pd": "joint PD",
     "euler": "Euler",
     "macro_mini": "Macro and Mini coupled",
 }

@@ -23,6 +23,7 @@ CASES = [
     *((robot, "operational_space") for robot in ("macro", "mini", "xarm7", "meca500", "crane", "planar_two")),
     ("combined", "whole_body"),
     *((robot, "computed_torque") for robot in ("macro", "xarm7", "mixed")),
+    *((robot, "joint_pd") for robot in ("macro", "xarm7")),
 ]
 
 

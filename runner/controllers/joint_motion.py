@@ -1,0 +1,112 @@
+"""The joint motion that laws in joint space follow: that of the reference, or one resolved from the tip's."""
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from runner.controllers.controller import FloatArray
+from runner.controllers.maths import Array, Scalar
+from runner.controllers.tip_task import TaskName, TipNumbers, TipTask, held_orientation
+from runner.controllers.torque_law import Arm, structure_of
+from runner.controllers.whole_body_posture import HeldPosture, PostureNumbers, drawn_to
+from runner.robots.model import RobotModel
+
+
+class JointMotionConfig(Protocol):
+    """What the config of a law in joint space says of the motion that it follows; see ComputedTorqueConfig."""
+
+    task: TaskName
+    natural_frequency: float
+    damping_ratio: float
+    period: float
+    feedforward: bool
+    singularity_damping: float
+    null_space_frequency: float
+
+
+class JointMotionNumbers(NamedTuple):
+    """The numbers of a joint motion.
+
+    Attributes:
+        tip: Of the task that leads the imagined arm's tip.
+        posture: Of its null space.
+        period: Time between two ticks, in s.
+    """
+
+    tip: TipNumbers
+    posture: PostureNumbers
+    period: Scalar
+
+
+class JointMotion:
+    r"""Joint positions, velocities and accelerations to follow, tick by tick.
+
+    Where the desired motion is one of the joints it is that motion, without feedforward its posture at rest. Where it
+    is the tip's, it is the motion of an imagined arm, whose tip obeys F* of TipTask (resolved acceleration; Luh, Walker
+    and Paul, IEEE Transactions on Automatic Control 25(3), 1980):
+
+    .. math::
+
+        \ddot q_d = \ddot q_0 + J^+ (F^* - \dot J \dot q_d - J \ddot q_0), \qquad
+        \ddot q_0 = -2 \omega_{n0} \dot q_d - \omega_{n0}^2 (q_d - q_\mathrm{rest})
+
+    J, dJ/dt and F* are taken at q_d. It stands where the encoders find the arm at the first tick, and each tick goes on
+    by an acceleration that is constant for a period. The imagined arm has no inertia, no limits and no noise: what
+    disturbs the arm moves its tip against q_d, and never q_d. Near a singular posture the inverse is damped as in the
+    tip laws: J^T (J J^T + lambda^2)^-1.
+
+    Args:
+        model: The arm.
+        config: The law's numbers.
+        rest: Posture of the null space, shape (nq,), in rad.
+        joints: Whether the desired motion is one of the joints.
+
+    Raises:
+        ConfigError: if the arm has fewer joints than the task has dimensions.
+    """
+
+    def __init__(self, model: RobotModel, config: JointMotionConfig, rest: FloatArray, joints: bool) -> None:
+        self._joints, self._feedforward = joints, config.feedforward
+        self._task = TipTask(
+            model,
+            held_orientation(config.task, model, rest),
+            config.natural_frequency,
+            config.damping_ratio,
+            config.feedforward,
+            None,
+            config.singularity_damping,
+        )
+        posture = HeldPosture(config.null_space_frequency, rest).numbers
+        self.numbers = JointMotionNumbers(self._task.numbers, posture, config.period)
+
+    def structure(self) -> dict[str, Any]:
+        """Return what decides how it goes, beside its numbers; see TorqueLaw.structure."""
+        return structure_of(self)
+
+    def start(self, q: FloatArray) -> FloatArray:
+        """Return its memory at the first tick: q_d and dq_d/dt, shape (2 nq,); of a motion of the joints, none."""
+        return np.zeros(0) if self._joints else np.concatenate([q, np.zeros(len(q))])
+
+    def follow(
+        self, arm: Arm, numbers: JointMotionNumbers, reference: Array, memory: Array
+    ) -> tuple[tuple[Array, Array, Array], Array]:
+        """Return q_d and its two derivatives, each of shape (nq,), and the memory for the next tick."""
+        if self._joints:
+            q_d, dq_d, ddq_d = reference[0], reference[1], reference[2]
+            return (q_d, dq_d, ddq_d) if self._feedforward else (q_d, 0.0 * dq_d, 0.0 * ddq_d), memory
+        h, n = numbers.period, len(memory) // 2
+        q_d, dq_d = memory[:n], memory[n:]
+        ddq_d = self._resolved_acceleration(arm, numbers, q_d, dq_d, reference)
+        goes_on = np.concatenate([q_d + h * dq_d + 0.5 * h**2 * ddq_d, dq_d + h * ddq_d])
+        return (q_d, dq_d, ddq_d), goes_on
+
+    def _resolved_acceleration(
+        self, arm: Arm, numbers: JointMotionNumbers, q_d: Array, dq_d: Array, reference: Array
+    ) -> Array:
+        maths, task, tip = arm.maths, self._task, arm.tip(q_d, dq_d)
+        J, dJ_dq = task.jacobian(numbers.tip, tip)
+        error = task.error(maths, numbers.tip, tip, reference)
+        ddq_0 = drawn_to(numbers.posture, q_d, dq_d)
+        F = task.acceleration(maths, numbers.tip, error, J.dot(dq_d), reference) - dJ_dq - J.dot(ddq_0)
+        square = task.damp(maths, numbers.tip, J, error, J.dot(J.T))
+        return np.asarray(ddq_0 + J.T.dot(maths.solve_symmetric(square, F, "the tip's Jacobian is singular")))
