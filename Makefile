@@ -19,7 +19,7 @@ test: install
 # The README and the pages of docs/ that are followed command by command in a shell: what takes minutes of them.
 test-pages: install
 	$(BIN)/python -m pytest -m slow tests/test_readme.py tests/test_tutorial.py tests/test_compare_page.py \
-		tests/test_figures_and_tables_docs.py
+		tests/test_figures_and_tables_docs.py tests/test_how_sure_page.py tests/test_sensitivity_page.py
 
 test-slow: install
 	$(BIN)/python -m pytest -m slow

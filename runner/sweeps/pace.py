@@ -19,7 +19,7 @@ from runner.sweeps.status import NOTE
 _EVERY = 2.0  # s between two notes of the pace
 START_UP = 3.0
 """CPU time that a worker process takes until its first run, in s."""
-_PROBES = 3  # cells that the first estimate is made from
+_PROBES = 3  # cells that the first estimate is made from, of each power of ten of ticks
 _PROBED_WITHIN = 2.0  # s; what takes longer is told when its run is made
 _FIXED = 0.010  # s that a job takes beside its ticks
 _FIXED_TOGETHER = 0.0002  # s, of runs that are simulated together and keep no trace
@@ -46,22 +46,30 @@ class Pace:
             write_atomically(self._folder / NOTE, sealed_json({"seconds_per_run": (now - self._began) / self._made}))
 
 
-def estimate(plan: Plan, checked: Checked, cells: NDArray[np.intp], ticks: int, kept: float) -> float:
+def estimate(plan: Plan, checked: Checked, cells: NDArray[np.intp], kept: float) -> float:
     """Return the CPU time that some cells will take, in s, from a few ticks of a few of their runs.
 
     Args:
         plan: The plan.
         checked: What its check gave.
         cells: The cells, shape (n,); in a tuning, one for each trial.
-        ticks: What they cost together.
         kept: Share of the runs that keep their trace.
     """
     runs = np.setdiff1d(cells, list(checked.calibrations), assume_unique=True) if checked.calibrations else cells
-    chosen = sorted({int(runs[len(runs) * part // _PROBES]) for part in range(_PROBES)}) if len(runs) else []
+    # Runs of very many ticks, such as those of a thousand repetitions, may have another pace than the others.
+    sizes = np.floor(np.log10(np.maximum(checked.costs[runs], 1)))
+    others = _FIXED * (len(cells) - len(runs))
+    return others + sum(_seconds(plan, checked, runs[sizes == size], kept) for size in np.unique(sizes))
+
+
+def _seconds(plan: Plan, checked: Checked, runs: NDArray[np.intp], kept: float) -> float:
+    """Return the CPU time of runs of about as many ticks, in s."""
+    chosen = sorted({int(runs[len(runs) * part // _PROBES]) for part in range(_PROBES)})
     probed = [_probe(plan.composed(cell), int(checked.costs[cell])) for cell in chosen]
-    per_tick, together = np.mean(probed, axis=0).tolist() if probed else (0.0, 0.0)
+    per_tick, together = np.mean(probed, axis=0).tolist()
     in_shards = together * (1.0 - kept) * len(runs)
-    return _FIXED * (len(cells) - in_shards) + _FIXED_TOGETHER * in_shards + per_tick * ticks
+    fixed = _FIXED * (len(runs) - in_shards) + _FIXED_TOGETHER * in_shards
+    return float(fixed + per_tick * checked.costs[runs].sum())
 
 
 def _probe(composed: Composed, ticks: int) -> tuple[float, bool]:

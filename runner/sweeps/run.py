@@ -206,7 +206,7 @@ def make_jobs(
         return
     ticks = int(checked.costs[cells].sum())
     progress.begin("estimating", SOON)
-    seconds = estimate(plan, checked, cells, ticks, queue.rules.kept)
+    seconds = estimate(plan, checked, cells, queue.rules.kept)
     check_cpu_time(checked.limits, seconds, len(cells))
     pace = Pace(queue.rules.sweep)
     with _workers(queue, len(cells), engine, seconds) as reports:

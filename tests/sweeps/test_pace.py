@@ -1,6 +1,7 @@
 """The first estimate of what a sweep costs."""
 
 import contextlib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ def estimated(tmp_path, kept, *overrides):
     plan = plan_sweep(["robot=macro", "duration=0.05", "seed=range(0,10000)", f"outputs={tmp_path}", *overrides])
     checked = check(plan)
     cells = np.arange(len(plan))
-    return estimate(plan, checked, cells, int(checked.costs.sum()), kept)
+    return estimate(plan, checked, cells, kept)
 
 
 def test_runs_that_are_simulated_together_and_keep_no_trace_cost_little(tmp_path):
@@ -30,6 +31,30 @@ def test_a_trace_is_written_for_each_that_keeps_its_own(tmp_path):
 
 def test_a_run_that_is_made_alone_has_its_fixed_cost(tmp_path):
     assert estimated(tmp_path, 0.0, "plant=default") > 100.0
+
+
+def test_a_few_runs_of_very_many_ticks_do_not_take_the_pace_of_the_others(tmp_path):
+    """As many ticks as all others have together, by runs that are compiled whole, cost next to nothing more."""
+    few = ("robot=macro", "duration=1", f"outputs={tmp_path}", "trajectory=quintic")
+    alone = plan_sweep([*few, "plant=mujoco", "seed=range(0,40)"])
+    cells = np.arange(len(alone))
+    some = estimate(alone, check(alone), cells, 1.0)
+
+    class Both:
+        """The plan with runs of many repetitions behind it."""
+
+        def __init__(self):
+            self.plans = (alone, plan_sweep([*few, "plant=rk4", "noise=thesis", "repetitions=1000", "seed=0,1"]))
+
+        def composed(self, cell):
+            return self.plans[cell >= 40].composed(cell if cell < 40 else cell - 40)
+
+    both = Both()
+    checks = [check(plan) for plan in both.plans]
+    costs = np.concatenate([checked.costs for checked in checks])
+    checked = replace(checks[0], costs=costs)
+    assert costs[40:].sum() > 10 * costs[:40].sum()
+    assert estimate(both, checked, np.arange(42), 1.0) < 3.0 * some
 
 
 @pytest.mark.parametrize(("workers", "told"), [(1, "about 43 s on 1 process"), (4, "about 26 s on 4 processes")])
