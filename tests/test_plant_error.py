@@ -77,14 +77,15 @@ def test_a_run_against_itself_is_worth_nothing(simulated):
     assert {worth.share for worth in error.metrics.values()} == {0.0}
 
 
-def test_motions_part_where_the_tips_are_farther_apart_than_the_band(simulated):
+def test_motions_part_where_the_tips_are_four_bands_apart(simulated):
     trace, metrics = simulated
     moved = trace.end_points.copy()
-    moved[-1, 50:60, 0] += 2.0 * BAND
-    moved[-1, 80, 1] += 3.0 * BAND
+    moved[-1, 40:45, 2] -= 3.9 * BAND
+    moved[-1, 50:60, 0] += 4.1 * BAND
+    moved[-1, 80, 1] += 5.0 * BAND
     error = compare(trace, metrics, replace(trace, end_points=moved), metrics, BAND, STEP)
     assert error.parted == trace.t[50]
-    assert (error.at, error.largest) == (trace.t[80], pytest.approx(3.0 * BAND))
+    assert (error.at, error.largest) == (trace.t[80], pytest.approx(5.0 * BAND))
     assert error.end == 0.0
     assert {(worth.difference, worth.share) for worth in error.metrics.values()} == {(None, None)}
     assert error.metrics["max_tracking_error"].value == metrics["max_tracking_error"]

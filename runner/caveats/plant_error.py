@@ -5,7 +5,7 @@ from typing import NamedTuple
 from runner.caveats.caveat import Caveat
 from runner.caveats.rule import percent
 from runner.metrics.summary import unit_of
-from runner.plant_error import PLANT, PlantError, sufficient_step
+from runner.plant_error import PARTED, PLANT, PlantError, sufficient_step
 
 NAME, KEY = "plant_error", "share"
 _OF_BAND = 0.01  # of the settling band: smaller differences do not matter
@@ -64,7 +64,7 @@ def _told(metric: str, share: float, own: PlantStep, threshold: float) -> str:
 def _parted(error: PlantError, own: PlantStep) -> str:
     found = f"{own.plant} in steps of {own.step:g} s and {PLANT} part at t = {error.parted:.4g} s"
     fails = f"on {PLANT} the run fails: {error.failure}"
-    if error.largest is not None and error.largest > own.band:
+    if error.largest is not None and error.largest > PARTED * own.band:
         apart = f"their tips are {error.largest:.3g} m apart at most, and {error.end:.3g} m at the end"
         told = f"{found}: {apart}; what is measured after that is one of several outcomes"
         return f"{told}; {fails}" if error.failure else told

@@ -11,6 +11,7 @@ CONTROLLERS = Controllers(
         "joint_pd": "runner.controllers.joint_pd",
         "macro_mini": "runner.controllers.macro_mini",
         "operational_space": "runner.controllers.operational_space",
+        "passivity": "runner.controllers.passivity",
         "whole_body": "runner.controllers.whole_body",
     }
 )

@@ -22,6 +22,7 @@ _WORDS = {
     "operational_space": "operational space",
     "computed_torque": "computed torque",
     "joint_pd": "joint PD",
+    "passivity": "passivity-based",
     "euler": "Euler",
     "macro_mini": "Macro and Mini coupled",
 }
