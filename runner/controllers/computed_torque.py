@@ -1,48 +1,27 @@
 """Computed-torque control: joints follow a joint motion that is resolved from the tip's."""
 
-from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
-import numpy as np
-from pydantic import NonNegativeFloat, PositiveFloat
+from pydantic import NonNegativeFloat
 
-from runner.controllers.controller import FloatArray, Loop
-from runner.controllers.joint_motion import JointMotion, JointMotionNumbers
+from runner.controllers.controller import FloatArray
+from runner.controllers.joint_law import JointLaw, JointLawConfig, joint_law_builder
+from runner.controllers.joint_law import start_posture as start_posture
+from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
 from runner.controllers.maths import Array, Scalar
-from runner.controllers.tip_task import TaskName, task_start
-from runner.controllers.torque_law import Arm, TorqueLaw
-from runner.registry import StrictModel
+from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
-from runner.robots.robot import Robot
 
 
-class ComputedTorqueConfig(StrictModel):
+class ComputedTorqueConfig(JointLawConfig):
     """Config of computed-torque control.
 
     Attributes:
         kind: Its name in the registry.
-        task: Whether the tip's position is led, or its pose, with home's orientation held.
-        natural_frequency: omega_n of every joint's closed loop, and of the motion that leads the tip, in rad/s.
-        damping_ratio: xi of both.
-        period: Time between two ticks, in s.
-        gravity_compensation: Whether the law holds the gravity term.
-        feedforward: Whether the law follows the desired velocity and acceleration, or sees a moving goal.
-        singularity_damping: Share of the tip's error by which the inverse of J is damped near a singular posture;
-            0 is the law without damping.
-        null_space_frequency: omega_n of the posture task, home, of an arm with more joints than the task needs, in
-            rad/s.
         integral_gain: How fast the integral of each joint's error acts, k_i in 1/s^3; 0 is the law without it.
     """
 
     kind: Literal["computed_torque"]
-    task: TaskName
-    natural_frequency: PositiveFloat
-    damping_ratio: PositiveFloat
-    period: PositiveFloat
-    gravity_compensation: bool
-    feedforward: bool
-    singularity_damping: NonNegativeFloat
-    null_space_frequency: NonNegativeFloat
     integral_gain: NonNegativeFloat
 
 
@@ -62,7 +41,7 @@ class ComputedTorqueNumbers(NamedTuple):
     k_i: Scalar
 
 
-class ComputedTorque(TorqueLaw[ComputedTorqueNumbers]):
+class ComputedTorque(JointLaw[ComputedTorqueNumbers]):
     r"""Inverse dynamics in joint space (Luh, Walker and Paul, IEEE Transactions on Automatic Control 25(3), 1980).
 
     .. math:: \tau = M (\ddot q_d + 2 \xi \omega_n (\dot q_d - \dot q) + \omega_n^2 (q_d - q) + k_i z) + V + G
@@ -83,54 +62,27 @@ class ComputedTorque(TorqueLaw[ComputedTorqueNumbers]):
     """
 
     def __init__(self, model: RobotModel, config: ComputedTorqueConfig, rest: FloatArray, joints: bool = False) -> None:
-        self._motion = JointMotion(model, config, rest, joints)
-        self._integrates = config.integral_gain > 0.0
+        motion = JointMotion(model, config, rest, joints)
+        integrals = model.nq if config.integral_gain > 0.0 else 0
         numbers = ComputedTorqueNumbers(
-            motion=self._motion.numbers,
+            motion=motion.numbers,
             k_p=config.natural_frequency**2,
             k_v=2.0 * config.damping_ratio * config.natural_frequency,
             k_i=config.integral_gain,
         )
-        super().__init__([model], config.gravity_compensation, numbers)
+        super().__init__(model, motion, config.gravity_compensation, numbers, integrals)
 
-    def start(self, q: FloatArray) -> FloatArray:
-        """Return the joint motion where it starts, and z = 0, shape (3 nq,); where joints are followed z alone."""
-        return np.concatenate([self._motion.start(q), np.zeros(len(q))])
-
-    def evaluate(
-        self,
-        arms: Sequence[Arm],
-        numbers: ComputedTorqueNumbers,
-        time: Scalar,
-        q: Array,
-        dq: Array,
-        reference: Array,
-        memory: Array,
+    def command(
+        self, arm: Arm, numbers: ComputedTorqueNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
     ) -> tuple[Array, Array]:
-        """Return the torques of the law above, and the joint motion at the next tick; see TorqueLaw."""
-        (arm,), n = arms, len(q)
-        (q_d, dq_d, ddq_d), goes_on = self._motion.follow(arm, numbers.motion, reference, memory[:-n])
-        z, error = memory[-n:], q_d - q
-        ddq = ddq_d + numbers.k_v * (dq_d - dq) + numbers.k_p * error
-        if self._integrates:
-            ddq, z = ddq + numbers.k_i * z, z + numbers.motion.period * error
-        return arm.inverse_dynamics(q, dq, ddq), np.concatenate([goes_on, z])
+        """Return the torques of the law above, and the integral at the next tick; see JointLaw."""
+        error = desired.q - q
+        ddq = desired.ddq + numbers.k_v * (desired.dq - dq) + numbers.k_p * error
+        if self._remembers:
+            ddq, memory = ddq + numbers.k_i * memory, memory + numbers.motion.period * error
+        return arm.inverse_dynamics(q, dq, ddq), memory
 
 
 CONFIG = ComputedTorqueConfig
 FOLLOWS_JOINTS = True
-
-
-def build(config: ComputedTorqueConfig, robot: Robot, joints: bool = False) -> tuple[Loop, ...]:
-    """Make the one loop that a config describes; it commands every joint. See FollowsJoints.
-
-    Raises:
-        ConfigError: see ComputedTorque.
-    """
-    law = ComputedTorque(robot.model, config, robot.home, joints)
-    return (Loop("whole", slice(0, robot.model.nq), config.period, law, follows_joints=joints),)
-
-
-def start_posture(config: ComputedTorqueConfig, robot: Robot, start: FloatArray) -> FloatArray | None:
-    """Return where the arm stands at a trajectory's start: for a pose, with home's orientation."""
-    return task_start(config.task, robot, start)
+build = joint_law_builder(ComputedTorque)

@@ -13,7 +13,7 @@ from runner.robots.model import RobotModel
 
 
 class JointMotionConfig(Protocol):
-    """What the config of a law in joint space says of the motion that it follows; see ComputedTorqueConfig."""
+    """What the config of a law in joint space says of the motion that it follows; see JointLawConfig."""
 
     task: TaskName
     natural_frequency: float
@@ -36,6 +36,20 @@ class JointMotionNumbers(NamedTuple):
     tip: TipNumbers
     posture: PostureNumbers
     period: Scalar
+
+
+class DesiredJoints(NamedTuple):
+    """The desired state of the joints at a tick.
+
+    Attributes:
+        q: Positions, shape (nq,), in rad.
+        dq: Velocities, shape (nq,), in rad/s.
+        ddq: Accelerations, shape (nq,), in rad/s^2.
+    """
+
+    q: Array
+    dq: Array
+    ddq: Array
 
 
 class JointMotion:
@@ -89,16 +103,18 @@ class JointMotion:
 
     def follow(
         self, arm: Arm, numbers: JointMotionNumbers, reference: Array, memory: Array
-    ) -> tuple[tuple[Array, Array, Array], Array]:
-        """Return q_d and its two derivatives, each of shape (nq,), and the memory for the next tick."""
+    ) -> tuple[DesiredJoints, Array]:
+        """Return the desired joints and the memory for the next tick."""
         if self._joints:
             q_d, dq_d, ddq_d = reference[0], reference[1], reference[2]
-            return (q_d, dq_d, ddq_d) if self._feedforward else (q_d, 0.0 * dq_d, 0.0 * ddq_d), memory
+            if self._feedforward:
+                return DesiredJoints(q_d, dq_d, ddq_d), memory
+            return DesiredJoints(q_d, 0.0 * dq_d, 0.0 * ddq_d), memory
         h, n = numbers.period, len(memory) // 2
         q_d, dq_d = memory[:n], memory[n:]
         ddq_d = self._resolved_acceleration(arm, numbers, q_d, dq_d, reference)
         goes_on = np.concatenate([q_d + h * dq_d + 0.5 * h**2 * ddq_d, dq_d + h * ddq_d])
-        return (q_d, dq_d, ddq_d), goes_on
+        return DesiredJoints(q_d, dq_d, ddq_d), goes_on
 
     def _resolved_acceleration(
         self, arm: Arm, numbers: JointMotionNumbers, q_d: Array, dq_d: Array, reference: Array

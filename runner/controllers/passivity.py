@@ -1,47 +1,28 @@
 """Passivity-based control of the joints, without adaptation."""
 
-from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
-from pydantic import NonNegativeFloat, PositiveFloat
 
-from runner.controllers.controller import FloatArray, Loop
-from runner.controllers.joint_motion import JointMotion, JointMotionNumbers
+from runner.controllers.controller import FloatArray
+from runner.controllers.joint_law import JointLaw, JointLawConfig, joint_law_builder
+from runner.controllers.joint_law import start_posture as start_posture
+from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
 from runner.controllers.maths import Array, Scalar
-from runner.controllers.tip_task import TaskName, task_start
-from runner.controllers.torque_law import Arm, TorqueLaw
-from runner.registry import StrictModel
+from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
-from runner.robots.robot import Robot
 
 
-class PassivityConfig(StrictModel):
+class PassivityConfig(JointLawConfig):
     """Config of passivity-based control of the joints.
 
     Attributes:
         kind: Its name in the registry.
-        task: Whether the tip's position is led, or its pose, with home's orientation held.
         natural_frequency: lambda, and K_D / diag M, and omega_n of the motion that leads the tip, in rad/s.
         damping_ratio: xi of the motion that leads the tip; the joints have two equal poles.
-        period: Time between two ticks, in s.
-        gravity_compensation: Whether the law holds the gravity term.
-        feedforward: Whether the law follows the desired velocity and acceleration, or sees a moving goal.
-        singularity_damping: Share of the tip's error by which the inverse of J is damped near a singular posture;
-            0 is the law without damping.
-        null_space_frequency: omega_n of the posture task, home, of an arm with more joints than the task needs, in
-            rad/s.
     """
 
     kind: Literal["passivity"]
-    task: TaskName
-    natural_frequency: PositiveFloat
-    damping_ratio: PositiveFloat
-    period: PositiveFloat
-    gravity_compensation: bool
-    feedforward: bool
-    singularity_damping: NonNegativeFloat
-    null_space_frequency: NonNegativeFloat
 
 
 class PassivityNumbers(NamedTuple):
@@ -58,7 +39,7 @@ class PassivityNumbers(NamedTuple):
     damping: Array
 
 
-class Passivity(TorqueLaw[PassivityNumbers]):
+class Passivity(JointLaw[PassivityNumbers]):
     r"""Passivity-based control (Slotine and Li, International Journal of Robotics Research 6(3), 1987), not adaptive.
 
     .. math::
@@ -81,53 +62,33 @@ class Passivity(TorqueLaw[PassivityNumbers]):
     """
 
     def __init__(self, model: RobotModel, config: PassivityConfig, rest: FloatArray, joints: bool = False) -> None:
-        self._motion = JointMotion(model, config, rest, joints)
+        motion = JointMotion(model, config, rest, joints)
         numbers = PassivityNumbers(
-            motion=self._motion.numbers,
+            motion=motion.numbers,
             rate=config.natural_frequency,
             damping=config.natural_frequency * model.mass_matrix(rest).diagonal(),
         )
-        super().__init__([model], config.gravity_compensation, numbers)
+        super().__init__(model, motion, config.gravity_compensation, numbers)
 
-    def start(self, q: FloatArray) -> FloatArray:
-        """Return the joint motion where it starts; see JointMotion."""
-        return self._motion.start(q)
-
-    def evaluate(
-        self,
-        arms: Sequence[Arm],
-        numbers: PassivityNumbers,
-        time: Scalar,
-        q: Array,
-        dq: Array,
-        reference: Array,
-        memory: Array,
+    def command(
+        self, arm: Arm, numbers: PassivityNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
     ) -> tuple[Array, Array]:
-        """Return the torques of the law above, and the joint motion at the next tick; see TorqueLaw."""
-        (arm,) = arms
-        (q_d, dq_d, ddq_d), goes_on = self._motion.follow(arm, numbers.motion, reference, memory)
-        dq_r, ddq_r = dq_d + numbers.rate * (q_d - q), ddq_d + numbers.rate * (dq_d - dq)
-        rest = np.zeros(len(q))
-        # V is quadratic in the velocities: C(q, v) v_r = (V(v + v_r) - V(v - v_r)) / 4, in which gravity cancels.
-        torque = numbers.damping * (dq_r - dq) + 0.25 * arm.inverse_dynamics(q, dq + dq_r, rest)
-        torque = torque - 0.25 * arm.inverse_dynamics(q, dq - dq_r, rest)
-        return torque + arm.inverse_dynamics(q, rest, ddq_r), goes_on
+        """Return the torques of the law above; see JointLaw."""
+        dq_r = desired.dq + numbers.rate * (desired.q - q)
+        ddq_r = desired.ddq + numbers.rate * (desired.dq - dq)
+        return numbers.damping * (dq_r - dq) + passive_dynamics(arm, q, dq, dq_r, ddq_r), memory
+
+
+def passive_dynamics(arm: Arm, q: Array, dq: Array, dq_r: Array, ddq_r: Array) -> Array:
+    r"""Return M ddq_r + C dq_r + G, shape (nq,), in N m, with the C of Christoffel's symbols.
+
+    V is quadratic in the velocities, V(dq) = C(dq) dq, so that C(dq) dq_r = V((dq + dq_r) / 2) - V((dq - dq_r) / 2).
+    """
+    weightless = arm.inverse_dynamics(q, 0.5 * (dq - dq_r), np.zeros(len(q)), np.zeros(3))
+    less = -1.0 * weightless  # before the arm is asked again
+    return less + arm.inverse_dynamics(q, 0.5 * (dq + dq_r), ddq_r)
 
 
 CONFIG = PassivityConfig
 FOLLOWS_JOINTS = True
-
-
-def build(config: PassivityConfig, robot: Robot, joints: bool = False) -> tuple[Loop, ...]:
-    """Make the one loop that a config describes; it commands every joint. See FollowsJoints.
-
-    Raises:
-        ConfigError: see Passivity.
-    """
-    law = Passivity(robot.model, config, robot.home, joints)
-    return (Loop("whole", slice(0, robot.model.nq), config.period, law, follows_joints=joints),)
-
-
-def start_posture(config: PassivityConfig, robot: Robot, start: FloatArray) -> FloatArray | None:
-    """Return where the arm stands at a trajectory's start: for a pose, with home's orientation."""
-    return task_start(config.task, robot, start)
+build = joint_law_builder(Passivity)

@@ -44,7 +44,7 @@ def joint_motion(controller, model, q, reference, ticks, period=0.01):
     motions = []
     for tick in range(ticks):
         controller.torque(tick * period, q, np.zeros(model.nq), reference(tick * period))
-        motions.append(np.split(controller.memory, 3)[:2])
+        motions.append(np.split(controller.memory, 2))
     return motions
 
 

@@ -55,9 +55,9 @@ def test_the_graph_is_the_law_that_is_executed(xarm7, flags):
         reference = generator.uniform(-1.0, 1.0, (3, 3))
         if goal:
             reference[1:] = 0.0
-        q_d, dq_d, _ = np.split(law.start(q) if law.memory is None else law.memory, 3)
+        q_d, dq_d = np.split(law.start(q) if law.memory is None else law.memory, 2)
         tau = law.torque(0.0, q, dq, reference)
-        resolved = q_d, dq_d, (np.split(law.memory, 3)[1] - dq_d) / 1e-2
+        resolved = q_d, dq_d, (np.split(law.memory, 2)[1] - dq_d) / 1e-2
         if torque_limited:
             tau = np.clip(tau, -LIMIT, LIMIT)
         drawn = evaluate(graph_of(flags), xarm7.model, q, dq, resolved)
