@@ -38,9 +38,16 @@ class Arm:
     compiles: float
 
 
-def _laws(period: float, *names: str, one_for_all: tuple[str, ...] = ()) -> dict[str, tuple[str, ...]]:
+_JOINT_LAWS = ("computed_torque", "joint_pd", "passivity")
+
+
+def _laws(
+    period: float, *names: str, one_for_all: tuple[str, ...] = (), rotors: str | None = None
+) -> dict[str, tuple[str, ...]]:
+    """Return the overrides of laws at a period; `rotors` is for gains of diag M, under which light joints chatter."""
     found = {name: (f"controller={name}", f"controller.period={period}") for name in names}
-    return {name: (*law, *one_for_all) if name == "computed_torque" else law for name, law in found.items()}
+    more = one_for_all if rotors is None else (*one_for_all, rotors)
+    return {name: (*law, *more) if name in _JOINT_LAWS else law for name, law in found.items()}
 
 
 _COUPLINGS = {
@@ -52,7 +59,7 @@ ARMS = (
         "3 joints",
         ("robot=macro", "trajectory.duration=19"),
         0.01,
-        _laws(0.01, "operational_space", "computed_torque", "whole_body"),
+        _laws(0.01, "operational_space", "whole_body", *_JOINT_LAWS),
         (10, 1),
         (1.3, 2.0),
         1.6,
@@ -73,7 +80,7 @@ ARMS = (
         "7 joints",
         ("robot=xarm7", "trajectory.duration=19"),
         0.01,
-        _laws(0.01, "operational_space", "computed_torque", "whole_body"),
+        _laws(0.01, "operational_space", "whole_body", *_JOINT_LAWS, rotors="robot.rotor_inertia=assumed"),
         (1,),
         (2.0,),
         1.3,

@@ -10,6 +10,8 @@ from runner.config.validation import validate
 _LAWS = {
     "operational_space": ("robot=macro", "controller=operational_space"),
     "computed_torque": ("robot=macro", "controller=computed_torque"),
+    "joint_pd": ("robot=macro", "controller=joint_pd"),
+    "passivity": ("robot=macro", "controller=passivity"),
     "whole_body": ("robot=combined", "controller=whole_body"),
     "macro_mini": ("robot=combined", "controller=macro_mini"),
     "differential_inverse_kinematics": ("robot=xarm7", "controller=differential_inverse_kinematics"),
