@@ -26,9 +26,11 @@ from runner.simulation import simulate
 LAWS = {
     "operational space": ("controller=operational_space",),
     "joint PD": ("controller=joint_pd",),
+    "joint PID": ("controller=joint_pid",),
     "computed torque": ("controller=computed_torque",),
     "computed torque, integral": ("controller=computed_torque", "controller.integral_gain={cubed:g}"),
     "passivity": ("controller=passivity",),
+    "sliding mode": ("controller=sliding_mode",),
 }
 ARMS = {
     "macro": ("robot=macro",),

@@ -125,10 +125,10 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
     """Return the robot as its controllers believe it to be, and the loops that they make for it."""
     generator = np.random.default_rng([config.settings.seed, repetition, _BELIEFS])
     believed = believe(config.arm, config.mismatch, np.array(config.robot.payload.position), generator)
-    joints = isinstance(config.path, TipOfJoints)
-    return believed, config.loops if believed is config.arm else CONTROLLERS.build_for(
-        config.controller, believed, joints
-    )
+    loops = config.loops
+    if believed is not config.arm:
+        loops = CONTROLLERS.build_for(config.controller, believed, isinstance(config.path, TipOfJoints))
+    return believed, CONTROLLERS.tell_limits(config.controller, loops, config.torque_limits)
 
 
 def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledCommands | None:

@@ -178,8 +178,8 @@ def _scalar(value: float, number: Callable[[float], Scalar]) -> Scalar:
 def _rounded(values: Any) -> Any:
     """Return numbers as nested lists; what is 0, 1 or -1 but for rounding is so."""
     values = np.asarray(values, dtype=np.float64)
-    nearest = np.round(values)
-    near = (np.abs(nearest) <= 1.0) & (np.abs(values - nearest) < _ROUNDING)
+    nearest = np.clip(np.round(values), -1.0, 1.0)
+    near = np.abs(values - nearest) < _ROUNDING
     return np.where(near, nearest + 0.0, values).tolist()
 
 

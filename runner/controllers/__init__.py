@@ -9,9 +9,11 @@ CONTROLLERS = Controllers(
         "computed_torque": "runner.controllers.computed_torque",
         "differential_inverse_kinematics": "runner.controllers.differential_inverse_kinematics",
         "joint_pd": "runner.controllers.joint_pd",
+        "joint_pid": "runner.controllers.joint_pid",
         "macro_mini": "runner.controllers.macro_mini",
         "operational_space": "runner.controllers.operational_space",
         "passivity": "runner.controllers.passivity",
+        "sliding_mode": "runner.controllers.sliding_mode",
         "whole_body": "runner.controllers.whole_body",
     }
 )

@@ -1,12 +1,13 @@
 """What a controller's module and config may offer beside `CONFIG` and `build`, and the registry that asks for it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Protocol, runtime_checkable
 
 from runner.controllers.admittance_filter import Admittance
-from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.controller import Controller, FloatArray, Loop, PositionController
 from runner.errors import ConfigError
-from runner.guard import watch_loops
+from runner.guard import WatchedController, watch_loops
 from runner.guard.faults import find_fault
 from runner.registry import KindConfig, Registry
 from runner.robots.robot import Robot
@@ -55,6 +56,15 @@ class FollowsJoints(Protocol):
 
     def build(self, config: ControllerConfig, robot: Robot, joints: bool = False) -> tuple[Loop, ...]:
         """Make the loops; with `joints` they are those of a law that follows joints, and say so."""
+        ...
+
+
+@runtime_checkable
+class KnowsLimits(Protocol):
+    """A controller that is told the torque limits of the joints it commands."""
+
+    def with_limits(self, limits: FloatArray) -> Controller:
+        """Return the controller that knows limits, shape (n,), in N m; infinite where there is none."""
         ...
 
 
@@ -131,3 +141,24 @@ class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
         if fault:
             raise ConfigError([f"controller.kind: start_posture of '{config.kind}' gave {fault}"])
         return wanted
+
+    def tell_limits(self, config: ControllerConfig, loops: Sequence[Loop], limits: FloatArray) -> tuple[Loop, ...]:
+        """Return a config's loops with controllers that know their torque limits; see KnowsLimits.
+
+        Args:
+            config: The config.
+            loops: Its loops.
+            limits: Of all joints, shape (nq,), in N m; infinite where there is none.
+
+        Raises:
+            ConfigError: where a controller of the user's fails.
+        """
+        return tuple(replace(loop, controller=self._told(config, loop, limits[loop.joints])) for loop in loops)
+
+    def _told(self, config: ControllerConfig, loop: Loop, limits: FloatArray) -> Controller | PositionController:
+        if not isinstance(loop.controller, WatchedController):
+            return loop.controller.with_limits(limits) if isinstance(loop.controller, KnowsLimits) else loop.controller
+        own = loop.controller.watched
+        if not isinstance(own, KnowsLimits):
+            return loop.controller
+        return WatchedController(self.ask(config, lambda _, handed: own.with_limits(handed), limits), len(limits))

@@ -22,6 +22,8 @@ _WORDS = {
     "operational_space": "operational space",
     "computed_torque": "computed torque",
     "joint_pd": "joint PD",
+    "joint_pid": "joint PID",
+    "sliding_mode": "sliding mode",
     "passivity": "passivity-based",
     "euler": "Euler",
     "macro_mini": "Macro and Mini coupled",

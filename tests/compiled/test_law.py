@@ -24,7 +24,7 @@ CASES = [
     ("combined", "whole_body"),
     *((robot, "computed_torque") for robot in ("macro", "xarm7", "mixed")),
     *((robot, "joint_pd") for robot in ("macro", "xarm7")),
-    *((robot, "passivity") for robot in ("macro", "xarm7")),
+    *((robot, law) for robot in ("macro", "xarm7") for law in ("joint_pid", "passivity", "sliding_mode")),
 ]
 
 

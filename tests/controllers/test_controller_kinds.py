@@ -134,3 +134,29 @@ def test_a_config_with_a_law_has_walls_refused_that_it_would_bounce_on(own_part,
     assert "is unstable against a wall of 10000 N/m" in ending.err
     assert cli(*given, "controller.check_stability=false").code == 0
     assert cli(*given, "plant=default").code == 0  # behind servos the law does not decide alone
+
+
+LIMITED = TORQUES.replace(
+    """            return self.robot.model.gravity_torque(q)
+""",
+    """            return self.limits
+        def with_limits(self, limits):
+            told = Law(self.robot)
+            told.limits = limits
+            return told
+""",
+)
+
+
+def test_a_law_that_wants_its_torque_limits_is_told_them(own_part, cli):
+    own = law(own_part, "limit_taker", LIMITED)
+    given = ("robot=macro", "controller=limit_taker", "torque_limits.max=[3,2,1]", *QUINTIC)
+    run = open_run(cli("--config-dir", own, *given).folder)
+    np.testing.assert_array_equal(run.trace[["tau1", "tau2", "tau3"]].to_numpy()[0], [3.0, 2.0, 1.0])
+
+
+def test_one_that_fails_when_it_is_told_is_refused(own_part, cli):
+    own = law(own_part, "limit_refuser", LIMITED.replace("told.limits = limits", "1 / 0"))
+    ending = cli("--config-dir", own, "robot=macro", "controller=limit_refuser", *QUINTIC)
+    assert ending.code == 2
+    assert "ZeroDivisionError" in ending.err

@@ -1,0 +1,118 @@
+"""Proportional, integral and derivative control of each joint, with gravity."""
+
+from copy import copy
+from typing import Literal, NamedTuple
+
+import numpy as np
+from pydantic import PositiveFloat
+
+from runner.controllers.controller import FloatArray
+from runner.controllers.joint_law import JointLaw, JointLawConfig, joint_law_builder
+from runner.controllers.joint_law import start_posture as start_posture
+from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
+from runner.controllers.maths import Array, Scalar
+from runner.controllers.torque_law import Arm
+from runner.robots.model import RobotModel
+
+
+class JointPidConfig(JointLawConfig):
+    """Config of PID control of each joint, with gravity.
+
+    Attributes:
+        kind: Its name in the registry.
+        natural_frequency: omega_n of every joint that no other moves, and of the motion that leads the tip, in rad/s.
+        integral_share: k_i as a share of omega_n^3; stable below 2 xi.
+        anti_windup: Whether a joint's integral stands still while its torque is beyond its limit and the error would
+            take it farther.
+    """
+
+    kind: Literal["joint_pid"]
+    integral_share: PositiveFloat
+    anti_windup: bool
+
+
+class JointPidNumbers(NamedTuple):
+    """The numbers of PID control of each joint.
+
+    Attributes:
+        motion: Of the joint motion that is followed.
+        k_p: omega_n^2, in 1/s^2.
+        k_v: 2 xi omega_n, in 1/s.
+        k_i: share omega_n^3, in 1/s^3.
+        inertia: Diagonal of M at home, shape (nq,), in kg m^2.
+        limits: Torque limits, shape (nq,), in N m; infinite where there is none.
+    """
+
+    motion: JointMotionNumbers
+    k_p: Scalar
+    k_v: Scalar
+    k_i: Scalar
+    inertia: Array
+    limits: Array
+
+
+class JointPid(JointLaw[JointPidNumbers]):
+    r"""PID control with gravity (Arimoto and Miyazaki, First International Symposium of Robotics Research, 1984).
+
+    .. math::
+
+        \tau = D (\omega_n^2 e + 2 \xi \omega_n \dot e + \kappa \omega_n^3 z) + G(q), \qquad e = q_d - q, \qquad
+        z_{k+1} = z_k + h e_k, \qquad D = \mathrm{diag} M
+
+    The characteristic polynomial of a joint that no other moves is s^3 + 2 xi omega_n s^2 + omega_n^2 s + kappa
+    omega_n^3, stable for kappa < 2 xi (Hurwitz). At rest z takes away what a wrong gravity term, a constant load or dry
+    friction leaves under PD control. By conditional integration (Astrom and Rundqwist, American Control Conference,
+    1989) z_k stands still in a tick in which the joint's torque is beyond its limit and e has the torque's sign.
+
+    Args:
+        model: The arm.
+        config: The law's numbers.
+        rest: Home: posture of the null space and of D, shape (nq,), in rad.
+        joints: Whether the desired motion is one of the joints; see JointMotion.
+
+    Raises:
+        ConfigError: if the arm has fewer joints than the task has dimensions.
+    """
+
+    def __init__(self, model: RobotModel, config: JointPidConfig, rest: FloatArray, joints: bool = False) -> None:
+        motion = JointMotion(model, config, rest, joints)
+        self._anti_windup = config.anti_windup
+        numbers = JointPidNumbers(
+            motion=motion.numbers,
+            k_p=config.natural_frequency**2,
+            k_v=2.0 * config.damping_ratio * config.natural_frequency,
+            k_i=config.integral_share * config.natural_frequency**3,
+            inertia=model.mass_matrix(rest).diagonal().copy(),
+            limits=model.effort_limits,
+        )
+        super().__init__(model, motion, config.gravity_compensation, numbers, remembers=model.nq)
+
+    def with_limits(self, limits: FloatArray) -> "JointPid":
+        """Return the law that is told its torque limits; see KnowsLimits."""
+        told = copy(self)
+        told.numbers = self.numbers._replace(limits=limits)
+        return told
+
+    def command(
+        self, arm: Arm, numbers: JointPidNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
+    ) -> tuple[Array, Array]:
+        """Return the torques of the law above, and the integral at the next tick; see JointLaw."""
+        error, rest = desired.q - q, np.zeros(len(q))
+        ddq = numbers.k_p * error + numbers.k_v * (desired.dq - dq) + numbers.k_i * memory
+        torque = numbers.inertia * ddq + arm.inverse_dynamics(q, rest, rest)
+        step = numbers.motion.period * error
+        if self._anti_windup:
+            step = np.concatenate([_useful(arm, *of) for of in zip(torque, numbers.limits, step, strict=True)])
+        return torque, memory + step
+
+
+def _useful(arm: Arm, torque: Scalar, limit: Scalar, step: Scalar) -> Array:
+    """Return by how much a joint's integral grows, shape (1,): not beyond what its torque may be."""
+    within = arm.maths.less(arm.maths.absolute(torque), limit)
+    back = arm.maths.less(torque * step, 0.0)
+    return arm.maths.choose(arm.maths.any_of(within, back), lambda: np.array([step]), lambda: np.zeros(1))
+
+
+CONFIG = JointPidConfig
+FOLLOWS_JOINTS = True
+build = joint_law_builder(JointPid)

@@ -1,0 +1,110 @@
+"""Sliding-mode control of the joints, with a boundary layer."""
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+from pydantic import PositiveFloat
+
+from runner.controllers.controller import FloatArray
+from runner.controllers.joint_law import JointLaw, JointLawConfig, joint_law_builder
+from runner.controllers.joint_law import start_posture as start_posture
+from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
+from runner.controllers.maths import Array, Scalar
+from runner.controllers.passivity import passive_dynamics
+from runner.controllers.torque_law import Arm
+from runner.robots.model import RobotModel
+
+
+class SlidingModeConfig(JointLawConfig):
+    """Config of sliding-mode control of the joints.
+
+    Attributes:
+        kind: Its name in the registry.
+        natural_frequency: lambda, and K_D / diag M, and omega_n of the motion that leads the tip, in rad/s.
+        damping_ratio: xi of the motion that leads the tip; the joints have two real poles.
+        layer: Half-width of the boundary layer of s, phi, in rad/s.
+        switching: kappa, the torque beyond the layer, K, as a share of phi omega_n diag M.
+    """
+
+    kind: Literal["sliding_mode"]
+    layer: PositiveFloat
+    switching: PositiveFloat
+
+
+class SlidingModeNumbers(NamedTuple):
+    """The numbers of sliding-mode control.
+
+    Attributes:
+        motion: Of the joint motion that is followed.
+        rate: lambda, in 1/s.
+        layer: phi, in rad/s.
+        damping: Diagonal of K_D, shape (nq,), in kg m^2/s.
+        switching: Diagonal of K, shape (nq,), in N m.
+    """
+
+    motion: JointMotionNumbers
+    rate: Scalar
+    layer: Scalar
+    damping: Array
+    switching: Array
+
+
+class SlidingMode(JointLaw[SlidingModeNumbers]):
+    r"""Sliding-mode control with a boundary layer (Slotine, International Journal of Control 40(2), 1984).
+
+    In the form that keeps the arm's passivity (Slotine and Li, Applied Nonlinear Control, 1991, section 9.1):
+
+    .. math::
+
+        \tau = M \ddot q_r + C \dot q_r + G + K_D s + K \, \mathrm{sat}(s / \phi), \qquad
+        s = \dot q_r - \dot q = \dot e + \lambda e, \qquad \dot q_r = \dot q_d + \lambda (q_d - q)
+
+    with lambda = omega_n, K_D = omega_n D and K = kappa phi omega_n D, D = diag M(home). At kappa = 1, the balance
+    condition of the layer, s falls within it twice as fast as e. Torques d that the model does not have leave
+    s = d / (K_D + K / phi), at rest and joint by joint, as long as |d| < K + phi K_D; then |s| < phi, and as
+    de/dt = s - lambda e, |e| < phi / lambda. Outside of the layer d s < K |s| brings s back. A thin layer has the
+    velocity gain K / phi, which noise and the control period limit.
+
+    Args:
+        model: The arm.
+        config: The law's numbers.
+        rest: Home: posture of the null space and of D, shape (nq,), in rad.
+        joints: Whether the desired motion is one of the joints; see JointMotion.
+
+    Raises:
+        ConfigError: if the arm has fewer joints than the task has dimensions.
+    """
+
+    def __init__(self, model: RobotModel, config: SlidingModeConfig, rest: FloatArray, joints: bool = False) -> None:
+        motion = JointMotion(model, config, rest, joints)
+        damping = config.natural_frequency * model.mass_matrix(rest).diagonal()
+        numbers = SlidingModeNumbers(
+            motion=motion.numbers,
+            rate=config.natural_frequency,
+            layer=config.layer,
+            damping=damping,
+            switching=config.switching * config.layer * damping,
+        )
+        super().__init__(model, motion, config.gravity_compensation, numbers)
+
+    def command(
+        self, arm: Arm, numbers: SlidingModeNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
+    ) -> tuple[Array, Array]:
+        """Return the torques of the law above; see JointLaw."""
+        dq_r = desired.dq + numbers.rate * (desired.q - q)
+        ddq_r = desired.ddq + numbers.rate * (desired.dq - dq)
+        s = dq_r - dq
+        saturated = np.array([_saturated(arm, share) for share in s / numbers.layer])
+        torque = numbers.damping * s + numbers.switching * saturated
+        return torque + passive_dynamics(arm, q, dq, dq_r, ddq_r), memory
+
+
+def _saturated(arm: Arm, share: Scalar) -> Scalar:
+    """Return a scalar between -1 and 1, or the nearer of these."""
+    most = arm.maths.maximum
+    return -most(-most(share, -1.0), -1.0)
+
+
+CONFIG = SlidingModeConfig
+FOLLOWS_JOINTS = True
+build = joint_law_builder(SlidingMode)
