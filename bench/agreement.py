@@ -19,7 +19,7 @@ _SEEDS = 20
 _TARGET = 1e-11  # rad
 _NOISY = ("plant=rk4", "trajectory=quintic", "duration=1", "noise=thesis", "torque_limits=thesis")
 _ROTORS = "robot.rotor_inertia=assumed"  # light joints without rotors are unstable under gains of diag M
-_JOINT_LAWS = ("computed_torque", "joint_pd", "joint_pid", "passivity", "sliding_mode")
+_JOINT_LAWS = ("adaptive", "computed_torque", "joint_pd", "joint_pid", "passivity", "sliding_mode")
 _CASES = {
     "3 joints": ("robot=macro", ("operational_space", "whole_body", *_JOINT_LAWS)),
     "6 joints": ("robot=combined", ("whole_body", "macro_mini")),

@@ -38,7 +38,7 @@ class Arm:
     compiles: float
 
 
-_JOINT_LAWS = ("computed_torque", "joint_pd", "joint_pid", "passivity", "sliding_mode")
+_JOINT_LAWS = ("adaptive", "computed_torque", "joint_pd", "joint_pid", "passivity", "sliding_mode")
 
 
 def _laws(

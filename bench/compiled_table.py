@@ -8,6 +8,7 @@ from runner.config.compose import compose
 from runner.config.validation import validate
 
 _LAWS = {
+    "adaptive": ("robot=macro", "controller=adaptive"),
     "operational_space": ("robot=macro", "controller=operational_space"),
     "computed_torque": ("robot=macro", "controller=computed_torque"),
     "joint_pd": ("robot=macro", "controller=joint_pd"),

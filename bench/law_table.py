@@ -31,6 +31,7 @@ LAWS = {
     "computed torque, integral": ("controller=computed_torque", "controller.integral_gain={cubed:g}"),
     "passivity": ("controller=passivity",),
     "sliding mode": ("controller=sliding_mode",),
+    "adaptive": ("controller=adaptive",),
 }
 ARMS = {
     "macro": ("robot=macro",),

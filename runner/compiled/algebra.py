@@ -1,10 +1,10 @@
 """Kinematics and dynamics of an arm by recursion over its bodies, over any kind of scalar."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from runner.compiled.arm import ArmConstants, Body
 from runner.compiled.elementary import sine_cosine
+from runner.compiled.regressor import Moved, regressor
 from runner.compiled.vectors import (
     Matrix,
     Scalar,
@@ -27,15 +27,6 @@ from runner.compiled.vectors import (
 _ZERO: Vector = [0.0, 0.0, 0.0]
 _Z: Vector = [0.0, 0.0, 1.0]
 _IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], _Z]
-
-
-@dataclass(frozen=True)
-class _Motion:
-    """How a body moves, along the axes of its own frame."""
-
-    spin: Vector  # angular velocity, in rad/s
-    turning: Vector  # angular acceleration, in rad/s^2
-    acceleration: Vector  # of the origin, in m/s^2
 
 
 class ArmAlgebra:
@@ -114,6 +105,13 @@ class ArmAlgebra:
                 moments[body.parent] = add(moments[body.parent], product(R, moments[index]), cross(p, force))
         return torques
 
+    def regressor(self, q: Vector, dq: Vector, dq_r: Vector, ddq_r: Vector) -> Matrix:
+        """Return Y, shape (nq, 10 nq); see Arm.regressor."""
+        placements, rest = self._placements(q), [0.0] * len(q)
+        mean, half = (scale(0.5, pick(dq, dq_r)) for pick in (add, subtract))
+        motions = self._motions(placements, mean, ddq_r, scale(-1.0, self._constants.gravity))
+        return regressor(self._constants.bodies, placements, motions, self._motions(placements, half, rest, _ZERO))
+
     def mass_matrix(self, q: Vector) -> Matrix:
         """Return M(q), shape (nq, nq), in kg m^2, by composite rigid bodies."""
         bodies, placements = self._constants.bodies, self._placements(q)
@@ -163,11 +161,11 @@ class ArmAlgebra:
 
     def _motions(
         self, placements: list[tuple[Matrix, Vector]], dq: Vector, ddq: Vector, acceleration: Vector
-    ) -> list[_Motion]:
+    ) -> list[Moved]:
         """Return how each body moves, from the joints' speeds and accelerations and the base's acceleration."""
-        motions: list[_Motion] = []
+        motions: list[Moved] = []
         for body, (R, p), speed, change in zip(self._constants.bodies, placements, dq, ddq, strict=True):
-            base = _Motion(_ZERO, _ZERO, acceleration) if body.parent is None else motions[body.parent]
+            base = Moved(_ZERO, _ZERO, acceleration) if body.parent is None else motions[body.parent]
             back = transpose(R)
             carried = add(base.acceleration, cross(base.turning, p), cross(base.spin, cross(base.spin, p)))
             spin, turning, a = product(back, base.spin), product(back, base.turning), product(back, carried)
@@ -176,7 +174,7 @@ class ArmAlgebra:
                 a = add(a, scale(2.0, across), [0.0, 0.0, change])
             else:
                 spin, turning = add(spin, [0.0, 0.0, speed]), add(turning, across, [0.0, 0.0, change])
-            motions.append(_Motion(spin, turning, a))
+            motions.append(Moved(spin, turning, a))
         return motions
 
 

@@ -43,6 +43,7 @@ class Body:
         mass: In kg.
         moment: Mass times the way from the origin to the centre of mass, shape (3,), in kg m.
         inertia: About the origin, shape (3, 3), in kg m^2.
+        turn: Turns its frame into that of its joint, in which its inertial parameters are known, shape (3, 3).
     """
 
     parent: int | None
@@ -52,6 +53,7 @@ class Body:
     mass: Scalar
     moment: Vector
     inertia: Matrix
+    turn: Matrix
 
 
 class ArmConstants(NamedTuple):
@@ -97,6 +99,7 @@ def constants_of(
                 _scalar(body.mass, number),
                 [_scalar(value, number) for value in body.moment],
                 _symmetric(body.inertia, number),
+                [[_scalar(value, number) for value in row] for row in body.turn],
             )
             for body in bodies
         ),
@@ -130,6 +133,7 @@ def _raw_bodies(model: RobotModel) -> tuple[Body, ...]:
                 _rounded(inertia.mass),
                 _rounded(inertia.mass * centre),
                 _rounded(about_origin),
+                _rounded(turn),
             )
         )
     return tuple(bodies)

@@ -74,6 +74,10 @@ class ExpressedArm:
         given = None if gravity is None or not self._has_weight else gravity.tolist()
         return np.asarray(as_array(self._algebra.inverse_dynamics(q.tolist(), dq.tolist(), ddq.tolist(), given)))
 
+    def regressor(self, q: Array, dq: Array, dq_r: Array, ddq_r: Array) -> Array:
+        """Return how the torques depend on the inertial parameters; see Arm."""
+        return np.asarray(as_array(self._algebra.regressor(q.tolist(), dq.tolist(), dq_r.tolist(), ddq_r.tolist())))
+
 
 def expressed_torque(
     law: TorqueLaw[Any], own: LawScalars, time: Value, q: Any, dq: Any, reference: Array, memory: Any

@@ -5,6 +5,7 @@ from runner.controllers.kinds import ControllerConfig, Controllers
 
 CONTROLLERS = Controllers(
     {
+        "adaptive": "runner.controllers.adaptive",
         "admittance": "runner.controllers.admittance",
         "computed_torque": "runner.controllers.computed_torque",
         "differential_inverse_kinematics": "runner.controllers.differential_inverse_kinematics",

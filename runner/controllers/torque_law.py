@@ -61,6 +61,15 @@ class Arm(Protocol):
         """
         ...
 
+    def regressor(self, q: Array, dq: Array, dq_r: Array, ddq_r: Array) -> Array:
+        """Return Y, shape (nq, 10 nq): Y theta = M ddq_r + C dq_r + G, with the C of Christoffel's symbols.
+
+        theta are the inertial parameters of the moving bodies, base first, in each joint's frame of the URDF: mass in
+        kg, mass times the way to its centre in kg m, and I_xx, I_xy, I_yy, I_xz, I_yz, I_zz about the frame's origin in
+        kg m^2; see RobotModel.inertial_parameters.
+        """
+        ...
+
 
 class PinocchioArm:
     """An arm of any number of joints, on floats; see Arm.
@@ -117,11 +126,26 @@ class PinocchioArm:
         self, q: FloatArray, dq: FloatArray, ddq: FloatArray, gravity: FloatArray | None = None
     ) -> FloatArray:
         """Return the torques of an acceleration; see Arm."""
+        self._turn(gravity)
+        torque: FloatArray = pin.rnea(self._model, self._data, q, dq, ddq)
+        return torque
+
+    def regressor(self, q: FloatArray, dq: FloatArray, dq_r: FloatArray, ddq_r: FloatArray) -> FloatArray:
+        """Return how the torques depend on the inertial parameters; see Arm.
+
+        V is quadratic in the velocities: C(dq) dq_r = V((dq + dq_r) / 2) - V((dq - dq_r) / 2).
+        """
+        self._turn(np.zeros(3))
+        less = pin.computeJointTorqueRegressor(self._model, self._data, q, 0.5 * (dq - dq_r), self._zero).copy()
+        self._turn(None)
+        more = pin.computeJointTorqueRegressor(self._model, self._data, q, 0.5 * (dq + dq_r), ddq_r)
+        return np.asarray(more - less)
+
+    def _turn(self, gravity: FloatArray | None) -> None:
+        """Let a gravity act on what has weight; None is the arm's own."""
         if self._has_weight and (self._turned or gravity is not None):
             self._gravity[:] = self._own_gravity if gravity is None else gravity
             self._turned = gravity is not None
-        torque: FloatArray = pin.rnea(self._model, self._data, q, dq, ddq)
-        return torque
 
 
 N = TypeVar("N", bound=tuple[Any, ...])

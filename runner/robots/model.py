@@ -114,6 +114,11 @@ class RobotModel:
         M += np.triu(M, 1).T
         return M
 
+    @property
+    def inertial_parameters(self) -> FloatArray:
+        """Ten of each moving body, shape (10 nq,), as Arm.regressor orders them."""
+        return np.concatenate([inertia.toDynamicParameters() for inertia in list(self.pin_model.inertias)[1:]])
+
     def gravity_torque(self, q: FloatArray) -> FloatArray:
         """Return the gravity term G(q), shape (nq,), in N m (thesis eq. 3.24)."""
         torque: FloatArray = pin.computeGeneralizedGravity(self.pin_model, self._data, q).copy()

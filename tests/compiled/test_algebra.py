@@ -12,6 +12,7 @@ from runner.compiled.algebra import ArmAlgebra, Factors
 from runner.compiled.arm import constants_of
 from runner.config.compose import compose
 from runner.config.validation import validate
+from runner.controllers.torque_law import PinocchioArm
 from runner.robots import RobotModel
 
 OURS = ("macro", "mini", "combined", "xarm7", "meca500")
@@ -51,6 +52,24 @@ def test_kinematics_and_dynamics_are_pinocchio_s(name):
         close(bias, theirs.vector)
         close(algebra.mass_matrix(q), model.mass_matrix(np.array(q)))
         close(algebra.inverse_dynamics(q, dq, ddq), pin.rnea(model.pin_model, data, *map(np.array, (q, dq, ddq))))
+
+
+@pytest.mark.parametrize("name", [*OURS, "kuka", "mixed", "crane", "scara"])
+def test_the_regressor_is_pinocchio_s_and_gives_the_torques_of_the_arm_s_parameters(name):
+    model = model_of(name)
+    arm, data, theta = PinocchioArm(model), model.pin_model.createData(), model.inertial_parameters
+    for q, dq, ddq in states(model):
+        generator = np.random.default_rng(8)
+        dq_r = generator.uniform(-2.0, 2.0, model.nq)
+        Y = arm.regressor(*map(np.array, (q, dq, dq_r, ddq)))
+        close(algebra_of(model).regressor(q, dq, dq_r.tolist(), ddq), Y)
+        C = pin.computeCoriolisMatrix(model.pin_model, data, np.array(q), np.array(dq))
+        torque = model.mass_matrix(np.array(q)) @ ddq + C @ dq_r + model.gravity_torque(np.array(q))
+        close(Y @ theta, torque)
+        close(
+            arm.inverse_dynamics(*map(np.array, (q, dq, ddq))),
+            pin.rnea(model.pin_model, data, *map(np.array, (q, dq, ddq))),
+        )
 
 
 @pytest.mark.parametrize("name", ["macro", "xarm7", "mixed"])

@@ -24,7 +24,8 @@ CASES = [
     ("combined", "whole_body"),
     *((robot, "computed_torque") for robot in ("macro", "xarm7", "mixed")),
     *((robot, "joint_pd") for robot in ("macro", "xarm7")),
-    *((robot, law) for robot in ("macro", "xarm7") for law in ("joint_pid", "passivity", "sliding_mode")),
+    *((robot, "adaptive") for robot in ("meca500", "mixed")),
+    *((robot, law) for robot in ("macro", "xarm7") for law in ("adaptive", "joint_pid", "passivity", "sliding_mode")),
 ]
 
 

@@ -1,0 +1,147 @@
+"""Passivity-based control of the joints that adapts to the inertias of the bodies, and to friction."""
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+from pydantic import PositiveFloat
+
+from runner.controllers.controller import FloatArray
+from runner.controllers.joint_law import JointLaw, JointLawConfig, joint_law_builder
+from runner.controllers.joint_law import start_posture as start_posture
+from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
+from runner.controllers.maths import Array, Scalar
+from runner.controllers.torque_law import Arm, PinocchioArm
+from runner.robots.model import RobotModel
+
+_SPEED, _ACCELERATION = 1.0, 2.0  # rad/s and rad/s^2, or m/s and m/s^2: of the motions that scale the gains
+_SMOOTH = 0.01  # rad/s or m/s, below which the believed dry friction fades
+
+
+class AdaptiveConfig(JointLawConfig):
+    """Config of adaptive control of the joints.
+
+    Attributes:
+        kind: Its name in the registry.
+        natural_frequency: lambda, and K_D / diag M, and omega_n of the motion that leads the tip, in rad/s.
+        damping_ratio: xi of the motion that leads the tip; the joints have two equal poles.
+        adaptation: How fast the law adapts. With scale parameter, the square of what its fastest mode may reach, as a
+            share of omega_n^2; with scale uniform, the gain of every parameter.
+        scale: Whether each parameter has a gain that suits it, or all have one.
+        friction: Whether it adapts to viscous and dry friction of each joint, too.
+    """
+
+    kind: Literal["adaptive"]
+    adaptation: PositiveFloat
+    scale: Literal["parameter", "uniform"]
+    friction: bool
+
+
+class AdaptiveNumbers(NamedTuple):
+    """The numbers of adaptive control.
+
+    Attributes:
+        motion: Of the joint motion that is followed.
+        rate: lambda, in 1/s.
+        damping: Diagonal of K_D, shape (nq,), in kg m^2/s.
+        adaptation: Diagonal of Gamma, shape (P,).
+        believed: theta^ at the first tick, shape (P,).
+    """
+
+    motion: JointMotionNumbers
+    rate: Scalar
+    damping: Array
+    adaptation: Array
+    believed: FloatArray
+
+
+class Adaptive(JointLaw[AdaptiveNumbers]):
+    r"""Adaptive control (Slotine and Li, International Journal of Robotics Research 6(3), 1987).
+
+    .. math::
+
+        \tau = Y(q, \dot q, \dot q_r, \ddot q_r) \hat\theta + K_D s, \qquad
+        \dot{\hat\theta} = \Gamma Y^T s, \qquad \dot q_r = \dot q_d + \lambda (q_d - q), \qquad s = \dot q_r - \dot q
+
+    with lambda = omega_n and K_D = omega_n D, D = diag M(home). Y is Arm.regressor, and theta starts at what is
+    believed. V = (s^T M s + (theta - theta^)^T Gamma^-1 (theta - theta^)) / 2 falls as -s^T K_D s, whatever theta is,
+    so that s fades; theta^ goes to theta only as far as the motion excites it.
+
+    With friction, Y has a column for each joint's viscous friction, dq_r, and one for its dry friction,
+    dq_d / sqrt(dq_d^2 + (0.01 rad/s)^2): the sign of the motion that is wanted, which no noise and no standstill makes
+    chatter. Both start at 0, and without feedforward the latter stays so.
+
+    Linear at a posture, s obeys M d2s/dt2 + K_D ds/dt + Y Gamma Y^T s = 0. Its frequencies are those of
+    D^-1/2 Y Gamma Y^T D^-1/2, whose largest eigenvalue is at most the sum of Gamma_p |D^-1/2 Y_p|^2. So a scale by
+    parameter, Gamma_p = a omega_n^2 / (P max |D^-1/2 Y_p|^2), keeps them below sqrt(a) omega_n whatever the units and
+    sizes of the P parameters; the largest is that of gravity at home with each joint alone, and all together, moving at
+    1 rad/s and 2 rad/s^2 there. Faster motions raise the bound as the square of what they need. What none of these
+    excites does not adapt.
+
+    Args:
+        model: The arm.
+        config: The law's numbers.
+        rest: Home: posture of the null space, of D and of the scale, shape (nq,), in rad.
+        joints: Whether the desired motion is one of the joints; see JointMotion.
+
+    Raises:
+        ConfigError: if the arm has fewer joints than the task has dimensions.
+    """
+
+    def __init__(self, model: RobotModel, config: AdaptiveConfig, rest: FloatArray, joints: bool = False) -> None:
+        motion = JointMotion(model, config, rest, joints)
+        self._friction = config.friction
+        believed = np.concatenate([model.inertial_parameters, np.zeros(2 * model.nq if config.friction else 0)])
+        D = model.mass_matrix(rest).diagonal()
+        gains = np.full(len(believed), config.adaptation)
+        if config.scale == "parameter":
+            gains *= config.natural_frequency**2 * self._scales(model, config.gravity_compensation, rest, D)
+        numbers = AdaptiveNumbers(
+            motion=motion.numbers,
+            rate=config.natural_frequency,
+            damping=config.natural_frequency * D,
+            adaptation=gains,
+            believed=believed,
+        )
+        super().__init__(model, motion, config.gravity_compensation, numbers, remembers=len(gains))
+
+    def own_start(self, q: FloatArray) -> FloatArray:
+        """Return the parameters that are believed at first, shape (P,)."""
+        return self.numbers.believed
+
+    def command(
+        self, arm: Arm, numbers: AdaptiveNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
+    ) -> tuple[Array, Array]:
+        """Return the torques of the law above, and the parameters believed at the next tick; see JointLaw."""
+        dq_r = desired.dq + numbers.rate * (desired.q - q)
+        ddq_r = desired.ddq + numbers.rate * (desired.dq - dq)
+        s = dq_r - dq
+        Y = arm.regressor(q, dq, dq_r, ddq_r)
+        if self._friction:
+            Y = np.concatenate([Y, _friction(arm, dq_r, desired.dq)], axis=1)
+        change = numbers.motion.period * numbers.adaptation * Y.T.dot(s)
+        return Y.dot(memory) + numbers.damping * s, memory + change
+
+    def _scales(self, model: RobotModel, has_weight: bool, home: FloatArray, D: FloatArray) -> FloatArray:
+        """Return 1 / (P max |D^-1/2 Y_p|^2) of each parameter, shape (P,); 0 of one that nothing excites."""
+        arm, largest = PinocchioArm(model, has_weight), np.zeros(1)
+        for way in (*np.eye(model.nq), np.ones(model.nq)):
+            speed = _SPEED * way
+            Y = arm.regressor(home, speed, speed, _ACCELERATION * way)
+            if self._friction:
+                Y = np.concatenate([Y, _friction(arm, speed, speed)], axis=1)
+            largest = np.maximum(largest, (Y**2 / D[:, None]).sum(axis=0))
+        excited = largest > np.finfo(float).eps * largest.max()
+        scales: FloatArray = np.zeros_like(largest)
+        scales[excited] = 1.0 / (excited.sum() * largest[excited])
+        return scales
+
+
+def _friction(arm: Arm, dq_r: Array, dq_d: Array) -> Array:
+    """Return the columns of viscous and of dry friction, shape (nq, 2 nq)."""
+    dry = np.array([speed / arm.maths.sqrt(speed * speed + _SMOOTH**2) for speed in dq_d])
+    return np.concatenate([np.diag(dq_r), np.diag(dry)], axis=1)
+
+
+CONFIG = AdaptiveConfig
+FOLLOWS_JOINTS = True
+build = joint_law_builder(Adaptive)
