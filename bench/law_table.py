@@ -31,6 +31,8 @@ LAWS = {
     "computed torque, integral": ("controller=computed_torque", "controller.integral_gain={cubed:g}"),
     "passivity": ("controller=passivity",),
     "sliding mode": ("controller=sliding_mode",),
+    "computed torque, observer": ("controller=computed_torque", "disturbance_observer=momentum"),
+    "joint PD, observer": ("controller=joint_pd", "disturbance_observer=momentum"),
     "adaptive": ("controller=adaptive",),
 }
 ARMS = {

@@ -32,6 +32,7 @@ from runner.config.sweep import SweepConfig
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.config.units import WRITTEN
 from runner.controllers import CONTROLLERS
+from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.environments import ENVIRONMENTS
 from runner.metrics.summary import families
 from runner.paths import conf_dir
@@ -79,6 +80,7 @@ _PLAIN: Mapping[str, tuple[type[StrictModel], str]] = {
     "torque_limits": (TorqueLimitsConfig, "none"),
     "wrist_sensor": (ForceTorqueConfig, "ideal"),
     "mismatch": (MismatchConfig, "none"),
+    "disturbance_observer": (DisturbanceObserverConfig, "none"),
     "preset": (PresetConfig, "sound"),
 }
 

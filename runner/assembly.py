@@ -2,14 +2,17 @@
 
 import math
 from contextlib import ExitStack
+from dataclasses import replace
+from typing import cast
 
 import numpy as np
 
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.compiled.compile import compile_commands, compile_whole, describe_whole, find_commands
 from runner.config.run import RunConfig
-from runner.controllers import CONTROLLERS, ControllerConfig, Loop
+from runner.controllers import CONTROLLERS, Controller, ControllerConfig, Loop
 from runner.controllers.admittance_stability import check_wall
+from runner.controllers.disturbance_observer import MomentumObserver, observe
 from runner.controllers.kinds import ChecksStability, FollowsWithinReach, LeadsByForce
 from runner.environments import ENVIRONMENTS, Environment
 from runner.environments.wall import Wall, WallConfig
@@ -128,7 +131,21 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
     loops = config.loops
     if believed is not config.arm:
         loops = CONTROLLERS.build_for(config.controller, believed, isinstance(config.path, TipOfJoints))
-    return believed, CONTROLLERS.tell_limits(config.controller, loops, config.torque_limits)
+    loops = CONTROLLERS.tell_limits(config.controller, loops, config.torque_limits)
+    return believed, _observe(config, believed, loops)
+
+
+def _observe(config: RunConfig, believed: Robot, loops: tuple[Loop, ...]) -> tuple[Loop, ...]:
+    """Return the loops with the disturbance observers that their laws carry, if any."""
+    bandwidths = config.disturbance_observer.by_loop(loops)
+    if bandwidths is None:
+        return loops
+    observed = []
+    for loop, bandwidth in zip(loops, bandwidths, strict=True):
+        limits, late = config.torque_limits[loop.joints], config.timing.delay // round(loop.period / config.timing.tick)
+        observer = MomentumObserver(believed, loop.joints, bandwidth, loop.period, limits, late)
+        observed.append(replace(loop, controller=observe(cast(Controller, loop.controller), observer)))
+    return tuple(observed)
 
 
 def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledCommands | None:

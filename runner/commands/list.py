@@ -23,6 +23,7 @@ _GROUPS = {
     "environments": "environment",
     "wrist_sensors": "wrist_sensor",
     "mismatch": "mismatch",
+    "disturbance_observers": "disturbance_observer",
     "noise": "noise",
     "presets": "preset",
     "torque_limits": "torque_limits",

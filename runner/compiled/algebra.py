@@ -105,6 +105,41 @@ class ArmAlgebra:
                 moments[body.parent] = add(moments[body.parent], product(R, moments[index]), cross(p, force))
         return torques
 
+    def momentum(self, q: Vector, dq: Vector, gravity: Vector) -> tuple[Vector, Vector]:
+        """Return M dq and dT/dq - G, shapes (nq,); see Arm.momentum.
+
+        Both follow from the momentum h of what a joint carries (Featherstone 2008, chapter 2): of a joint S and its
+        body's velocity V, S^T h and h^T (V x S), as turning the joint changes the velocity of all it carries by V x S.
+        """
+        bodies, placements = self._constants.bodies, self._placements(q)
+        speeds: list[tuple[Vector, Vector, Vector]] = []  # spin, velocity of the origin, and gravity
+        sums: list[list[Vector]] = []  # linear and angular momentum; force and moment of the weight
+        for body, (R, p), speed in zip(bodies, placements, dq, strict=True):
+            w, v, g = (_ZERO, _ZERO, gravity) if body.parent is None else speeds[body.parent]
+            back, own = transpose(R), [0.0, 0.0, speed]
+            w, v, g = product(back, w), product(back, add(v, cross(w, p))), product(back, g)
+            w, v = (w, add(v, own)) if body.slides else (add(w, own), v)
+            speeds.append((w, v, g))
+            linear = add(scale(body.mass, v), cross(w, body.moment))
+            angular = add(cross(body.moment, v), product(body.inertia, w))
+            sums.append([linear, angular, scale(body.mass, g), cross(body.moment, g)])
+        p_joint: list[Scalar] = [0.0] * len(bodies)
+        rates: list[Scalar] = [0.0] * len(bodies)
+        for index in reversed(range(len(bodies))):
+            body, (R, at), (w, v, _) = bodies[index], placements[index], speeds[index]
+            linear, angular, weight, moment = sums[index]
+            p_joint[index] = linear[2] if body.slides else angular[2]
+            turned_way = dot(linear if body.slides else angular, cross(w, _Z))
+            turned_way = turned_way if body.slides else plus(turned_way, dot(linear, cross(v, _Z)))
+            rates[index] = plus(turned_way, weight[2] if body.slides else moment[2])
+            if body.parent is not None:
+                for force, about in ((0, 1), (2, 3)):
+                    pushed = product(R, sums[index][force])
+                    carried = sums[body.parent]
+                    carried[about] = add(carried[about], product(R, sums[index][about]), cross(at, pushed))
+                    carried[force] = add(carried[force], pushed)
+        return p_joint, rates
+
     def regressor(self, q: Vector, dq: Vector, dq_r: Vector, ddq_r: Vector) -> Matrix:
         """Return Y, shape (nq, 10 nq); see Arm.regressor."""
         placements, rest = self._placements(q), [0.0] * len(q)

@@ -1,6 +1,6 @@
 """What control loops ask of their joints in a tick, as code: measurement, law and torque limit."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -77,7 +77,7 @@ class Commands:
     @property
     def are_ours(self) -> bool:
         """Whether their laws follow from our source alone."""
-        kinds = [kind for loop in self.loops for kind in type(loop.law).__mro__]
+        kinds = [kind for loop in self.loops for law in _parts(loop.law) for kind in type(law).__mro__]
         return all(kind.__module__.partition(".")[0] in _OURS for kind in kinds)
 
     @property
@@ -160,6 +160,14 @@ class Commands:
             if loop.every > 1:
                 parts.append(np.zeros((len(q), loop.joints.stop - loop.joints.start)))
         return np.concatenate(parts, axis=1)
+
+
+def _parts(law: TorqueLaw[Any]) -> Iterator[TorqueLaw[Any]]:
+    """Yield a law and the laws that it is made of."""
+    yield law
+    for part in vars(law).values():
+        if isinstance(part, TorqueLaw):
+            yield from _parts(part)
 
 
 class CommandScalars(NamedTuple):

@@ -74,6 +74,11 @@ class ExpressedArm:
         given = None if gravity is None or not self._has_weight else gravity.tolist()
         return np.asarray(as_array(self._algebra.inverse_dynamics(q.tolist(), dq.tolist(), ddq.tolist(), given)))
 
+    def momentum(self, q: Array, dq: Array, gravity: Array) -> tuple[Array, Array]:
+        """Return the generalised momenta and how they change; see Arm."""
+        p, rates = self._algebra.momentum(q.tolist(), dq.tolist(), gravity.tolist())
+        return np.asarray(as_array(p)), np.asarray(as_array(rates))
+
     def regressor(self, q: Array, dq: Array, dq_r: Array, ddq_r: Array) -> Array:
         """Return how the torques depend on the inertial parameters; see Arm."""
         return np.asarray(as_array(self._algebra.regressor(q.tolist(), dq.tolist(), dq_r.tolist(), ddq_r.tolist())))

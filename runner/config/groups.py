@@ -16,6 +16,7 @@ from runner.config.spec import SpecConfig
 from runner.config.sweep import SweepConfig
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS, ControllerConfig
+from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.environments import ENVIRONMENTS
 from runner.errors import ConfigError, nearest
 from runner.plants import PLANTS, PlantConfig
@@ -32,6 +33,7 @@ GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
     "torque_limits": TorqueLimitsConfig,
     "wrist_sensor": ForceTorqueConfig,
     "mismatch": MismatchConfig,
+    "disturbance_observer": DisturbanceObserverConfig,
     "robot": OneArmConfig,
     "preset": PresetConfig,
     "sweep": SweepConfig,
@@ -56,6 +58,7 @@ class Groups:
         torque_limits: Config of the torque limits.
         wrist_sensor: Config of the force/torque sensor.
         mismatch: How what the controllers believe of the robot differs from it.
+        disturbance_observer: Config of the observer that control laws carry.
         robot: Config of the robot.
         sweep: How a sweep that the run is part of is run.
         limits: What a command may cost.
@@ -72,6 +75,7 @@ class Groups:
     torque_limits: TorqueLimitsConfig | None
     wrist_sensor: ForceTorqueConfig | None
     mismatch: MismatchConfig | None
+    disturbance_observer: DisturbanceObserverConfig | None
     robot: RobotConfig | None
     sweep: SweepConfig | None
     limits: LimitsConfig | None
@@ -106,6 +110,7 @@ def read_groups(resolved: Mapping[str, object], problems: Problems) -> Groups:
         torque_limits=read(TorqueLimitsConfig, "torque_limits"),
         wrist_sensor=read(ForceTorqueConfig, "wrist_sensor"),
         mismatch=read(MismatchConfig, "mismatch"),
+        disturbance_observer=read(DisturbanceObserverConfig, "disturbance_observer"),
         robot=problems.recall(parse_robot, problems.attempt(group_of, "robot", resolved)),
         sweep=read(SweepConfig, "sweep"),
         limits=read(LimitsConfig, "limits"),

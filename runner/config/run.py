@@ -11,6 +11,7 @@ from runner.config.spec import SpecConfig
 from runner.config.sweep import SweepConfig
 from runner.config.timing import Timing
 from runner.controllers import ControllerConfig, Loop
+from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.plants import PLANTS, PlantConfig
 from runner.registry import Commands, KindConfig
 from runner.robots.mismatch import MismatchConfig
@@ -39,6 +40,7 @@ class RunConfig:
         torque_limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
         wrist_sensor: Config of the force/torque sensor.
         mismatch: How what the controllers believe of the robot differs from it.
+        disturbance_observer: Config of the observer that control laws carry.
         timing: The times of a run.
         parallel: Whether riding stages keep the orientation of home, in the plant's truth.
         sweep: How a sweep that the run is part of is run.
@@ -62,6 +64,7 @@ class RunConfig:
     torque_limits: FloatArray
     wrist_sensor: ForceTorqueConfig
     mismatch: MismatchConfig
+    disturbance_observer: DisturbanceObserverConfig
     timing: Timing
     parallel: bool
     sweep: SweepConfig

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from runner.config.arms import build_loaded, build_robot
+from runner.config.disturbance_observer import check_observer
 from runner.config.groups import read_groups
 from runner.config.limits import check_memory
 from runner.config.memory import Memory
@@ -81,6 +82,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         torque_limits=sure(torque_limits),
         wrist_sensor=sure(groups.wrist_sensor),
         mismatch=sure(groups.mismatch),
+        disturbance_observer=sure(groups.disturbance_observer),
         timing=Timing(*sure(steps), sure(delay), sure(ticks)),
         parallel=sure(parallel),
         sweep=sure(groups.sweep),
@@ -106,6 +108,7 @@ def _check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
 def _check_whole(config: RunConfig) -> None:
     """Check what only the whole config tells."""
     _check_schedule(config)
+    check_observer(config)
     check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.feels)
 
 

@@ -61,6 +61,14 @@ class Arm(Protocol):
         """
         ...
 
+    def momentum(self, q: Array, dq: Array, gravity: Array) -> tuple[Array, Array]:
+        """Return the generalised momenta M dq, and what they change by without torques: dT/dq - G, which is C^T dq - G.
+
+        Shapes (nq,), in kg m^2/s and N m. Gravity is given in the base frame, shape (3,), in m/s^2, and acts on an arm
+        that is believed to have no weight, too.
+        """
+        ...
+
     def regressor(self, q: Array, dq: Array, dq_r: Array, ddq_r: Array) -> Array:
         """Return Y, shape (nq, 10 nq): Y theta = M ddq_r + C dq_r + G, with the C of Christoffel's symbols.
 
@@ -129,6 +137,18 @@ class PinocchioArm:
         self._turn(gravity)
         torque: FloatArray = pin.rnea(self._model, self._data, q, dq, ddq)
         return torque
+
+    def momentum(self, q: FloatArray, dq: FloatArray, gravity: FloatArray) -> tuple[Array, Array]:
+        """Return the generalised momenta and how they change; see Arm."""
+        model, data = self._model, self._data
+        M, C = pin.crba(model, data, q), pin.computeCoriolisMatrix(model, data, q, dq)
+        p = (M + np.triu(M, 1).T - np.tril(M, -1)).dot(dq)
+        rate = C.T.dot(dq)
+        before = self._gravity.copy()
+        self._gravity[:] = gravity
+        rate = rate - pin.computeGeneralizedGravity(model, data, q)
+        self._gravity[:] = before
+        return p, rate
 
     def regressor(self, q: FloatArray, dq: FloatArray, dq_r: FloatArray, ddq_r: FloatArray) -> FloatArray:
         """Return how the torques depend on the inertial parameters; see Arm.

@@ -72,6 +72,28 @@ def test_the_regressor_is_pinocchio_s_and_gives_the_torques_of_the_arm_s_paramet
         )
 
 
+@pytest.mark.parametrize("name", [*OURS, "kuka", "mixed", "crane", "scara"])
+def test_momenta_are_pinocchio_s_and_change_by_the_derivative_of_the_energy(name):
+    model, g = model_of(name), np.array([1.0, -2.0, -9.0])
+    weightless, h = PinocchioArm(model, False), 1e-6
+
+    def lagrangian(q, dq):
+        M, pin_model = model.mass_matrix(q), pin.Model(model.pin_model)
+        pin_model.gravity.linear = g
+        data = pin_model.createData()
+        return 0.5 * dq @ M @ dq - pin.computePotentialEnergy(pin_model, data, q)
+
+    for q, dq, _ in states(model):
+        p, rate = weightless.momentum(np.array(q), np.array(dq), g)
+        ours = algebra_of(model).momentum(q, dq, g.tolist())
+        close(ours[0], p)
+        close(ours[1], rate)
+        close(p, model.mass_matrix(np.array(q)) @ dq)
+        differences = [(lagrangian(q + h * e, np.array(dq)) - lagrangian(q - h * e, np.array(dq))) / (2.0 * h)
+                       for e in np.eye(model.nq)]  # fmt: skip
+        np.testing.assert_allclose(rate, differences, rtol=0.0, atol=1e-6 * max(np.abs(rate).max(), 1.0))
+
+
 @pytest.mark.parametrize("name", ["macro", "xarm7", "mixed"])
 def test_the_jacobian_and_its_rate_are_those_of_differences(name):
     algebra, h = algebra_of(model_of(name)), 1e-6

@@ -3,6 +3,11 @@
 import numpy as np
 import pytest
 
+from runner.assembly import assemble
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.plants.rk4 import Rk4
+
 # rms of the norm of the joint errors in mrad: of an exact model, of masses 0.8 of the true ones with friction, and with
 # noise of the encoders, too. No K of the sliding law is printed; 1.3 phi omega_n diag M gives its error.
 PROTOTYPE = {
@@ -48,3 +53,42 @@ def test_errors_are_those_of_the_prototype(simulated, to_and_fro, law, column, m
         assert rms < 1.1 * printed
     else:
         assert rms == pytest.approx(printed, rel=0.1)
+
+
+INTEGRATING = {
+    "controller.integral_gain=27000": (0.005, 0.39),  # omega_n^3
+    "disturbance_observer.bandwidth=60": (0.008, 0.099),
+}
+
+
+@pytest.mark.parametrize("more", INTEGRATING)
+def test_what_integrates_has_the_errors_of_the_prototype_whose_dry_friction_is_smooth(to_and_fro, more):
+    """c tanh(v / (0.01 rad/s)): at a standstill less than dry friction, which these laws would have to break away."""
+    path, q_d = to_and_fro
+    line = ("robot=macro", "controller=computed_torque", "controller.period=0.002", "controller.natural_frequency=30",
+            "trajectory=from_file", f"trajectory.file={path}", more)  # fmt: skip
+    for wrong, printed in zip(((), WRONG[:1]), INTEGRATING[more], strict=True):
+        closed = assemble(validate(compose([*line, *wrong]).resolved))
+        closed.close()
+        law, plant, parts, errors = closed.loops[0].controller, Rk4(closed.robot.model, 0.0005, 1), 4, []
+        plant.reset(q_d[0], np.zeros(3))
+        law.reset()
+        for tick, reference in enumerate(closed.trajectory.sample_joints(0.002 * np.arange(6000))):
+            errors.append(np.linalg.norm(reference[0] - plant.q))
+            torque = law.torque(0.002 * tick, plant.q.copy(), plant.dq.copy(), reference)
+            for _ in range(parts):
+                friction = 0.5 * np.tanh(plant.dq / 0.01) + 0.2 * plant.dq
+                plant.advance(torque - friction if wrong else torque)
+        rms = 1e3 * np.sqrt(np.mean(np.array(errors[-1500:]) ** 2))
+        assert rms == pytest.approx(printed, rel=0.1) if wrong else rms < 0.01
+
+
+def test_an_observer_takes_a_twentieth_or_less_of_the_error_of_computed_torque(simulated, to_and_fro):
+    path, q_d = to_and_fro
+    rms = []
+    for more in ((), ("disturbance_observer.bandwidth=60",)):
+        trace = simulated("robot=macro", "controller=computed_torque", "controller.period=0.002", "plant=rk4",
+                          "controller.natural_frequency=30", "duration=12", "trajectory=from_file",
+                          f"trajectory.file={path}", *WRONG, *more)  # fmt: skip
+        rms.append(np.sqrt(np.mean(np.sum((trace.q[-1500:] - q_d[-1500:]) ** 2, axis=1))))
+    assert rms[1] < rms[0] / 20.0

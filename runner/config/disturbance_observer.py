@@ -1,0 +1,47 @@
+"""Whether a run can have the disturbance observer that its config asks for."""
+
+from runner.config.run import RunConfig
+from runner.errors import ConfigError
+from runner.plants.decoupled import TorquePlantConfig
+
+
+def check_observer(config: RunConfig) -> None:
+    """Check that an observer meets laws of torques, a plant that its model describes, and commands at its ticks.
+
+    Raises:
+        ConfigError: where it does not; names what it lacks.
+    """
+    if config.disturbance_observer.by_loop(config.loops) is None:
+        return
+    problem = None
+    if config.commands != "torque":
+        kind = config.controller.kind
+        problem = f"it corrects torques, and {kind} commands joint positions; take a controller that gives torques"
+    elif _parted(config):
+        problem = (
+            "its momenta are those of the whole arm, whose stages turn and feel each other; take "
+            "plant.dynamics=coupled and plant.wrist_rotation=real"
+        )
+    else:
+        problem = _late(config)
+    if problem is not None:
+        raise ConfigError([f"disturbance_observer.bandwidth: {problem}, or disturbance_observer=none"])
+
+
+def _parted(config: RunConfig) -> bool:
+    """Tell whether the stages of the plant move each for itself."""
+    apart = isinstance(config.plant, TorquePlantConfig) and config.plant.dynamics == "decoupled"
+    return len(config.arm.stages) > 1 and (apart or config.parallel)
+
+
+def _late(config: RunConfig) -> str | None:
+    timing = config.timing
+    for loop in config.loops:
+        every = round(loop.period / timing.tick)
+        if timing.delay % every:
+            late = timing.delay * timing.tick
+            return (
+                f"it has to know which torque acts between two ticks of the loop {loop.name}, {loop.period:g} s apart, "
+                f"and plant.command_delay with {late:g} s is no multiple of that; take {every * timing.tick:g} s"
+            )
+    return None

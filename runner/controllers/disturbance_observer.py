@@ -1,0 +1,225 @@
+"""A momentum disturbance observer that any torque law can carry."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from pydantic import PositiveFloat
+
+from runner.controllers.controller import Controller, FloatArray, Loop
+from runner.controllers.maths import Array, Scalar
+from runner.controllers.torque_law import Arm, PinocchioArm, TorqueLaw, structure_of
+from runner.errors import ConfigError
+from runner.guard import WatchedController
+from runner.registry import StrictModel
+from runner.robots.robot import Robot
+
+
+class DisturbanceObserverConfig(StrictModel):
+    """Config of the disturbance observer.
+
+    Attributes:
+        bandwidth: L of the observer that every control loop carries, in rad/s, or by loop, which is by stage where each
+            has its own; None is no observer.
+    """
+
+    bandwidth: PositiveFloat | dict[str, PositiveFloat] | None
+
+    def by_loop(self, loops: Sequence[Loop]) -> list[float] | None:
+        """Return the bandwidth of each loop, in rad/s; None where there is no observer.
+
+        Raises:
+            ConfigError: for a mapping that names other loops.
+        """
+        if self.bandwidth is None:
+            return None
+        names = [loop.name for loop in loops]
+        if not isinstance(self.bandwidth, Mapping):
+            return [self.bandwidth] * len(loops)
+        if set(self.bandwidth) != set(names):
+            raise ConfigError(
+                [
+                    f"disturbance_observer.bandwidth: values for {', '.join(self.bandwidth)} found; allowed: one "
+                    f"number, or one for each control loop ({', '.join(names)})"
+                ]
+            )
+        return [self.bandwidth[name] for name in names]
+
+
+class ObserverNumbers(NamedTuple):
+    """The numbers of an observer.
+
+    Attributes:
+        gain: 1 - exp(-L h), of each tick.
+        period: Time between two ticks, h, in s.
+        limits: Torque limits of the joints that its law commands, shape (n,), in N m; infinite where there is none.
+        gravity: In the base frame, shape (3,), in m/s^2, as it is believed.
+    """
+
+    gain: Scalar
+    period: Scalar
+    limits: Array
+    gravity: Array
+
+
+class MomentumObserver:
+    r"""What acts on some joints beside the torque that their law asks for.
+
+    After De Luca, Albu-Schaeffer, Haddadin and Hirzinger (IEEE/RSJ International Conference on Intelligent Robots and
+    Systems, 2006). The generalised momenta p = M dq change by
+
+    .. math:: \dot p = \tau + C^T \dot q - G + d, \qquad \dot r = L (\dot p - \tau - C^T \dot q + G - r) = L (d - r)
+
+    whatever the acceleration, which nobody measures. From tick to tick, over which tau is held,
+
+    .. math::
+
+        \bar d_k = \frac{p_k - p_{k-1}}{h} - \tau_{k-1} - \frac{b_{k-1} + b_k}{2}, \quad b = C^T \dot q - G, \qquad
+        r_k = r_{k-1} + (1 - e^{-L h}) (\bar d_k - r_{k-1})
+
+    is that filter, exact but for the mean of b. tau is what acts: the torque within its limits, as late as commands
+    are. So r does not wind up while a torque is at its limit.
+
+    Args:
+        robot: The robot as it is believed.
+        joints: The joints that the law commands.
+        bandwidth: L, in rad/s.
+        period: Time between two ticks of the law, in s.
+        limits: Torque limits of these joints, shape (n,), in N m; infinite where there is none.
+        late: Ticks of the law from a command until it acts.
+    """
+
+    def __init__(
+        self, robot: Robot, joints: slice, bandwidth: float, period: float, limits: FloatArray, late: int
+    ) -> None:
+        self.model = robot.model
+        self._first, self._end, self._late = joints.start, joints.stop, late
+        gain = float(-np.expm1(-bandwidth * period))
+        self.numbers = ObserverNumbers(gain, period, limits, robot.model.gravity)
+
+    def structure(self) -> dict[str, Any]:
+        """Return what decides how it goes, beside its numbers; see TorqueLaw.structure."""
+        return structure_of(self)
+
+    @property
+    def remembers(self) -> int:
+        """How many numbers it keeps from tick to tick."""
+        return (3 + self._late) * len(self.numbers.limits)
+
+    def start(self, q: FloatArray) -> FloatArray:
+        """Return what it keeps before the first tick: the arm rests at q, and nothing disturbs it."""
+        b = PinocchioArm(self.model).momentum(q, np.zeros(len(q)), self.numbers.gravity)[1][self._first : self._end]
+        return np.concatenate([np.zeros(len(b)), 0.5 * self.numbers.period * b, *[-b] * (1 + self._late)])
+
+    def correct(
+        self, arm: Arm, numbers: ObserverNumbers, time: Scalar, q: Array, dq: Array, torque: Array, memory: Array
+    ) -> tuple[Array, Array]:
+        """Return a law's torques less what else acts, shape (n,), in N m, and what the observer keeps.
+
+        Args:
+            arm: The whole robot, as it is believed.
+            numbers: The observer's numbers.
+            time: Time since the start, in s.
+            q: Measured joint positions, shape (nq,), in rad.
+            dq: Measured joint velocities, shape (nq,), in rad/s.
+            torque: What the law asks for, shape (n,), in N m.
+            memory: What the observer kept.
+        """
+        n, h, less = len(numbers.limits), numbers.period, arm.maths.less
+        r, before, acted, to_come = memory[:n], memory[n : 2 * n], memory[2 * n : 3 * n], memory[3 * n :]
+        p, b = (values[self._first : self._end] for values in arm.momentum(q, dq, numbers.gravity))
+        d = (p - 0.5 * h * b - before) / h - acted
+        r = r + numbers.gain * (d - r)
+        asked = torque - r
+        held = np.array([_within(arm, *pair) for pair in zip(asked, numbers.limits, strict=True)])
+        if self._late:  # the first torque acts from the start
+            first = np.concatenate([held] * self._late)
+            to_come = arm.maths.choose(less(time, 0.5 * h), lambda: first, lambda: to_come)
+        return asked, np.concatenate([r, p + 0.5 * h * b, to_come, held])
+
+
+class ObservedNumbers(NamedTuple):
+    """The numbers of a law with an observer.
+
+    Attributes:
+        law: The law's.
+        observer: The observer's.
+    """
+
+    law: Any
+    observer: ObserverNumbers
+
+
+class ObservedLaw(TorqueLaw[ObservedNumbers]):
+    """A torque law that carries an observer; compiled where the law can be.
+
+    Args:
+        law: The law.
+        observer: The observer.
+    """
+
+    def __init__(self, law: TorqueLaw[Any], observer: MomentumObserver) -> None:
+        numbers = ObservedNumbers(law.numbers, observer.numbers)
+        super().__init__([*law.models, observer.model], law.gravity_compensation, numbers, law.measured)
+        self._law, self._observer = law, observer
+
+    def start(self, q: FloatArray) -> FloatArray:
+        """Return what law and observer keep at the first tick; see TorqueLaw."""
+        return np.concatenate([self._law.start(q), self._observer.start(q)])
+
+    def evaluate(
+        self,
+        arms: Sequence[Arm],
+        numbers: ObservedNumbers,
+        time: Scalar,
+        q: Array,
+        dq: Array,
+        reference: Array,
+        memory: Array,
+    ) -> tuple[Array, Array]:
+        """Return the law's torques less what else acts, and what both keep; see TorqueLaw."""
+        own = len(memory) - self._observer.remembers
+        torque, kept = self._law.evaluate(arms[:-1], numbers.law, time, q, dq, reference, memory[:own])
+        asked, seen = self._observer.correct(arms[-1], numbers.observer, time, q, dq, torque, memory[own:])
+        return asked, np.concatenate([kept, seen])
+
+
+class ObservedController:
+    """A controller of any kind that carries an observer; see Controller.
+
+    Args:
+        controller: The controller.
+        observer: The observer.
+    """
+
+    def __init__(self, controller: Controller, observer: MomentumObserver) -> None:
+        self._controller, self._observer = controller, observer
+        self._arm = PinocchioArm(observer.model)
+        self._memory: FloatArray | None = None
+
+    def reset(self) -> None:
+        """Forget what an earlier run left."""
+        self._controller.reset()
+        self._memory = None
+
+    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
+        """Return the controller's torques less what else acts; see Controller."""
+        torque = self._controller.torque(time, q, dq, reference)
+        memory = self._observer.start(q) if self._memory is None else self._memory
+        asked, self._memory = self._observer.correct(self._arm, self._observer.numbers, time, q, dq, torque, memory)
+        return asked
+
+
+def observe(controller: Controller, observer: MomentumObserver) -> Controller:
+    """Return a controller with an observer, one of the user's watched as before."""
+    if isinstance(controller, TorqueLaw):
+        return ObservedLaw(controller, observer)
+    if isinstance(controller, WatchedController) and isinstance(controller.watched, TorqueLaw):
+        return WatchedController(ObservedLaw(controller.watched, observer), len(observer.numbers.limits))
+    return ObservedController(controller, observer)
+
+
+def _within(arm: Arm, torque: Scalar, limit: Scalar) -> Scalar:
+    """Return a torque within its limit."""
+    most = arm.maths.maximum
+    return -most(-most(torque, -limit), -limit)
