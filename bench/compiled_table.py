@@ -11,6 +11,13 @@ _LAWS = {
     "adaptive": ("robot=macro", "controller=adaptive"),
     "operational_space": ("robot=macro", "controller=operational_space"),
     "computed_torque": ("robot=macro", "controller=computed_torque"),
+    "iterative_learning": (
+        "robot=macro",
+        "controller=iterative_learning",
+        "trajectory=circle",
+        "trajectory.easing=none",
+        "duration=6",
+    ),
     "joint_pd": ("robot=macro", "controller=joint_pd"),
     "joint_pid": ("robot=macro", "controller=joint_pid"),
     "passivity": ("robot=macro", "controller=passivity"),

@@ -33,6 +33,7 @@ LAWS = {
     "sliding mode": ("controller=sliding_mode",),
     "computed torque, observer": ("controller=computed_torque", "disturbance_observer=momentum"),
     "joint PD, observer": ("controller=joint_pd", "disturbance_observer=momentum"),
+    "iterative learning": ("controller=iterative_learning", "controller.repeats_every=3"),
     "adaptive": ("controller=adaptive",),
 }
 ARMS = {

@@ -7,7 +7,7 @@ from pathlib import Path
 import yaml
 from hydra.errors import HydraException, MissingConfigException, OverrideParseException
 from omegaconf import OmegaConf
-from omegaconf.errors import OmegaConfBaseException
+from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 
 from runner.config.bounded_yaml import explain_yaml
 from runner.config.malformed import explain_parser
@@ -19,6 +19,7 @@ from runner.texts import VALUE, one_line, quoted
 # What Hydra raises for a config that it cannot compose: ValueError and OSError for a file that is no text, or no
 # mapping; and OmegaConf where a value refers to itself.
 _AMBIGUOUS = re.compile(r"Ambiguous value for argument '(.*)'$", re.M)
+_LACKING = re.compile(r"Interpolation key '(.*)' not found")
 COMPOSITION_ERRORS = (HydraException, OmegaConfBaseException, yaml.YAMLError, ValueError, OSError, RecursionError)
 
 
@@ -38,6 +39,11 @@ def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
     if isinstance(error, OverrideParseException):
         found = one_line(f"'{error.override.removeprefix('++')}'", VALUE)
         return ConfigError([f"{found} is no override: {one_line(explain_parser(str(error).splitlines()[0]), VALUE)}"])
+    missing = _LACKING.match(str(error))
+    if isinstance(error, InterpolationKeyError) and error.full_key and missing is not None:
+        group = missing[1].partition(".")[0]
+        lacks = f"it refers to {missing[1]}, which the chosen {group} lacks"
+        return ConfigError([f"{error.full_key}: {lacks}; give a value, or take another {group}"])
     if isinstance(error, OmegaConfBaseException) and error.full_key:
         return ConfigError([f"{error.full_key}: {str(error).splitlines()[0]}"])
     if isinstance(error, RecursionError):

@@ -13,6 +13,7 @@ from runner.config.memory import Memory
 from runner.config.noise import NoiseConfig
 from runner.config.problems import Problems, sure
 from runner.config.reach import check_path, check_points
+from runner.config.repeats import check_repeats
 from runner.config.robot import RobotConfig
 from runner.config.run import RunConfig
 from runner.config.timing import Timing, count_delay, count_steps, count_ticks
@@ -109,6 +110,7 @@ def _check_whole(config: RunConfig) -> None:
     """Check what only the whole config tells."""
     _check_schedule(config)
     check_observer(config)
+    check_repeats(config)
     check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.feels)
 
 

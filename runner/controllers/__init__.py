@@ -9,6 +9,7 @@ CONTROLLERS = Controllers(
         "admittance": "runner.controllers.admittance",
         "computed_torque": "runner.controllers.computed_torque",
         "differential_inverse_kinematics": "runner.controllers.differential_inverse_kinematics",
+        "iterative_learning": "runner.controllers.iterative_learning",
         "joint_pd": "runner.controllers.joint_pd",
         "joint_pid": "runner.controllers.joint_pid",
         "macro_mini": "runner.controllers.macro_mini",

@@ -45,6 +45,8 @@ class AdaptiveNumbers(NamedTuple):
         damping: Diagonal of K_D, shape (nq,), in kg m^2/s.
         adaptation: Diagonal of Gamma, shape (P,).
         believed: theta^ at the first tick, shape (P,).
+        fastest: a omega_n^2, the bound of a scale by parameter, in 1/s^2.
+        limits: Torque limits, shape (nq,), in N m; infinite where there is none.
     """
 
     motion: JointMotionNumbers
@@ -52,6 +54,8 @@ class AdaptiveNumbers(NamedTuple):
     damping: Array
     adaptation: Array
     believed: FloatArray
+    fastest: Scalar
+    limits: Array
 
 
 class Adaptive(JointLaw[AdaptiveNumbers]):
@@ -74,8 +78,9 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
     D^-1/2 Y Gamma Y^T D^-1/2, whose largest eigenvalue is at most the sum of Gamma_p |D^-1/2 Y_p|^2. So a scale by
     parameter, Gamma_p = a omega_n^2 / (P max |D^-1/2 Y_p|^2), keeps them below sqrt(a) omega_n whatever the units and
     sizes of the P parameters; the largest is that of gravity at home with each joint alone, and all together, moving at
-    1 rad/s and 2 rad/s^2 there. Faster motions raise the bound as the square of what they need. What none of these
-    excites does not adapt.
+    1 rad/s and 2 rad/s^2 there. What none of these excites does not adapt. In a tick of a faster motion, whose sum is
+    above a omega_n^2, all gains are as much smaller, and in one in which a torque is beyond its limit, the s of its
+    joint teaches nothing. V may rise in both.
 
     Args:
         model: The arm.
@@ -93,7 +98,8 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
         believed = np.concatenate([model.inertial_parameters, np.zeros(2 * model.nq if config.friction else 0)])
         D = model.mass_matrix(rest).diagonal()
         gains = np.full(len(believed), config.adaptation)
-        if config.scale == "parameter":
+        self._bounded = config.scale == "parameter"
+        if self._bounded:
             gains *= config.natural_frequency**2 * self._scales(model, config.gravity_compensation, rest, D)
         numbers = AdaptiveNumbers(
             motion=motion.numbers,
@@ -101,8 +107,14 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
             damping=config.natural_frequency * D,
             adaptation=gains,
             believed=believed,
+            limits=model.effort_limits,
+            fastest=config.adaptation * config.natural_frequency**2,
         )
         super().__init__(model, motion, config.gravity_compensation, numbers, remembers=len(gains))
+
+    def with_limits(self, limits: FloatArray) -> "Adaptive":
+        """Return the law that is told its torque limits; see KnowsLimits."""
+        return self.with_numbers(limits=limits)
 
     def own_start(self, q: FloatArray) -> FloatArray:
         """Return the parameters that are believed at first, shape (P,)."""
@@ -118,8 +130,13 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
         Y = arm.regressor(q, dq, dq_r, ddq_r)
         if self._friction:
             Y = np.concatenate([Y, _friction(arm, dq_r, desired.dq)], axis=1)
-        change = numbers.motion.period * numbers.adaptation * Y.T.dot(s)
-        return Y.dot(memory) + numbers.damping * s, memory + change
+        torque = Y.dot(memory) + numbers.damping * s
+        teaches = np.array([_taught(arm, *of) for of in zip(torque, numbers.limits, s, strict=True)])
+        change = numbers.motion.period * numbers.adaptation * Y.T.dot(teaches)
+        if self._bounded:
+            needed = (Y**2).T.dot(numbers.rate / numbers.damping).dot(numbers.adaptation)
+            change = change * (numbers.fastest / arm.maths.maximum(numbers.fastest, needed))
+        return torque, memory + change
 
     def _scales(self, model: RobotModel, has_weight: bool, home: FloatArray, D: FloatArray) -> FloatArray:
         """Return 1 / (P max |D^-1/2 Y_p|^2) of each parameter, shape (P,); 0 of one that nothing excites."""
@@ -134,6 +151,12 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
         scales: FloatArray = np.zeros_like(largest)
         scales[excited] = 1.0 / (excited.sum() * largest[excited])
         return scales
+
+
+def _taught(arm: Arm, torque: Scalar, limit: Scalar, s: Scalar) -> Scalar:
+    """Return what a joint's s teaches: nothing in a tick in which its torque is beyond its limit."""
+    within = arm.maths.less(arm.maths.absolute(torque), limit)
+    return arm.maths.choose(within, lambda: np.array([s]), lambda: np.zeros(1))[0]
 
 
 def _friction(arm: Arm, dq_r: Array, dq_d: Array) -> Array:

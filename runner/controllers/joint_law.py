@@ -7,7 +7,7 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
-from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.controller import Controller, FloatArray, Loop
 from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
 from runner.controllers.maths import Array, Scalar
 from runner.controllers.tip_task import TaskName, task_start
@@ -120,7 +120,7 @@ class JointLaw(TorqueLaw[N]):
 
 
 def joint_law_builder(
-    law: Callable[[RobotModel, C, FloatArray, bool], TorqueLaw[Any]],
+    law: Callable[[RobotModel, C, FloatArray, bool], Controller],
 ) -> Callable[..., tuple[Loop, ...]]:
     """Return the `build` of a module, from its law of (arm, config, home, whether joints lead); see FollowsJoints."""
 

@@ -1,6 +1,5 @@
 """Proportional, integral and derivative control of each joint, with gravity."""
 
-from copy import copy
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -89,9 +88,7 @@ class JointPid(JointLaw[JointPidNumbers]):
 
     def with_limits(self, limits: FloatArray) -> "JointPid":
         """Return the law that is told its torque limits; see KnowsLimits."""
-        told = copy(self)
-        told.numbers = self.numbers._replace(limits=limits)
-        return told
+        return self.with_numbers(limits=limits)
 
     def command(
         self, arm: Arm, numbers: JointPidNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array

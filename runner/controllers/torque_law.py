@@ -2,8 +2,9 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from copy import copy
 from functools import cached_property
-from typing import Any, Generic, NamedTuple, Protocol, TypeVar
+from typing import Any, Generic, NamedTuple, Protocol, Self, TypeVar
 
 import numpy as np
 import pinocchio as pin
@@ -217,6 +218,13 @@ class TorqueLaw(ABC, Generic[N]):
             reference: Desired motion of the tip, shape (3, 3), or of the joints, (3, nq); see Controller.torque.
             memory: What the last tick left, or `start`.
         """
+
+    def with_numbers(self, **changed: Any) -> Self:
+        """Return the law with some of its numbers changed, that has not run yet."""
+        other = copy(self)
+        numbers: Any = self.numbers
+        other.numbers, other.memory = numbers._replace(**changed), None
+        return other
 
     def structure(self) -> dict[str, Any]:
         """Return what decides how `evaluate` goes, beside its numbers: what a derived class has kept."""

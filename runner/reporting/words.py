@@ -25,6 +25,7 @@ _WORDS = {
     "joint_pid": "joint PID",
     "sliding_mode": "sliding mode",
     "passivity": "passivity-based",
+    "iterative_learning": "iterative learning",
     "euler": "Euler",
     "macro_mini": "Macro and Mini coupled",
 }

@@ -14,6 +14,14 @@ SWING = Path(__file__).parents[2] / "examples" / "swing.csv"
 OPTIONS = [f"{group}={name}" for group in groups() if group != "calibration" for name in group_options(group)]
 NEEDS = {  # what an option does not run without
     "controller=admittance": ("robot=meca500",),
+    "controller=iterative_learning": (
+        "robot=macro",
+        "trajectory=circle",
+        "trajectory.easing=none",
+        "trajectory.radius=1e-4",
+        "trajectory.duration=0.02",
+        "duration=0.05",
+    ),
     "controller=macro_mini": ("robot=combined",),
     "controller=three_joint": ("robot=xarm7",),
     "controller=xarm7_as_printed": ("robot=xarm7", "controller.inverse=right"),

@@ -68,5 +68,5 @@ def test_a_cell_does_not_change_its_neighbours():
 
 
 def test_what_does_not_compose_is_said():
-    with pytest.raises(ConfigError, match=r"Interpolation key 'robot\.nope' not found"):
+    with pytest.raises(ConfigError, match=r"refers to robot\.nope, which the chosen robot lacks"):
         plan_sweep(("trajectory.goal=[0,0,1],${robot.nope}",)).composed(1)

@@ -1,0 +1,151 @@
+"""Iterative learning over the periods of a motion that repeats, around computed torque."""
+
+from copy import copy
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field, PositiveFloat
+
+from runner.controllers.computed_torque import ComputedTorque, ComputedTorqueConfig
+from runner.controllers.controller import FloatArray
+from runner.controllers.joint_law import JointLawConfig, joint_law_builder
+from runner.controllers.joint_law import start_posture as start_posture
+from runner.controllers.joint_motion import JointMotion
+from runner.controllers.torque_law import PinocchioArm
+from runner.errors import ConfigError
+from runner.robots.model import RobotModel
+
+_NOTHING = np.zeros(0)
+_MOST_TICKS = 1_000_000  # of a period: its torques are kept
+
+
+class IterativeLearningConfig(JointLawConfig):
+    """Config of iterative learning around computed torque.
+
+    Attributes:
+        kind: Its name in the registry.
+        repeats_every: T, after which the desired motion is the same again, in s; a multiple of the period.
+        learning_gain: gamma, the share of the feedback torque that the next period takes over; below 2.
+        cut_off: Of the low-pass Q, in units of omega_n; None learns at every frequency.
+    """
+
+    kind: Literal["iterative_learning"]
+    repeats_every: PositiveFloat | None
+    learning_gain: Annotated[float, Field(gt=0.0, lt=2.0)]
+    cut_off: PositiveFloat | None
+
+
+class IterativeLearning:
+    r"""Learning of the feedback torque (Arimoto, Kawamura and Miyazaki, Journal of Robotic Systems 1(2), 1984).
+
+    .. math::
+
+        \tau = M \ddot q_d + V + G + f_j + u_j, \qquad f_j = M (2 \xi \omega_n \dot e + \omega_n^2 e), \qquad
+        u_{j+1}(t) = Q [u_j(t) + \gamma (f_j(t) + \tau_\mathrm{applied} - \tau)]
+
+    in period j, with e = q_d - q and u_0 = u_1 = 0: the first period, in which the arm still recovers from its start,
+    teaches nothing. Under a constant M the feedback torque shrinks from period to period by
+
+    .. math:: 1 - \gamma T(j w), \qquad
+        T(s) = (2 \xi \omega_n s + \omega_n^2) / (s^2 + 2 \xi \omega_n s + \omega_n^2)
+
+    at each frequency w (Bristow, Tharayil and Alleyne, IEEE Control Systems Magazine 26(3), 2006), whose size is below
+    1 everywhere for gamma < 2 - 1 / (2 xi^2). Sampling takes phase from T near the Nyquist frequency, so that Q ends
+    the learning there: Q(j w) = 1 / (1 + (w / w_c)^4), without phase, over the period as a circle. It is the square of
+    a Butterworth filter of second order, and w_c is `cut_off` omega_n.
+
+    What a limit took from the torque is taken from what is learned: at a limit u goes, by 1 - gamma a period without Q,
+    to what the limit leaves beside the feedforward.
+
+    Args:
+        model: The arm.
+        config: The law's numbers.
+        rest: Posture of the null space, shape (nq,), in rad.
+        joints: Whether the desired motion is one of the joints; see JointMotion.
+
+    Attributes:
+        learned: u of this period, shape (N, nq), in N m: a row for each of its ticks.
+
+    Raises:
+        ConfigError: if no period of the motion is given, or it is no multiple of the law's or too many, or the arm has
+            fewer joints than the task has dimensions.
+    """
+
+    def __init__(self, model: RobotModel, config: IterativeLearningConfig, rest: FloatArray, joints: bool) -> None:
+        self._ticks = _count_ticks(config)
+        common = {name: getattr(config, name) for name in JointLawConfig.model_fields}
+        feedback = ComputedTorqueConfig(kind="computed_torque", integral_gain=0.0, **common)
+        self._motion = JointMotion(model, feedback, rest, joints)
+        self._law = ComputedTorque(model, feedback, rest, joints)
+        self._arm = PinocchioArm(model, config.gravity_compensation)
+        self._period, self._gain = config.period, config.learning_gain
+        rate = 2.0 * np.pi * np.fft.rfftfreq(self._ticks, config.period)
+        cut_off = np.inf if config.cut_off is None else config.cut_off * config.natural_frequency
+        self._Q: FloatArray = np.asarray(1.0 / (1.0 + (rate[:, None] / cut_off) ** 4), dtype=np.float64)
+        self._shape = (self._ticks, model.nq)
+        self._limits = model.effort_limits
+        self.reset()
+
+    def with_limits(self, limits: FloatArray) -> "IterativeLearning":
+        """Return the law that is told its torque limits; see KnowsLimits."""
+        told = copy(self)
+        told._limits = limits
+        told.reset()
+        return told
+
+    def reset(self) -> None:
+        """Forget what was learned, and where the motion stands."""
+        self.learned: FloatArray = np.zeros(self._shape)
+        self._feedback: FloatArray = np.zeros(self._shape)
+        self._memory: FloatArray | None = None
+        self._tick = 0
+
+    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
+        """Return the torques of the law above; see Controller.torque."""
+        k = round(time / self._period)
+        if k >= 2 * self._ticks and k % self._ticks == 0:  # the first period holds the start from rest
+            self._learn()
+        self._tick = k % self._ticks
+        memory = self._motion.start(q) if self._memory is None else self._memory
+        numbers = self._law.numbers
+        desired, self._memory = self._motion.follow(self._arm, numbers.motion, reference, memory)
+        without = self._arm.inverse_dynamics(q, dq, desired.ddq).copy()
+        torque, _ = self._law.command(self._arm, numbers, q, dq, desired, _NOTHING)
+        self._feedback[self._tick] = torque - without
+        asked: FloatArray = torque + self.learned[self._tick]
+        self._feedback[self._tick] += np.clip(asked, -self._limits, self._limits) - asked
+        return asked
+
+    def _learn(self) -> None:
+        """Begin the next period with what this one gave."""
+        learned = self.learned + self._gain * self._feedback
+        self.learned = np.fft.irfft(self._Q * np.fft.rfft(learned, axis=0), self._ticks, axis=0)
+
+
+def _count_ticks(config: IterativeLearningConfig) -> int:
+    every, period = config.repeats_every, config.period
+    if every is None:
+        raise ConfigError(
+            ["controller.repeats_every: null; allowed: the time in s after which the desired motion is the same again"]
+        )
+    if every / period > _MOST_TICKS:
+        raise ConfigError(
+            [
+                f"controller.repeats_every: {every:g} s are {every / period:.3g} of controller.period, {period:g} s; "
+                f"allowed: up to {_MOST_TICKS}"
+            ]
+        )
+    ticks = round(every / period)
+    if ticks < 1 or abs(ticks * period - every) > 1e-9 * every:
+        raise ConfigError(
+            [
+                f"controller.repeats_every: {every:g} s is no multiple of controller.period, {period:g} s; such as "
+                f"{max(ticks, 1) * period:g}"
+            ]
+        )
+    return ticks
+
+
+CONFIG = IterativeLearningConfig
+FOLLOWS_JOINTS = True
+build = joint_law_builder(IterativeLearning)
