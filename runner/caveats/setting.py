@@ -13,6 +13,7 @@ from runner.trace import FloatArray
 if TYPE_CHECKING:  # the store knows caveats, and is to be imported without rigid-body models
     from runner.config.robot import RobotConfig
     from runner.config.run import RunConfig
+    from runner.controllers.sampled_stability import VelocityLoop
     from runner.robots.mismatch import MismatchConfig
     from runner.robots.model import RobotModel
     from runner.sensing import EncoderNoise
@@ -40,6 +41,7 @@ class Setting:
         mass: Mass of all moving links, in kg.
         in_place_of: Kind of the default plant, where it is missing and this one stands in for it; else None.
         contact: Of an arm behind joint servos with a wall, under an admittance law; None where there is none.
+        velocity_loop: How near a velocity loop is to what its period bears; None where no law says its gain.
         left_out: What would change the motion and stands in the robot's MJCFs, in words, by the file's name.
     """
 
@@ -59,6 +61,7 @@ class Setting:
     mass: float
     in_place_of: str | None
     contact: "ServoContact | None"
+    velocity_loop: "VelocityLoop | None"
     left_out: Mapping[str, Sequence[str]]
 
 
@@ -70,6 +73,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         q_start: Joint positions at the start, shape (nq,), in rad; None leaves contact out.
     """
     from runner.assembly import servo_contact
+    from runner.controllers.sampled_stability import velocity_loop
     from runner.plants.kinds import StandsIn
 
     model = config.arm.model
@@ -95,6 +99,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         mass=mass,
         in_place_of=config.plant.in_place_of if isinstance(config.plant, StandsIn) else None,
         contact=None if q_start is None else servo_contact(config, q_start),
+        velocity_loop=velocity_loop(config.loops, config.arm, config.path) if config.commands == "torque" else None,
         left_out=config.arm.left_out,
     )
 

@@ -89,6 +89,16 @@ class NoEffortLimitThreshold(StrictModel):
     payload: NonNegativeFloat
 
 
+class UnstableGainsThreshold(StrictModel):
+    """Threshold of the rule on gains that the control period does not bear.
+
+    Attributes:
+        share: Share of what keeps a velocity loop stable at its period that its gain may take.
+    """
+
+    share: PositiveFloat
+
+
 class UnstableContactThreshold(StrictModel):
     """Threshold of the rule on contact behind joint servos.
 
@@ -141,6 +151,7 @@ class CaveatsConfig(StrictModel):
         fixed_mismatch: Repetitions that vary noise alone, under a wrong model.
         overload: A payload beyond the rating.
         no_effort_limit: A payload on an arm that lifts anything.
+        unstable_gains: A velocity gain that its control period does not bear.
         unstable_contact: A wall too stiff for an admittance behind joint servos.
         default_plant: Another plant in place of the default one.
         mjcf: What is not taken from the robot's MJCF.
@@ -155,6 +166,7 @@ class CaveatsConfig(StrictModel):
     fixed_mismatch: FixedMismatchThreshold
     overload: OverloadThreshold
     no_effort_limit: NoEffortLimitThreshold
+    unstable_gains: UnstableGainsThreshold
     unstable_contact: UnstableContactThreshold
     default_plant: DefaultPlantThreshold
     mjcf: MjcfThreshold

@@ -10,6 +10,7 @@ from runner.controllers.joint_law import JointLaw, JointLawConfig, joint_law_bui
 from runner.controllers.joint_law import start_posture as start_posture
 from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
 from runner.controllers.maths import Array, Scalar
+from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm, PinocchioArm
 from runner.robots.model import RobotModel
 
@@ -111,6 +112,11 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
             fastest=config.adaptation * config.natural_frequency**2,
         )
         super().__init__(model, motion, config.gravity_compensation, numbers, remembers=len(gains))
+
+    @property
+    def velocity_gain(self) -> VelocityGain:
+        """K_v; see HasVelocityGain."""
+        return VelocityGain(self.numbers.rate, self.numbers.rate)
 
     def with_limits(self, limits: FloatArray) -> "Adaptive":
         """Return the law that is told its torque limits; see KnowsLimits."""

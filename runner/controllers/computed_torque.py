@@ -9,6 +9,7 @@ from runner.controllers.joint_law import JointLaw, JointLawConfig, joint_law_bui
 from runner.controllers.joint_law import start_posture as start_posture
 from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
 from runner.controllers.maths import Array, Scalar
+from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
 
@@ -71,6 +72,11 @@ class ComputedTorque(JointLaw[ComputedTorqueNumbers]):
             k_i=config.integral_gain,
         )
         super().__init__(model, motion, config.gravity_compensation, numbers, integrals)
+
+    @property
+    def velocity_gain(self) -> VelocityGain:
+        """K_v; see HasVelocityGain."""
+        return VelocityGain(0.0, self.numbers.k_v)
 
     def command(
         self, arm: Arm, numbers: ComputedTorqueNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array

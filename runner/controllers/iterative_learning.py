@@ -11,6 +11,7 @@ from runner.controllers.controller import FloatArray
 from runner.controllers.joint_law import JointLawConfig, joint_law_builder
 from runner.controllers.joint_law import start_posture as start_posture
 from runner.controllers.joint_motion import JointMotion
+from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import PinocchioArm
 from runner.errors import ConfigError
 from runner.robots.model import RobotModel
@@ -85,6 +86,11 @@ class IterativeLearning:
         self._shape = (self._ticks, model.nq)
         self._limits = model.effort_limits
         self.reset()
+
+    @property
+    def velocity_gain(self) -> VelocityGain:
+        """K_v; see HasVelocityGain."""
+        return self._law.velocity_gain
 
     def with_limits(self, limits: FloatArray) -> "IterativeLearning":
         """Return the law that is told its torque limits; see KnowsLimits."""

@@ -10,6 +10,7 @@ from runner.controllers.joint_law import JointLaw, JointLawConfig, joint_law_bui
 from runner.controllers.joint_law import start_posture as start_posture
 from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
 from runner.controllers.maths import Array, Scalar
+from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
 
@@ -85,6 +86,11 @@ class JointPid(JointLaw[JointPidNumbers]):
             limits=model.effort_limits,
         )
         super().__init__(model, motion, config.gravity_compensation, numbers, remembers=model.nq)
+
+    @property
+    def velocity_gain(self) -> VelocityGain:
+        """K_v; see HasVelocityGain."""
+        return VelocityGain(self.numbers.k_v, 0.0)
 
     def with_limits(self, limits: FloatArray) -> "JointPid":
         """Return the law that is told its torque limits; see KnowsLimits."""

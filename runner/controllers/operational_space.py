@@ -9,6 +9,7 @@ from pydantic import NonNegativeFloat
 from runner.config.per_stage import NonNegativePerStage, PositivePerStage, by_stage
 from runner.controllers.controller import FloatArray, Loop
 from runner.controllers.maths import Array, Scalar
+from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.tip_task import TaskName, held_orientation, task_start
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.controllers.whole_body import WholeBody, WholeBodyLaw
@@ -124,6 +125,11 @@ class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
             weights, np.full(3, k_p), np.full(3, k_v), singularity_damping**2, 0.1 * model.reach
         )
         super().__init__([model], gravity_compensation, numbers)
+
+    @property
+    def velocity_gain(self) -> VelocityGain:
+        """K_v; see HasVelocityGain."""
+        return VelocityGain(0.0, float(self.numbers.k_v[0]))
 
     def evaluate(
         self,

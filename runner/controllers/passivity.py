@@ -9,6 +9,7 @@ from runner.controllers.joint_law import JointLaw, JointLawConfig, joint_law_bui
 from runner.controllers.joint_law import start_posture as start_posture
 from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
 from runner.controllers.maths import Array, Scalar
+from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
 
@@ -69,6 +70,11 @@ class Passivity(JointLaw[PassivityNumbers]):
             damping=config.natural_frequency * model.mass_matrix(rest).diagonal(),
         )
         super().__init__(model, motion, config.gravity_compensation, numbers)
+
+    @property
+    def velocity_gain(self) -> VelocityGain:
+        """K_v; see HasVelocityGain."""
+        return VelocityGain(self.numbers.rate, self.numbers.rate)
 
     def command(
         self, arm: Arm, numbers: PassivityNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array

@@ -11,6 +11,7 @@ from runner.controllers.joint_law import start_posture as start_posture
 from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
 from runner.controllers.maths import Array, Scalar
 from runner.controllers.passivity import passive_dynamics
+from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
 
@@ -86,6 +87,13 @@ class SlidingMode(JointLaw[SlidingModeNumbers]):
             switching=config.switching * config.layer * damping,
         )
         super().__init__(model, motion, config.gravity_compensation, numbers)
+
+    @property
+    def velocity_gain(self) -> VelocityGain:
+        """K_v within the layer; see HasVelocityGain."""
+        own = self.numbers
+        switching = own.switching[0] / (own.layer * own.damping[0])
+        return VelocityGain((1.0 + switching) * own.rate, own.rate)
 
     def command(
         self, arm: Arm, numbers: SlidingModeNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array

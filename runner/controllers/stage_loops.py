@@ -1,12 +1,13 @@
 """Control loops of riding arms: each stage's own law, and the target that the coupling gives it."""
 
 from collections.abc import Sequence
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
 
 from runner.controllers.controller import FloatArray
 from runner.controllers.maths import Array, Maths, Scalar
+from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.stage_law import StageLaw, StageNumbers
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.robots.model import RobotModel
@@ -76,7 +77,19 @@ class HeldNumbers(NamedTuple):
     gravity: Array
 
 
-class CarrierController(TorqueLaw[CarrierNumbers]):
+N = TypeVar("N", CarrierNumbers, RiderNumbers, HeldNumbers)
+
+
+class _StageLoop(TorqueLaw[N]):
+    """What the loops of stages have in common."""
+
+    @property
+    def velocity_gain(self) -> VelocityGain:
+        """K_v; see HasVelocityGain."""
+        return VelocityGain(0.0, self.numbers.law.k_v)
+
+
+class CarrierController(_StageLoop[CarrierNumbers]):
     """The loop of the first stage, which stands on the ground.
 
     Its target is x_d - o, where o stands for the stages that ride on it: nothing (macro_target tip_goal), their
@@ -150,7 +163,7 @@ class CarrierController(TorqueLaw[CarrierNumbers]):
         )
 
 
-class RiderController(TorqueLaw[RiderNumbers]):
+class RiderController(_StageLoop[RiderNumbers]):
     """The loop of a stage that rides on others.
 
     Its target is the rest of the way, R^T (x_d - o - x_E), seen from its base. As for the first stage, o is the home
@@ -267,7 +280,7 @@ class RiderController(TorqueLaw[RiderNumbers]):
         return waits if self._stretch else maths.any_of(waits, beyond)
 
 
-class HeldController(TorqueLaw[HeldNumbers]):
+class HeldController(_StageLoop[HeldNumbers]):
     """The loop of a riding stage whose joints are held at home.
 
     Args:

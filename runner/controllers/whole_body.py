@@ -7,6 +7,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.controllers.controller import FloatArray, Loop
 from runner.controllers.maths import Array, Scalar
+from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.tip_task import TipNumbers, TipTask
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.controllers.whole_body_posture import HeldJoints, HeldPosture, Posture, PostureNumbers
@@ -114,6 +115,13 @@ class WholeBody(TorqueLaw[WholeBodyNumbers]):
         )
         numbers = WholeBodyNumbers(self._task.numbers, self._posture.numbers)
         super().__init__([model], config.gravity_compensation, numbers)
+
+    @property
+    def velocity_gain(self) -> VelocityGain:
+        """K_v; see HasVelocityGain."""
+        tip, posture = self.numbers
+        spare = self.models[0].nq > len(tip.directions)
+        return VelocityGain(0.0, max(tip.k_v, posture.k_v) if spare else tip.k_v)
 
     def evaluate(
         self,
