@@ -2,7 +2,8 @@
 
 FOLDER is a work of your own: `runner work new FOLDER` writes a first one. OVERRIDES say how the runs are made:
 hydra.sweeper.workers and .address, sweep.time_limit, .attempts, .retry and .on_failure, limits.cpu_hours and .memory;
-caveats.RULE.KEY, what is told of them. What is simulated is the work's own.
+caveats.RULE.KEY, what is told of them. What is simulated is the work's own, and what
+--plugin names for an axis of the work that takes it.
 """
 
 import json
@@ -17,6 +18,7 @@ from runner import progress
 from runner.commands.arguments import Parser
 from runner.errors import RunnerError
 from runner.latest import note
+from runner.plugins import in_use, named
 from runner.progress.stages import of_audit, of_work
 from runner.quiet import quiet_environment
 from runner.reporting.changes import FILE
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from runner.reporting.document import Document
     from runner.reporting.expected_caveats import ExpectedCaveat
     from runner.store import Calibration, Run
+    from runner.works.given import GivenPart
     from runner.works.work import Work
 
 AUDIT = "audit"
@@ -34,13 +37,14 @@ _FREE = ("hydra.sweeper.", "sweep.", "limits.", "caveats.")
 
 @dataclass(frozen=True)
 class _Way:
-    """How a work is made: folder of runs and reports, overrides of the engine, the command as typed, profile, code."""
+    """How a work is made: folder of runs and reports, overrides of the engine, command, profile, code, user's parts."""
 
     outputs: Path
     overrides: Sequence[str]
     command: str
     profile: str = ""
     code: bool = False
+    parts: "Sequence[GivenPart]" = ()
 
 
 @dataclass(frozen=True)
@@ -72,13 +76,23 @@ def main(arguments: Sequence[str]) -> int:
     if options.work not in (AUDIT, "all"):
         find_work(options.work, (AUDIT, "all"))  # one that is not there is told at once
     quiet_environment()
-    command = shlex.join(["runner", "reproduce", *arguments])
-    way = _Way(options.outputs, options.overrides, command, options.profile, options.code)
+    plugins = [word for text in named() for word in ("--plugin", text)]
+    command = shlex.join(["runner", *plugins, "reproduce", *arguments])
+    way = _Way(options.outputs, options.overrides, command, options.profile, options.code, _parts(options.work))
     made = dict(_reproduce(work, way) for work in _chosen(options.work, way))
     if options.json is not None:
         _write_conclusions(made, options.json)
     fallen = _tell_fallen(made) if options.check else False
     return 1 if fallen or any(each.missing for each in made.values()) else 0
+
+
+def _parts(work: str) -> "tuple[GivenPart, ...]":
+    """Return the parts that --plugin names, for one work that may take them."""
+    from runner.works.given import given_parts
+
+    if in_use() and work in (AUDIT, "all"):
+        raise RunnerError(f"reproduce {work}: --plugin gives a part to one work; name it")
+    return given_parts(in_use())
 
 
 def _chosen(text: str, way: _Way) -> "list[Work | None]":
@@ -94,7 +108,7 @@ def _chosen(text: str, way: _Way) -> "list[Work | None]":
     if text == AUDIT:
         return [None]
     if text != "all":
-        return [load_work(text, way.code, way.profile, (AUDIT, "all"))]
+        return [load_work(text, way.code, way.profile, (AUDIT, "all"), way.parts)]
     works = [work for name in work_names() if (work := load_work(name, way.code, way.profile)).about.in_all]
     return [None, *sorted(works, key=lambda work: len(work.jobs()))]
 

@@ -3,13 +3,14 @@
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Annotated
+from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, PlainValidator
+from pydantic import BeforeValidator, Field, PlainValidator, model_validator
 
-from runner.errors import RunnerError
+from runner.errors import RunnerError, nearest
 from runner.registry import StrictModel
 from runner.works.arithmetic import Level, alone, fill, names_in
+from runner.works.given import GivenPart
 
 Overrides = tuple[str, ...]
 _MOST = 10_000  # runs of a grid
@@ -54,12 +55,40 @@ class Grid(StrictModel):
         with_: Overrides that all have.
         over: Levels by axis, and what each label stands for.
         values: Numbers that expressions may name, by name.
+        plugins: Config group of an axis that takes parts of the user's as further levels, by axis.
     """
 
     name: str = ""
     with_: Annotated[list[str], BeforeValidator(_flat)] = Field(default_factory=list, alias="with")
     over: dict[str, Annotated[Mapping[Level, Overrides | None], PlainValidator(_levels)]] = Field(default_factory=dict)
     values: dict[str, float] = Field(default_factory=dict)
+    plugins: dict[str, Literal["controller", "environment", "plant", "trajectory"]] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _axes_that_take_plugins(self) -> "Grid":
+        for axis in self.plugins:
+            if axis not in self.over:
+                raise ValueError(f"plugins: there is no axis '{axis}'{nearest(axis, self.over)}")
+        return self
+
+    def with_parts(self, parts: Sequence[GivenPart]) -> "Grid":
+        """Return the grid with parts of the user's as further levels of the axes that take parts of their group.
+
+        Raises:
+            RunnerError: if an axis has a level of that name.
+        """
+        over = {axis: {**levels, **self._added(axis, parts)} for axis, levels in self.over.items()}
+        return self.model_copy(update={"over": over})
+
+    def _added(self, axis: str, parts: Sequence[GivenPart]) -> dict[Level, Overrides | None]:
+        levels = self.over[axis]
+        own = [part for part in parts if part.group == self.plugins.get(axis)]
+        for part in own:
+            if part.name in levels:
+                raise RunnerError(
+                    f"axis '{axis}' has a level '{part.name}', as is --plugin {part.override}; rename yours"
+                )
+        return {part.name: None if None in levels.values() else (part.override,) for part in own}
 
     def runs(self, key: str, values: Mapping[str, float]) -> Iterator[tuple[str, Overrides]]:
         """Yield name and overrides of each run.

@@ -16,9 +16,12 @@ that is `{{ axis }}` alone puts the axis there instead. A listed axis that an ex
 own. Levels are put in as they are written (3.0), expressions with nine digits at most (3). `values` are further numbers
 for expressions, of a grid or, beside `grids`, of all. A list within a list of overrides, as an alias puts in, stands
 for what it holds. Calibrations are grids under `calibrations`.
+
+`plugins: {law: controller}` of a grid says that its axis `law` takes controllers of the user's: each that
+`runner reproduce` is given by --plugin is one more level, by its name.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -31,6 +34,7 @@ from runner.errors import RunnerError, nearest
 from runner.registry import StrictModel
 from runner.reporting.job import Job, Jobs
 from runner.works.arithmetic import Level
+from runner.works.given import GivenPart
 from runner.works.grid import Grid, Overrides
 from runner.works.profiles import Profile
 
@@ -48,6 +52,7 @@ class Grids:
     Args:
         path: Its runs.yaml.
         profile: Levels and repetitions in place of those in the file.
+        parts: Parts of the user's, which are levels of the axes that take some.
 
     Attributes:
         runs: Overrides of every run by name.
@@ -57,7 +62,7 @@ class Grids:
         RunnerError: with file, grid and every problem found.
     """
 
-    def __init__(self, path: Path, profile: Profile | None = None) -> None:
+    def __init__(self, path: Path, profile: Profile | None = None, parts: Sequence[GivenPart] = ()) -> None:
         self._path = path
         try:
             text = path.read_text(encoding="utf-8")
@@ -71,6 +76,7 @@ class Grids:
             roots = {
                 root: {key: profile.applied(key, grid) for key, grid in own.items()} for root, own in roots.items()
             }
+        roots = {root: _with_parts(root, own, parts, problems) for root, own in roots.items()}
         shared = content.get("values", {}) if isinstance(content, dict) else {}
         try:
             self._values = _Values(values=shared).values
@@ -90,6 +96,11 @@ class Grids:
             )
         if problems:
             raise RunnerError("\n".join(f"{path}: {problem}" for problem in problems))
+
+    @property
+    def plugins(self) -> frozenset[str]:
+        """The groups of which its axes take parts of the user's."""
+        return frozenset(group for grid in self._grids.values() for group in grid.plugins.values())
 
     def jobs(self) -> Jobs:
         """Return every run by name."""
@@ -151,6 +162,18 @@ def _parse(root: str, content: object, problems: list[str]) -> dict[str, Grid]:
         except ValidationError as error:
             problems += [*describe(f"{root}.{key}", Grid, error)]
     return grids
+
+
+def _with_parts(
+    root: str, grids: Mapping[str, Grid], parts: Sequence[GivenPart], problems: list[str]
+) -> dict[str, Grid]:
+    found = {}
+    for key, grid in grids.items():
+        try:
+            found[key] = grid.with_parts(parts)
+        except RunnerError as error:
+            problems.append(f"{root}.{key}: {error}")
+    return found
 
 
 def _expanded(

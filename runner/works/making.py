@@ -43,10 +43,7 @@ def make_all(
     missing = {name: "not begun" for name, end in ends.items() if end is None}
     missing |= {name: end.failure for name, end in ends.items() if end is not None and end.cut_short}
     stored = {name: store.open_run(outputs / "runs" / places[name]) for name in jobs if name not in missing}
-    runs = {
-        name: run.made_by(shlex.join(["runner", *work.options, *settled(jobs[name].overrides, run.config)]))
-        for name, run in stored.items()
-    }
+    runs = {name: run.made_by(_command(work, jobs[name].overrides, run)) for name, run in stored.items()}
     found = {
         name: store.open_calibration(outputs / "calibrations" / places[name])
         for name in calibrations
@@ -56,6 +53,10 @@ def make_all(
         Made(runs, {name: why for name, why in missing.items() if name in jobs}, work.dropped()),
         Made(found, {name: why for name, why in missing.items() if name in calibrations}, work.dropped()),
     )
+
+
+def _command(work: Work, overrides: Sequence[str], run: Run) -> str:
+    return shlex.join(["runner", *work.options(overrides), *settled(overrides, run.config)])
 
 
 def count_missing(work: Work, outputs: Path) -> int:

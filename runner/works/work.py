@@ -20,6 +20,7 @@ from runner.works.about import read_about
 from runner.works.caveats import read_expected
 from runner.works.chapters import Chapters
 from runner.works.code import Code
+from runner.works.given import GivenPart
 from runner.works.grids import FILE as RUNS
 from runner.works.grids import Grids
 from runner.works.names import Place, find_work
@@ -38,6 +39,7 @@ class Work:
         place: Where it is.
         allow_code: Whether Python of a folder that is no installed package may run.
         profile: Name of the profile by which it is made; empty for the whole work.
+        parts: Parts of the user's that stand beside its own.
 
     Attributes:
         name: What it is called.
@@ -48,10 +50,12 @@ class Work:
         expected: The caveats that its runs are to have.
 
     Raises:
-        RunnerError: with file and place of every problem in its data.
+        RunnerError: with file and place of every problem in its data, or if it does not take a part.
     """
 
-    def __init__(self, place: Place, allow_code: bool = False, profile: str = "") -> None:
+    def __init__(
+        self, place: Place, allow_code: bool = False, profile: str = "", parts: Sequence[GivenPart] = ()
+    ) -> None:
         self.name, self.folder = place.name, place.folder
         self.about = read_about(place.folder)
         self.installed = place.package is not None
@@ -59,7 +63,9 @@ class Work:
         self.profile = profile
         self._profile = self._chosen(profile)
         self._code = Code(place.folder, place.package, allow_code)
-        self._grids = Grids(place.folder / RUNS, self._profile)
+        self._given = tuple(parts)
+        self._grids = Grids(place.folder / RUNS, self._profile, parts)
+        self._check_given()
         self.expected: tuple[ExpectedCaveat, ...] = read_expected(place.folder)
         if (place.folder / CLAIMS).is_file():
             load_claims(place.folder)  # told before anything is simulated
@@ -72,16 +78,20 @@ class Work:
 
     @property
     def config_dirs(self) -> tuple[Path, ...]:
-        """Folders in which configs of the work's own are looked for: its own, but for ours without robots."""
-        return () if self._ours and not (self.folder / "robot").is_dir() else (self.folder,)
+        """Folders of configs: its own, but for ours without robots, and those of parts that were given."""
+        return (*self._own_dirs, *dict.fromkeys(part.folder for part in self._given))
 
     @property
-    def options(self) -> tuple[str, ...]:
-        """What a command that makes one of its runs has before the overrides."""
-        folders = (word for folder in self.config_dirs for word in ("--config-dir", os.path.relpath(folder)))
+    def _own_dirs(self) -> tuple[Path, ...]:
+        return () if self._ours and not (self.folder / "robot").is_dir() else (self.folder,)
+
+    def options(self, overrides: Sequence[str]) -> tuple[str, ...]:
+        """Return what a command that makes one of its runs has before the overrides."""
+        folders = (word for folder in self._own_dirs for word in ("--config-dir", os.path.relpath(folder)))
         parts = (text.partition("=") for text in self._plugins)
         named = (word for group, _, file in parts for word in ("--plugin", f"{group}={os.path.relpath(file)}"))
-        return (*folders, *named)
+        given = (word for part in self._given if part.override in overrides for word in part.options)
+        return (*folders, *named, *given)
 
     def jobs(self) -> Jobs:
         """Return the runs that it needs, by name: those of runs.yaml, and those that `plan.py` works out."""
@@ -146,6 +156,14 @@ class Work:
         named = (text.partition("=") for text in self.about.plugins)
         return [f"{group}={self.folder / file}" for group, _, file in named]
 
+    def _check_given(self) -> None:
+        for part in self._given:
+            if part.group not in self._grids.plugins:
+                raise RunnerError(
+                    f"{self.name}: --plugin {part.override}: none of its runs takes a {part.group} of yours; a grid of "
+                    f"{RUNS} that does names the axis, as in plugins: {{law: controller}}"
+                )
+
     def _planned(self, name: str, otherwise: Callable[..., Any], *given: Any) -> Any:
         return self._code.functions(_PLAN).get(name, otherwise)(*given)
 
@@ -157,13 +175,19 @@ class Work:
         return profiles[profile] if profile else None
 
 
-def load_work(name: str, allow_code: bool = False, profile: str = "", others: Sequence[str] = ()) -> Work:
+def load_work(
+    name: str,
+    allow_code: bool = False,
+    profile: str = "",
+    others: Sequence[str] = (),
+    parts: Sequence[GivenPart] = (),
+) -> Work:
     """Return a work by its name, or by its folder; see Work and find_work.
 
     Raises:
         RunnerError: if there is none, or its data do not fit.
     """
-    return Work(find_work(name, others), allow_code, profile)
+    return Work(find_work(name, others), allow_code, profile, parts)
 
 
 def _by_profile(profile: str) -> Section:

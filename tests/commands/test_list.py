@@ -43,7 +43,10 @@ def test_claims_carry_printed_value_and_place(cli):
 def test_works_that_are_not_made_with_all_say_so(cli):
     lines = {line.split()[0]: line for line in cli("list", "works").out.splitlines()}
     apart = [name for name, line in lines.items() if line.endswith("(not made by `runner reproduce all`)")]
-    assert (apart, sorted(lines)) == (["engines", "precision"], ["engines", "meca500", "precision", "thesis", "xarm7"])
+    assert (apart, sorted(lines)) == (
+        ["benchmark", "engines", "precision"],
+        ["benchmark", "engines", "meca500", "precision", "thesis", "xarm7"],
+    )
 
 
 def test_own_options_are_listed(cli, tmp_path):

@@ -43,7 +43,7 @@ def small_work(tmp_path):
 def test_an_unknown_work_names_the_nearest(cli, tmp_path):
     ending = cli("reproduce", "thesys")
     assert ending.code == 2
-    works = "engines, meca500, precision, thesis, xarm7, audit, all, or a folder with a work.yaml"
+    works = "benchmark, engines, meca500, precision, thesis, xarm7, audit, all, or a folder with a work.yaml"
     assert ending.err == f"runner: no work 'thesys' (did you mean thesis?); works: {works}\n"
     assert list(tmp_path.iterdir()) == []
 

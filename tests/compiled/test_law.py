@@ -20,9 +20,9 @@ from runner.guard.controller import WatchedController
 from runner.sensing import EncoderNoise
 
 CASES = [
-    *((robot, "operational_space") for robot in ("macro", "mini", "xarm7", "meca500", "crane", "planar_two")),
+    *((robot, "operational_space") for robot in ("macro", "mini", "xarm7", "meca500", "crane", "planar_two", "planar")),
     ("combined", "whole_body"),
-    *((robot, "computed_torque") for robot in ("macro", "xarm7", "mixed")),
+    *((robot, "computed_torque") for robot in ("macro", "xarm7", "mixed", "planar")),
     *((robot, "joint_pd") for robot in ("macro", "xarm7")),
     *((robot, "adaptive") for robot in ("meca500", "mixed")),
     *((robot, law) for robot in ("macro", "xarm7") for law in ("adaptive", "joint_pid", "passivity", "sliding_mode")),

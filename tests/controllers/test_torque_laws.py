@@ -20,7 +20,7 @@ from runner.controllers.whole_body import build as build_whole_body
 from runner.plants.rk4 import Rk4
 from runner.robots.task_space import task_directions
 
-ROBOTS = ["macro", "mini", "combined", "xarm7", "meca500"]
+ROBOTS = ["macro", "mini", "combined", "xarm7", "meca500", "planar"]
 # Strangers, as the doctor gives them: spatial, planar, sliding, and of 30 joints.
 STRANGE = [
     *((name, "position") for name in ("kuka", "panda", "xarm6", "planar_two", "pendulum", "crane", "mixed", "snake")),
@@ -40,6 +40,7 @@ TIP_LAWS = [
     *REDUNDANT,
     ("operational_space", "macro", "position"),
     ("operational_space", "mini", "position"),
+    ("operational_space", "planar", "position"),
     ("operational_space", "meca500", "pose"),
     *(law for name, task in STRANGE if (law := ("operational_space", name, task)) not in REDUNDANT),
     ("whole_body", "planar_two", "position"),

@@ -8,7 +8,7 @@ from runner.reporting.prose.typed import levels_in, typed_numbers
 from runner.works.work import load_work
 
 
-@pytest.mark.parametrize("work", ["thesis", "xarm7", "meca500", "engines"])
+@pytest.mark.parametrize("work", ["thesis", "xarm7", "meca500", "engines", "benchmark"])
 def test_no_number_is_typed_in_the_words_of_a_finding(work):
     made = load_work(work)
     levels = levels_in([*made.jobs(), *made.calibrations()])

@@ -207,7 +207,7 @@ def test_data_that_do_not_fit_are_refused_with_file_and_key(tmp_path, files, tol
 
 
 def test_what_is_no_work_is_told(tmp_path):
-    told = r"no work 'tesis' \(did you mean thesis\?\); works: engines, meca500, precision, thesis, xarm7"
+    told = r"no work 'tesis' \(did you mean thesis\?\); works: benchmark, engines, meca500, precision, thesis, xarm7"
     with pytest.raises(RunnerError, match=told):
         find_work("tesis")
     with pytest.raises(RunnerError, match=r"no work: there is no work.yaml in it; `runner work new"):

@@ -42,7 +42,7 @@ SOME = {
     },
     "engines": {
         "open/planar/MuJoCo RK4/0.0005": (
-            "robot=planar", "controller.torques=[-8,-4]", "controller=held_torques", "trajectory=goal",
+            "robot=two_links", "controller.torques=[-8,-4]", "controller=held_torques", "trajectory=goal",
             "controller.period=0.008", "duration=0.4", "plant=mujoco", "plant.integrator=rk4", "plant.step=0.0005"),
         "impact/Runge-Kutta/6.25e-05": (
             "robot=hammer", "controller.torques=[0,10]", "environment=wall", "environment.distance=0.05",
@@ -60,6 +60,13 @@ SOME = {
         "payload/0.6043/asked/5": ("robot=xarm7", "robot.start=[0.6043,-0.2,0.1508]",
                                    "robot.goal=[0.6043,0.2,0.1508]", "duration=5", "robot.payload.mass=5"),
     },
+    "benchmark": {
+        "laws/planar/passivity/circle/all": (
+            "robot=planar", "controller=passivity", "trajectory=circle", "trajectory.normal=[0,1,0]",
+            "plant.step=0.001", "trajectory.duration=2", "duration=2", "plant=rk4", "mismatch=sampled",
+            "mismatch.spread=0.3", "plant.friction.coulomb=1.0", "plant.friction.viscous=0.5",
+            "noise.position=1.0e-4", "noise.velocity=finite_difference", "repetitions=64"),
+    },
     "precision": {
         "free/macro/PyBullet/0.002": ("robot=macro", "robot.home=[0.3,0.6,0.8]", "controller=held_torques",
                                       "controller.torques=0", "controller.period=0.008", "trajectory=goal",
@@ -72,7 +79,14 @@ SOME = {
 
 @pytest.mark.parametrize(
     ("work", "runs", "calibrations"),
-    [("thesis", 326, 0), ("xarm7", 119, 0), ("meca500", 244, 36), ("engines", 309, 0), ("precision", 90, 0)],
+    [
+        ("thesis", 326, 0),
+        ("xarm7", 119, 0),
+        ("meca500", 244, 36),
+        ("engines", 309, 0),
+        ("precision", 90, 0),
+        ("benchmark", 160, 0),
+    ],
 )
 def test_a_work_has_its_runs(work, runs, calibrations):
     planned = load_work(work)
@@ -83,4 +97,4 @@ def test_a_work_has_its_runs(work, runs, calibrations):
 
 
 def test_every_work_is_counted():
-    assert set(work_names()) == {"thesis", "xarm7", "meca500", "engines", "precision"}
+    assert set(work_names()) == {"thesis", "xarm7", "meca500", "engines", "precision", "benchmark"}

@@ -1,0 +1,27 @@
+"""Several tests at once."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from runner.statistics.interval import FloatArray
+
+
+def holm(p_values: Sequence[float]) -> FloatArray:
+    """Return p-values of a family of tests, corrected so that one or more false rejections have the stated probability.
+
+    The k-th smallest of m, k from 1, is multiplied by m + 1 - k, and is no smaller than those before it, no larger than
+    1 (Holm, "A simple sequentially rejective multiple test procedure", Scandinavian J. Statistics 6, 1979). It
+    demands nothing of how the tests depend on each other.
+
+    Args:
+        p_values: Those of the tests, shape (m,).
+
+    Returns:
+        The corrected ones, shape (m,), in the same order.
+    """
+    given = np.asarray(p_values, dtype=float)
+    order = np.argsort(given, kind="stable")
+    corrected = np.empty(len(given))
+    corrected[order] = np.minimum(1.0, np.maximum.accumulate(given[order] * np.arange(len(given), 0, -1)))
+    return corrected

@@ -1,0 +1,1 @@
+"""The laws of arm control against each other."""

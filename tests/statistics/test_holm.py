@@ -1,0 +1,28 @@
+import numpy as np
+import pytest
+
+from runner.statistics import holm
+
+
+def test_by_hand():
+    # In order .01 .02 .03 .2: times 4, 3, 2, 1; the third, .06, is as large as the second.
+    assert holm([0.03, 0.01, 0.2, 0.02]) == pytest.approx([0.06, 0.04, 0.2, 0.06])
+
+
+def test_one_alone_is_left_as_it_is_and_none_is_above_one():
+    assert holm([0.04]) == pytest.approx([0.04])
+    assert holm([0.6, 0.9, 0.7]) == pytest.approx([1.0, 1.0, 1.0])
+    assert len(holm([])) == 0
+
+
+def test_a_later_one_is_never_below_an_earlier_one():
+    p = np.random.default_rng(1).uniform(size=200) ** 4
+    corrected = holm(p)
+    assert np.all(np.diff(corrected[np.argsort(p)]) >= 0.0)
+    assert np.all((corrected >= p) & (corrected <= 1.0))
+
+
+def test_of_true_nulls_one_family_in_twenty_has_a_false_rejection():
+    families = np.random.default_rng(2).uniform(size=(4000, 12))
+    share = np.mean([holm(family).min() < 0.05 for family in families])
+    assert share == pytest.approx(0.05, abs=3.0 * np.sqrt(0.05 * 0.95 / 4000))

@@ -1,0 +1,174 @@
+"""The benchmark of laws: who is ahead, from errors that are known, and its report from runs with such errors."""
+
+import re
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from study_sections import texts, unfinished_texts, whatever_has_failed
+from work_plans import chapter, chapter_files, conditions_that_never_fail
+
+from runner.commands.reproduce import _chosen, _Way
+from runner.errors import RunnerError
+from runner.execution import run
+from runner.reporting.findings import findings
+from runner.reporting.formulas import faulty
+from runner.works.benchmark import engines
+from runner.works.benchmark.cells import cells
+from runner.works.work import load_work
+
+WORK = load_work("benchmark")
+SEEDS = 32  # of halves of 16, Holm's correction leaves something
+SCATTER = np.random.default_rng(5).uniform(0.8, 1.25, SEEDS)  # what all laws of a seed have in common
+# Sizes of the errors as a whole plan had them, in mm: of operational space, computed torque, joint PD, passivity-based.
+SIZES = {
+    "exact": (0.22, 0.26, 4.4, 0.28),
+    "masses": (1.0, 1.01, 4.0, 1.6),
+    "friction": (2.4, 2.4, 3.6, 1.0),
+    "encoders": (1.0, 1.02, 2.0, 1.02),
+    "all": (1.9, 2.0, 3.0, 1.8),
+}
+LAWS = ("operational_space", "computed_torque", "joint_pd", "passivity")
+
+
+def a_run(errors, period=0.01):
+    """What `cells` reads of a run: its errors in m, NaN where a repetition failed, and its config."""
+    config = {"controller": {"kind": "some", "period": period, "gain": np.random.default_rng().random()}, "seed": 0}
+    return SimpleNamespace(
+        metrics={"rms_tracking_error": {}}, values=lambda _: np.asarray(errors, dtype=float), config=config
+    )
+
+
+def cell(**laws):
+    """The cell of laws with errors along two paths, the second ten times as long."""
+    runs = {
+        f"laws/arm/{law}/{task}/wind": a_run(scale * np.asarray(errors, dtype=float))
+        for law, errors in laws.items()
+        for task, scale in (("line", 1.0), ("circle", 10.0))
+    }
+    return cells(runs, "arm")["wind"]
+
+
+def test_a_common_factor_is_found_whatever_the_seeds_have_in_common():
+    made = cell(a=np.linspace(1.9, 2.1, SEEDS) * SCATTER, b=SCATTER, c=np.linspace(3.0, 3.1, SEEDS) * SCATTER)
+    assert [each.law for each in made.entries] == ["b", "a", "c"]
+    assert made.best.score == pytest.approx(np.sqrt(10.0) * np.median(SCATTER), rel=0.01)  # geometric mean of the paths
+    lead = made.leads["b", "a"]
+    assert lead.factor == pytest.approx(2.0, rel=1e-3)
+    assert 1.9 < lead.interval[0] < 2.0 < lead.interval[1] < 2.1
+    assert lead.p_value == pytest.approx(3.0 * 2.0 / 2.0**SEEDS)  # all pairs agree; of three, Holm's first times three
+    assert made.tied == []
+
+
+def test_what_the_seeds_do_not_bear_out_is_a_tie_and_so_is_less_than_a_hundredth():
+    turned = SCATTER * np.where(np.arange(SEEDS) % 2, 1.3, 0.8)
+    made = cell(a=SCATTER, b=turned, c=1.005 * SCATTER)
+    assert made.leads["a", "c"].p_value < 0.05
+    assert set(made.tied) == {each.law for each in made.entries} - {made.best.law}
+
+
+def test_a_failed_repetition_is_an_error_beyond_every_number():
+    fallen = np.where(np.arange(SEEDS) < SEEDS // 4, np.nan, 0.9 * SCATTER)
+    made = cell(a=SCATTER, b=np.full(SEEDS, np.nan), c=fallen)
+    assert [each.law for each in made.entries][-1] == "b"
+    assert [made.entry(law).failed for law in "abc"] == [0.0, 1.0, 0.25]
+    assert made.entry("b").score == np.inf
+    assert made.leads[made.best.law, "b"].shown
+    assert not made.leads["a", "c"].shown  # better in a quarter alone
+
+
+@pytest.mark.parametrize("repetitions", [1, SEEDS])
+def test_where_nothing_is_drawn_a_lead_holds_along_every_path(repetitions):
+    runs = {
+        f"laws/arm/{law}/{task}/wind": a_run([error] * repetitions)
+        for law, errors in {"a": (1.0, 5.0), "b": (2.0, 4.0), "c": (1.1, 5.5)}.items()
+        for task, error in zip(("line", "circle"), errors, strict=True)
+    }
+    made = cells(runs, "arm")["wind"]
+    assert made.best.law == "a"
+    assert (made.leads["a", "c"].shown, made.leads["a", "b"].shown) == (True, False)
+    assert (made.leads["a", "c"].interval, made.leads["a", "c"].p_value) == (None, None)
+
+
+def test_another_gain_is_compared_and_another_period_is_refused():
+    alike = {f"laws/arm/{law}/line/wind": a_run(SCATTER) for law in "ab"}
+    assert list(cells(alike, "arm")) == ["wind"]
+    with pytest.raises(RunnerError, match=r"line, wind: controller.period is 0.01 for a and 0.005 for b; "):
+        cells(alike | {"laws/arm/b/line/wind": a_run(SCATTER, period=0.005)}, "arm")
+
+
+def test_halves_of_the_seeds_are_held_against_each_other():
+    even = np.arange(SEEDS) % 2 == 0
+    turned = {
+        f"laws/arm/{law}/line/wind": a_run(errors)
+        for law, errors in {"a": np.where(even, 1.0, 2.0) * SCATTER, "b": np.where(even, 2.0, 1.0) * SCATTER}.items()
+    }
+    halves = [cells(turned, "arm", seeds=slice(start, None, 2))["wind"] for start in (0, 1)]
+    assert [half.best.law for half in halves] == ["a", "b"]
+    assert [half.best.errors.shape for half in halves] == [(1, SEEDS // 2)] * 2
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """Every run of the plan: one for each arm and condition, a moment long, with errors of the sizes above."""
+    outputs = tmp_path_factory.mktemp("outputs")
+    real, made = {}, {}
+    for name, job in WORK.jobs().items():
+        plan, arm, law, task, condition = name.split("/")
+        if (plan, arm, condition) not in real:
+            kept = [re.sub(r"^repetitions=.*", f"repetitions={SEEDS}", text) for text in job.overrides]
+            kept.remove("duration=2")
+            real[plan, arm, condition] = run(*kept, "duration=0.01", f"outputs={outputs}")
+        size = 1e-3 * SIZES[condition][LAWS.index(law)]
+        if arm == "planar" and condition == "friction" and law != "passivity":
+            size *= 2.0
+        errors = (size * (SCATTER if condition in ("masses", "encoders", "all") else np.ones(1))).tolist()
+        if (arm, law, task, condition) == ("macro", "joint_pd", "circle", "all"):
+            errors[0] = None
+        record = real[plan, arm, condition].record
+        metrics = {"rms_tracking_error": {"unit": "m", "values": errors}}
+        made[name] = replace(real[plan, arm, condition], record={**record, "metrics": metrics})
+    return made
+
+
+def test_it_is_not_made_with_all_works(tmp_path):
+    assert "benchmark" not in {work.name for work in _chosen("all", _Way(tmp_path, (), "")) if work is not None}
+
+
+def test_all_findings_hold_of_such_errors(runs):
+    document = WORK.document(runs, {})
+    told = [finding for _, finding in findings(document)]
+    assert [each.title for each in told if not each.holds] == []
+    assert len(told) == 7
+    assert list(faulty(document)) == []
+
+
+def test_the_page_names_the_best_law_and_whom_it_is_ahead_of(runs):
+    words = " | ".join(texts(chapter("benchmark", "which_law.md")(runs)))
+    assert "wrong masses | operational space | 1.0" in words
+    assert "unknown friction | passivity-based | 1 mm | operational space | 4.80 times | all" in words
+
+
+@whatever_has_failed
+@pytest.mark.parametrize("file", chapter_files("benchmark"))
+def test_chapters_stand_whatever_has_failed(runs, spoil, file):
+    assert unfinished_texts(chapter("benchmark", file)(spoil(runs))) == []
+
+
+def test_the_orders_on_two_plants_are_held_against_each_other(runs):
+    assert (engines.mean_correlation(runs).value, engines.against(runs).value) == (1.0, 0.0)
+    of = {"joint_pd": "passivity", "passivity": "joint_pd"}
+    swapped = {
+        name: runs["/".join([plan, arm, of.get(law, law), *rest])] if plan == "engine" else one
+        for name, one in runs.items()
+        for plan, arm, law, *rest in [name.split("/")]
+    }
+    assert engines.against(swapped).value >= 5.0  # joint PD far behind, far ahead, under each condition
+    by_hand = [0.8, 0.8, -1.0, 0.5, -0.8]  # of the ranks of SIZES, the last two exchanged
+    assert engines.mean_correlation(swapped).value == pytest.approx(np.mean(by_hand))
+
+
+@pytest.mark.parametrize("file", ["which_law.md", "engines.md"])
+def test_every_condition_can_fail(runs, file):
+    assert conditions_that_never_fail("benchmark", file, runs) == []
