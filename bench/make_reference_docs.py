@@ -39,7 +39,7 @@ from runner.paths import conf_dir
 from runner.plants import PLANTS
 from runner.registry import Registry, StrictModel
 from runner.robots.mismatch import MismatchConfig
-from runner.sensing import ForceTorqueConfig
+from runner.sensing import ForceTorqueConfig, JointTorqueConfig
 from runner.trajectories import TRAJECTORIES
 from runner.works.chapters import SHARED
 from runner.works.code import public_functions
@@ -80,6 +80,7 @@ _PLAIN: Mapping[str, tuple[type[StrictModel], str]] = {
     "torque_limits": (TorqueLimitsConfig, "none"),
     "wrist_sensor": (ForceTorqueConfig, "ideal"),
     "mismatch": (MismatchConfig, "none"),
+    "joint_torque_sensor": (JointTorqueConfig, "none"),
     "disturbance_observer": (DisturbanceObserverConfig, "none"),
     "preset": (PresetConfig, "sound"),
 }

@@ -28,12 +28,13 @@ from runner.plants.servo import JointServo, ServoLaw
 from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.mismatch import believe
 from runner.robots.robot import Robot, end_points
-from runner.sensing import EncoderNoise, ForceTorqueConfig, ForceTorqueSensor, JointEncoders
+from runner.sensing import EncoderNoise, ForceTorqueConfig, ForceTorqueSensor, JointEncoders, JointTorqueSensor
 from runner.servo_contact import ServoContact
 from runner.trace import FloatArray
 from runner.trajectories.joint_motion import TipOfJoints
 
 _BELIEFS = 2**32 - 1  # in the seeds of what controllers believe; the loops' places count from 0
+_JOINT_TORQUES = 2**32 - 2  # in the seeds of the torque sensors in the joints
 
 
 def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
@@ -142,9 +143,11 @@ def _observe(config: RunConfig, believed: Robot, loops: tuple[Loop, ...]) -> tup
         return loops
     observed = []
     for loop, bandwidth in zip(loops, bandwidths, strict=True):
-        limits, late = config.torque_limits[loop.joints], config.timing.delay // round(loop.period / config.timing.tick)
+        measures = config.disturbance_observer.torque == "measured"
+        late = 0 if measures else config.timing.delay // round(loop.period / config.timing.tick)
+        limits = config.torque_limits[loop.joints]
         observer = MomentumObserver(believed, loop.joints, bandwidth, loop.period, limits, late)
-        observed.append(replace(loop, controller=observe(cast(Controller, loop.controller), observer)))
+        observed.append(replace(loop, controller=observe(cast(Controller, loop.controller), observer, measures)))
     return tuple(observed)
 
 
@@ -293,6 +296,14 @@ def make_wrist_sensor(
         return None
     generator = np.random.default_rng([seed, repetition, len(closed.loops)])
     return ForceTorqueSensor(closed.ticks + 1, closed.tick, sensor, generator)
+
+
+def make_joint_torque_sensor(closed: ClosedLoop, config: RunConfig, repetition: int) -> JointTorqueSensor | None:
+    """Make the torque sensors of the joints for one repetition, where there are any; noise as for the encoders."""
+    if config.joint_torques is None:
+        return None
+    generator = np.random.default_rng([config.settings.seed, repetition, _JOINT_TORQUES])
+    return JointTorqueSensor(closed.ticks + 1, *config.joint_torques, generator)
 
 
 def metric_context(config: RunConfig) -> MetricContext:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from runner import store
-from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
+from runner.assembly import assemble, make_encoders, make_joint_torque_sensor, make_wrist_sensor, metric_context
 from runner.batch_blocks import simulate_blocks
 from runner.batch_jobs import seconds_together
 from runner.caveats import PlantStep, Watch, setting_of, signals_of
@@ -137,6 +137,7 @@ def _simulate(closed: ClosedLoop, config: RunConfig, repetition: int) -> tuple[T
     """Simulate a repetition; return its trace, and what the controllers and the wrist's sensor tell of it."""
     seed = config.settings.seed
     wrist = make_wrist_sensor(closed, config.wrist_sensor, seed, repetition)
-    trace = simulate(closed, make_encoders(closed, config.noise, seed, repetition), wrist)
+    torques = make_joint_torque_sensor(closed, config, repetition)
+    trace = simulate(closed, make_encoders(closed, config.noise, seed, repetition), wrist, torques)
     told = [notice for loop in closed.loops if loop.feeling is not None for notice in loop.feeling.notices()]
     return trace, told + ([] if wrist is None else wrist.overloads())

@@ -11,16 +11,22 @@ from runner.loop.command import Command
 from runner.loop.compiled_loop import run_commands, run_whole
 from runner.loop.contact import Contact
 from runner.loop.drive import make_drive
+from runner.loop.joint_torques import JointTorques
 from runner.loop.recorder import Recorder
 from runner.progress.ticks import counted
-from runner.sensing import ForceTorqueSensor, JointEncoders
+from runner.sensing import ForceTorqueSensor, JointEncoders, JointTorqueSensor
 from runner.trace import Trace
 from runner.trajectories.trajectory import joint_reference
 
 __all__ = ["ClosedLoop", "simulate"]
 
 
-def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: ForceTorqueSensor | None = None) -> Trace:
+def simulate(
+    closed: ClosedLoop,
+    encoders: Sequence[JointEncoders],
+    wrist: ForceTorqueSensor | None = None,
+    torques: JointTorqueSensor | None = None,
+) -> Trace:
     """Run the control loops once.
 
     At each of its ticks a loop reads the encoders of every joint afresh, asks its controller, and its torques are
@@ -33,6 +39,7 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
         closed: The control loops; plant and controllers are reset here.
         encoders: The joint measurement of each loop, with a draw for each of its ticks.
         wrist: The force/torque sensor, with a draw for each tick; needed where there is something to feel.
+        torques: The torque sensors in the joints, likewise; needed where a control law reads them.
 
     Returns:
         The trace; one that ends early carries a failure.
@@ -50,13 +57,19 @@ def simulate(closed: ClosedLoop, encoders: Sequence[JointEncoders], wrist: Force
             elif isinstance(closed.compiled, CompiledCommands):
                 run_commands(closed.compiled, closed, encoders, contact, recorder)
             else:
-                _run(closed, encoders, contact, recorder)
+                _run(closed, encoders, contact, JointTorques(closed, torques, recorder.commands), recorder)
     except (np.linalg.LinAlgError, SimulationError) as error:
         recorder.stop(0, error)
     return recorder.trace(contact)
 
 
-def _run(closed: ClosedLoop, encoders: Sequence[JointEncoders], contact: Contact | None, recorder: Recorder) -> None:
+def _run(
+    closed: ClosedLoop,
+    encoders: Sequence[JointEncoders],
+    contact: Contact | None,
+    torques: JointTorques,
+    recorder: Recorder,
+) -> None:
     """Run control loops that are asked one by one."""
     commands = [Command(closed, *pair, recorder) for pair in zip(closed.loops, encoders, strict=True)]
     drive, load, k = make_drive(closed, recorder), None, 0
@@ -66,12 +79,14 @@ def _run(closed: ClosedLoop, encoders: Sequence[JointEncoders], contact: Contact
             q, dq = recorder.observe(k)
             if contact is not None:
                 load = contact.update(k, recorder.times[k], q, dq)
+            torques.tell(k)
             for command in commands:
                 if k % command.every == 0:
                     command.update(k, q, dq)
             recorder.keep_command(k)
             if k < closed.ticks:
                 drive.advance(k, load)
+                torques.keep(k)
         recorder.check_divergence(closed.ticks)
     except (np.linalg.LinAlgError, SimulationError) as error:
         recorder.stop(k, error)

@@ -88,12 +88,13 @@ def _checked(run: store.Run, repetition: int) -> "RunConfig":
 
 
 def _simulate(config: "RunConfig", repetition: int) -> "Trace":
-    from runner.assembly import assemble, make_encoders, make_wrist_sensor
+    from runner.assembly import assemble, make_encoders, make_joint_torque_sensor, make_wrist_sensor
     from runner.simulation import simulate
 
     loop, seed = assemble(config, repetition), config.settings.seed
     try:
         wrist = make_wrist_sensor(loop, config.wrist_sensor, seed, repetition)
-        return simulate(loop, make_encoders(loop, config.noise, seed, repetition), wrist)
+        torques = make_joint_torque_sensor(loop, config, repetition)
+        return simulate(loop, make_encoders(loop, config.noise, seed, repetition), wrist, torques)
     finally:
         loop.close()

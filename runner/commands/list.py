@@ -24,6 +24,7 @@ _GROUPS = {
     "wrist_sensors": "wrist_sensor",
     "mismatch": "mismatch",
     "disturbance_observers": "disturbance_observer",
+    "joint_torque_sensors": "joint_torque_sensor",
     "noise": "noise",
     "presets": "preset",
     "torque_limits": "torque_limits",

@@ -22,6 +22,15 @@ def check_observer(config: RunConfig) -> None:
             "its momenta are those of the whole arm, whose stages turn and feel each other; take "
             "plant.dynamics=coupled and plant.wrist_rotation=real"
         )
+    elif config.disturbance_observer.torque == "measured":
+        if config.joint_torques is not None:
+            return
+        raise ConfigError(
+            [
+                "disturbance_observer.torque: measured needs torque sensors in the joints, and joint_torque_sensor."
+                "noise is null; take joint_torque_sensor=ideal, or disturbance_observer.torque=commanded"
+            ]
+        )
     else:
         problem = _late(config)
     if problem is not None:

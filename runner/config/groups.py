@@ -22,7 +22,7 @@ from runner.errors import ConfigError, nearest
 from runner.plants import PLANTS, PlantConfig
 from runner.registry import KindConfig, Kinds, StrictModel
 from runner.robots.mismatch import MismatchConfig
-from runner.sensing import ForceTorqueConfig
+from runner.sensing import ForceTorqueConfig, JointTorqueConfig
 from runner.trajectories import TRAJECTORIES
 
 M = TypeVar("M", bound=StrictModel)
@@ -32,6 +32,7 @@ GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
     "noise": NoiseConfig,
     "torque_limits": TorqueLimitsConfig,
     "wrist_sensor": ForceTorqueConfig,
+    "joint_torque_sensor": JointTorqueConfig,
     "mismatch": MismatchConfig,
     "disturbance_observer": DisturbanceObserverConfig,
     "robot": OneArmConfig,
@@ -57,6 +58,7 @@ class Groups:
         noise: Config of the joint measurement.
         torque_limits: Config of the torque limits.
         wrist_sensor: Config of the force/torque sensor.
+        joint_torque_sensor: Config of the torque sensors in the joints.
         mismatch: How what the controllers believe of the robot differs from it.
         disturbance_observer: Config of the observer that control laws carry.
         robot: Config of the robot.
@@ -74,6 +76,7 @@ class Groups:
     noise: NoiseConfig | None
     torque_limits: TorqueLimitsConfig | None
     wrist_sensor: ForceTorqueConfig | None
+    joint_torque_sensor: JointTorqueConfig | None
     mismatch: MismatchConfig | None
     disturbance_observer: DisturbanceObserverConfig | None
     robot: RobotConfig | None
@@ -109,6 +112,7 @@ def read_groups(resolved: Mapping[str, object], problems: Problems) -> Groups:
         noise=read(NoiseConfig, "noise"),
         torque_limits=read(TorqueLimitsConfig, "torque_limits"),
         wrist_sensor=read(ForceTorqueConfig, "wrist_sensor"),
+        joint_torque_sensor=read(JointTorqueConfig, "joint_torque_sensor"),
         mismatch=read(MismatchConfig, "mismatch"),
         disturbance_observer=read(DisturbanceObserverConfig, "disturbance_observer"),
         robot=problems.recall(parse_robot, problems.attempt(group_of, "robot", resolved)),

@@ -39,6 +39,7 @@ class RunConfig:
         noise: Noise and steps of each joint's encoder.
         torque_limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
         wrist_sensor: Config of the force/torque sensor.
+        joint_torques: Noise and bias of each joint's torque sensor, shapes (nq,), in N m; None where there are none.
         mismatch: How what the controllers believe of the robot differs from it.
         disturbance_observer: Config of the observer that control laws carry.
         timing: The times of a run.
@@ -63,6 +64,7 @@ class RunConfig:
     noise: EncoderNoise
     torque_limits: FloatArray
     wrist_sensor: ForceTorqueConfig
+    joint_torques: tuple[FloatArray, FloatArray] | None
     mismatch: MismatchConfig
     disturbance_observer: DisturbanceObserverConfig
     timing: Timing

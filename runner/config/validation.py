@@ -82,6 +82,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         noise=sure(noise),
         torque_limits=sure(torque_limits),
         wrist_sensor=sure(groups.wrist_sensor),
+        joint_torques=sure(groups.joint_torque_sensor).by_joint(sure(arm)),
         mismatch=sure(groups.mismatch),
         disturbance_observer=sure(groups.disturbance_observer),
         timing=Timing(*sure(steps), sure(delay), sure(ticks)),

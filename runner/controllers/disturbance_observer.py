@@ -1,7 +1,7 @@
 """A momentum disturbance observer that any torque law can carry."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from pydantic import PositiveFloat
@@ -21,9 +21,12 @@ class DisturbanceObserverConfig(StrictModel):
     Attributes:
         bandwidth: L of the observer that every control loop carries, in rad/s, or by loop, which is by stage where each
             has its own; None is no observer.
+        torque: Whether it takes the torque that its law commands, within the limits, or what sensors in the joints
+            read, which is less by the friction.
     """
 
     bandwidth: PositiveFloat | dict[str, PositiveFloat] | None
+    torque: Literal["commanded", "measured"]
 
     def by_loop(self, loops: Sequence[Loop]) -> list[float] | None:
         """Return the bandwidth of each loop, in rad/s; None where there is no observer.
@@ -110,6 +113,11 @@ class MomentumObserver:
         """Return what it keeps before the first tick: the arm rests at q, and nothing disturbs it."""
         b = PinocchioArm(self.model).momentum(q, np.zeros(len(q)), self.numbers.gravity)[1][self._first : self._end]
         return np.concatenate([np.zeros(len(b)), 0.5 * self.numbers.period * b, *[-b] * (1 + self._late)])
+
+    def measured(self, memory: FloatArray, reading: FloatArray) -> FloatArray:
+        """Return what it keeps, with a reading of what acted since its last tick, of every joint, shape (nq,)."""
+        n = len(self.numbers.limits)
+        return np.concatenate([memory[: 2 * n], reading[self._first : self._end], memory[3 * n :]])
 
     def correct(
         self, arm: Arm, numbers: ObserverNumbers, time: Scalar, q: Array, dq: Array, torque: Array, memory: Array
@@ -210,8 +218,25 @@ class ObservedController:
         return asked
 
 
-def observe(controller: Controller, observer: MomentumObserver) -> Controller:
-    """Return a controller with an observer, one of the user's watched as before."""
+class MeasuringController(ObservedController):
+    """A controller whose observer takes the torques that sensors in the joints read; see ReadsJointTorques."""
+
+    def read_joint_torques(self, reading: FloatArray) -> None:
+        """Take the mean torques on the links since the last tick; see ReadsJointTorques."""
+        if self._memory is not None:
+            self._memory = self._observer.measured(self._memory, reading)
+
+
+def observe(controller: Controller, observer: MomentumObserver, measures: bool) -> Controller:
+    """Return a controller with an observer, one of the user's watched as before.
+
+    Args:
+        controller: The controller.
+        observer: The observer.
+        measures: Whether the observer takes what sensors in the joints read; no such law is compiled.
+    """
+    if measures:
+        return MeasuringController(controller, observer)
     if isinstance(controller, TorqueLaw):
         return ObservedLaw(controller, observer)
     if isinstance(controller, WatchedController) and isinstance(controller.watched, TorqueLaw):

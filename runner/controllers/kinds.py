@@ -69,6 +69,15 @@ class KnowsLimits(Protocol):
 
 
 @runtime_checkable
+class ReadsJointTorques(Protocol):
+    """A control law that is told what the joint torque sensors read, at its ticks but the first."""
+
+    def read_joint_torques(self, reading: FloatArray) -> None:
+        """Take the mean torques on the links since the last tick, of every joint, shape (nq,), in N m."""
+        ...
+
+
+@runtime_checkable
 class FollowsWithinReach(Protocol):
     """A config of controllers whose rider follows its target up to a distance; a metric tells how often it is out."""
 

@@ -9,7 +9,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.plants.friction import FrictionConfig, with_friction
 from runner.plants.motion import find_motion
-from runner.plants.plant import FloatArray, Plant
+from runner.plants.plant import FloatArray, Plant, friction_of
 from runner.plants.servo import ServoConfig
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
@@ -106,6 +106,11 @@ class Decoupled:
         for plant, joints in zip(self._plants, self._joints, strict=True):
             plant.advance(tau[joints])
             self.q[joints], self.dq[joints] = plant.q, plant.dq
+
+    @property
+    def friction(self) -> FloatArray:
+        """What friction took from the torques in the last tick; see TellsFriction."""
+        return np.concatenate([friction_of(plant) for plant in self._plants])
 
     def close(self) -> None:
         """Release what the plants hold."""

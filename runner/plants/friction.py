@@ -60,6 +60,8 @@ class Frictional:
         self._damping = tick * viscous
         self._viscous, self._coulomb = viscous, coulomb
         self._slides = np.zeros(model.nq)
+        self.friction: FloatArray = np.zeros(model.nq)
+        """What it took from the torques in the last tick; see TellsFriction."""
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Put the arm into a state; see Plant."""
@@ -81,7 +83,8 @@ class Frictional:
         _, columns, _ = dposv(M + np.diag(self._damping), np.column_stack([pushed, h * np.eye(len(tau))]))
         speed, yields = columns[:, 0], columns[:, 1:]
         mu, self._slides = stopping_torques(yields, speed, self._coulomb, self._slides)
-        self.plant.advance(tau - self._viscous * (speed - yields @ mu) - mu)
+        self.friction = self._viscous * (speed - yields @ mu) + mu
+        self.plant.advance(tau - self.friction)
 
     def _contact_torque(self) -> FloatArray:
         """Return the joint torques of contacts that the plant made in the last tick, shape (nq,), in N m."""

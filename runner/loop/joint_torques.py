@@ -1,0 +1,54 @@
+"""What controllers are told of the torques in the joints."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from runner.controllers.kinds import ReadsJointTorques
+from runner.loop.closed_loop import ClosedLoop
+from runner.plants.plant import friction_of
+from runner.sensing import JointTorqueSensor
+from runner.trace import FloatArray
+
+
+@dataclass
+class _Reader:
+    """A controller that reads the sensors at its ticks: the mean of what acted since the last one."""
+
+    controller: ReadsJointTorques
+    every: int
+    sum: FloatArray
+    count: int = 0
+
+
+class JointTorques:
+    """The sensors at work.
+
+    Args:
+        closed: The closed loop.
+        sensor: The sensors, with a draw for each tick; None where there are none.
+        commands: What the loops asked for at each tick, shape (T, nq), in N m.
+    """
+
+    def __init__(self, closed: ClosedLoop, sensor: JointTorqueSensor | None, commands: FloatArray) -> None:
+        self._closed, self._sensor, self._commands = closed, sensor, commands
+        self._readers = [
+            _Reader(loop.controller, closed.every(loop), np.zeros(commands.shape[1]))
+            for loop in closed.loops
+            if sensor is not None and isinstance(loop.controller, ReadsJointTorques)
+        ]
+
+    def tell(self, k: int) -> None:
+        """Tell those that tick in tick k what acted since their last tick; nothing before the first."""
+        for reader in self._readers:
+            if k % reader.every == 0 and reader.count and self._sensor is not None:
+                reader.controller.read_joint_torques(self._sensor.read(k, reader.sum / reader.count))
+                reader.sum, reader.count = np.zeros_like(reader.sum), 0
+
+    def keep(self, k: int) -> None:
+        """Keep what acted from tick k to the next one."""
+        if not self._readers:
+            return
+        acted = self._commands[max(k - self._closed.delay, 0)] - friction_of(self._closed.plant)
+        for reader in self._readers:
+            reader.sum, reader.count = reader.sum + acted, reader.count + 1

@@ -1,0 +1,65 @@
+"""Torque sensors in the joints, behind their friction."""
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import FiniteFloat, NonNegativeFloat
+
+from runner.errors import ConfigError
+from runner.registry import StrictModel
+from runner.robots.robot import Robot
+
+FloatArray = NDArray[np.float64]
+
+
+class JointTorqueConfig(StrictModel):
+    """Config of the torque sensors in the joints.
+
+    Attributes:
+        noise: Standard deviation of each reading, in N m; N where a joint slides. One for all joints or a list with one
+            for each; None where there are no sensors.
+        bias: Constant error of each reading, in N m; N where a joint slides. Likewise.
+    """
+
+    noise: NonNegativeFloat | list[NonNegativeFloat] | None
+    bias: FiniteFloat | list[FiniteFloat]
+
+    def by_joint(self, arm: Robot) -> tuple[FloatArray, FloatArray] | None:
+        """Return noise and bias of each joint of a robot, shapes (nq,), in N m; None where there are no sensors.
+
+        Raises:
+            ConfigError: for a list of another length; names the joints.
+        """
+        joints = arm.model.joint_names
+        if self.noise is None:
+            return None
+        for key, values in (("noise", self.noise), ("bias", self.bias)):
+            if isinstance(values, list) and len(values) != len(joints):
+                raise ConfigError(
+                    [
+                        f"joint_torque_sensor.{key}: {len(values)} values for {len(joints)} joints "
+                        f"({', '.join(joints)}); found {values}"
+                    ]
+                )
+        noise, bias = (np.broadcast_to(np.array(values), len(joints)) for values in (self.noise, self.bias))
+        return noise, bias
+
+
+class JointTorqueSensor:
+    """Readings of the torques that the drives put on the links: what they give, less the friction of the joints.
+
+    All draws are made when the sensor is made; a longer run starts alike.
+
+    Args:
+        ticks: Number of readings to come.
+        noise: Standard deviation of each joint's reading, shape (nq,), in N m.
+        bias: Constant error, shape (nq,), in N m.
+        generator: Source of the draws.
+    """
+
+    def __init__(self, ticks: int, noise: FloatArray, bias: FloatArray, generator: np.random.Generator) -> None:
+        self._errors = bias + noise * generator.standard_normal((ticks, len(noise)))
+
+    def read(self, tick: int, torque: FloatArray) -> FloatArray:
+        """Return the reading at a tick of the mean torques since the last one, shapes (nq,), in N m."""
+        reading: FloatArray = torque + self._errors[tick]
+        return reading
