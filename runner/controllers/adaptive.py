@@ -122,7 +122,7 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
         """Return the law that is told its torque limits; see KnowsLimits."""
         return self.with_numbers(limits=limits)
 
-    def own_start(self, q: FloatArray) -> FloatArray:
+    def own_start(self) -> FloatArray:
         """Return the parameters that are believed at first, shape (P,)."""
         return self.numbers.believed
 

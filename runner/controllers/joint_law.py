@@ -2,13 +2,13 @@
 
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.controllers.controller import Controller, FloatArray, Loop
-from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
+from runner.controllers.joint_motion import DesiredJoints, JointMotion
 from runner.controllers.maths import Array, Scalar
 from runner.controllers.tip_task import TaskName, task_start
 from runner.controllers.torque_law import Arm, TorqueLaw
@@ -44,20 +44,7 @@ class JointLawConfig(StrictModel):
     null_space_frequency: NonNegativeFloat
 
 
-class JointLawNumbers(Protocol):
-    """The numbers of a law in joint space.
-
-    Attributes:
-        motion: Of the joint motion that is followed.
-    """
-
-    @property
-    def motion(self) -> JointMotionNumbers:
-        """See above."""
-        ...
-
-
-N = TypeVar("N", bound=Any)  # a JointLawNumbers that is a tuple
+N = TypeVar("N", bound=Any)  # a NamedTuple with the numbers of the motion, `motion`
 C = TypeVar("C", bound=JointLawConfig)
 
 
@@ -68,7 +55,7 @@ class JointLaw(TorqueLaw[N]):
         model: The arm.
         motion: What it follows.
         gravity_compensation: Whether the arm that the law believes in has weight.
-        numbers: The law's numbers, a JointLawNumbers.
+        numbers: The law's numbers, of which one is `motion`, the JointMotionNumbers of the motion.
         remembers: How many numbers the law itself keeps from tick to tick; zeros at the first one.
     """
 
@@ -80,9 +67,9 @@ class JointLaw(TorqueLaw[N]):
 
     def start(self, q: FloatArray) -> FloatArray:
         """Return the joint motion where it starts, and what the law itself keeps; see TorqueLaw."""
-        return np.concatenate([self._motion.start(q), self.own_start(q)])
+        return np.concatenate([self._motion.start(q), self.own_start()])
 
-    def own_start(self, q: FloatArray) -> FloatArray:
+    def own_start(self) -> FloatArray:
         """Return what the law itself keeps, at the first tick, shape (remembers,)."""
         return np.zeros(self._remembers)
 

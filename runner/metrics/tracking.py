@@ -9,6 +9,7 @@ from runner.trajectories.trajectory import Trajectory, joint_reference
 UNITS = {
     "max_tracking_error": "m",
     "rms_tracking_error": "m",
+    "rms_tracking_error_last_period": "m",
     "cross_track_error": "m",
     "max_joint_error": "rad",
     "rms_joint_error": "rad",
@@ -20,6 +21,7 @@ def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
 
     - max_tracking_error, and _x, _y, _z: largest axis error over 0..t_f.
     - rms_tracking_error: root mean square of the error's norm over 0..t_f.
+    - rms_tracking_error_last_period: likewise over the last period of a periodic motion, where a run has two or more.
     - cross_track_error: largest distance to the path taken as a curve, over the whole run.
     - max_joint_error, rms_joint_error: largest error of a joint, and root mean square of their norm, over 0..t_f, where
       the desired motion is one of the joints; of those that turn.
@@ -31,14 +33,29 @@ def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
     ticks = int(np.searchsorted(traces.t, context.trajectory.duration + 1e-9, side="right"))
     error = traces.error[:, :, :ticks]
     axes = np.abs(error).max(axis=2)
-    squared = error[:, 0] ** 2 + error[:, 1] ** 2 + error[:, 2] ** 2
+    squared = _squared(error)
     return {
         "max_tracking_error": axes.max(axis=1),
         **{f"max_tracking_error_{axis}": axes[:, index] for index, axis in enumerate("xyz")},
         "rms_tracking_error": np.sqrt(squared.sum(axis=1) / ticks),
+        **_of_last_period(traces, context, _squared(traces.error)),
         **cross_track,
         **_of_joints(traces, context.trajectory, ticks),
     }
+
+
+def _squared(error: FloatArray) -> FloatArray:
+    """Return the square of the error's norm, shapes (runs, 3, T) to (runs, T), in m^2."""
+    return np.asarray(error[:, 0] ** 2 + error[:, 1] ** 2 + error[:, 2] ** 2)
+
+
+def _of_last_period(traces: Traces, context: MetricContext, squared: FloatArray) -> dict[str, FloatArray]:
+    """Return what is left at the end of a periodic motion, such as after learning."""
+    path, end = context.trajectory, float(traces.t[-1])
+    if path.goal is not None or end < 2.0 * path.duration - 1e-9:
+        return {}
+    late = traces.t > end - path.duration + 1e-9
+    return {"rms_tracking_error_last_period": np.sqrt(squared[:, late].mean(axis=1))}
 
 
 def _of_joints(traces: Traces, path: Trajectory, ticks: int) -> dict[str, FloatArray]:

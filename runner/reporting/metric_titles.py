@@ -12,6 +12,7 @@ TITLES = {
     "overshoot": "overshoot",
     "max_tracking_error": "largest tracking error",
     "rms_tracking_error": "rms tracking error",
+    "rms_tracking_error_last_period": "rms tracking error, last period",
     "cross_track_error": "largest distance from the path",
     "max_joint_error": "largest joint error",
     "rms_joint_error": "rms joint error",

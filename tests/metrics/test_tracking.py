@@ -3,6 +3,8 @@ import pytest
 from one_run import of_one
 
 from runner.metrics import MetricContext, tracking
+from runner.trajectories.circle import Circle
+from runner.trajectories.closed_figure import ClosedFigure
 from runner.trajectories.goal import Goal
 from runner.trajectories.quintic import Quintic
 
@@ -56,3 +58,19 @@ def test_cross_track_is_the_distance_to_the_path_whatever_the_time(hand_made_tra
 def test_a_goal_has_no_tracking_errors(hand_made_trace):
     found = evaluate(hand_made_trace(T, desired=END), MetricContext(Goal(START, END), 0.02, 0.01))
     assert found == {"cross_track_error": 0.0}
+
+
+@pytest.mark.parametrize(("ticks", "counts"), [(201, True), (251, True), (200, False)])
+def test_the_last_period_of_a_motion_that_repeats(hand_made_trace, ticks, counts):
+    """Of 1 s, 100 ticks: an error before it does not count, and two periods are needed."""
+    t, path = 0.01 * np.arange(ticks), ClosedFigure(Circle(START, 1.0, END, np.array([0.0, 1.0, 0.0]), 1), 1.0, "none")
+    error = np.zeros((ticks, 3))
+    error[-101] = [0.0, 9.0, 0.0]
+    error[-100:] = [0.3, 0.0, 0.4]
+    found = evaluate(hand_made_trace(t, tip=-error), MetricContext(path, 0.02, 0.01))
+    assert ("rms_tracking_error_last_period" in found) == counts
+    assert not counts or found["rms_tracking_error_last_period"] == pytest.approx(0.5)
+
+
+def test_a_motion_to_rest_has_no_last_period(hand_made_trace):
+    assert "rms_tracking_error_last_period" not in evaluate(hand_made_trace(T, tip=np.zeros((len(T), 3))), TRACKED)
