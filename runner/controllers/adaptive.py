@@ -15,6 +15,7 @@ from runner.controllers.torque_law import Arm, PinocchioArm
 from runner.robots.model import RobotModel
 
 _SPEED, _ACCELERATION = 1.0, 2.0  # rad/s and rad/s^2, or m/s and m/s^2: of the motions that scale the gains
+_NOTHING = 1e-200  # kg m^2/s^4, in place of a division by zero where s is zero
 _SMOOTH = 0.01  # rad/s or m/s, below which the believed dry friction fades
 
 
@@ -46,7 +47,7 @@ class AdaptiveNumbers(NamedTuple):
         damping: Diagonal of K_D, shape (nq,), in kg m^2/s.
         adaptation: Diagonal of Gamma, shape (P,).
         believed: theta^ at the first tick, shape (P,).
-        fastest: a omega_n^2, the bound of a scale by parameter, in 1/s^2.
+        swings: a omega_n^2 / 4, above which a direction of s swings, in 1/s^2.
         limits: Torque limits, shape (nq,), in N m; infinite where there is none.
     """
 
@@ -55,7 +56,7 @@ class AdaptiveNumbers(NamedTuple):
     damping: Array
     adaptation: Array
     believed: FloatArray
-    fastest: Scalar
+    swings: Scalar
     limits: Array
 
 
@@ -79,9 +80,9 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
     D^-1/2 Y Gamma Y^T D^-1/2, whose largest eigenvalue is at most the sum of Gamma_p |D^-1/2 Y_p|^2. So a scale by
     parameter, Gamma_p = a omega_n^2 / (P max |D^-1/2 Y_p|^2), keeps them below sqrt(a) omega_n whatever the units and
     sizes of the P parameters; the largest is that of gravity at home with each joint alone, and all together, moving at
-    1 rad/s and 2 rad/s^2 there. What none of these excites does not adapt. In a tick of a faster motion, whose sum is
-    above a omega_n^2, all gains are as much smaller, and in one in which a torque is beyond its limit, the s of its
-    joint teaches nothing. V may rise in both.
+    1 rad/s and 2 rad/s^2 there. What none of these excites does not adapt. In a tick in which s itself would swing,
+    s^T Y Gamma Y^T s > a omega_n^2 s^T D s / 4, as in motions much faster than these, all gains are as much smaller; in
+    one in which a torque is beyond its limit, the s of its joint teaches nothing. V may rise in both.
 
     Args:
         model: The arm.
@@ -109,7 +110,7 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
             adaptation=gains,
             believed=believed,
             limits=model.effort_limits,
-            fastest=config.adaptation * config.natural_frequency**2,
+            swings=0.25 * config.adaptation * config.natural_frequency**2,
         )
         super().__init__(model, motion, config.gravity_compensation, numbers, remembers=len(gains))
 
@@ -138,10 +139,12 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
             Y = np.concatenate([Y, _friction(arm, dq_r, desired.dq)], axis=1)
         torque = Y.dot(memory) + numbers.damping * s
         teaches = np.array([_taught(arm, *of) for of in zip(torque, numbers.limits, s, strict=True)])
-        change = numbers.motion.period * numbers.adaptation * Y.T.dot(teaches)
+        gradient = Y.T.dot(teaches)
+        change = numbers.motion.period * numbers.adaptation * gradient
         if self._bounded:
-            needed = (Y**2).T.dot(numbers.rate / numbers.damping).dot(numbers.adaptation)
-            change = change * (numbers.fastest / arm.maths.maximum(numbers.fastest, needed))
+            braked = numbers.swings / numbers.rate * (numbers.damping * teaches).dot(teaches)
+            needed = (numbers.adaptation * gradient).dot(gradient)
+            change = change * (braked / arm.maths.maximum(braked + _NOTHING, needed))
         return torque, memory + change
 
     def _scales(self, model: RobotModel, has_weight: bool, home: FloatArray, D: FloatArray) -> FloatArray:
