@@ -16,7 +16,7 @@ _LAWS = {
         "controller=iterative_learning",
         "trajectory=circle",
         "trajectory.easing=none",
-        "duration=6",
+        "duration=14",
     ),
     "joint_pd": ("robot=macro", "controller=joint_pd"),
     "joint_pid": ("robot=macro", "controller=joint_pid"),

@@ -2,17 +2,15 @@
 
 import math
 from contextlib import ExitStack
-from dataclasses import replace
-from typing import cast
 
 import numpy as np
 
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.compiled.compile import compile_commands, compile_whole, describe_whole, find_commands
 from runner.config.run import RunConfig
-from runner.controllers import CONTROLLERS, Controller, ControllerConfig, Loop
+from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.controllers.admittance_stability import check_wall
-from runner.controllers.disturbance_observer import MomentumObserver, observe
+from runner.controllers.disturbance_observer import observed
 from runner.controllers.kinds import ChecksStability, FollowsWithinReach, LeadsByForce
 from runner.environments import ENVIRONMENTS, Environment
 from runner.environments.wall import Wall, WallConfig
@@ -28,13 +26,12 @@ from runner.plants.servo import JointServo, ServoLaw
 from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.mismatch import believe
 from runner.robots.robot import Robot, end_points
-from runner.sensing import EncoderNoise, ForceTorqueConfig, ForceTorqueSensor, JointEncoders, JointTorqueSensor
+from runner.sensing import EncoderNoise, ForceTorqueConfig, ForceTorqueSensor, JointEncoders
 from runner.servo_contact import ServoContact
 from runner.trace import FloatArray
 from runner.trajectories.joint_motion import TipOfJoints
 
 _BELIEFS = 2**32 - 1  # in the seeds of what controllers believe; the loops' places count from 0
-_JOINT_TORQUES = 2**32 - 2  # in the seeds of the torque sensors in the joints
 
 
 def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
@@ -133,22 +130,7 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
     if believed is not config.arm:
         loops = CONTROLLERS.build_for(config.controller, believed, isinstance(config.path, TipOfJoints))
     loops = CONTROLLERS.tell_limits(config.controller, loops, config.torque_limits)
-    return believed, _observe(config, believed, loops)
-
-
-def _observe(config: RunConfig, believed: Robot, loops: tuple[Loop, ...]) -> tuple[Loop, ...]:
-    """Return the loops with the disturbance observers that their laws carry, if any."""
-    bandwidths = config.disturbance_observer.by_loop(loops)
-    if bandwidths is None:
-        return loops
-    observed = []
-    for loop, bandwidth in zip(loops, bandwidths, strict=True):
-        measures = config.disturbance_observer.torque == "measured"
-        late = 0 if measures else config.timing.delay // round(loop.period / config.timing.tick)
-        limits = config.torque_limits[loop.joints]
-        observer = MomentumObserver(believed, loop.joints, bandwidth, loop.period, limits, late)
-        observed.append(replace(loop, controller=observe(cast(Controller, loop.controller), observer, measures)))
-    return tuple(observed)
+    return believed, observed(config.disturbance_observer, believed, loops, config.torque_limits, config.timing)
 
 
 def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledCommands | None:
@@ -296,14 +278,6 @@ def make_wrist_sensor(
         return None
     generator = np.random.default_rng([seed, repetition, len(closed.loops)])
     return ForceTorqueSensor(closed.ticks + 1, closed.tick, sensor, generator)
-
-
-def make_joint_torque_sensor(closed: ClosedLoop, config: RunConfig, repetition: int) -> JointTorqueSensor | None:
-    """Make the torque sensors of the joints for one repetition, where there are any; noise as for the encoders."""
-    if config.joint_torques is None:
-        return None
-    generator = np.random.default_rng([config.settings.seed, repetition, _JOINT_TORQUES])
-    return JointTorqueSensor(closed.ticks + 1, *config.joint_torques, generator)
 
 
 def metric_context(config: RunConfig) -> MetricContext:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from runner import store
-from runner.assembly import assemble, make_encoders, make_joint_torque_sensor, make_wrist_sensor, metric_context
+from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
 from runner.batch_blocks import simulate_blocks
 from runner.batch_jobs import seconds_together
 from runner.caveats import PlantStep, Watch, setting_of, signals_of
@@ -15,6 +15,7 @@ from runner.config.compose import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.errors import ConfigError, SimulationError
+from runner.loop.joint_torques import make_joint_torque_sensor
 from runner.metrics import Columns, MetricContext, evaluate
 from runner.plant_error import COMPARED, PlantError, compare, hindrance, on_runge_kutta
 from runner.provenance import job_provenance

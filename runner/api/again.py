@@ -88,7 +88,8 @@ def _checked(run: store.Run, repetition: int) -> "RunConfig":
 
 
 def _simulate(config: "RunConfig", repetition: int) -> "Trace":
-    from runner.assembly import assemble, make_encoders, make_joint_torque_sensor, make_wrist_sensor
+    from runner.assembly import assemble, make_encoders, make_wrist_sensor
+    from runner.loop.joint_torques import make_joint_torque_sensor
     from runner.simulation import simulate
 
     loop, seed = assemble(config, repetition), config.settings.seed

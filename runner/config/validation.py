@@ -68,7 +68,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     build_path(check_path, arm, path)
     ticks = problems.attempt(count_ticks, groups.settings, steps, path)
     problems.report()
-    config = RunConfig(
+    return _checked(RunConfig(
         settings=sure(groups.settings),
         robot=sure(groups.robot),
         arm=sure(arm),
@@ -92,9 +92,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         caveats=sure(groups.caveats),
         spec=sure(groups.spec),
         resolved=resolved,
-    )
-    _check_whole(config)
-    return config
+    ))  # fmt: skip
 
 
 def _check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
@@ -107,12 +105,13 @@ def _check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
         )
 
 
-def _check_whole(config: RunConfig) -> None:
-    """Check what only the whole config tells."""
+def _checked(config: RunConfig) -> RunConfig:
+    """Return a config after the checks of what only the whole of it tells."""
     _check_schedule(config)
     check_observer(config)
     check_repeats(config)
     check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.feels)
+    return config
 
 
 def _check_schedule(config: RunConfig) -> None:

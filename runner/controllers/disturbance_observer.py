@@ -1,7 +1,8 @@
 """A momentum disturbance observer that any torque law can carry."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal, NamedTuple
+from dataclasses import replace
+from typing import Any, Literal, NamedTuple, Protocol, cast
 
 import numpy as np
 from pydantic import PositiveFloat
@@ -242,6 +243,48 @@ def observe(controller: Controller, observer: MomentumObserver, measures: bool) 
     if isinstance(controller, WatchedController) and isinstance(controller.watched, TorqueLaw):
         return WatchedController(ObservedLaw(controller.watched, observer), len(observer.numbers.limits))
     return ObservedController(controller, observer)
+
+
+class Ticks(Protocol):
+    """The times of a run that observers need to know.
+
+    Attributes:
+        tick: Time between two ticks of the fastest loop, in s.
+        delay: Ticks from a command until it acts.
+    """
+
+    @property
+    def tick(self) -> float:
+        """See above."""
+        ...
+
+    @property
+    def delay(self) -> int:
+        """See above."""
+        ...
+
+
+def observed(
+    config: DisturbanceObserverConfig, robot: Robot, loops: tuple[Loop, ...], limits: FloatArray, ticks: Ticks
+) -> tuple[Loop, ...]:
+    """Return control loops with the observers that a config gives their laws, if any.
+
+    Args:
+        config: The config.
+        robot: The robot as it is believed.
+        loops: Loops that command torques.
+        limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
+        ticks: Tick and delay of the run.
+    """
+    bandwidths = config.by_loop(loops)
+    if bandwidths is None:
+        return loops
+    measures, carried = config.torque == "measured", []
+    for loop, bandwidth in zip(loops, bandwidths, strict=True):
+        late = 0 if measures else ticks.delay // round(loop.period / ticks.tick)
+        observer = MomentumObserver(robot, loop.joints, bandwidth, loop.period, limits[loop.joints], late)
+        carried.append(replace(loop, controller=observe(cast(Controller, loop.controller), observer, measures)))
+    return tuple(carried)
 
 
 def _within(arm: Arm, torque: Scalar, limit: Scalar) -> Scalar:

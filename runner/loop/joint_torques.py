@@ -4,11 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.config.run import RunConfig
 from runner.controllers.kinds import ReadsJointTorques
 from runner.loop.closed_loop import ClosedLoop
-from runner.plants.plant import friction_of
+from runner.plants.friction import friction_of
 from runner.sensing import JointTorqueSensor
 from runner.trace import FloatArray
+
+_SEED = 2**32 - 2  # in the seeds of these sensors; the loops' places count from 0, and beliefs have 2**32 - 1
 
 
 @dataclass
@@ -52,3 +55,14 @@ class JointTorques:
         acted = self._commands[max(k - self._closed.delay, 0)] - friction_of(self._closed.plant)
         for reader in self._readers:
             reader.sum, reader.count = reader.sum + acted, reader.count + 1
+
+
+def make_joint_torque_sensor(closed: ClosedLoop, config: RunConfig, repetition: int) -> JointTorqueSensor | None:
+    """Make the torque sensors of the joints for one repetition, where there are any.
+
+    Their noise follows from (seed, repetition) alone, and changes no other draw.
+    """
+    if config.joint_torques is None:
+        return None
+    generator = np.random.default_rng([config.settings.seed, repetition, _SEED])
+    return JointTorqueSensor(closed.ticks + 1, *config.joint_torques, generator)

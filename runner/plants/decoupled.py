@@ -7,9 +7,9 @@ from typing import Literal
 import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
-from runner.plants.friction import FrictionConfig, with_friction
+from runner.plants.friction import FrictionConfig, friction_of, with_friction
 from runner.plants.motion import find_motion
-from runner.plants.plant import FloatArray, Plant, friction_of
+from runner.plants.plant import FloatArray, Plant
 from runner.plants.servo import ServoConfig
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel

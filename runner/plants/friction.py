@@ -1,11 +1,13 @@
 """Dry and viscous friction in the joints of an arm that is driven by torques."""
 
+from typing import Protocol, runtime_checkable
+
 import numpy as np
 import pinocchio as pin
 from scipy.linalg.lapack import dposv
 
 from runner.config.per_joint import NonNegativePerJoint
-from runner.plants.plant import ContactPlant, FloatArray, Plant
+from runner.plants.plant import ContactPlant, FloatArray, Plant, PlantAround
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 
@@ -136,3 +138,22 @@ def stopping_torques(
         first = wrong[0]
         slides[first] = np.sign(mu[first]) if held[first] else 0.0
     return np.clip(mu, -limit, limit), slides
+
+
+@runtime_checkable
+class TellsFriction(Protocol):
+    """A plant that tells the friction of its joints."""
+
+    @property
+    def friction(self) -> FloatArray:
+        """What friction took from the torques in the last tick, shape (nq,), in N m."""
+        ...
+
+
+def friction_of(plant: Plant) -> FloatArray:
+    """Return what friction took from the torques of a plant in the last tick, shape (nq,), in N m."""
+    while not isinstance(plant, TellsFriction):
+        if not isinstance(plant, PlantAround):
+            return np.zeros(len(plant.q))
+        plant = plant.plant
+    return plant.friction

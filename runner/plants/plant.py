@@ -95,25 +95,6 @@ class ToolReactionPlant(Protocol):
         ...
 
 
-@runtime_checkable
-class TellsFriction(Protocol):
-    """A plant that tells the friction of its joints."""
-
-    @property
-    def friction(self) -> FloatArray:
-        """What friction took from the torques in the last tick, shape (nq,), in N m."""
-        ...
-
-
-def friction_of(plant: Plant) -> FloatArray:
-    """Return what friction took from the torques of a plant in the last tick, shape (nq,), in N m."""
-    while not isinstance(plant, TellsFriction):
-        if not isinstance(plant, PlantAround):
-            return np.zeros(len(plant.q))
-        plant = plant.plant
-    return plant.friction
-
-
 def innermost(plant: Plant) -> Plant:
     """Return the plant that moves the arm, below servos and friction."""
     while isinstance(plant, PlantAround):

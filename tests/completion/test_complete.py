@@ -125,7 +125,7 @@ def test_plug_ins(tmp_path):
     assert words("--plugin con") == ["controller="]
     assert words("--plugin controller=mine/") == ["controller=mine/spring.py"]
     assert words("--plugin=controller=mine/s") == ["--plugin=controller=mine/spring.py"]
-    assert words("--plugin controller=mine/spring.py controller=s") == ["controller=spring"]
+    assert words("--plugin controller=mine/spring.py controller=sp") == ["controller=spring"]
     assert "trajectory=spring" not in words("--plugin controller=mine/spring.py trajectory=")
     assert words("report --plugin metric=mine/s") == ["metric=mine/spring.py"]
 

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from runner.assembly import assemble, make_encoders, make_joint_torque_sensor
+from runner.assembly import assemble, make_encoders
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.errors import ConfigError
+from runner.loop.joint_torques import make_joint_torque_sensor
 from runner.sensing import JointTorqueSensor
 from runner.simulation import simulate
 
