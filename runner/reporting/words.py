@@ -25,6 +25,8 @@ _WORDS = {
     "joint_pid": "joint PID",
     "sliding_mode": "sliding mode",
     "passivity": "passivity-based",
+    "observed": "computed torque with observer",
+    "observed_pd": "joint PD with observer",
     "iterative_learning": "iterative learning",
     "euler": "Euler",
     "macro_mini": "Macro and Mini coupled",

@@ -85,7 +85,7 @@ SOME = {
         ("meca500", 244, 36),
         ("engines", 309, 0),
         ("precision", 90, 0),
-        ("benchmark", 160, 0),
+        ("benchmark", 360, 0),
     ],
 )
 def test_a_work_has_its_runs(work, runs, calibrations):

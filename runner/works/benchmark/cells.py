@@ -17,6 +17,7 @@ from runner.sweeps.differing import entries
 FloatArray = NDArray[np.float64]
 
 _METRIC = "rms_tracking_error"
+_LAW = ("controller", "disturbance_observer")
 _SIGNIFICANCE = 0.05
 _LEAST = 1.01  # ratio of errors; less is no lead
 
@@ -179,10 +180,10 @@ def _check_alike(condition: str, task: str, one: tuple[str, Run], other: tuple[s
 
 
 def _setting(run: Run) -> dict[str, str]:
-    """Return all that decides about a run but its law, of which the period stays."""
+    """Return all that decides about a run but its law, with what the law carries; of the law the period stays."""
     part = simulated_part(run.config)
     period = {"controller.period": part["controller"]["period"]}
-    return dict(entries({key: value for key, value in part.items() if key != "controller"} | period))
+    return dict(entries({key: value for key, value in part.items() if key not in _LAW} | period))
 
 
 def _compared(a: Entry, b: Entry) -> Comparison:

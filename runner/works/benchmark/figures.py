@@ -22,11 +22,17 @@ CONDITIONS = {
     "encoders": "encoder noise",
     "all": "all three at once",
 }
+_JOINTS = "of the joints"
 _KNOWS = {
-    "operational_space": ("M, V and G", "Cartesian, in 3 directions"),
-    "computed_torque": ("M, V and G", "of the joints"),
-    "joint_pd": ("G, diag M at home", "of the joints"),
-    "passivity": ("M, V and G, diag M at home", "of the joints"),
+    "operational_space": ("M, V and G", "Cartesian, in 3 directions", "no"),
+    "computed_torque": ("M, V and G", _JOINTS, "no"),
+    "joint_pd": ("G, diag M at home", _JOINTS, "no"),
+    "joint_pid": ("G, diag M at home", f"{_JOINTS}, with an integral", "no"),
+    "passivity": ("M, V and G, diag M at home", _JOINTS, "no"),
+    "sliding_mode": ("M, V and G, diag M at home", _JOINTS, "no"),
+    "adaptive": ("M, V and G, diag M at home, to begin with", _JOINTS, "finds it"),
+    "observed": ("M, V and G", f"{_JOINTS}, with an observer", "finds it"),
+    "observed_pd": ("M, V and G", f"{_JOINTS}, with an observer", "finds it"),
 }
 _UNKNOWN = "not told"
 _FAR = 1.1  # ratio of errors that three digits tell from one
@@ -91,9 +97,11 @@ def knowledge(runs: Mapping[str, Run], caption: str) -> Table:
     """Return what each law is told beside the joints' positions and velocities, and its bandwidth on each arm."""
     rows = []
     for law in _laws(runs, "macro"):
-        model, loop = _KNOWS.get(law, (_UNKNOWN, _UNKNOWN))
-        others = ["no" if law in _KNOWS else _UNKNOWN] * 3
-        rows.append([in_words(law), model, loop, *others, ", ".join(_bandwidth(runs, arm, law) for arm in ARMS)])
+        model, loop, friction = _KNOWS.get(law, (_UNKNOWN, _UNKNOWN, _UNKNOWN))
+        others = ["no" if law in _KNOWS else _UNKNOWN] * 2
+        rows.append(
+            [in_words(law), model, loop, friction, *others, ", ".join(_bandwidth(runs, arm, law) for arm in ARMS)]
+        )
     header = ["law", "model", "loop", "friction", "torque sensor", "that a motion repeats", "bandwidths (rad/s)"]
     return Table(caption, header, rows, (), _origin(runs, "macro"))
 
@@ -140,6 +148,11 @@ def sure_times(runs: Mapping[str, Run], condition: str, law: str, other: str, *a
         words = f"{in_words(law)} over {in_words(other)}, {ARMS[arm]}, {CONDITIONS[condition]}"
         told.append(Measured(f"lower end of the error of {words}", low))
     return told
+
+
+def sure_leads(runs: Mapping[str, Run], condition: str, law: str, *others: str) -> list[Measured]:
+    """Return the lower ends of the intervals of how far some laws are behind one, on all arms."""
+    return [told for other in others for told in sure_times(runs, condition, other, law)]
 
 
 def failed_repetitions(runs: Mapping[str, Run], law: str, *arms: str) -> Measured:
