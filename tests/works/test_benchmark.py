@@ -149,8 +149,8 @@ def test_all_findings_hold_of_such_errors(runs):
 
 def test_the_page_names_the_best_law_and_whom_it_is_ahead_of(runs):
     words = " | ".join(texts(chapter("benchmark", "which_law.md")(runs)))
-    assert "wrong masses | computed torque with observer | 0.5" in words
-    assert "unknown friction | computed torque with observer | 0.4 mm | adaptive | 1.75 times | all" in words
+    assert "wrong masses | computed torque + observer | 0.5" in words
+    assert "unknown friction | computed torque + observer | 0.4 mm | adaptive | 1.75 times | all" in words
 
 
 @whatever_has_failed
