@@ -29,6 +29,7 @@ _POSITIONING = ("settling_time", "steady_state_error", "peak_torque", "saturatio
 _WHOLE_MOVE = ("overshoot", "cross_track_error", "energy", "control_effort")
 _TRACKING = (*_POSITIONING, *_WHOLE_MOVE, "max_tracking_error", "rms_tracking_error")
 _LINE = ("max_tracking_error", "rms_tracking_error", "peak_joint_speed", "peak_torque")
+_FOLLOWED = ("max_tracking_error", "rms_tracking_error", "peak_torque", "torque_chatter")
 METRICS = {
     # What the Macro's goal move does on the whole depends on the branch that it takes: no band would mean much.
     "thesis/figure_3_5": _POSITIONING,
@@ -45,6 +46,9 @@ METRICS = {
     "xarm7/round_posture": _LINE,
     "xarm7/seven_joints": (*_LINE, "cross_track_error"),
     "xarm7/seven_joints_pose": (*_LINE, "cross_track_error"),
+    "benchmark/macro": _FOLLOWED,
+    "benchmark/planar": _FOLLOWED,
+    "benchmark/xarm7": _FOLLOWED,
     "meca500/push": ("peak_force", "peak_joint_speed"),
     "meca500/wall": ("peak_force", "steady_force", "peak_joint_speed"),
     "meca500/hand": ("peak_force", "peak_joint_speed"),
@@ -126,12 +130,23 @@ def explain_touch(experiment: str, metric: str) -> str:
     return _TOUCH.get((experiment.rpartition("/")[2], metric), "the law's answer, through the arm's Jacobian")
 
 
+# Reasons of what computed torque does with masses, friction and noise at once.
+_WRONG = {
+    "max_tracking_error": "the unknown friction and wrong masses, against the stiffness of the loop",
+    "rms_tracking_error": "the unknown friction and wrong masses, against the stiffness of the loop",
+    "peak_torque": "weight, motion, and the encoders' noise through the velocity gain",
+    "torque_chatter": "the encoders' noise through the velocity gain",
+}
+
+
 def explain(experiment: str, preset: str, metric: str, zero: bool) -> str:
     """Return why a metric is where it is."""
     if experiment.startswith("xarm7/"):
         return explain_line(experiment, preset, metric)
     if experiment.startswith("meca500/"):
         return explain_touch(experiment, metric)
+    if experiment.startswith("benchmark/"):
+        return _WRONG[metric]
     sound, limited = preset == "sound", experiment == "thesis/figure_3_9"
     if zero:
         return "no error beyond the settling band" if metric == "settling_time" else "no joint at a limit"

@@ -116,6 +116,7 @@ def _chosen(text: str, way: _Way) -> "list[Work | None]":
 def _reproduce(work: "Work | None", way: _Way) -> "tuple[str, _Reproduced]":
     from runner import store
     from runner.reporting.render import write_report
+    from runner.works.gains import write_gains
 
     name = AUDIT if work is None else work.name
     progress.named(name)
@@ -124,6 +125,8 @@ def _reproduce(work: "Work | None", way: _Way) -> "tuple[str, _Reproduced]":
     made = _audit(folder) if work is None else _reproduce_work(work, way)
     print("writing the report ...", file=sys.stderr)
     write_report(made.document, folder)
+    if work is not None and work.tuned:
+        write_gains(folder, work.tuned)
     _write_conclusions({name: made}, folder / FILE)
     note(folder)
     for run, why in made.missing.items():

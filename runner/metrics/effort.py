@@ -11,9 +11,11 @@ _AT_LIMIT = 1.0 - 1e-12
 UNITS = {
     "peak_torque": "N m",
     "rms_torque": "N m",
+    "torque_chatter": "N m",
     "peak_joint_speed": "rad/s",
     "peak_joint_force": "N",
     "rms_joint_force": "N",
+    "force_chatter": "N",
     "peak_sliding_speed": "m/s",
     "saturation_fraction": "1",
     "energy": "J",
@@ -27,8 +29,10 @@ def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
 
     - peak_torque: largest magnitude of a joint's torque; over all that turn, and per joint, as peak_torque_q1.
     - rms_torque: root mean square of the torques, likewise.
+    - torque_chatter: root mean square of a torque's change from one tick to the next, likewise.
     - peak_joint_speed: largest joint speed, likewise.
-    - peak_joint_force, rms_joint_force, peak_sliding_speed: the same of the joints that slide, where there are any.
+    - peak_joint_force, rms_joint_force, force_chatter, peak_sliding_speed: the same of the joints that slide, where
+      there are any.
     - saturation_fraction: share of ticks with any joint at its limit; per joint, of those with this one.
     - energy: integral of sum |tau dq|, exact while no joint reverses within a tick, as the torque is held.
     - control_effort: integral of sum tau^2; over the joints that turn.
@@ -38,17 +42,19 @@ def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
     squares, size = (held * held).sum(axis=2), np.abs(held)
     peaks, speeds = size.max(axis=2), np.abs(by_rows(traces.dq)).max(axis=2)
     work = np.abs(held * np.diff(by_rows(traces.q), axis=2)).sum(axis=2)
+    steps = _squared_steps(held)
     slides = np.array([unit == "m" for unit in traces.joint_units])
     result: dict[str, FloatArray] = {}
-    for peak, rms, fastest, chosen in (
-        ("peak_torque", "rms_torque", "peak_joint_speed", ~slides),
-        ("peak_joint_force", "rms_joint_force", "peak_sliding_speed", slides),
+    for peak, rms, chatter, fastest, chosen in (
+        ("peak_torque", "rms_torque", "torque_chatter", "peak_joint_speed", ~slides),
+        ("peak_joint_force", "rms_joint_force", "force_chatter", "peak_sliding_speed", slides),
     ):
         joints = np.flatnonzero(chosen)
         if len(joints):
             result |= _over_joints(peak, peaks.max(axis=1, where=chosen, initial=0.0), peaks, joints)
-            overall = np.sqrt(_over(squares, joints) / (ticks * len(joints)))
-            result |= _over_joints(rms, overall, np.sqrt(squares / ticks), joints)
+            for name, totals, count in ((rms, squares, ticks), (chatter, steps, max(ticks - 1, 1))):
+                overall = np.sqrt(_over(totals, joints) / (count * len(joints)))
+                result |= _over_joints(name, overall, np.sqrt(totals / count), joints)
             result |= _over_joints(fastest, speeds.max(axis=1, where=chosen, initial=0.0), speeds, joints)
     share, shares = _saturation(size, peaks, traces.limits * _AT_LIMIT)
     result |= _over_joints("saturation_fraction", share, shares, np.arange(len(slides)))
@@ -74,6 +80,13 @@ def _saturation(size: FloatArray, peaks: FloatArray, limits: FloatArray) -> tupl
         share[some] = np.count_nonzero(saturated.any(axis=1), axis=1) / size.shape[2]
         shares[some] = np.count_nonzero(saturated, axis=2) / size.shape[2]
     return share, shares
+
+
+def _squared_steps(held: FloatArray) -> FloatArray:
+    """Return the sum over time of each torque's squared changes, shape (runs, nq)."""
+    steps = np.diff(held, axis=2)
+    total: FloatArray = (steps * steps).sum(axis=2)
+    return total
 
 
 def _over(values: FloatArray, joints: NDArray[np.intp]) -> FloatArray:

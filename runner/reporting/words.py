@@ -25,6 +25,7 @@ _WORDS = {
     "joint_pid": "joint PID",
     "sliding_mode": "sliding mode",
     "passivity": "passivity-based",
+    "with_integral": "computed torque + integral",
     "observed": "computed torque + observer",
     "observed_pd": "joint PD + observer",
     "iterative_learning": "iterative learning",

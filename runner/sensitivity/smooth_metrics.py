@@ -111,9 +111,10 @@ def _of_joints(trace: Trace, change: Change, period: float) -> dict[str, FloatAr
     found = {"energy": np.einsum("tj,ptj->p", side, d_held * moved + held * d_moved)}
     squares = 2.0 * np.einsum("tj,ptj->pj", held, d_held)
     slides = np.array([unit == "m" for unit in trace.joint_units])
-    for peak, rms, fastest, effort, chosen in (
-        ("peak_torque", "rms_torque", "peak_joint_speed", "control_effort", ~slides),
-        ("peak_joint_force", "rms_joint_force", "peak_sliding_speed", "force_effort", slides),
+    steps, d_steps = np.diff(held, axis=0), np.diff(d_held, axis=1)
+    for peak, rms, chatter, fastest, effort, chosen in (
+        ("peak_torque", "rms_torque", "torque_chatter", "peak_joint_speed", "control_effort", ~slides),
+        ("peak_joint_force", "rms_joint_force", "force_chatter", "peak_sliding_speed", "force_effort", slides),
     ):
         joints = np.flatnonzero(chosen)
         if not len(joints):
@@ -122,6 +123,7 @@ def _of_joints(trace: Trace, change: Change, period: float) -> dict[str, FloatAr
         found |= _over_joints(peak, _largest, held, d_held, joints)
         found |= _over_joints(fastest, _largest, trace.dq, change.dq, joints)
         found |= _over_joints(rms, _root_mean_square, held, d_held, joints)
+        found |= _over_joints(chatter, _root_mean_square, steps, d_steps, joints)
     return found
 
 
@@ -140,7 +142,8 @@ def _largest(signal: FloatArray, changed: FloatArray) -> FloatArray:
 
 
 def _root_mean_square(signal: FloatArray, changed: FloatArray) -> FloatArray:
-    return _ratio(np.einsum("tj,ptj->p", signal, changed), signal.size * np.sqrt((signal**2).mean()))
+    size = np.sqrt((signal**2).mean()) if signal.size else 0.0
+    return _ratio(np.einsum("tj,ptj->p", signal, changed), signal.size * size)
 
 
 def _ratio(numerator: FloatArray, denominator: float) -> FloatArray:

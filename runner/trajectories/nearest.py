@@ -14,9 +14,10 @@ _CONVERGED = 1e-14  # share of the curve's range of parameters
 def distance_to_curve(points: FloatArray, curve: Callable[[FloatArray], FloatArray], samples: FloatArray) -> FloatArray:
     """Return each point's distance to a curve, to rounding, shapes (..., 3) to (...), in m.
 
-    Every sample that is nearer than its two neighbours starts a search between them for the place where the line to
-    the point is perpendicular to the curve; the nearest place counts. Samples must lie so close that between two of
-    them the distance has one minimum.
+    Every sample that is nearer than its two neighbours, and near enough to have the nearest place beside it, starts a
+    search between them for the place where the line to the point is perpendicular to the curve; the nearest place
+    counts. Samples must lie so close that between two of them the distance has one minimum, and that the curve is no
+    longer than twice the way straight on.
 
     Args:
         points: The points, shape (..., 3), in m.
@@ -39,8 +40,11 @@ def _nearest(
     squared = np.zeros((len(points), len(samples)))
     for axis in range(3):  # not by a matrix product, which rounds a point by its place among the others
         squared += (points[:, axis, None] - at_samples[:, axis]) ** 2
+    nearest = squared.min(axis=1)
+    reach = 2.0 * float(np.linalg.norm(np.diff(at_samples, axis=0), axis=1).max())
     beside = np.pad(squared, ((0, 0), (1, 1)), constant_values=np.inf)
-    which, sample = np.nonzero((squared <= beside[:, :-2]) & (squared <= beside[:, 2:]))
+    near_enough = squared <= (np.sqrt(nearest) + reach)[:, None] ** 2
+    which, sample = np.nonzero((squared <= beside[:, :-2]) & (squared <= beside[:, 2:]) & near_enough)
     last = len(samples) - 1
     place = _perpendicular(
         points[which],
@@ -49,7 +53,7 @@ def _nearest(
         samples[np.minimum(sample + 1, last)],
         _CONVERGED * abs(float(samples[-1])),
     )
-    distance: FloatArray = np.linalg.norm(points - at_samples[squared.argmin(axis=1)], axis=1)
+    distance: FloatArray = np.sqrt(nearest)
     np.minimum.at(distance, which, np.linalg.norm(curve(place)[:, 0] - points[which], axis=1))
     return distance
 

@@ -53,8 +53,10 @@ class About(StrictModel):
         chapters: Files of the chapters in order, `.md` or `.py`, and chapters that have files as sections.
         presets: Names of the presets under which claims are judged, with their words.
         in_all: Whether `runner reproduce all` makes the work.
+        traces: Whether its runs keep their traces, which figures over time read.
         plugins: Parts of the work's own, GROUP=FILE.py each, such as "controller=spring.py".
         profiles: Profiles by name.
+        default_profile: Name of the profile by which it is made where none is chosen; empty for the whole work.
         cover: What moves on the first screen.
         bibtex: BibTeX entry of the source.
     """
@@ -65,8 +67,10 @@ class About(StrictModel):
     chapters: Annotated[list[Text | Part], Field(min_length=1)]
     presets: dict[str, str] = Field(default_factory=dict)
     in_all: bool = True
+    traces: bool = True
     plugins: list[Text] = Field(default_factory=list)
     profiles: dict[str, Profile] = Field(default_factory=dict)
+    default_profile: str = ""
     cover: CoverRun | None = None
     bibtex: str = ""
 

@@ -3,7 +3,7 @@
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, PlainValidator, model_validator
 
@@ -71,7 +71,7 @@ class Grid(StrictModel):
                 raise ValueError(f"plugins: there is no axis '{axis}'{nearest(axis, self.over)}")
         return self
 
-    def with_parts(self, parts: Sequence[GivenPart]) -> "Grid":
+    def with_parts(self, parts: Sequence[GivenPart]) -> Self:
         """Return the grid with parts of the user's as further levels of the axes that take parts of their group.
 
         Raises:

@@ -32,14 +32,16 @@ from runner.config.bounded_yaml import read_yaml
 from runner.config.messages import describe
 from runner.errors import RunnerError, nearest
 from runner.registry import StrictModel
-from runner.reporting.job import Job, Jobs
 from runner.works.arithmetic import Level
+from runner.works.gains import check_named
 from runner.works.given import GivenPart
 from runner.works.grid import Grid, Overrides
 from runner.works.profiles import Profile
+from runner.works.tunings import TunedGrid, Tuning, all_tunings
 
 FILE = "runs.yaml"
 L = TypeVar("L", str, int, float)
+G = TypeVar("G", bound=Grid)
 
 
 class _Values(StrictModel):
@@ -57,6 +59,7 @@ class Grids:
     Attributes:
         runs: Overrides of every run by name.
         calibrations: Overrides of every calibration by name.
+        tunings: Every tuning by name.
 
     Raises:
         RunnerError: with file, grid and every problem found.
@@ -70,25 +73,32 @@ class Grids:
             raise RunnerError(f"cannot read {path}: {error}") from None
         content = read_yaml(text, path)
         problems = [*_twice(yaml.compose(text, yaml.CSafeLoader))]
-        roots = {root: _parse(root, content, problems) for root in ("grids", "calibrations")}
+        roots = {root: _parse(root, Grid, content, problems) for root in ("grids", "calibrations")}
+        tuned = _parse("tunings", TunedGrid, content, problems)
         if profile is not None:
-            problems += profile.problems({**roots["grids"], **roots["calibrations"]})
-            roots = {
-                root: {key: profile.applied(key, grid) for key, grid in own.items()} for root, own in roots.items()
-            }
+            problems += profile.problems({**roots["grids"], **roots["calibrations"], **tuned})
+            roots, tuned = {root: profile.applied(own) for root, own in roots.items()}, profile.applied(tuned)
         roots = {root: _with_parts(root, own, parts, problems) for root, own in roots.items()}
+        tuned = _with_parts("tunings", tuned, parts, problems)
         shared = content.get("values", {}) if isinstance(content, dict) else {}
         try:
             self._values = _Values(values=shared).values
         except ValidationError as error:
             problems += [*describe("", _Values, error)]
             self._values = {}
-        keys = ("values", *roots)
+        keys = ("values", *roots, "tunings")
         for key in content if isinstance(content, dict) else ():
             if key not in keys:
                 problems.append(f"{key}: unknown key{nearest(key, keys)}; keys: {', '.join(keys)}")
         self._grids = {**roots["grids"], **roots["calibrations"]}
         self.runs, self.calibrations = (_expanded(roots[root], self._values, root, problems) for root in roots)
+        self.tunings: dict[str, Tuning] = {}
+        try:
+            self.tunings = all_tunings(tuned, self._values)
+            if not problems:
+                check_named(self.runs, list(self.tunings))
+        except RunnerError as error:
+            problems.append(str(error))
         if profile is not None:
             self.runs, self.calibrations = (
                 {name: profile.repeated(overrides) for name, overrides in own.items()}
@@ -101,10 +111,6 @@ class Grids:
     def plugins(self) -> frozenset[str]:
         """The groups of which its axes take parts of the user's."""
         return frozenset(group for grid in self._grids.values() for group in grid.plugins.values())
-
-    def jobs(self) -> Jobs:
-        """Return every run by name."""
-        return {name: Job(overrides) for name, overrides in self.runs.items()}
 
     def grid(self, key: str) -> Grid:
         """Return a grid.
@@ -150,7 +156,7 @@ class Grids:
         return values[name]
 
 
-def _parse(root: str, content: object, problems: list[str]) -> dict[str, Grid]:
+def _parse(root: str, kind: type[G], content: object, problems: list[str]) -> dict[str, G]:
     found = content.get(root, {}) if isinstance(content, dict) else None
     if not isinstance(found, dict):
         problems.append(f"{root}: must be a group of grids by name")
@@ -158,15 +164,13 @@ def _parse(root: str, content: object, problems: list[str]) -> dict[str, Grid]:
     grids = {}
     for key, value in found.items():
         try:
-            grids[key] = Grid.model_validate(value)
+            grids[key] = kind.model_validate(value)
         except ValidationError as error:
-            problems += [*describe(f"{root}.{key}", Grid, error)]
+            problems += [*describe(f"{root}.{key}", kind, error)]
     return grids
 
 
-def _with_parts(
-    root: str, grids: Mapping[str, Grid], parts: Sequence[GivenPart], problems: list[str]
-) -> dict[str, Grid]:
+def _with_parts(root: str, grids: Mapping[str, G], parts: Sequence[GivenPart], problems: list[str]) -> dict[str, G]:
     found = {}
     for key, grid in grids.items():
         try:

@@ -1,7 +1,7 @@
-"""The runs and calibrations of a work, made by the engine of sweeps where they are not stored yet."""
+"""The runs and calibrations of a work, and its tunings before them, made where they are not stored yet."""
 
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from runner import store
@@ -9,10 +9,11 @@ from runner.calibration_job import CALIBRATION
 from runner.provenance import settled
 from runner.reporting.job import Made
 from runner.store import Calibration, Run
-from runner.sweeps.listed import Item, Listed
+from runner.sweeps.listed import Item
 from runner.sweeps.loading import Loader
 from runner.sweeps.plan import check
-from runner.sweeps.run import Engine, run_sweep
+from runner.works.items import Way, listed, make_items
+from runner.works.tune import find_gains
 from runner.works.work import Work
 
 
@@ -20,6 +21,8 @@ def make_all(
     work: Work, outputs: Path, overrides: Sequence[str] = (), command: str = "runner reproduce"
 ) -> tuple[Made[Run], Made[Calibration]]:
     """Make the runs and calibrations of a work that are not stored yet; return all by name.
+
+    Gains that its runs take and that are not known are tuned at first.
 
     Args:
         work: The work.
@@ -32,20 +35,16 @@ def make_all(
         StoreError: if the disk does not take them.
         RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
     """
+    way = Way(outputs, overrides, command, work.config_dirs)
+    work.take(find_gains(work.untuned(), way))
     jobs, calibrations = work.jobs(), work.calibrations()
-    items = _items(work)
-    loader = Loader(work.config_dirs)
-    sweeper = loader.sweeper([text for text in overrides if text.startswith("hydra.")])
-    plan = _plan(items, outputs, overrides, loader)
-    ended = run_sweep(plan, Engine(sweeper.workers, sweeper.address), command, accept_cut_short=False)
-    places = dict(zip(items, ended.names, strict=True))
-    ends = {name: ended.ends.get(place) for name, place in places.items()}
-    missing = {name: "not begun" for name, end in ends.items() if end is None}
-    missing |= {name: end.failure for name, end in ends.items() if end is not None and end.cut_short}
-    stored = {name: store.open_run(outputs / "runs" / places[name]) for name in jobs if name not in missing}
+    made = make_items(_items(work), way, trace="all" if work.about.traces else "never")
+    missing = {name: each.missing for name, each in made.items() if each.missing}
+    finished = store.Finished(outputs)
+    stored = {name: finished.open(made[name].place) for name in jobs if name not in missing}
     runs = {name: run.made_by(_command(work, jobs[name].overrides, run)) for name, run in stored.items()}
     found = {
-        name: store.open_calibration(outputs / "calibrations" / places[name])
+        name: store.open_calibration(outputs / "calibrations" / made[name].place)
         for name in calibrations
         if name not in missing
     }
@@ -61,16 +60,13 @@ def _command(work: Work, overrides: Sequence[str], run: Run) -> str:
 
 def count_missing(work: Work, outputs: Path) -> int:
     """Return how many runs and calibrations of a work are not stored."""
-    names = set(check(_plan(_items(work), outputs, (), Loader(work.config_dirs))).names)
+    names = check(listed(_items(work), Way(outputs), Loader(work.config_dirs))).names
+    in_shards = store.Finished(outputs).places_of(names) >= 0
+    left = {name for name, there in zip(names, in_shards.tolist(), strict=True) if not there}
     kept = ("runs/{}/metrics.json", "calibrations/{}/result.json")
-    return sum(not any((outputs / place.format(name)).exists() for place in kept) for name in names)
+    return sum(not any((outputs / place.format(name)).exists() for place in kept) for name in left)
 
 
 def _items(work: Work) -> dict[str, Item]:
     items = {name: Item(job.overrides) for name, job in work.jobs().items()}
     return items | {name: Item(own, CALIBRATION) for name, own in work.calibrations().items()}
-
-
-def _plan(items: Mapping[str, Item], outputs: Path, overrides: Sequence[str], loader: Loader) -> Listed:
-    shared = [text for text in overrides if not text.startswith("hydra.")]
-    return Listed(items, [*shared, "sweep.trace=all", f"outputs={outputs}"], loader)

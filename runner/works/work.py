@@ -20,11 +20,13 @@ from runner.works.about import read_about
 from runner.works.caveats import read_expected
 from runner.works.chapters import Chapters
 from runner.works.code import Code
+from runner.works.gains import Gains, named, put_in, read_gains
 from runner.works.given import GivenPart
 from runner.works.grids import FILE as RUNS
 from runner.works.grids import Grids
 from runner.works.names import Place, find_work
 from runner.works.profiles import Profile
+from runner.works.tunings import Tuning
 
 Calibrations = Mapping[str, tuple[str, ...]]
 """Overrides of each calibration by its name."""
@@ -38,7 +40,7 @@ class Work:
     Args:
         place: Where it is.
         allow_code: Whether Python of a folder that is no installed package may run.
-        profile: Name of the profile by which it is made; empty for the whole work.
+        profile: Name of the profile by which it is made; empty for the one that work.yaml names, or the whole work.
         parts: Parts of the user's that stand beside its own.
 
     Attributes:
@@ -46,8 +48,9 @@ class Work:
         folder: Its folder.
         about: What work.yaml says.
         installed: Whether it is an installed package.
-        profile: As given.
+        profile: The profile by which it is made; empty for the whole work.
         expected: The caveats that its runs are to have.
+        tuned: The gains that were tuned and not read from its folder.
 
     Raises:
         RunnerError: with file and place of every problem in its data, or if it does not take a part.
@@ -60,10 +63,12 @@ class Work:
         self.about = read_about(place.folder)
         self.installed = place.package is not None
         self._ours = place.ours
-        self.profile = profile
-        self._profile = self._chosen(profile)
+        self.profile = profile or self.about.default_profile
+        self._profile = self._chosen(self.profile)
         self._code = Code(place.folder, place.package, allow_code)
         self._given = tuple(parts)
+        self._gains: Gains = {} if self._profile and self._profile.tuned_anew else read_gains(place.folder)
+        self.tuned: Gains = {}
         self._grids = Grids(place.folder / RUNS, self._profile, parts)
         self._check_given()
         self.expected: tuple[ExpectedCaveat, ...] = read_expected(place.folder)
@@ -98,7 +103,18 @@ class Work:
         more: Jobs = self._planned("computed_runs", dict)
         if self._profile is not None:
             more = {name: Job(self._profile.repeated(job.overrides)) for name, job in more.items()}
-        return {**self._grids.jobs(), **more}
+        own = {name: Job(put_in(overrides, self._gains)) for name, overrides in self._grids.runs.items()}
+        return {**own, **more}
+
+    def untuned(self) -> list[Tuning]:
+        """Return the tunings whose gains its runs take and that are not known."""
+        names = dict.fromkeys(name for overrides in self._grids.runs.values() for name in named(overrides))
+        return [self._grids.tunings[name] for name in names if name not in self._gains]
+
+    def take(self, gains: Gains) -> None:
+        """Take gains that were tuned beside those that are known."""
+        self.tuned = gains
+        self._gains = {**self._gains, **gains}
 
     def dropped(self) -> dict[str, str]:
         """Return the runs and calibrations of the whole work that its profile does without, each with why."""

@@ -33,6 +33,15 @@ def test_constant_torque_at_constant_speed(hand_made_trace):
     assert (found["peak_joint_speed"], found["peak_joint_speed_q1"], found["peak_joint_speed_q2"]) == (0.5, 0.5, 0.25)
 
 
+def test_chatter_is_the_change_from_tick_to_tick(hand_made_trace):
+    jumping = np.column_stack([3.0 + 0.5 * (-1.0) ** np.arange(len(T)), 2.0 * T])  # 1 N m, and 0.02 N m, a tick
+    found = evaluate(hand_made_trace(T, tau=jumping), CONTEXT)
+    assert found["torque_chatter_q1"] == pytest.approx(1.0)
+    assert found["torque_chatter_q2"] == pytest.approx(0.02)
+    assert found["torque_chatter"] == pytest.approx(np.sqrt((1.0 + 0.02**2) / 2.0))
+    assert evaluate(hand_made_trace(T[:2], tau=[3.0, -2.0]), CONTEXT)["torque_chatter"] == 0.0
+
+
 def test_energy_does_not_cancel(hand_made_trace):
     swing = np.column_stack([np.abs(T - 2.0), np.zeros(len(T))])  # there and back, 2 rad each way
     assert evaluate(hand_made_trace(T, q=swing, tau=[3.0, 0.0]), CONTEXT)["energy"] == pytest.approx(12.0)

@@ -32,7 +32,7 @@ grids:
         ("turns/sound/turns", (begin, "preset=sound", "a=1", "b=2")),
         ("alone", ("robot=xarm7",)),
     ]
-    assert grids.jobs()["alone"].overrides == ("robot=xarm7",)
+    assert grids.runs["alone"] == ("robot=xarm7",)
     assert grids.grid("turns").over["schedule"]["turns"] == ("a=1", "b=2")
     assert grids.calibrations == {}
 

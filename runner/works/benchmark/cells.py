@@ -1,85 +1,24 @@
 """What the laws did on one arm under one condition: errors along every path, and which law is ahead of which."""
 
-import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from runner.errors import RunnerError
 from runner.reporting.prose.patterns import found
-from runner.statistics import Comparison, compare_paired, holm
 from runner.store import Run, simulated_part
 from runner.sweeps.differing import entries
+from runner.works.benchmark.leads import Entry, FloatArray, Lead, leads
 
-FloatArray = NDArray[np.float64]
+TUNED = ("1", "2", "3")
+"""The gains of the three tunings."""
+UNTUNED = ("untuned",)
+"""The gains that follow from the arm's bandwidth."""
+ALL_SEEDS = slice(None)
 
 _METRIC = "rms_tracking_error"
 _LAW = ("controller", "disturbance_observer")
-_SIGNIFICANCE = 0.05
-_LEAST = 1.01  # ratio of errors; less is no lead
-
-
-@dataclass(frozen=True)
-class Entry:
-    """One law in a cell.
-
-    Attributes:
-        law: Name of the law.
-        errors: Its error along each path in each repetition, in m; infinite where the run failed. Shape (paths, n).
-    """
-
-    law: str
-    errors: FloatArray
-
-    @cached_property
-    def by_seed(self) -> FloatArray:
-        """The mean over the paths of the error's logarithm, shape (n,): paths of any size count alike."""
-        mean: FloatArray = np.log(self.errors).mean(axis=0)
-        return mean
-
-    @property
-    def score(self) -> float:
-        """The geometric mean over the paths of the error in the median repetition, in m."""
-        return float(np.exp(np.median(self.by_seed)))
-
-    @property
-    def failed(self) -> float:
-        """Share of the repetitions that failed along one path or more."""
-        return float(np.mean(~np.isfinite(self.by_seed)))
-
-
-@dataclass(frozen=True)
-class Lead:
-    """How far a law is ahead of another one.
-
-    Attributes:
-        law: The law with the smaller error.
-        other: The other one.
-        comparison: Logarithm of the other's error over its own, pair by pair of the same seeds.
-        p_value: Corrected for all comparisons on the arm; None where nothing is drawn.
-        shown: Whether it is ahead by a hundredth at least: by interval and corrected test, or along every path where
-            nothing is drawn.
-    """
-
-    law: str
-    other: str
-    comparison: Comparison
-    p_value: float | None
-    shown: bool
-
-    @property
-    def factor(self) -> float:
-        """The other's error over its own."""
-        return float(np.exp(self.comparison.difference.median))
-
-    @property
-    def interval(self) -> tuple[float, float] | None:
-        """The 95 % interval of the factor; None where nothing is drawn."""
-        low, high = self.comparison.difference.low, self.comparison.difference.high
-        return None if low is None or high is None else (float(np.exp(low)), float(np.exp(high)))
 
 
 @dataclass(frozen=True)
@@ -109,10 +48,14 @@ class Cell:
         return next(each for each in self.entries if each.law == law)
 
 
-ALL_SEEDS = slice(None)
-
-
-def cells(runs: Mapping[str, Run], arm: str, grid: str = "laws", seeds: slice = ALL_SEEDS) -> dict[str, Cell]:
+def cells(
+    runs: Mapping[str, Run],
+    arm: str,
+    grid: str = "laws",
+    seeds: slice = ALL_SEEDS,
+    gains: Sequence[str] = TUNED,
+    tasks: Sequence[str] = (),
+) -> dict[str, Cell]:
     """Return what the laws did on an arm, by condition.
 
     Args:
@@ -120,43 +63,18 @@ def cells(runs: Mapping[str, Run], arm: str, grid: str = "laws", seeds: slice = 
         arm: Level of the axis arm.
         grid: How the runs' names begin: "laws", on Runge-Kutta, or "engine".
         seeds: Which repetitions count of runs that have several.
+        gains: Levels of the axis of gains that count.
+        tasks: Levels of the axis of tasks that count; all where none is named.
 
     Raises:
         RunnerError: if the laws of a cell differ in more than the law: in period, plant, path, limits or seeds.
         MissingError: if a run was not made.
     """
-    grouped: dict[str, dict[str, dict[str, Run]]] = {}
-    for one in found(runs, f"{grid}/{arm}/{{law}}/{{task}}/{{condition}}"):
-        levels = one.levels
-        grouped.setdefault(levels["condition"], {}).setdefault(levels["law"], {})[levels["task"]] = one.run
-    ranked = {condition: _ranked(condition, by_law, seeds) for condition, by_law in grouped.items()}
-    compared = {
-        (condition, a.law, b.law): _compared(a, b)
-        for condition, entered in ranked.items()
-        for a, b in itertools.combinations(entered, 2)
-    }
-    tested = {key: each.p_value for key, each in compared.items() if each.p_value is not None}
-    corrected = dict(zip(tested, holm(list(tested.values())).tolist(), strict=True))
-    made = {}
-    for condition, entered in ranked.items():
-        leads = {
-            (a.law, b.law): _lead(a, b, compared[condition, a.law, b.law], corrected.get((condition, a.law, b.law)))
-            for a, b in itertools.combinations(entered, 2)
-        }
-        made[condition] = Cell(entered, leads)
-    return made
-
-
-def _ranked(condition: str, by_law: Mapping[str, Mapping[str, Run]], seeds: slice) -> list[Entry]:
-    """Return the laws of a condition, the smallest error first."""
-    first, *others = by_law
-    for law, task in itertools.product(others, by_law[first]):
-        _check_alike(condition, task, (first, by_law[first][task]), (law, by_law[law][task]))
-    entered = []
-    for law, by_task in by_law.items():
-        errors = np.array([errors_of(run) for run in by_task.values()])
-        entered.append(Entry(law, errors[:, seeds] if errors.shape[1] > 1 else errors))
-    return sorted(entered, key=lambda each: each.score)
+    task = f"{{task={'|'.join(tasks)}}}" if tasks else "{task}"
+    pattern = f"{grid}/{arm}/{{law}}/{task}/{{condition}}/{{gains={'|'.join(gains)}}}"
+    ranked = {name: _ranked(by_law, seeds) for name, by_law in _errors(runs, pattern, gains).items()}
+    ahead = leads(ranked)
+    return {name: Cell(entered, ahead[name]) for name, entered in ranked.items()}
 
 
 def errors_of(run: Run) -> FloatArray:
@@ -167,16 +85,41 @@ def errors_of(run: Run) -> FloatArray:
     return errors
 
 
-def _check_alike(condition: str, task: str, one: tuple[str, Run], other: tuple[str, Run]) -> None:
-    settings = [_setting(run) for _, run in (one, other)]
-    apart = [key for key in dict.fromkeys([*settings[0], *settings[1]]) if settings[0].get(key) != settings[1].get(key)]
-    if apart:
-        key = apart[0]
-        ours, theirs = (setting.get(key, "none") for setting in settings)
-        raise RunnerError(
-            f"{task}, {condition}: {key} is {ours} for {one[0]} and {theirs} for {other[0]}; laws are compared where "
-            "nothing but they and their gains differ"
-        )
+def _ranked(by_law: Mapping[str, FloatArray], seeds: slice) -> list[Entry]:
+    """Return the laws of a condition, the smallest error first."""
+    entered = [Entry(law, errors[..., seeds] if errors.shape[-1] > 1 else errors) for law, errors in by_law.items()]
+    return sorted(entered, key=lambda each: each.score)
+
+
+def _errors(runs: Mapping[str, Run], pattern: str, gains: Sequence[str]) -> dict[str, dict[str, FloatArray]]:
+    """Return the errors of each law under each condition, shape (tunings, paths, n), of the runs of a pattern."""
+    grouped: dict[str, dict[str, dict[str, dict[str, FloatArray]]]] = {}
+    alike: dict[tuple[str, str], tuple[str, dict[str, str]]] = {}
+    for one in found(runs, pattern):
+        law, task, condition = (one.levels[axis] for axis in ("law", "task", "condition"))
+        setting = _setting(one.run)
+        first = alike.setdefault((task, condition), (law, setting))
+        _check_alike(f"{task}, {condition}", first, (law, setting))
+        by_task = grouped.setdefault(condition, {}).setdefault(law, {})
+        by_task.setdefault(task, {})[one.levels["gains"]] = errors_of(one.run)
+    return {
+        condition: {
+            law: np.array([[by_task[task][own] for task in by_task] for own in gains])
+            for law, by_task in by_law.items()
+        }
+        for condition, by_law in grouped.items()
+    }
+
+
+def _check_alike(place: str, one: tuple[str, dict[str, str]], other: tuple[str, dict[str, str]]) -> None:
+    (law, ours), (their_law, theirs) = one, other
+    if ours == theirs:
+        return
+    key = next(key for key in dict.fromkeys([*ours, *theirs]) if ours.get(key) != theirs.get(key))
+    raise RunnerError(
+        f"{place}: {key} is {ours.get(key, 'none')} for {law} and {theirs.get(key, 'none')} for {their_law}; laws are "
+        "compared where nothing but they and their gains differ"
+    )
 
 
 def _setting(run: Run) -> dict[str, str]:
@@ -184,24 +127,3 @@ def _setting(run: Run) -> dict[str, str]:
     part = simulated_part(run.config)
     period = {"controller.period": part["controller"]["period"]}
     return dict(entries({key: value for key, value in part.items() if key not in _LAW} | period))
-
-
-def _compared(a: Entry, b: Entry) -> Comparison:
-    """Return a comparison seed by seed, or of one seed where nothing is drawn and all give the same."""
-    drawn = any(np.any(each.by_seed != each.by_seed[0]) for each in (a, b))
-    seeds = slice(None) if drawn else slice(1)
-    return _paired(a.by_seed[seeds].tobytes(), b.by_seed[seeds].tobytes())
-
-
-@lru_cache(maxsize=2048)
-def _paired(a: bytes, b: bytes) -> Comparison:
-    """Return the comparison of two samples, which every table and finding asks for anew."""
-    return compare_paired(np.frombuffer(a), np.frombuffer(b))
-
-
-def _lead(a: Entry, b: Entry, comparison: Comparison, p_value: float | None) -> Lead:
-    if p_value is not None:
-        low = comparison.difference.low or 0.0
-        return Lead(a.law, b.law, comparison, p_value, p_value < _SIGNIFICANCE and low > np.log(_LEAST))
-    with np.errstate(invalid="ignore"):  # two runs that both failed
-        return Lead(a.law, b.law, comparison, None, bool(np.all(b.errors > _LEAST * a.errors)))

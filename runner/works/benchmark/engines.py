@@ -13,10 +13,11 @@ from runner.reporting.prose.patterns import found
 from runner.reporting.words import PLANT, in_words
 from runner.store import Run
 from runner.works.benchmark.cells import Cell, cells
-from runner.works.benchmark.figures import CONDITIONS
+from runner.works.benchmark.made import CONDITIONS
 
 _ARM = "macro"
 _ENGINE = "engine"
+_GAINS = ("1",)  # of the first tuning
 
 
 def engine(runs: Mapping[str, Run]) -> str:
@@ -55,10 +56,12 @@ def leads(runs: Mapping[str, Run]) -> Measured:
 
 
 def _both(runs: Mapping[str, Run]) -> dict[str, tuple[Cell, Cell]]:
-    """Return each condition on both plants, on the same seeds."""
+    """Return each condition on both plants, along the same paths, on the same seeds, with the same gains."""
     seeds = slice(_first(runs).config["repetitions"])
-    here, there = cells(runs, _ARM, seeds=seeds), cells(runs, _ARM, _ENGINE)
-    return {condition: (here[condition], there[condition]) for condition in CONDITIONS}
+    there = cells(runs, _ARM, _ENGINE, gains=_GAINS)
+    tasks = list(dict.fromkeys(one.levels["task"] for one in found(runs, f"{_ENGINE}/{_ARM}/joint_pd/{{task}}/all/1")))
+    here = cells(runs, _ARM, seeds=seeds, gains=_GAINS, tasks=tasks)
+    return {condition: (here[condition], there[condition]) for condition in CONDITIONS if condition in there}
 
 
 def _correlation(here: Cell, there: Cell) -> float | None:
@@ -70,4 +73,4 @@ def _correlation(here: Cell, there: Cell) -> float | None:
 
 
 def _first(runs: Mapping[str, Run]) -> Run:
-    return found(runs, f"{_ENGINE}/{_ARM}/joint_pd/{{task}}/all")[0].run
+    return found(runs, f"{_ENGINE}/{_ARM}/joint_pd/{{task}}/all/1")[0].run

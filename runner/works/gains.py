@@ -1,0 +1,76 @@
+"""Gains that tunings of a work found: `gains.yaml` in its folder, and how they get into its runs."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import yaml
+
+from runner.data_file import read_data
+from runner.errors import RunnerError, nearest
+from runner.store.atomic import write_atomically
+from runner.works.grid import Overrides
+
+FILE = "gains.yaml"
+Gains = Mapping[str, Sequence[Mapping[str, float]]]
+"""Of each tuning, by name, the values of its keys by each of its three seeds."""
+
+_KEY = "gains="
+
+
+def read_gains(folder: Path) -> Gains:
+    """Return the gains that are kept in the folder of a work; none where there is no such file.
+
+    Raises:
+        RunnerError: if the file cannot be read or does not fit.
+    """
+    path = folder / FILE
+    return read_data(path, dict[str, list[dict[str, float]]]) if path.is_file() else {}
+
+
+def write_gains(folder: Path, gains: Gains) -> None:
+    """Write gains into a folder.
+
+    Raises:
+        OSError: if they cannot be written.
+    """
+    content = {name: [dict(own) for own in each] for name, each in gains.items()}
+    text = yaml.safe_dump(content, sort_keys=False, width=200, default_flow_style=None)
+    write_atomically(folder / FILE, f"# Made by the tunings of the work; see docs/paper.md.\n{text}".encode())
+
+
+def put_in(overrides: Overrides, gains: Gains) -> Overrides:
+    """Return a run's overrides with the gains of a tuning in place of the override that names it.
+
+    One whose gains are not known yet stays as it is.
+
+    Raises:
+        RunnerError: if a tuning has no such number.
+    """
+    return tuple(text for override in overrides for text in _put_in(override, gains))
+
+
+def named(overrides: Overrides) -> list[str]:
+    """Return the names of the tunings whose gains some overrides take."""
+    return [text.removeprefix(_KEY).rpartition("/")[0] for text in overrides if text.startswith(_KEY)]
+
+
+def check_named(runs: Mapping[str, Overrides], tunings: Sequence[str]) -> None:
+    """Check that all tunings that runs name are there.
+
+    Raises:
+        RunnerError: with the run and the name nearest to what it names.
+    """
+    for run, overrides in runs.items():
+        for name in named(overrides):
+            if name not in tunings:
+                raise RunnerError(f"run '{run}': there is no tuning '{name}'{nearest(name, tunings)}")
+
+
+def _put_in(override: str, gains: Gains) -> list[str]:
+    name, _, number = override.removeprefix(_KEY).rpartition("/")
+    if not override.startswith(_KEY) or name not in gains:
+        return [override]
+    own = gains[name]
+    if not number.isdecimal() or not 1 <= int(number) <= len(own):
+        raise RunnerError(f"{override}: must end in the number of a tuning, 1 to {len(own)}")
+    return [f"{key}={value:.9g}" for key, value in own[int(number) - 1].items()]

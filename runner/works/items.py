@@ -1,0 +1,75 @@
+"""Runs and calibrations of a work, made by the engine of sweeps where they are not stored yet."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from runner.store import Outcome
+from runner.sweeps.listed import Item, Listed
+from runner.sweeps.loading import Loader
+from runner.sweeps.run import Engine, run_sweep
+
+
+@dataclass(frozen=True)
+class Way:
+    """How they are made.
+
+    Attributes:
+        outputs: Folder in which they are stored.
+        overrides: Overrides of the engine: keys of hydra.sweeper, sweep and limits.
+        command: The command that makes them and goes on with them.
+        config_dirs: Config folders.
+    """
+
+    outputs: Path
+    overrides: Sequence[str] = ()
+    command: str = "runner reproduce"
+    config_dirs: Sequence[Path] = ()
+
+
+@dataclass(frozen=True)
+class MadeItem:
+    """One of them.
+
+    Attributes:
+        place: Name of its folder.
+        end: How it ended; None where it was not begun.
+    """
+
+    place: str
+    end: Outcome | None
+
+    @property
+    def missing(self) -> str:
+        """Why there is nothing to read of it; empty where there is."""
+        if self.end is None:
+            return "not begun"
+        return self.end.failure if self.end.cut_short else ""
+
+
+def make_items(items: Mapping[str, Item], way: Way, trace: Literal["all", "never"] = "all") -> dict[str, MadeItem]:
+    """Make what is not stored yet; return all by name.
+
+    Args:
+        items: What to make, by name.
+        way: How.
+        trace: Whether runs keep their traces.
+
+    Raises:
+        ConfigError: if one cannot be made, or all would cost too much; nothing has been started then.
+        StoreError: if the disk does not take them.
+        RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
+    """
+    loader = Loader(way.config_dirs)
+    sweeper = loader.sweeper([text for text in way.overrides if text.startswith("hydra.")])
+    plan = listed(items, way, loader, trace)
+    ended = run_sweep(plan, Engine(sweeper.workers, sweeper.address), way.command, accept_cut_short=False)
+    places = zip(items, ended.names, strict=True)
+    return {name: MadeItem(place, ended.ends.get(place)) for name, place in places}
+
+
+def listed(items: Mapping[str, Item], way: Way, loader: Loader, trace: str = "all") -> Listed:
+    """Return the plan of some runs and calibrations."""
+    shared = [text for text in way.overrides if not text.startswith("hydra.")]
+    return Listed(items, [*shared, f"sweep.trace={trace}", f"outputs={way.outputs}"], loader)

@@ -1,0 +1,150 @@
+"""The tunings of a work as data: grids under `tunings` in `runs.yaml` of its folder.
+
+    tunings:
+      macro:
+        with: [robot=macro, trajectory=lissajous, repetitions=8]
+        over: {law: &laws [computed_torque, passivity]}
+        ranges:
+          law:
+            computed_torque: {controller.natural_frequency: [0.5, 2], controller.damping_ratio: [0.6, 1.5]}
+            passivity: {controller.natural_frequency: [0.5, 2]}
+        minimize: rms_tracking_error
+        bounds: {torque_chatter: 50}
+
+Each combination of levels is tuned, under the name that its runs would have: `macro/computed_torque`. A range is one of
+factors on the value that the key has otherwise, looked at on a logarithmic scale. All have the same budget: the value
+that the keys have otherwise, and then twice `trials` values. They are tuned three times, by different seeds of search
+and runs. A run with the gains of one of these has the override `gains=macro/computed_torque/1`; runner/works/gains.py
+tells where they stand. A controller of the user's has its ranges beside its module, `mine/spring.ranges.yaml` beside
+`mine/spring.py`; without these it keeps the values of its config.
+"""
+
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Self
+
+from pydantic import Field, PositiveInt, model_validator
+
+from runner.data_file import read_data
+from runner.errors import RunnerError, nearest
+from runner.metrics.summary import unit_of, units
+from runner.works.arithmetic import Level
+from runner.works.given import GivenPart
+from runner.works.grid import Grid, Overrides
+
+TIMES = (1, 2, 3)
+"""The numbers by which a law's tunings go, each a seed."""
+
+Factor = Annotated[float, Field(gt=0.0)]
+Range = Annotated[tuple[Factor, Factor], Field(strict=False)]
+Ranges = Mapping[str, Range]
+"""The lowest and the highest factor on the value that a key has otherwise, by key."""
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """What is tuned, towards what, with which budget.
+
+    Attributes:
+        name: Its name.
+        overrides: The overrides that all its trials have.
+        ranges: The ranges of its keys; none where nothing is tuned.
+        minimize: The metric that is to be small.
+        bounds: What other metrics are to stay below.
+        trials: Number of trials of each round of the search.
+    """
+
+    name: str
+    overrides: Overrides
+    ranges: Ranges
+    minimize: str
+    bounds: Mapping[str, float]
+    trials: int
+
+
+class TunedGrid(Grid):
+    """A grid whose combinations are tuned.
+
+    Attributes:
+        ranges: Ranges by level, of one axis.
+        minimize: The metric that is to be small: its median over the repetitions.
+        bounds: What the medians of other metrics are to stay below.
+        trials: Number of trials of each round of the search.
+    """
+
+    ranges: Annotated[dict[str, dict[Level, dict[str, Range]]], Field(min_length=1, max_length=1)]
+    minimize: str
+    bounds: dict[str, Factor] = Field(default_factory=dict)
+    trials: PositiveInt = 24
+
+    @model_validator(mode="after")
+    def _what_is_there(self) -> "TunedGrid":
+        for axis, levels in self.ranges.items():
+            if axis not in self.over:
+                raise ValueError(f"ranges: there is no axis '{axis}'{nearest(axis, self.over)}")
+            for level, ranges in levels.items():
+                if level not in self.over[axis]:
+                    raise ValueError(f"ranges.{axis}: no level '{level}'{nearest(str(level), self._levels(axis))}")
+                _check_ranges(ranges)
+        for metric in (self.minimize, *self.bounds):
+            if unit_of(metric) is None:
+                raise ValueError(f"there is no metric '{metric}'{nearest(metric, units())}")
+        return self
+
+    def with_parts(self, parts: Sequence[GivenPart]) -> Self:
+        """Return the grid with parts of the user's as further levels, with the ranges that stand beside them."""
+        made = super().with_parts(parts)
+        axis = self._axis
+        own = {part.name: _ranges_of(part) for part in parts if part.group == self.plugins.get(axis)}
+        return made.model_copy(update={"ranges": {axis: {**self.ranges[axis], **own}}})
+
+    def tunings(self, key: str, values: Mapping[str, float]) -> Iterator[Tuning]:
+        """Yield what is tuned; see Grid.runs."""
+        axis = self._axis
+        for level, own in self.over[axis].items():
+            grid = self.model_copy(update={"over": {**self.over, axis: {level: own}}})
+            for name, overrides in grid.runs(key, values):
+                ranges = self.ranges[axis].get(level, {})
+                yield Tuning(name, overrides, ranges, self.minimize, self.bounds, self.trials)
+
+    @property
+    def _axis(self) -> str:
+        return next(iter(self.ranges))
+
+    def _levels(self, axis: str) -> list[str]:
+        return [str(level) for level in self.over[axis]]
+
+
+def all_tunings(grids: Mapping[str, TunedGrid], values: Mapping[str, float]) -> dict[str, Tuning]:
+    """Return the tunings of several grids by name; see TunedGrid.tunings.
+
+    Raises:
+        RunnerError: if two have one name.
+    """
+    found: dict[str, Tuning] = {}
+    for tuning in itertools.chain.from_iterable(grid.tunings(key, values) for key, grid in grids.items()):
+        if tuning.name in found:
+            raise RunnerError(f"tunings: the name '{tuning.name}' is that of another tuning")
+        found[tuning.name] = tuning
+    return found
+
+
+def _ranges_of(part: GivenPart) -> Ranges:
+    path = part.folder / f"{part.name}.ranges.yaml"
+    if not path.is_file():
+        return {}
+    ranges = read_data(path, dict[str, Range])
+    try:
+        _check_ranges(ranges)
+    except ValueError as error:
+        raise RunnerError(f"{path}: {error}") from None
+    return ranges
+
+
+def _check_ranges(ranges: Ranges) -> None:
+    for key, (low, high) in ranges.items():
+        if not low <= 1.0 <= high or low == high:
+            raise ValueError(
+                f"{key}: its range must be factors below and above 1, as [0.5, 2]; found {low:g}, {high:g}"
+            )
