@@ -17,7 +17,7 @@ from runner.reporting.findings import findings
 from runner.reporting.formulas import faulty
 from runner.works.benchmark import engines
 from runner.works.benchmark.cells import cells
-from runner.works.benchmark.made import halves
+from runner.works.benchmark.made import ARMS, CONDITIONS, halves
 from runner.works.work import load_work
 
 WORK = load_work("benchmark")
@@ -176,6 +176,17 @@ def test_the_page_names_the_best_law_and_how_far_it_is_ahead(runs):
     assert f"unknown friction | {best} | {best} | {best}" in words
     assert "nothing is wrong | operational space; not shown to be ahead of" not in words  # 1.09 times, and 1.03 between
     assert "nothing is wrong | operational space, 1.091 times ahead of computed torque + observer" in words
+
+
+def test_every_arm_and_law_of_ours_has_its_section_and_words(runs):
+    arms, laws = (chapter("benchmark", file)(runs) for file in ("by_arm.py", "by_law.py"))
+    assert [each.title for each in arms.sections] == ["Macro", "Planar arm", "xArm7"]
+    assert len(laws.sections) == len(LAWS)
+    told = texts(laws)
+    assert not {"A law from outside.", "not told here"} & set(told)
+    whole = load_work("benchmark", profile="full").jobs()
+    assert {name.split("/")[1] for name in whole if name.startswith("laws/")} == set(ARMS)
+    assert {name.split("/")[4] for name in whole if name.startswith("laws/")} == set(CONDITIONS)
 
 
 @whatever_has_failed

@@ -27,7 +27,7 @@ def section(runs: Mapping[str, Run]) -> Section:
 
 
 def _arm(runs: Mapping[str, Run], arm: str) -> Section:
-    title = ARMS[arm][0].upper() + ARMS[arm][1:]
+    title = ARMS[arm].replace("planar", "Planar")
     blocks = [_best(runs, arm), *_errors(runs, arm, TUNED, "tuned"), *_errors(runs, arm, UNTUNED, "not tuned")]
     return Section(title, blocks)
 

@@ -28,6 +28,7 @@ CONDITIONS = {
     "limits_80": "torques up to 80 %",
     "delay_1": "a tick late",
     "delay_2": "two ticks late",
+    "payload": "a load on the way",
     "all": "masses, friction and noise",
 }
 
