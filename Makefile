@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 # A .venv that is there may have any version, unless PYTHON asks for one.
 ANY_VERSION := $(if $(filter file,$(origin PYTHON)),--any-version)
 
-.PHONY: install reproduce test test-pages test-slow lint bench clean
+.PHONY: install reproduce test test-pages test-slow test-lowest test-wheel lint types docs release-notes bench clean
 
 install:
 	@$(PYTHON) .ci/install.py $(ANY_VERSION)
@@ -19,15 +19,42 @@ test: install
 # The README and the pages of docs/ that are followed command by command in a shell: what takes minutes of them.
 test-pages: install
 	$(BIN)/python -m pytest -m slow tests/test_readme.py tests/test_tutorial.py tests/test_compare_page.py \
-		tests/test_figures_and_tables_docs.py tests/test_how_sure_page.py tests/test_sensitivity_page.py
+		tests/test_figures_and_tables_docs.py tests/test_how_sure_page.py tests/test_sensitivity_page.py \
+		tests/test_docs_pages.py
 
 test-slow: install
 	$(BIN)/python -m pytest -m slow
 
+# The oldest versions that pyproject.toml allows of what the runner itself needs, in build/lowest.
+test-lowest: install
+	$(BIN)/uv venv --quiet --clear --python $(BIN)/python build/lowest
+	$(BIN)/uv pip install --quiet --python build/lowest/bin/python --resolution lowest-direct --editable '.[dev]'
+	build/lowest/bin/python -m pytest -W default tests/test_closed_forms.py tests/api tests/store tests/plants
+
+# The wheel in an environment of its own, build/wheel, away from the checkout.
+test-wheel: install
+	rm -rf build/wheel
+	$(BIN)/python -m hatchling build -t wheel -d build/wheel
+	$(BIN)/uv venv --quiet --python $(BIN)/python build/wheel/venv
+	$(BIN)/uv pip install --quiet --python build/wheel/venv/bin/python --constraint constraints.txt build/wheel/*.whl
+	cd build/wheel && PATH="$$PWD/venv/bin:$$PATH" sh -ec 'runner --version; runner robot=macro duration=0.1; \
+		runner example examples; ./examples/own_robot/check.sh'
+
 lint: install
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+
+types: install
 	$(BIN)/mypy
+
+# The site of the documentation, in build/site: it works from there as files, and from any server.
+docs: install
+	$(BIN)/python -m bench.gallery
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
+
+# What is new in the version of pyproject.toml, or what is not released yet.
+release-notes:
+	@$(PYTHON) .ci/release_notes.py
 
 bench: install
 	$(BIN)/python -m bench

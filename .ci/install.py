@@ -144,10 +144,10 @@ def fetch(root: Path, venv: Path) -> None:
     except InstallError as failure:
         if "network" in str(failure):
             raise
-        run([*pip, "--constraint", pins, "--editable", ".[dev]"], root)
+        run([*pip, "--constraint", pins, "--editable", ".[dev,docs]"], root)
         return
     uv = [str(venv / "bin" / "uv"), "pip", "install", "--quiet", "--python", python]
-    run([*uv, "--constraint", pins, "--build-constraint", pins, "--editable", ".[dev]"], root)
+    run([*uv, "--constraint", pins, "--build-constraint", pins, "--editable", ".[dev,docs]"], root)
 
 
 def run(command: list, root: Path) -> None:

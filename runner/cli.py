@@ -45,6 +45,7 @@ runner: config-driven experiments for robot-arm control, with reports
                                                  --gravity
   runner doctor FILE [--tip FRAME] [--write DIR] [--html DIR]
                                                  does a robot of yours fit, what to mend, and a config to start from
+  runner example DIR                             copy the examples: an arm, a controller, a paper, a notebook
   latest                                         in place of a DIR: the run, sweep, tuning or report made or found last
   runner list [robots|controllers|trajectories|experiments|plants|environments|wrist_sensors|mismatch|noise|presets|
                torque_limits|calibrations|metrics|claims|references|works]
@@ -76,7 +77,7 @@ first.
 COMMANDS = (
     "reproduce", "report", "table", "figures", "status", "tune", "verify", "check", "compare", "diff", "sensitivity",
     "calibrate", "audit",
-    "doctor", "list", "work",
+    "doctor", "list", "work", "example",
 )  # fmt: skip
 
 

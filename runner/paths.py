@@ -37,9 +37,14 @@ def works_with(file: str) -> list[str]:
     return sorted(folder.name for folder in works_dir().iterdir() if (folder / file).is_file())
 
 
+def examples_dir() -> Path:
+    """Return the folder of the examples, which `runner example` copies."""
+    return _root() / "examples"
+
+
 def example_work_dir() -> Path:
     """Return the folder of the work that `runner work new` starts from."""
-    return _root() / "examples" / "own_paper"
+    return examples_dir() / "own_paper"
 
 
 def templates_dir() -> Path:

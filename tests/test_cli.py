@@ -8,6 +8,8 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
+from pathlib import Path
 
 import pytest
 import yaml
@@ -20,6 +22,7 @@ from runner.config.options import group_options
 from runner.store import open_sweep
 
 SHORT = ("robot=macro", "duration=0.05")
+VERSION = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text())["project"]["version"]
 IN_PROCESS = ("hydra.sweeper.workers=0",)
 
 
@@ -36,7 +39,7 @@ def test_help_names_every_command(cli, flag):
 
 
 def test_version(cli):
-    assert cli("--version").out.strip() == "0.1.0"
+    assert cli("--version").out.strip() == VERSION
 
 
 def test_unknown_command_names_the_nearest(cli):

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import tarfile
 import zipfile
 from pathlib import Path
 
@@ -30,11 +31,22 @@ sys.exit(dispatch(["robot=macro", "duration=0.05"]))
 
 def test_the_wheel_holds_configs_robots_templates_and_references(wheel):
     names = set(zipfile.ZipFile(wheel).namelist())
-    for folder, inside in (("conf", "conf"), ("robots", "robots"), ("reports/templates", "reports/templates")):
-        ours = {path.relative_to(ROOT / folder).as_posix() for path in (ROOT / folder).rglob("*.*")}
-        assert {f"runner/_data/{inside}/{name}" for name in ours} <= names
+    for folder in ("conf", "robots", "reports/templates", "examples"):
+        ours = {path.relative_to(ROOT).as_posix() for path in (ROOT / folder).rglob("*.*") if path.suffix != ".pyc"}
+        assert {f"runner/_data/{name}" for name in ours} <= names
     assert {reference_path(name).relative_to(ROOT).as_posix() for name in shipped_references()} <= names
     assert not [name for name in names if name.startswith(("tests", "bench", "outputs"))]
+
+
+def test_the_source_distribution_holds_docs_examples_and_what_builds_the_site(tmp_path):
+    command = [sys.executable, "-m", "hatchling", "build", "-t", "sdist", "-d", tmp_path]
+    subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    with tarfile.open(next(tmp_path.glob("*.tar.gz"))) as packed:
+        names = {name.partition("/")[2] for name in packed.getnames()}
+    pages = {path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").rglob("*.*")}
+    examples = {path.relative_to(ROOT).as_posix() for path in (ROOT / "examples").rglob("*.*") if path.suffix != ".pyc"}
+    assert pages | examples | {"mkdocs.yml", "bench/site_pages.py", "CITATION.cff", "SECURITY.md"} <= names
+    assert not [name for name in names if name.startswith(("outputs", "build/", ".venv"))]
 
 
 def test_the_wheel_runs_away_from_the_checkout(wheel, tmp_path):
