@@ -4,6 +4,8 @@ import os
 import re
 import socket
 import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 import yaml
@@ -55,7 +57,7 @@ def test_the_check_of_the_workflow_holds_and_falls_short(tmp_path):
 def test_scripts_for_slurm_run_in_its_place(tmp_path, script):
     binaries = tmp_path / "bin"
     binaries.mkdir()
-    stubs = {"srun": 'exec "$@"', "hostname": "echo 127.0.0.1", "runner": 'exec python -m runner "$@"'}
+    stubs = {"srun": 'exec "$@"', "hostname": "echo 127.0.0.1", "runner": f'exec {sys.executable} -m runner "$@"'}
     for name, body in stubs.items():
         (binaries / name).write_text(f"#!/bin/sh\n{body}\n")
         (binaries / name).chmod(0o755)
@@ -65,7 +67,7 @@ def test_scripts_for_slurm_run_in_its_place(tmp_path, script):
     (tmp_path / "job.sh").write_text(script.replace("8786", str(port)).replace("100", "3"))
     environment = {
         **os.environ,
-        "PATH": f"{binaries}{os.pathsep}{os.environ['PATH']}",
+        "PATH": os.pathsep.join([str(binaries), str(Path(sys.executable).parent), os.environ["PATH"]]),
         "PYTHONPATH": str(ROOT),
         "SLURM_ARRAY_TASK_ID": "1",
         "SLURM_CPUS_PER_TASK": "2",

@@ -16,15 +16,20 @@ from runner.works.benchmark.cells import TUNED, UNTUNED, Cell, errors_of
 from runner.works.benchmark.leads import Entry, FloatArray, Lead
 from runner.works.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, halves, laws_of
 
+_BESIDE = 3  # arms in one table
 _FAR = 1.1  # ratio of errors that three digits tell from one
 
 
-def best_laws(runs: Mapping[str, Run], caption: str) -> Table:
+def best_laws(runs: Mapping[str, Run], caption: str) -> list[Table]:
     """Return the law with the smallest error on each arm under each condition, and the laws it shares that with."""
     arms = arms_of(runs)
     made = {arm: all_cells(runs, arm) for arm in arms}
-    rows = [[CONDITIONS[name], *(_answer(made[arm][name]) for arm in arms)] for name in made[arms[0]]]
-    return Table(caption, ["condition", *(ARMS[arm] for arm in arms)], rows, (), any_origin(runs))
+    tables = []
+    for start in range(0, len(arms), _BESIDE):
+        some = arms[start : start + _BESIDE]
+        rows = [[CONDITIONS[name], *(_answer(made[arm][name]) for arm in some)] for name in made[some[0]]]
+        tables.append(Table(caption, ["condition", *(ARMS[arm] for arm in some)], rows, (), any_origin(runs)))
+    return tables
 
 
 def behind_the_best(runs: Mapping[str, Run], caption: str) -> Maps:
