@@ -12,7 +12,7 @@ from runner.works.grid import Overrides
 
 FILE = "gains.yaml"
 Gains = Mapping[str, Sequence[Mapping[str, float]]]
-"""Of each tuning, by name, the values of its keys by each of its three seeds."""
+"""Of each tuning, by name, the values of its keys by each of its seeds."""
 
 _KEY = "gains="
 
@@ -49,28 +49,46 @@ def put_in(overrides: Overrides, gains: Gains) -> Overrides:
     return tuple(text for override in overrides for text in _put_in(override, gains))
 
 
-def named(overrides: Overrides) -> list[str]:
-    """Return the names of the tunings whose gains some overrides take."""
-    return [text.removeprefix(_KEY).rpartition("/")[0] for text in overrides if text.startswith(_KEY)]
+def named(overrides: Overrides) -> list[tuple[str, int]]:
+    """Return the names of the tunings whose gains some overrides take, each with its number.
+
+    Raises:
+        RunnerError: if one ends in no number.
+    """
+    return [_named(text) for text in overrides if text.startswith(_KEY)]
 
 
-def check_named(runs: Mapping[str, Overrides], tunings: Sequence[str]) -> None:
+def check_named(runs: Mapping[str, Overrides], times: Mapping[str, int]) -> None:
     """Check that all tunings that runs name are there.
+
+    Args:
+        runs: Overrides of each run.
+        times: How many times each tuning is made, by its name.
 
     Raises:
         RunnerError: with the run and the name nearest to what it names.
     """
     for run, overrides in runs.items():
-        for name in named(overrides):
-            if name not in tunings:
-                raise RunnerError(f"run '{run}': there is no tuning '{name}'{nearest(name, tunings)}")
+        for name, number in named(overrides):
+            if name not in times:
+                raise RunnerError(f"run '{run}': there is no tuning '{name}'{nearest(name, times)}")
+            if not 1 <= number <= times[name]:
+                raise RunnerError(f"run '{run}': tuning '{name}' is made {times[name]} times; found {number}")
 
 
 def _put_in(override: str, gains: Gains) -> list[str]:
-    name, _, number = override.removeprefix(_KEY).rpartition("/")
-    if not override.startswith(_KEY) or name not in gains:
+    if not override.startswith(_KEY):
         return [override]
-    own = gains[name]
-    if not number.isdecimal() or not 1 <= int(number) <= len(own):
-        raise RunnerError(f"{override}: must end in the number of a tuning, 1 to {len(own)}")
-    return [f"{key}={value:.9g}" for key, value in own[int(number) - 1].items()]
+    name, number = _named(override)
+    if name not in gains:
+        return [override]
+    if number > len(gains[name]):
+        raise RunnerError(f"{override}: {FILE} has the gains of {len(gains[name])} tunings; make them anew")
+    return [f"{key}={value:.9g}" for key, value in gains[name][number - 1].items()]
+
+
+def _named(override: str) -> tuple[str, int]:
+    name, _, number = override.removeprefix(_KEY).rpartition("/")
+    if not number.isdecimal() or int(number) < 1:
+        raise RunnerError(f"{override}: must end in the number of a tuning, 1 or more")
+    return name, int(number)

@@ -96,7 +96,7 @@ class Grids:
         try:
             self.tunings = all_tunings(tuned, self._values)
             if not problems:
-                check_named(self.runs, list(self.tunings))
+                check_named(self.runs, {name: each.times for name, each in self.tunings.items()})
         except RunnerError as error:
             problems.append(str(error))
         if profile is not None:

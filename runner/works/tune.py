@@ -13,12 +13,12 @@ from runner.sweeps.loading import Loader
 from runner.works.gains import Gains
 from runner.works.items import Way, make_items
 from runner.works.search import ROUNDS, Tried, best, judged, proposed
-from runner.works.tunings import TIMES, Tuning
+from runner.works.tunings import Tuning
 
 
 @dataclass
 class _Search:
-    """One of the three tunings of a law: the values that its keys have otherwise, and the trials that ended."""
+    """One of the tunings of a law: the values that its keys have otherwise, and the trials that ended."""
 
     tuning: Tuning
     seed: int
@@ -43,9 +43,9 @@ def find_gains(tunings: Sequence[Tuning], way: Way) -> Gains:
     """
     loader = Loader(way.config_dirs)
     defaults = {tuning.name: _defaults(tuning, loader) for tuning in tunings}
-    searches = [_Search(tuning, seed, defaults[tuning.name]) for tuning in tunings for seed in TIMES]
+    searches = [_Search(each, 1 + index, defaults[each.name]) for each in tunings for index in range(each.times)]
     for number in range(ROUNDS if searches else 0):
-        print(f"{len(tunings)} tunings by {len(TIMES)} seeds each, round {number + 1} of {ROUNDS} ...", file=sys.stderr)
+        print(f"{len(searches)} tunings of {len(tunings)} laws, round {number + 1} of {ROUNDS} ...", file=sys.stderr)
         _round(searches, way)
     return {
         tuning.name: [each.gains(best(each.tried).factors) for each in searches if each.tuning.name == tuning.name]

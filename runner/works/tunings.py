@@ -13,10 +13,10 @@
 
 Each combination of levels is tuned, under the name that its runs would have: `macro/computed_torque`. A range is one of
 factors on the value that the key has otherwise, looked at on a logarithmic scale. All have the same budget: the value
-that the keys have otherwise, and then twice `trials` values. They are tuned three times, by different seeds of search
-and runs. A run with the gains of one of these has the override `gains=macro/computed_torque/1`; runner/works/gains.py
-tells where they stand. A controller of the user's has its ranges beside its module, `mine/spring.ranges.yaml` beside
-`mine/spring.py`; without these it keeps the values of its config.
+that the keys have otherwise, and then twice `trials` values. They are tuned three times, or `times` times, by different
+seeds of search and runs. A run with the gains of one of these has the override `gains=macro/computed_torque/1`;
+runner/works/gains.py tells where they stand. A controller of the user's has its ranges beside its module,
+`mine/spring.ranges.yaml` beside `mine/spring.py`; without these it keeps the values of its config.
 """
 
 import itertools
@@ -32,9 +32,6 @@ from runner.metrics.summary import unit_of, units
 from runner.works.arithmetic import Level
 from runner.works.given import GivenPart
 from runner.works.grid import Grid, Overrides
-
-TIMES = (1, 2, 3)
-"""The numbers by which a law's tunings go, each a seed."""
 
 Factor = Annotated[float, Field(gt=0.0)]
 Range = Annotated[tuple[Factor, Factor], Field(strict=False)]
@@ -53,6 +50,7 @@ class Tuning:
         minimize: The metric that is to be small.
         bounds: What other metrics are to stay below.
         trials: Number of trials of each round of the search.
+        times: How many times it is tuned, each by another seed.
     """
 
     name: str
@@ -61,6 +59,7 @@ class Tuning:
     minimize: str
     bounds: Mapping[str, float]
     trials: int
+    times: int
 
 
 class TunedGrid(Grid):
@@ -71,12 +70,14 @@ class TunedGrid(Grid):
         minimize: The metric that is to be small: its median over the repetitions.
         bounds: What the medians of other metrics are to stay below.
         trials: Number of trials of each round of the search.
+        times: How many times each combination is tuned, each by another seed.
     """
 
     ranges: Annotated[dict[str, dict[Level, dict[str, Range]]], Field(min_length=1, max_length=1)]
     minimize: str
     bounds: dict[str, Factor] = Field(default_factory=dict)
     trials: PositiveInt = 24
+    times: PositiveInt = 3
 
     @model_validator(mode="after")
     def _what_is_there(self) -> "TunedGrid":
@@ -106,7 +107,7 @@ class TunedGrid(Grid):
             grid = self.model_copy(update={"over": {**self.over, axis: {level: own}}})
             for name, overrides in grid.runs(key, values):
                 ranges = self.ranges[axis].get(level, {})
-                yield Tuning(name, overrides, ranges, self.minimize, self.bounds, self.trials)
+                yield Tuning(name, overrides, ranges, self.minimize, self.bounds, self.trials, self.times)
 
     @property
     def _axis(self) -> str:

@@ -1,7 +1,7 @@
 """A published work: which runs it needs, what is expected of them, and the report that is made of them."""
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -107,9 +107,14 @@ class Work:
         return {**own, **more}
 
     def untuned(self) -> list[Tuning]:
-        """Return the tunings whose gains its runs take and that are not known."""
-        names = dict.fromkeys(name for overrides in self._grids.runs.values() for name in named(overrides))
-        return [self._grids.tunings[name] for name in names if name not in self._gains]
+        """Return the tunings whose gains its runs take and that are not known, each as many times as they ask for."""
+        times: dict[str, int] = {}
+        for overrides in self._grids.runs.values():
+            for name, number in named(overrides):
+                times[name] = max(number, times.get(name, 0))
+        return [
+            replace(self._grids.tunings[name], times=most) for name, most in times.items() if name not in self._gains
+        ]
 
     def take(self, gains: Gains) -> None:
         """Take gains that were tuned beside those that are known."""
@@ -158,7 +163,18 @@ class Work:
             cover=self._cover(runs),
             bibtex=self.about.bibtex,
         )
-        return made if not self.profile else replace(made, sections=[_by_profile(self.profile), *made.sections])
+        return replace(made, sections=[*self._by_profile(), *made.sections])
+
+    def _by_profile(self) -> Iterator[Section]:
+        """Yield what the profile makes otherwise than the whole work; nothing where that is nothing."""
+        dropped, repetitions = len(self.dropped()), self._profile.repetitions if self._profile else None
+        if not dropped and repetitions is None:
+            return
+        made = len(self.jobs()) + len(self.calibrations())
+        less = f" and leaves out {dropped:,} of the whole work" if dropped else ""
+        each = f" Every run has {repetitions} repetitions." if repetitions else ""
+        text = f"The profile {self.profile} makes {made:,} runs{less}.{each}"
+        yield Section("Made with a profile", (Notice("finding", f"Profile {self.profile}", text),))
 
     def _cover(self, runs: Mapping[str, Run]) -> Cover | None:
         """Return the picture of the first screen; None where there is none, or its run was not made."""
@@ -204,10 +220,3 @@ def load_work(
         RunnerError: if there is none, or its data do not fit.
     """
     return Work(find_work(name, others), allow_code, profile, parts)
-
-
-def _by_profile(profile: str) -> Section:
-    text = (
-        f"This report was made with the profile {profile}: its runs differ from the whole work's in levels or number."
-    )
-    return Section("Made with a profile", (Notice("warning", f"Profile {profile}", text),))

@@ -15,6 +15,7 @@ from runner.errors import RunnerError
 from runner.execution import run
 from runner.reporting.findings import findings
 from runner.reporting.formulas import faulty
+from runner.reporting.job import MissingError
 from runner.works.benchmark import engines
 from runner.works.benchmark.cells import cells
 from runner.works.benchmark.made import ARMS, CONDITIONS, halves
@@ -25,16 +26,26 @@ SEEDS = 32  # of halves of 16, Holm's correction leaves something
 SCATTER = np.random.default_rng(5).uniform(0.8, 1.25, SEEDS)  # what all laws of a seed have in common
 # Sizes of the errors as a whole plan had them, in mm, of the laws below.
 SIZES = {
-    "exact": (0.22, 0.26, 0.3, 4.4, 4.6, 0.28, 0.27, 0.25, 0.24, 4.5),
+    "exact": (0.22, 0.221, 0.3, 4.4, 4.6, 0.28, 0.27, 0.25, 0.24, 4.5),
     "masses": (1.0, 1.01, 0.6, 4.0, 4.2, 1.6, 0.9, 0.8, 0.5, 4.4),
     "friction": (2.4, 2.4, 0.9, 3.6, 3.5, 1.0, 0.8, 0.7, 0.4, 3.4),
     "encoders": (1.0, 1.02, 1.3, 2.0, 2.1, 1.03, 0.98, 1.5, 1.1, 2.2),
+    "delay_2": (np.nan,) * 10,
     "all": (1.9, 2.0, 1.5, 3.0, 2.9, 1.8, 1.7, 1.6, 1.0, 2.8),
 }
 LAWS = ("operational_space", "computed_torque", "with_integral", "joint_pd", "joint_pid", "passivity", "sliding_mode",
         "adaptive", "observed", "observed_pd")  # fmt: skip
-LEARNED = {"macro": 1.2, "planar": 0.5, "xarm7": 0.5}  # errors of iterative learning
-TUNINGS = {"1": 1.0, "2": 1.02, "3": 0.99, "untuned": 1.7}  # what their errors are multiplied by
+FULL_ALONE = ("late.md", "halves.md")  # chapters of the full profile alone
+LEARNED = {"macro": 1.9, "planar": 0.3, "xarm7": 0.3}  # errors of iterative learning
+TUNINGS = {
+    "1": 1.0,
+    "2": 1.02,
+    "3": 0.99,
+    "4": 1.01,
+    "5": 0.98,
+    "6": 1.0,
+    "untuned": 2.2,
+}  # what their errors are multiplied by
 
 
 def a_run(errors, period=0.01):
@@ -124,18 +135,28 @@ def test_halves_of_the_seeds_are_held_against_each_other():
     }
     found = [cells(turned, "macro", seeds=slice(start, None, 2))["all"] for start in (0, 1)]
     assert [half.best.law for half in found] == ["a", "b"]
-    assert [half.best.errors.shape for half in found] == [(3, 1, SEEDS // 2)] * 2
-    assert halves(turned) == (6, 0, 6)
+    assert [half.best.errors.shape for half in found] == [(6, 1, SEEDS // 2)] * 2
+    assert halves(turned) == (4, 0, 4)
     alike = {name: a_run((1.0 if "/a/" in name else 2.0) * SCATTER) for name in turned}
-    assert halves(alike) == (6, 6, 0)
+    assert halves(alike) == (4, 4, 0)
+    apart = {
+        name: a_run((3.0 if name.endswith("/a/line/all/4") else 1.0) * one.values("")) for name, one in alike.items()
+    }
+    assert halves(apart) == (2, 0, 0)  # the second three tunings bear nothing out
+    with pytest.raises(MissingError, match="there are 5 of them, and a half has 3"):
+        halves({name: one for name, one in alike.items() if not name.endswith("6")})
 
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory):
-    """Every run of the plan: one for each arm and condition, a moment long, with errors of the sizes above."""
-    outputs = tmp_path_factory.mktemp("outputs")
+    """Every run of the plan."""
+    return made_of(WORK.jobs(), tmp_path_factory.mktemp("outputs"))
+
+
+def made_of(jobs, outputs):
+    """Runs of a plan: one for each arm and condition, a moment long, with errors of the sizes above."""
     real, made = {}, {}
-    for name, job in WORK.jobs().items():
+    for name, job in jobs.items():
         plan, arm, law, *task, condition, gains = [*name.split("/"), *(["untuned"] if "repeated" in name else [])]
         if (plan, arm, condition) not in real:
             kept = [re.sub(r"^repetitions=.*", f"repetitions={SEEDS}", text) for text in job.overrides]
@@ -146,7 +167,7 @@ def runs(tmp_path_factory):
         )
         errors = (size * (SCATTER if condition in ("masses", "encoders", "all") else np.ones(1))).tolist()
         if (law, task, gains) == ("joint_pd", ["circle"], "untuned"):
-            errors[0] = None
+            errors[: -(-len(errors) // 4)] = [None] * -(-len(errors) // 4)
         record = real[plan, arm, condition].record
         metrics = {
             "rms_tracking_error": {"unit": "m", "values": errors},
@@ -166,7 +187,7 @@ def test_all_findings_hold_of_such_errors(runs):
     document = WORK.document(runs, {})
     told = [finding for _, finding in findings(document)]
     assert [each.title for each in told if not each.holds] == []
-    assert len(told) == 3
+    assert len(told) == 6
     assert list(faulty(document)) == []
 
 
@@ -174,8 +195,8 @@ def test_the_page_names_the_best_law_and_how_far_it_is_ahead(runs):
     words = " | ".join(texts(chapter("benchmark", "which_law.md")(runs)))
     best = "computed torque + observer, 1.75 times ahead of adaptive"
     assert f"unknown friction | {best} | {best} | {best}" in words
-    assert "nothing is wrong | operational space; not shown to be ahead of" not in words  # 1.09 times, and 1.03 between
-    assert "nothing is wrong | operational space, 1.091 times ahead of computed torque + observer" in words
+    tied = "operational space; tied with computed torque"
+    assert f"nothing is wrong | {tied} | {tied} | {tied}" in words
 
 
 def test_every_arm_and_law_of_ours_has_its_section_and_words(runs):
@@ -190,7 +211,7 @@ def test_every_arm_and_law_of_ours_has_its_section_and_words(runs):
 
 
 @whatever_has_failed
-@pytest.mark.parametrize("file", chapter_files("benchmark"))
+@pytest.mark.parametrize("file", [file for file in chapter_files("benchmark") if file not in FULL_ALONE])
 def test_chapters_stand_whatever_has_failed(runs, spoil, file):
     assert unfinished_texts(chapter("benchmark", file)(spoil(runs))) == []
 
@@ -205,10 +226,23 @@ def test_the_orders_on_two_plants_are_held_against_each_other(runs):
     }
     assert engines.against(swapped).value >= 5.0  # joint PD far behind, far ahead, under each condition
     order = [LAWS.index(of.get(law, law)) for law in LAWS]
-    expected = [spearmanr(sizes, np.array(sizes)[order]).statistic for sizes in SIZES.values()]
+    expected = [
+        spearmanr(sizes, np.array(sizes)[order]).statistic for sizes in SIZES.values() if np.isfinite(sizes).all()
+    ]
     assert engines.mean_correlation(swapped).value == pytest.approx(np.mean(expected), abs=0.02)
 
 
-@pytest.mark.parametrize("file", ["how_tuned.md", "engines.md"])
+@pytest.mark.parametrize("file", FULL_ALONE)
+def test_what_the_full_profile_alone_shows(tmp_path, file):
+    (arms, condition) = {"late.md": ("macro|mini", "delay_2"), "halves.md": ("macro", "masses")}[file]
+    wanted = re.compile(rf"laws/({arms})/\w+/circle/{condition}/.*")
+    jobs = {name: job for name, job in load_work("benchmark", profile="full").jobs().items() if wanted.fullmatch(name)}
+    some = made_of(jobs, tmp_path)
+    (told,) = [finding for _, finding in findings(SimpleNamespace(sections=[chapter("benchmark", file)(some)]))]
+    assert told.holds
+    assert conditions_that_never_fail("benchmark", file, some) == []
+
+
+@pytest.mark.parametrize("file", ["which_law.md", "repeated.md", "engines.md"])
 def test_every_condition_can_fail(runs, file):
     assert conditions_that_never_fail("benchmark", file, runs) == []

@@ -11,7 +11,7 @@ from runner.works.tunings import Tuning
 
 
 def tuning(ranges, bounds=None, trials=24):
-    return Tuning("arm/law", (), ranges, "rms_tracking_error", bounds or {}, trials)
+    return Tuning("arm/law", (), ranges, "rms_tracking_error", bounds or {}, trials, 3)
 
 
 def a_run(status="ok", **medians):

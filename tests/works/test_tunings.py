@@ -70,6 +70,8 @@ def test_each_combination_is_a_tuning_with_its_ranges(paper):
     ("change", "told"),
     [
         (("gains=planar/", "gains=planer/"), r"run 'moves/pd/tuned': there is no tuning 'planer/pd' \(did you mean"),
+        (("{{ law }}/2", "{{ law }}/4"), r"run 'moves/pd/tuned': tuning 'planar/pd' is made 3 times; found 4"),
+        (("{{ law }}/2", "{{ law }}/x"), r"gains=planar/pd/x: must end in the number of a tuning, 1 or more"),
         (("{law: {pd:", "{lav: {pd:"), r"ranges: there is no axis 'lav' \(did you mean law\?\)"),
         (("{law: {pd:", "{law: {pe:"), r"ranges.law: no level 'pe' \(did you mean pd\?\)"),
         (("[0.5, 2]", "[1.5, 2]"), r"controller.natural_frequency: its range must be factors below and above 1"),
@@ -98,8 +100,8 @@ def test_gains_go_from_trials_into_runs_and_what_is_not_tuned_stays(paper, tmp_p
         1.0 < after.config["controller"]["natural_frequency"] / before.config["controller"]["natural_frequency"] <= 2.0
     )
     assert runs["moves/held/untuned"].folder == runs["moves/held/tuned"].folder
-    assert [len(own) for own in work.tuned.values()] == [3, 3]
-    assert work.tuned["planar/held"] == [{}, {}, {}]
+    assert [len(own) for own in work.tuned.values()] == [2, 2]  # as the runs ask for the second
+    assert work.tuned["planar/held"] == [{}, {}]
 
 
 def test_stored_gains_are_taken_and_a_profile_tunes_anew(paper):
@@ -121,13 +123,20 @@ def test_gains_are_written_as_they_are_read(tmp_path):
         read_gains(tmp_path)
 
 
-def test_a_tuning_has_three_numbers():
+def test_a_tuning_is_made_as_often_as_it_says(paper):
+    last = ("{{ law }}/2", "{{ law }}/5"), ("    trials: 4\n", "    trials: 4\n    times: 5\n")
+    assert [tuning.times for tuning in paper(*last).untuned()] == [5, 5]
+
+
+def test_the_gains_of_a_tuning_have_numbers():
     gains = {"arm/law": [{"a": 1.0}, {"a": 2.0}, {"a": 3.0}]}
     assert put_in(("robot=macro", "gains=arm/law/2"), gains) == ("robot=macro", "a=2")
     assert put_in(("gains=other/law/2",), gains) == ("gains=other/law/2",)
-    for number in ("0", "4", "x"):
-        with pytest.raises(RunnerError, match="must end in the number of a tuning, 1 to 3"):
+    for number in ("0", "x"):
+        with pytest.raises(RunnerError, match="must end in the number of a tuning, 1 or more"):
             put_in((f"gains=arm/law/{number}",), gains)
+    with pytest.raises(RunnerError, match=r"gains=arm/law/4: gains.yaml has the gains of 3 tunings"):
+        put_in(("gains=arm/law/4",), gains)
 
 
 def test_a_law_of_the_reader_s_has_its_ranges_beside_its_module(paper, tmp_path):
@@ -153,5 +162,5 @@ def test_a_tuning_asked_for_twice_is_found_stored(paper, tmp_path, capsys):
     capsys.readouterr()
     assert find_gains(work.untuned(), way) == first
     told = capsys.readouterr().err
-    assert "18 runs, 18 of them stored already" in told  # three times 1 + 4 trials of one law, and 1 of the other
-    assert "12 runs, 12 of them stored already" in told
+    assert "12 runs, 12 of them stored already" in told  # twice 1 + 4 trials of one law, and 1 of the other
+    assert "8 runs, 8 of them stored already" in told

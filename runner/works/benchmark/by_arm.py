@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from runner.reporting.document import Section, Table, Text
 from runner.reporting.words import in_words
 from runner.store import Run
-from runner.works.benchmark.cells import TUNED, UNTUNED
+from runner.works.benchmark.cells import UNTUNED
 from runner.works.benchmark.figures import any_origin, error_words, lead_words
 from runner.works.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, laws_of
 
@@ -28,7 +28,7 @@ def section(runs: Mapping[str, Run]) -> Section:
 
 def _arm(runs: Mapping[str, Run], arm: str) -> Section:
     title = ARMS[arm].replace("planar", "Planar")
-    blocks = [_best(runs, arm), *_errors(runs, arm, TUNED, "tuned"), *_errors(runs, arm, UNTUNED, "not tuned")]
+    blocks = [_best(runs, arm), *_errors(runs, arm, (), "tuned"), *_errors(runs, arm, UNTUNED, "not tuned")]
     return Section(title, blocks)
 
 

@@ -10,7 +10,7 @@ from runner.reporting.prose.patterns import found
 from runner.reporting.words import in_words
 from runner.store import Run
 from runner.sweeps.differing import entries
-from runner.works.benchmark.cells import TUNED, UNTUNED
+from runner.works.benchmark.cells import UNTUNED, tuned
 from runner.works.benchmark.figures import any_origin, error_words, ratio
 from runner.works.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, laws_of
 
@@ -49,7 +49,7 @@ def section(runs: Mapping[str, Run]) -> Section:
     """Return the chapter."""
     text = (
         "All laws read positions and velocities of the joints; none of ours reads torque sensors. Untuned gains follow "
-        "from one bandwidth for each arm; tuned ones are the best of the same number of trials for every law, three "
+        "from one bandwidth for each arm; tuned ones are the best of the same number of trials for every law, several "
         "times by different seeds."
     )
     laws = laws_of(runs, arms_of(runs)[0])
@@ -89,15 +89,16 @@ def _places(runs: Mapping[str, Run], law: str) -> Table:
 
 
 def _gains(runs: Mapping[str, Run], law: str) -> Table:
-    """Return the gains of each arm: of its bandwidth, and of the three tunings."""
-    rows = []
+    """Return the gains of each arm: of its bandwidth, and of each tuning."""
+    rows, tunings = [], tuned(runs)
     for arm in arms_of(runs):
-        by_gains = [_keys(runs, arm, law, own) for own in (*UNTUNED, *TUNED)]
+        by_gains = [_keys(runs, arm, law, own) for own in (*UNTUNED, *tunings)]
         differing = [key for key in by_gains[0] if len({own.get(key) for own in by_gains}) > 1]
         for key in differing or ["none"]:
             rows.append([ARMS[arm], key, *(_short(own.get(key, "")) for own in by_gains)])
-    header = ["arm", "key", "not tuned", *(f"tuning {own}" for own in TUNED)]
-    return Table(f"{in_words(law)}: gains that were tuned.", header, rows, (2, 3, 4, 5), any_origin(runs), (1,))
+    header = ["arm", "key", "not tuned", *(f"tuning {own}" for own in tunings)]
+    caption, numbers = f"{in_words(law)}: gains that were tuned.", range(2, len(header))
+    return Table(caption, header, rows, numbers, any_origin(runs), (1,))
 
 
 def _keys(runs: Mapping[str, Run], arm: str, law: str, gains: str) -> dict[str, str]:

@@ -6,13 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.errors import RunnerError
+from runner.reporting.job import Made
 from runner.reporting.prose.patterns import found
 from runner.store import Run, simulated_part
 from runner.sweeps.differing import entries
 from runner.works.benchmark.leads import Entry, FloatArray, Lead, leads
 
-TUNED = ("1", "2", "3")
-"""The gains of the three tunings."""
 UNTUNED = ("untuned",)
 """The gains that follow from the arm's bandwidth."""
 ALL_SEEDS = slice(None)
@@ -48,12 +47,19 @@ class Cell:
         return next(each for each in self.entries if each.law == law)
 
 
+def tuned(runs: Mapping[str, Run]) -> tuple[str, ...]:
+    """Return the gains of the tunings that the runs are to have, in order: "1", "2" and so on."""
+    names = [*runs, *(runs.missing if isinstance(runs, Made) else ())]
+    last = {name.rpartition("/")[2] for name in names if name.startswith("laws/")}
+    return tuple(sorted(own for own in last if own.isdecimal()))
+
+
 def cells(
     runs: Mapping[str, Run],
     arm: str,
     grid: str = "laws",
     seeds: slice = ALL_SEEDS,
-    gains: Sequence[str] = TUNED,
+    gains: Sequence[str] = (),
     tasks: Sequence[str] = (),
 ) -> dict[str, Cell]:
     """Return what the laws did on an arm, by condition.
@@ -63,7 +69,7 @@ def cells(
         arm: Level of the axis arm.
         grid: How the runs' names begin: "laws", on Runge-Kutta, or "engine".
         seeds: Which repetitions count of runs that have several.
-        gains: Levels of the axis of gains that count.
+        gains: Levels of the axis of gains that count; all tunings where none is named.
         tasks: Levels of the axis of tasks that count; all where none is named.
 
     Raises:
@@ -71,6 +77,7 @@ def cells(
         MissingError: if a run was not made.
     """
     task = f"{{task={'|'.join(tasks)}}}" if tasks else "{task}"
+    gains = gains or tuned(runs)
     pattern = f"{grid}/{arm}/{{law}}/{task}/{{condition}}/{{gains={'|'.join(gains)}}}"
     ranked = {name: _ranked(by_law, seeds) for name, by_law in _errors(runs, pattern, gains).items()}
     ahead = leads(ranked)

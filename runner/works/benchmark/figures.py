@@ -12,11 +12,12 @@ from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import found
 from runner.reporting.words import in_words
 from runner.store import Run
-from runner.works.benchmark.cells import TUNED, UNTUNED, Cell, errors_of
+from runner.works.benchmark.cells import UNTUNED, Cell, tuned
 from runner.works.benchmark.leads import Entry, FloatArray, Lead
-from runner.works.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, halves, laws_of
+from runner.works.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, halves, laws_of, one_cell
 
 _BESIDE = 3  # arms in one table
+_NAMED = 4  # tied laws that are named
 _FAR = 1.1  # ratio of errors that three digits tell from one
 
 
@@ -72,7 +73,7 @@ def error_against(runs: Mapping[str, Run], metric: str, label: str, condition: s
         cell, series = all_cells(runs, arm)[condition], []
         for index, law in enumerate(laws_of(runs, arm)):
             entry = cell.entry(law)
-            used = [_typical(runs, arm, law, condition, own, metric) for own in TUNED]
+            used = [_typical(runs, arm, law, condition, own, metric) for own in tuned(runs)]
             series.append(Series(in_words(law), np.array(used), entry.by_tuning, "points", color=index))
         panels.append(Panel(ARMS[arm], label, "error (m)", series, x_log=True, y_log=True))
     return Curves(caption, panels, 2, any_origin(runs))
@@ -113,7 +114,7 @@ def settings(runs: Mapping[str, Run], caption: str) -> Table:
 
 
 def spread(runs: Mapping[str, Run], caption: str) -> Table:
-    """Return how far the errors of the three tunings of each law are apart on each arm."""
+    """Return how far the errors of the tunings of each law are apart on each arm."""
     arms = arms_of(runs)
     rows = []
     for law in laws_of(runs, arms[0]):
@@ -130,45 +131,58 @@ def times(runs: Mapping[str, Run], condition: str, law: str, other: str, *arms: 
             ratio(cell.entry(law), cell.entry(other)),
         )
         for arm in arms or arms_of(runs)
-        for cell in [all_cells(runs, arm)[condition]]
+        for cell in [one_cell(runs, arm, condition)]
     ]
 
 
-def sure_times(runs: Mapping[str, Run], condition: str, law: str, other: str, *arms: str) -> list[Measured]:
-    """Return the lower end of the interval of how far a law is behind another one; none where it is not behind."""
+def sure_leads(runs: Mapping[str, Run], condition: str, law: str, *but: str) -> list[Measured]:
+    """Return the lower ends of the intervals of how far all others are behind a law, on all arms but some.
+
+    One that is not behind has none.
+    """
     told = []
-    for arm in arms or arms_of(runs):
-        lead = all_cells(runs, arm)[condition].leads.get((other, law))
-        low = None if lead is None or lead.interval is None else lead.interval[0]
-        words = f"{in_words(law)} over {in_words(other)}, {ARMS[arm]}, {CONDITIONS[condition]}"
-        told.append(Measured(f"lower end of the error of {words}", low))
+    for arm in (each for each in arms_of(runs) if each not in but):
+        cell = one_cell(runs, arm, condition)
+        for other in (each.law for each in cell.entries if each.law != law):
+            lead = cell.leads.get((law, other))
+            low = None if lead is None or lead.interval is None else lead.interval[0]
+            words = f"{in_words(other)} over {in_words(law)}, {ARMS[arm]}, {CONDITIONS[condition]}"
+            told.append(Measured(f"lower end of the error of {words}", low))
     return told
 
 
-def sure_leads(runs: Mapping[str, Run], condition: str, law: str, *others: str) -> list[Measured]:
-    """Return the lower ends of the intervals of how far some laws are behind one, on all arms."""
-    return [told for other in others for told in sure_times(runs, condition, other, law)]
+def ahead_of(runs: Mapping[str, Run], condition: str, law: str) -> Measured:
+    """Return how many laws are shown to be ahead of one, on all arms together."""
+    cells = [one_cell(runs, arm, condition) for arm in arms_of(runs)]
+    ahead = sum(lead.shown for cell in cells for (_, behind), lead in cell.leads.items() if behind == law)
+    return Measured(f"laws ahead of {in_words(law)}, {CONDITIONS[condition]}", float(ahead))
 
 
 def untuned_over_tuned(runs: Mapping[str, Run], condition: str, law: str) -> list[Measured]:
     """Return the error of a law with the gains of the arm's bandwidth over that with tuned ones, on all arms."""
     told = []
     for arm in arms_of(runs):
-        before, after = (all_cells(runs, arm, gains)[condition].entry(law) for gains in (UNTUNED, TUNED))
+        before, after = (one_cell(runs, arm, condition, gains).entry(law) for gains in (UNTUNED, ()))
         words = f"error of {in_words(law)} untuned over tuned, {ARMS[arm]}, {CONDITIONS[condition]}"
         told.append(Measured(words, ratio(before, after)))
     return told
 
 
-def failed_repetitions(runs: Mapping[str, Run], gains: str, *laws: str) -> Measured:
-    """Return how many repetitions failed of some laws, of all where none is named, tuned or untuned."""
-    own = TUNED if gains == "tuned" else UNTUNED
-    pattern = f"laws/{{arm}}/{{law}}/{{task}}/{{condition}}/{{gains={'|'.join(own)}}}"
-    chosen = [one.run for one in found(runs, pattern) if not laws or one.levels["law"] in laws]
-    failed = sum(int(np.isinf(errors_of(run)).sum()) for run in chosen)
-    return Measured(
-        f"repetitions that failed, {gains}, {' and '.join(map(in_words, laws)) or 'all laws'}", float(failed)
-    )
+def failed(runs: Mapping[str, Run], gains: str, condition: str, *arms: str) -> list[Measured]:
+    """Return the share of repetitions that failed of each law under a condition, in per cent.
+
+    Args:
+        runs: The runs of the work.
+        gains: "tuned" or "untuned".
+        condition: The condition.
+        arms: The arms; all where none is named.
+    """
+    own = () if gains == "tuned" else UNTUNED
+    return [
+        Measured(f"repetitions of {in_words(each.law)} that failed, {gains}, {ARMS[arm]}", 100.0 * each.failed, "%")
+        for arm in arms or arms_of(runs)
+        for each in one_cell(runs, arm, condition, own).entries
+    ]
 
 
 def said_again(runs: Mapping[str, Run]) -> Measured:
@@ -215,9 +229,13 @@ def any_origin(runs: Mapping[str, Run]) -> Origin:
 
 def _answer(cell: Cell) -> str:
     tied = cell.tied
+    if not np.isfinite(cell.best.score):
+        return "all failed"
     best = in_words(cell.best.law)
+    if len(tied) > _NAMED:
+        return f"{best}; tied with {len(tied)} others"
     if tied:
-        return f"{best}; not shown to be ahead of {', '.join(map(in_words, tied))}"
+        return f"{best}; tied with {', '.join(map(in_words, tied))}"
     lead = cell.leads[cell.best.law, cell.entries[1].law]
     return f"{best}, {lead_words(lead)} ahead of {in_words(lead.other)}"
 

@@ -1,12 +1,11 @@
 """What was made: the arms, laws and conditions of the runs, and what the laws did there, worked out once."""
 
 from collections.abc import Mapping, Sequence
-from itertools import pairwise
 
-from runner.reporting.job import Made
+from runner.reporting.job import Made, MissingError
 from runner.reporting.prose.patterns import found
 from runner.store import Run
-from runner.works.benchmark.cells import ALL_SEEDS, TUNED, Cell, cells
+from runner.works.benchmark.cells import ALL_SEEDS, Cell, cells, tuned
 
 ARMS = {
     "macro": "Macro",
@@ -33,6 +32,9 @@ CONDITIONS = {
 }
 
 
+_TUNINGS = 3  # of a half
+
+
 class _Kept:
     """What was worked out of the runs of one work, as every table and finding asks for it anew."""
 
@@ -47,7 +49,7 @@ _kept = _Kept()
 
 
 def all_cells(
-    runs: Mapping[str, Run], arm: str, gains: Sequence[str] = TUNED, seeds: slice = ALL_SEEDS
+    runs: Mapping[str, Run], arm: str, gains: Sequence[str] = (), seeds: slice = ALL_SEEDS
 ) -> dict[str, Cell]:
     """Return what the laws did on an arm, by condition, in one order; see cells."""
     if _kept.runs is not runs:
@@ -57,6 +59,18 @@ def all_cells(
         made = cells(runs, arm, seeds=seeds, gains=gains)
         _kept.cells[key] = {condition: made[condition] for condition in CONDITIONS if condition in made}
     return _kept.cells[key]
+
+
+def one_cell(runs: Mapping[str, Run], arm: str, condition: str, gains: Sequence[str] = ()) -> Cell:
+    """Return what the laws did on an arm under a condition; see all_cells.
+
+    Raises:
+        MissingError: if there are no such runs.
+    """
+    found_there = all_cells(runs, arm, gains)
+    if condition not in found_there:
+        raise MissingError(f"{ARMS[arm]}, {CONDITIONS[condition]}: no such runs were made")
+    return found_there[condition]
 
 
 def arms_of(runs: Mapping[str, Run]) -> list[str]:
@@ -74,23 +88,31 @@ def laws_of(runs: Mapping[str, Run], arm: str) -> list[str]:
 def halves(runs: Mapping[str, Run]) -> tuple[int, int, int]:
     """Return how many drawn leads each half shows, and of these the other one, too, or turned round.
 
-    A half is half of the seeds with the gains of one tuning; it is held against the other half of the seeds with the
-    gains of another one.
+    A half is half of the seeds with the gains of three tunings; it is held against the other half of the seeds with
+    the gains of the other three.
+
+    Raises:
+        MissingError: if there are fewer than six tunings.
     """
+    gains = tuned(runs)
+    if len(gains) < 2 * _TUNINGS:
+        raise MissingError(f"halves of the tunings: there are {len(gains)} of them, and a half has {_TUNINGS}")
+    ones, others = gains[:_TUNINGS], gains[_TUNINGS : 2 * _TUNINGS]
+    even, odd = slice(0, None, 2), slice(1, None, 2)
     said = again = turned = 0
-    for one, other in pairwise((*TUNED, TUNED[0])):
-        a, b = (_shown(runs, half, gains) for half, gains in ((slice(0, None, 2), one), (slice(1, None, 2), other)))
+    for one, other in ((even, odd), (odd, even)):
+        a, b = _shown(runs, one, ones), _shown(runs, other, others)
         said += len(a) + len(b)
         again += 2 * len(a & b)
         turned += 2 * len({(arm, name, (behind, law)) for arm, name, (law, behind) in a} & b)
     return said, again, turned
 
 
-def _shown(runs: Mapping[str, Run], seeds: slice, gains: str) -> set[tuple[str, str, tuple[str, str]]]:
+def _shown(runs: Mapping[str, Run], seeds: slice, gains: Sequence[str]) -> set[tuple[str, str, tuple[str, str]]]:
     return {
         (arm, name, key)
         for arm in arms_of(runs)
-        for name, cell in all_cells(runs, arm, (gains,), seeds).items()
+        for name, cell in all_cells(runs, arm, gains, seeds).items()
         for key, lead in cell.leads.items()
         if lead.shown and lead.p_value is not None
     }

@@ -30,10 +30,11 @@ def last_periods(runs: Mapping[str, Run], caption: str) -> Table:
     return Table(caption, header, told_rows, range(1, len(header)), origin(every[0].run))
 
 
-def over_learning(runs: Mapping[str, Run], condition: str, law: str) -> list[Measured]:
-    """Return the error of a law in the last period over that of iterative learning, on each arm."""
+def over_learning(runs: Mapping[str, Run], condition: str, law: str, *arms: str) -> list[Measured]:
+    """Return the error of a law in the last period over that of iterative learning, on some arms, or on each."""
     told = []
-    for one in found(runs, f"repeated/{{arm}}/{law}/{condition}"):
+    arm = f"{{arm={'|'.join(arms)}}}" if arms else "{arm}"
+    for one in found(runs, f"repeated/{arm}/{law}/{condition}"):
         learned = _error(runs[f"repeated/{one.levels['arm']}/iterative_learning/{condition}"])
         error = _error(one.run)
         value = error / learned if np.isfinite(learned) else None
