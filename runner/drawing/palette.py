@@ -16,6 +16,11 @@ def color(index: int) -> str:
     return LIGHT[index % len(LIGHT)]
 
 
+def rounds(index: int) -> int:
+    """Return how many times the palette was gone through before an index: points of each time have their own mark."""
+    return index // len(LIGHT)
+
+
 def rgb(index: int) -> tuple[int, int, int]:
     """Return the colour of a palette index as red, green and blue from 0 to 255."""
     return rgb_of(color(index))

@@ -35,6 +35,7 @@ _LEAST = 1.55  # width of a panel
 _POINTS_PER_INCH = 300
 _PALE = 0.18  # of its colour in a band
 Corner = Literal["upper left", "lower left"]
+_MARKS = ("o", "D", "s")
 _LINES = {"line": "-", "dashed": "--", "dotted": ":", "points": "none", "points_line": "-"}
 
 
@@ -178,7 +179,7 @@ def _draw_panel(axes: Axes, frame: _Frame) -> list[Line2D]:
     axes.margins(x=0.02)
     chosen = palette.indices([series.color for series in panel.series])
     handles = [
-        _draw_series(axes, thin(series, int(_POINTS_PER_INCH * frame.width)), palette.color(color), sheet)
+        _draw_series(axes, thin(series, int(_POINTS_PER_INCH * frame.width)), color, sheet)
         for series, color in zip(panel.series, chosen, strict=True)
     ]
     if usable(panel.x_range, panel.x_log):
@@ -212,14 +213,16 @@ def _formatter(write: Mark) -> FuncFormatter:
     return FuncFormatter(lambda value, _: write(value))
 
 
-def _draw_series(axes: Axes, series: Series, color: str, sheet: Sheet) -> Line2D:
+def _draw_series(axes: Axes, series: Series, index: int, sheet: Sheet) -> Line2D:
+    color = palette.color(index)
     if series.low is not None and series.high is not None:
         # A pale colour and no transparency, which journals refuse; thin edges show through another band.
         red, green, blue = (1.0 - _PALE * (1.0 - part) for part in to_rgb(color))
         axes.fill_between(series.x, series.low, series.high, color=(red, green, blue), linewidth=0)
         for edge in (series.low, series.high):
             axes.plot(series.x, edge, color=color, linewidth=0.3, zorder=1.8)
-    marker = "o" if series.style in ("points", "points_line") else ""
+    mark = _MARKS[min(palette.rounds(index), len(_MARKS) - 1)]
+    marker = mark if series.style in ("points", "points_line") else ""
     # What is broken stands before what is not, so that neither hides the other.
     order = 2.1 if series.style in ("dashed", "dotted") else 2.0
     (line,) = axes.plot(series.x, series.y, linestyle=_LINES[series.style], marker=marker, color=color, zorder=order)

@@ -20,6 +20,7 @@ from runner.texts import plain
 
 Json = dict[str, Any]
 
+_SYMBOLS = ("diamond", "square")  # of points beyond the palette
 _MODES = {"line": "lines", "dashed": "lines", "dotted": "lines", "points": "markers", "points_line": "lines+markers"}
 _DASHES = {"dashed": "dash", "dotted": "dot"}
 _LEGEND_WIDTH, _TITLE_WIDTH = 40, 45
@@ -50,7 +51,7 @@ def _panel(panel: Panel) -> Json:
     traces: list[Json] = []
     colors: list[int] = []
     for number, (series, color) in enumerate(zip(panel.series, chosen, strict=True)):
-        drawn = [*_band(series, number), _trace(series, number) | _hover(panel, series)]
+        drawn = [*_band(series, number), _trace(series, number, palette.rounds(color)) | _hover(panel, series)]
         traces += drawn
         colors += [color] * len(drawn)
     edges = [edge for series in panel.series for edge in (series.low, series.high) if edge is not None]
@@ -76,7 +77,7 @@ def named_places(names: Sequence[str]) -> Json:
     }
 
 
-def _trace(series: Series, number: int) -> Json:
+def _trace(series: Series, number: int, rounds: int) -> Json:
     thinned = thin(series)
     name = plain(series.name).strip()
     pointed: Json = {"zorder": 1} if series.style in _DASHES else {}  # so that it is seen on a curve without breaks
@@ -100,7 +101,7 @@ def _trace(series: Series, number: int) -> Json:
         "showlegend": bool(name),
         "legendgroup": str(number),
         "line": {"dash": _DASHES.get(series.style, "solid"), "width": 1.7},
-        "marker": {"size": 6},
+        "marker": {"size": 6} | ({"symbol": _SYMBOLS[min(rounds, len(_SYMBOLS)) - 1]} if rounds else {}),
         "x": _typed(thinned.x),
         "y": _typed(thinned.y),
         **pointed,

@@ -28,6 +28,10 @@ class MissingError(RunnerError):
     """A run or calibration that a report needs, and that was not made."""
 
 
+class LeftOutError(MissingError):
+    """A run or calibration that the profile leaves out."""
+
+
 class Made(dict[str, Thing]):
     """The runs or calibrations of a work by name; asking for one that was not made raises MissingError.
 
@@ -47,6 +51,8 @@ class Made(dict[str, Thing]):
         self.dropped = dict(dropped or {})
 
     def __missing__(self, name: str) -> Thing:
-        if name in self.missing or name in self.dropped:
-            raise MissingError(f"{name}: {self.missing.get(name) or self.dropped[name]}")
+        if name in self.missing:
+            raise MissingError(f"{name}: {self.missing[name]}")
+        if name in self.dropped:
+            raise LeftOutError(f"{name}: {self.dropped[name]}")
         raise RunnerError(f"the work has no run or calibration '{name}'{nearest(name, [*self, *self.missing])}")

@@ -7,7 +7,7 @@ from runner.reporting.citing import citing_section
 from runner.reporting.claims import WORDS
 from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text, Verdicts
 from runner.reporting.expected_caveats import ExpectedCaveat, caveats_section, unexpected_caveats
-from runner.reporting.job import Made, MissingError
+from runner.reporting.job import LeftOutError, Made, MissingError
 from runner.reporting.markup import literal, literals
 from runner.reporting.outline import numbered
 from runner.reporting.run_report import provenance
@@ -85,6 +85,9 @@ def parts(makers: Iterable[tuple[str, Callable[[], Section]]]) -> list[Section]:
     for name, make in makers:
         try:
             found.append(make())
+        except LeftOutError as error:
+            text = f"The profile makes less than this part needs: {literal(str(error))}."
+            found.append(Section(f"Left out: {literal(name)}", (Text(text),)))
         except MissingError as error:
             notice = Notice("failure", "Left out", f"This part needs what was not made: {literal(str(error))}.")
             found.append(Section(f"Left out: {literal(name)}", (notice,)))

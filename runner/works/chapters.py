@@ -124,7 +124,7 @@ class Chapters:
         return Equations(caption, rows(judged), Origin(command=self._command), self._folder.name)
 
     def _each(self, chapters: Sequence[str | Part]) -> list[Section]:
-        return parts((_file(each), partial(self._one, each)) for each in chapters)
+        return parts((self._title(each), partial(self._one, each)) for each in chapters)
 
     def _one(self, chapter: str | Part) -> Section:
         made = self.section(chapter)
@@ -145,6 +145,13 @@ class Chapters:
         section: Section = make(self._runs)
         return section
 
+    def _title(self, chapter: str | Part) -> str:
+        """Return what a chapter is called where it is left out: its title, of one in Python the file."""
+        if isinstance(chapter, Part):
+            return chapter.title
+        heading = self._text(chapter).partition("\n")[0] if chapter.endswith(".md") else ""
+        return heading.removeprefix("# ").strip() if heading.startswith("# ") else chapter
+
     def _text(self, file: str) -> str:
         return (self._folder / file).read_text(encoding="utf-8")
 
@@ -152,10 +159,6 @@ class Chapters:
 def _count(chapters: Sequence[str | Part]) -> int:
     """Return the number of files that some chapters have."""
     return sum(len(each.sections) if isinstance(each, Part) else 1 for each in chapters)
-
-
-def _file(chapter: str | Part) -> str:
-    return chapter if isinstance(chapter, str) else chapter.title
 
 
 def _filled(functions: Mapping[str, Callable[..., Any]], given: Mapping[str, Any]) -> dict[str, Callable[..., Any]]:

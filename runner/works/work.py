@@ -11,7 +11,7 @@ from runner.errors import RunnerError, nearest
 from runner.plugins import use_plugins
 from runner.reporting.checklist import load_checklist
 from runner.reporting.cover import cover
-from runner.reporting.document import Cover, Document, Notice, Section
+from runner.reporting.document import Cover, Document, Section, Text
 from runner.reporting.expected_caveats import ExpectedCaveat
 from runner.reporting.job import Job, Jobs
 from runner.reporting.work_report import work_document
@@ -174,7 +174,7 @@ class Work:
         less = f" and leaves out {dropped:,} of the whole work" if dropped else ""
         each = f" Every run has {repetitions} repetitions." if repetitions else ""
         text = f"The profile {self.profile} makes {made:,} runs{less}.{each}"
-        yield Section("Made with a profile", (Notice("finding", f"Profile {self.profile}", text),))
+        yield Section("Made with a profile", (Text(text),))
 
     def _cover(self, runs: Mapping[str, Run]) -> Cover | None:
         """Return the picture of the first screen; None where there is none, or its run was not made."""

@@ -1,12 +1,12 @@
 """What the chapters call: the answer as tables, maps and numbers over arms, laws and conditions."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from runner.drawing.figure import Map, Panel, Series
 from runner.quantities import number, quantity
-from runner.reporting.document import Curves, Maps, Origin, Table
+from runner.reporting.document import Curves, Maps, Origin, Table, Text
 from runner.reporting.figures import origin
 from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import found
@@ -14,7 +14,7 @@ from runner.reporting.words import in_words
 from runner.store import Run
 from runner.works.benchmark.cells import UNTUNED, Cell, tuned
 from runner.works.benchmark.leads import Entry, FloatArray, Lead
-from runner.works.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, halves, laws_of, one_cell
+from runner.works.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, laws_of, one_cell
 
 _BESIDE = 3  # arms in one table
 _NAMED = 4  # tied laws that are named
@@ -47,14 +47,22 @@ def behind_the_best(runs: Mapping[str, Run], caption: str) -> Maps:
     return Maps(caption, "error over the smallest", panels, True, 1, any_origin(runs))
 
 
-def troubles(runs: Mapping[str, Run], caption: str) -> Maps:
-    """Return the share of repetitions of each law that failed as maps, an arm each."""
+def troubles(runs: Mapping[str, Run], gains: str, caption: str) -> Maps | Text:
+    """Return the share of repetitions of each law that failed as maps, an arm each; a sentence where none did.
+
+    Args:
+        runs: The runs of the work.
+        gains: "tuned" or "untuned".
+        caption: What is seen.
+    """
     panels = []
     for arm in arms_of(runs):
-        made, laws = all_cells(runs, arm), laws_of(runs, arm)[::-1]
+        made, laws = all_cells(runs, arm, _chosen(gains)), laws_of(runs, arm)[::-1]
         shares = 100.0 * np.array([[cell.entry(law).failed for cell in made.values()] for law in laws])
         names = [CONDITIONS[name] for name in made]
         panels.append(Map(ARMS[arm], "", "", names, list(map(in_words, laws)), shares, np.zeros(shares.shape, bool)))
+    if not any(panel.values.any() for panel in panels):
+        return Text(f"{caption} Here there are none, of no law on no arm under no condition.")
     return Maps(caption, "repetitions that failed (%)", panels, False, 1, any_origin(runs))
 
 
@@ -73,9 +81,9 @@ def error_against(runs: Mapping[str, Run], metric: str, label: str, condition: s
         cell, series = all_cells(runs, arm)[condition], []
         for index, law in enumerate(laws_of(runs, arm)):
             entry = cell.entry(law)
-            used = [_typical(runs, arm, law, condition, own, metric) for own in tuned(runs)]
+            used = [typical(runs, arm, law, condition, own, metric) for own in tuned(runs)]
             series.append(Series(in_words(law), np.array(used), entry.by_tuning, "points", color=index))
-        panels.append(Panel(ARMS[arm], label, "error (m)", series, x_log=True, y_log=True))
+        panels.append(Panel(ARMS[arm], label, "error (m)", series, y_log=True))
     return Curves(caption, panels, 2, any_origin(runs))
 
 
@@ -123,51 +131,6 @@ def spread(runs: Mapping[str, Run], caption: str) -> Table:
     return Table(caption, ["law", *(ARMS[arm] for arm in arms)], rows, range(1, 1 + len(arms)), any_origin(runs))
 
 
-def times(runs: Mapping[str, Run], condition: str, law: str, other: str, *arms: str) -> list[Measured]:
-    """Return the error of a law over that of another one on some arms, of all where none is named."""
-    return [
-        Measured(
-            f"error of {in_words(law)} over that of {in_words(other)}, {ARMS[arm]}, {CONDITIONS[condition]}",
-            ratio(cell.entry(law), cell.entry(other)),
-        )
-        for arm in arms or arms_of(runs)
-        for cell in [one_cell(runs, arm, condition)]
-    ]
-
-
-def sure_leads(runs: Mapping[str, Run], condition: str, law: str, *but: str) -> list[Measured]:
-    """Return the lower ends of the intervals of how far all others are behind a law, on all arms but some.
-
-    One that is not behind has none.
-    """
-    told = []
-    for arm in (each for each in arms_of(runs) if each not in but):
-        cell = one_cell(runs, arm, condition)
-        for other in (each.law for each in cell.entries if each.law != law):
-            lead = cell.leads.get((law, other))
-            low = None if lead is None or lead.interval is None else lead.interval[0]
-            words = f"{in_words(other)} over {in_words(law)}, {ARMS[arm]}, {CONDITIONS[condition]}"
-            told.append(Measured(f"lower end of the error of {words}", low))
-    return told
-
-
-def ahead_of(runs: Mapping[str, Run], condition: str, law: str) -> Measured:
-    """Return how many laws are shown to be ahead of one, on all arms together."""
-    cells = [one_cell(runs, arm, condition) for arm in arms_of(runs)]
-    ahead = sum(lead.shown for cell in cells for (_, behind), lead in cell.leads.items() if behind == law)
-    return Measured(f"laws ahead of {in_words(law)}, {CONDITIONS[condition]}", float(ahead))
-
-
-def untuned_over_tuned(runs: Mapping[str, Run], condition: str, law: str) -> list[Measured]:
-    """Return the error of a law with the gains of the arm's bandwidth over that with tuned ones, on all arms."""
-    told = []
-    for arm in arms_of(runs):
-        before, after = (one_cell(runs, arm, condition, gains).entry(law) for gains in (UNTUNED, ()))
-        words = f"error of {in_words(law)} untuned over tuned, {ARMS[arm]}, {CONDITIONS[condition]}"
-        told.append(Measured(words, ratio(before, after)))
-    return told
-
-
 def failed(runs: Mapping[str, Run], gains: str, condition: str, *arms: str) -> list[Measured]:
     """Return the share of repetitions that failed of each law under a condition, in per cent.
 
@@ -177,29 +140,11 @@ def failed(runs: Mapping[str, Run], gains: str, condition: str, *arms: str) -> l
         condition: The condition.
         arms: The arms; all where none is named.
     """
-    own = () if gains == "tuned" else UNTUNED
     return [
         Measured(f"repetitions of {in_words(each.law)} that failed, {gains}, {ARMS[arm]}", 100.0 * each.failed, "%")
         for arm in arms or arms_of(runs)
-        for each in one_cell(runs, arm, condition, own).entries
+        for each in one_cell(runs, arm, condition, _chosen(gains)).entries
     ]
-
-
-def said_again(runs: Mapping[str, Run]) -> Measured:
-    """Return of the leads that one half shows the share that the other half shows, too, in per cent."""
-    said, again, _ = halves(runs)
-    return Measured("leads that the other half shows, too", 100.0 * again / said if said else None, "%")
-
-
-def said_otherwise(runs: Mapping[str, Run]) -> Measured:
-    """Return how many leads of one half the other half shows the other way round."""
-    return Measured("leads that the other half turns round", float(halves(runs)[2]))
-
-
-def family(runs: Mapping[str, Run], arm: str) -> Measured:
-    """Return how many comparisons of an arm are corrected together."""
-    tested = [one for cell in all_cells(runs, arm).values() for one in cell.leads.values() if one.p_value is not None]
-    return Measured(f"comparisons on the {ARMS[arm]}", float(len(tested)))
 
 
 def ratio(one: Entry, other: Entry) -> float | None:
@@ -222,9 +167,13 @@ def lead_words(lead: Lead) -> str:
     return f"{factor} times ({' to '.join(ends)})" if ends else f"{factor} times"
 
 
+def _chosen(gains: str) -> Sequence[str]:
+    return () if gains == "tuned" else UNTUNED
+
+
 def any_origin(runs: Mapping[str, Run]) -> Origin:
     """Return whence a table over several arms is: the command of one of the runs."""
-    return origin(found(runs, f"laws/{{arm={arms_of(runs)[0]}}}/{{law}}/{{task}}/all/{{gains}}")[0].run)
+    return origin(found(runs, f"laws/{{arm={arms_of(runs)[0]}}}/{{law}}/{{task}}/{{condition}}/{{gains}}")[0].run)
 
 
 def _answer(cell: Cell) -> str:
@@ -250,7 +199,7 @@ def _listed(value: object) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _typical(runs: Mapping[str, Run], arm: str, law: str, condition: str, gains: str, metric: str) -> float:
+def typical(runs: Mapping[str, Run], arm: str, law: str, condition: str, gains: str, metric: str) -> float:
     """Return the mean over the paths of the median of a metric; NaN where a run has none."""
     own = [one.run for one in found(runs, f"laws/{arm}/{law}/{{task}}/{condition}/{gains}")]
     return float(np.mean([_median(run, metric) for run in own]))

@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 
-from runner.reporting.job import Made, MissingError
+from runner.reporting.job import LeftOutError, Made
 from runner.reporting.prose.patterns import found
 from runner.store import Run
-from runner.works.benchmark.cells import ALL_SEEDS, Cell, cells, tuned
+from runner.works.benchmark.cells import ALL_SEEDS, Cell, cells
 
 ARMS = {
     "macro": "Macro",
@@ -30,9 +30,6 @@ CONDITIONS = {
     "payload": "a load on the way",
     "all": "masses, friction and noise",
 }
-
-
-_TUNINGS = 3  # of a half
 
 
 class _Kept:
@@ -65,11 +62,11 @@ def one_cell(runs: Mapping[str, Run], arm: str, condition: str, gains: Sequence[
     """Return what the laws did on an arm under a condition; see all_cells.
 
     Raises:
-        MissingError: if there are no such runs.
+        LeftOutError: if there are no such runs.
     """
     found_there = all_cells(runs, arm, gains)
     if condition not in found_there:
-        raise MissingError(f"{ARMS[arm]}, {CONDITIONS[condition]}: no such runs were made")
+        raise LeftOutError(f"{ARMS[arm]}, {CONDITIONS[condition]}")
     return found_there[condition]
 
 
@@ -83,36 +80,3 @@ def arms_of(runs: Mapping[str, Run]) -> list[str]:
 def laws_of(runs: Mapping[str, Run], arm: str) -> list[str]:
     """Return the laws that were run on an arm, in the order of the plan."""
     return list(dict.fromkeys(one.levels["law"] for one in found(runs, f"laws/{arm}/{{law}}/{{task}}/exact/untuned")))
-
-
-def halves(runs: Mapping[str, Run]) -> tuple[int, int, int]:
-    """Return how many drawn leads each half shows, and of these the other one, too, or turned round.
-
-    A half is half of the seeds with the gains of three tunings; it is held against the other half of the seeds with
-    the gains of the other three.
-
-    Raises:
-        MissingError: if there are fewer than six tunings.
-    """
-    gains = tuned(runs)
-    if len(gains) < 2 * _TUNINGS:
-        raise MissingError(f"halves of the tunings: there are {len(gains)} of them, and a half has {_TUNINGS}")
-    ones, others = gains[:_TUNINGS], gains[_TUNINGS : 2 * _TUNINGS]
-    even, odd = slice(0, None, 2), slice(1, None, 2)
-    said = again = turned = 0
-    for one, other in ((even, odd), (odd, even)):
-        a, b = _shown(runs, one, ones), _shown(runs, other, others)
-        said += len(a) + len(b)
-        again += 2 * len(a & b)
-        turned += 2 * len({(arm, name, (behind, law)) for arm, name, (law, behind) in a} & b)
-    return said, again, turned
-
-
-def _shown(runs: Mapping[str, Run], seeds: slice, gains: Sequence[str]) -> set[tuple[str, str, tuple[str, str]]]:
-    return {
-        (arm, name, key)
-        for arm in arms_of(runs)
-        for name, cell in all_cells(runs, arm, gains, seeds).items()
-        for key, lead in cell.leads.items()
-        if lead.shown and lead.p_value is not None
-    }

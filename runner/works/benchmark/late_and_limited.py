@@ -1,0 +1,44 @@
+"""What the chapter on delay and torque limits calls."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from runner.drawing.figure import Map
+from runner.reporting.document import Maps
+from runner.reporting.measured import Measured
+from runner.reporting.words import in_words
+from runner.store import Run
+from runner.works.benchmark.cells import tuned
+from runner.works.benchmark.figures import any_origin, ratio, typical
+from runner.works.benchmark.made import ARMS, CONDITIONS, arms_of, laws_of, one_cell
+
+_LIMITED = ("limits_150", "limits_110", "limits_80")
+
+
+def over_condition(runs: Mapping[str, Run], condition: str, other: str, law: str) -> list[Measured]:
+    """Return the error of a law under a condition over that under another one, on all arms."""
+    return [
+        Measured(
+            f"error of {in_words(law)}, {CONDITIONS[condition]}, over {CONDITIONS[other]}, {ARMS[arm]}",
+            ratio(*(one_cell(runs, arm, each).entry(law) for each in (condition, other))),
+        )
+        for arm in arms_of(runs)
+    ]
+
+
+def saturated(runs: Mapping[str, Run], caption: str) -> Maps:
+    """Return the share of ticks with a joint at its torque limit as maps, an arm each."""
+    panels = []
+    for arm in arms_of(runs):
+        laws = laws_of(runs, arm)[::-1]
+        one_cell(runs, arm, _LIMITED[0])  # tells where there are none
+        shares = [[_at_limit(runs, arm, law, condition) for condition in _LIMITED] for law in laws]
+        names = [CONDITIONS[name] for name in _LIMITED]
+        values = 100.0 * np.array(shares)
+        panels.append(Map(ARMS[arm], "", "", names, list(map(in_words, laws)), values, np.zeros(values.shape, bool)))
+    return Maps(caption, "ticks at a limit (%)", panels, False, 1, any_origin(runs))
+
+
+def _at_limit(runs: Mapping[str, Run], arm: str, law: str, condition: str) -> float:
+    return float(np.mean([typical(runs, arm, law, condition, own, "saturation_fraction") for own in tuned(runs)]))
