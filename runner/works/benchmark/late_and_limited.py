@@ -7,13 +7,14 @@ import numpy as np
 from runner.drawing.figure import Map
 from runner.reporting.document import Maps
 from runner.reporting.measured import Measured
+from runner.reporting.prose.patterns import found
 from runner.reporting.words import in_words
 from runner.store import Run
-from runner.works.benchmark.cells import tuned
+from runner.works.benchmark.cells import UNTUNED, tuned
 from runner.works.benchmark.figures import any_origin, ratio, typical
 from runner.works.benchmark.made import ARMS, CONDITIONS, arms_of, laws_of, one_cell
 
-_LIMITED = ("limits_150", "limits_110", "limits_80")
+_LIMITED = {"limits_150": 1.5, "limits_110": 1.1, "limits_80": 0.8}
 
 
 def over_condition(runs: Mapping[str, Run], condition: str, other: str, law: str) -> list[Measured]:
@@ -27,17 +28,39 @@ def over_condition(runs: Mapping[str, Run], condition: str, other: str, law: str
     ]
 
 
+def limits_over_need(runs: Mapping[str, Run]) -> list[Measured]:
+    """Return each joint's torque limit over the share that it is to be of what the motions need, on all arms."""
+    told = []
+    for arm in arms_of(runs):
+        exact = [one.run for one in found(runs, f"laws/{arm}/computed_torque/{{task}}/exact/{UNTUNED[0]}")]
+        need = np.max([_peaks(run) for run in exact], axis=0)
+        for condition, share in _LIMITED.items():
+            one_cell(runs, arm, condition)  # tells where there are none
+            (run, *_) = (
+                one.run for one in found(runs, f"laws/{arm}/computed_torque/{{task}}/{condition}/{UNTUNED[0]}")
+            )
+            limits = np.array(run.config["torque_limits"]["max"], dtype=float)
+            words = f"{ARMS[arm]}, {CONDITIONS[condition]}, joint"
+            ratios = (limits / (share * need)).tolist()
+            told += [Measured(f"limit over need, {words} {number}", each) for number, each in enumerate(ratios, 1)]
+    return told
+
+
 def saturated(runs: Mapping[str, Run], caption: str) -> Maps:
     """Return the share of ticks with a joint at its torque limit as maps, an arm each."""
     panels = []
     for arm in arms_of(runs):
         laws = laws_of(runs, arm)[::-1]
-        one_cell(runs, arm, _LIMITED[0])  # tells where there are none
+        one_cell(runs, arm, next(iter(_LIMITED)))  # tells where there are none
         shares = [[_at_limit(runs, arm, law, condition) for condition in _LIMITED] for law in laws]
         names = [CONDITIONS[name] for name in _LIMITED]
         values = 100.0 * np.array(shares)
         panels.append(Map(ARMS[arm], "", "", names, list(map(in_words, laws)), values, np.zeros(values.shape, bool)))
     return Maps(caption, "ticks at a limit (%)", panels, False, 1, any_origin(runs))
+
+
+def _peaks(run: Run) -> list[float]:
+    return [run.metrics[name]["median"] for name in run.metrics if name.startswith("peak_torque_")]
 
 
 def _at_limit(runs: Mapping[str, Run], arm: str, law: str, condition: str) -> float:

@@ -7,7 +7,7 @@ from runner.reporting.words import in_words
 from runner.store import Run
 from runner.works.benchmark.cells import UNTUNED
 from runner.works.benchmark.figures import ratio
-from runner.works.benchmark.made import ARMS, CONDITIONS, arms_of, one_cell
+from runner.works.benchmark.made import ARMS, CONDITIONS, arms_of, laws_of, one_cell
 
 
 def times(runs: Mapping[str, Run], condition: str, law: str, other: str, *arms: str) -> list[Measured]:
@@ -27,14 +27,22 @@ def sure_leads(runs: Mapping[str, Run], condition: str, law: str, *but: str) -> 
 
     One that is not behind has none.
     """
+    return [
+        told
+        for other in laws_of(runs, arms_of(runs)[0])
+        if other != law
+        for told in sure_gains(runs, condition, law, other, *but)
+    ]
+
+
+def sure_gains(runs: Mapping[str, Run], condition: str, law: str, other: str, *but: str) -> list[Measured]:
+    """Return the lower end of the interval of how far another one is behind a law, on all arms but some."""
     told = []
     for arm in (each for each in arms_of(runs) if each not in but):
-        cell = one_cell(runs, arm, condition)
-        for other in (each.law for each in cell.entries if each.law != law):
-            lead = cell.leads.get((law, other))
-            low = None if lead is None or lead.interval is None else lead.interval[0]
-            words = f"{in_words(other)} over {in_words(law)}, {ARMS[arm]}, {CONDITIONS[condition]}"
-            told.append(Measured(f"lower end of the error of {words}", low))
+        lead = one_cell(runs, arm, condition).leads.get((law, other))
+        low = None if lead is None or lead.interval is None else lead.interval[0]
+        words = f"{in_words(other)} over {in_words(law)}, {ARMS[arm]}, {CONDITIONS[condition]}"
+        told.append(Measured(f"lower end of the error of {words}", low))
     return told
 
 
