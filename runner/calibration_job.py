@@ -47,7 +47,7 @@ def calibrate(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Calibr
     try:
         stored = store.find_calibration(outputs, name)
     except store.DamagedError as error:
-        print(f"runner: {error}; it is made again", file=sys.stderr)
+        print(f"runner: {error}; making it again", file=sys.stderr)
         stored = None
     if stored is None:
         progress.begin("calibrating", total=TICKS * config.settings.repetitions, unit="ticks", count=counter())

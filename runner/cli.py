@@ -136,11 +136,11 @@ def dispatch(arguments: Sequence[str]) -> int:
 
         if not (user_place(error) and has_users_parts()):  # a fault of ours: its whole trace is of use
             raise
-        print(one_line(f"runner: a part of yours failed: {told(error)}"), file=sys.stderr)
+        print(one_line(f"runner: your plug-in failed: {told(error)}"), file=sys.stderr)
         return 2
     except KeyboardInterrupt as error:
         ended, code = ("terminated", 143) if isinstance(error, TerminatedError) else ("interrupted", 130)
-        print(f"runner: {ended}; finished runs are stored, the same command goes on from there", file=sys.stderr)
+        print(f"runner: {ended}; finished runs are stored; the same command continues", file=sys.stderr)
         return code
 
 

@@ -47,7 +47,7 @@ def find_or_make(composed: Composed) -> tuple[store.Run, bool]:
     try:
         stored = store.find_run(outputs, name)
     except store.DamagedError as error:
-        print(f"runner: {error}; it is made again", file=sys.stderr)
+        print(f"runner: {error}; making it again", file=sys.stderr)
         stored = None
     if stored is not None:
         note(stored.folder)

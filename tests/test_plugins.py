@@ -129,7 +129,7 @@ def test_so_is_what_its_config_model_raises(mine):
     (mine / "mine/spring.py").write_text(text.replace("import PositiveFloat", "import PositiveFloat, field_validator"))
     ending = runner(*PLUGIN, *COMMAND)
     assert ending.returncode == 2
-    assert re.match(r"runner: a part of yours failed: KeyError: 0.01 \(spring.py, line \d+, in check\)", ending.stderr)
+    assert re.match(r"runner: your plug-in failed: KeyError: 0.01 \(spring.py, line \d+, in check\)", ending.stderr)
 
 
 def test_every_command_takes_it_and_wherever_it_stands(mine):

@@ -61,8 +61,8 @@ def _simulated(run: store.Run, repetition: int) -> Signals:
         value = None if math.isnan(stored) else stored
         if found.get(name) != value:
             raise RunnerError(
-                f"repetition {repetition} of {run.hash}, simulated again, is another one: {name} is {found.get(name)}, "
-                f"stored is {value}; another machine or version of a library computes otherwise"
+                f"repetition {repetition} of {run.hash}, simulated again, differs: {name} is {found.get(name)}, "
+                f"stored is {value}; another machine or library version rounds in another way"
             )
     table = trace_table(trace)
     return Signals(table.to_pandas(), units_of(table))

@@ -10,7 +10,7 @@ from runner.progress import shown
 P = ParamSpec("P")
 T = TypeVar("T")
 
-_GO_ON = "interrupted; finished runs are stored, the same call goes on from there"
+_GO_ON = "interrupted; finished runs are stored; the same call continues"
 
 
 def door(function: Callable[P, T]) -> Callable[P, T]:

@@ -56,8 +56,8 @@ def _told(metric: str, share: float, own: PlantStep, threshold: float) -> str:
     enough = sufficient_step(own.step, share, threshold, own.period)
     smaller = "" if enough is None else f"plant.step={enough:.6g} would make it {percent(threshold)} or less, or "
     return (
-        f"the step of {own.plant}, {own.step:g} s, makes {percent(share)} of {metric}: {smaller}"
-        f"plant={PLANT} all but nothing"
+        f"the integration step of {own.plant}, {own.step:g} s, contributes {percent(share)} of {metric}: {smaller}"
+        f"plant={PLANT} would make it negligible"
     )
 
 

@@ -51,7 +51,7 @@ def main(arguments: Sequence[str]) -> int:
 
     if options.learn:
         count = learn(store.open_sweep(options.folder), options.learn)
-        print(f"learned: {count} metrics of {options.folder} stand in {options.learn}")
+        print(f"learned: {count} metrics of {options.folder} are now in {options.learn}")
         return 0
     learned = load_learned(options.reference) if options.reference else None
     if learned is not None:

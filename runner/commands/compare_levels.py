@@ -38,7 +38,7 @@ def _lines(side: Side, axis: str, within: Sequence[str], metrics: Sequence[str])
     cells = len(measurements.hashes)
     yield one_line(f"{side.folder}  {cells} cells, by {axis}; repetitions in each: {measurements.repetitions}")
     if side.missing:
-        yield one_line(f"{counted(side.missing, 'cell is', 'cells are')} not stored; this goes on: {side.command}")
+        yield one_line(f"{counted(side.missing, 'cell is', 'cells are')} not stored; continue with: {side.command}")
     if side.failed:
         yield f"{counted(side.failed, 'cell', 'cells')} failed; a failed repetition counts as beyond every number"
     along = [difference for difference in measurements.differences if axis in difference.axes or not difference.axes]

@@ -72,7 +72,7 @@ def main(arguments: Sequence[str]) -> int:
     options = parser.parse_intermixed_args(arguments)
     others = [text for text in options.overrides if not text.startswith(_FREE) or text.startswith("sweep.trace")]
     if others:
-        raise RunnerError(f"reproduce: {others[0]}: what is simulated is the work's own; free are {', '.join(_FREE)}")
+        raise RunnerError(f"reproduce: {others[0]}: the work decides what it simulates; you may set {', '.join(_FREE)}")
     if options.work not in (AUDIT, "all"):
         find_work(options.work, (AUDIT, "all"))  # one that is not there is told at once
     quiet_environment()

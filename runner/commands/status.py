@@ -29,5 +29,5 @@ def main(arguments: Sequence[str]) -> int:
     if status.left and status.at_work:
         print("at work" + ("" if status.seconds is None else f", about {in_words(status.seconds)} to go"))
     elif status.left:
-        print(f"not at work; this goes on with it: {sweep.command}")
+        print(f"not at work; continue with: {sweep.command}")
     return 0

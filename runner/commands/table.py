@@ -95,7 +95,7 @@ def _measure(sweep: "Sweep") -> "Measurements":
         if not left:
             raise
         raise StoreError(
-            f"{left} of {len(sweep.hashes)} cells of {sweep.folder} are missing; this goes on with it: {sweep.command}"
+            f"{left} of {len(sweep.hashes)} cells of {sweep.folder} are missing; continue with: {sweep.command}"
         ) from error
 
 

@@ -1,8 +1,8 @@
 """`runner tune OVERRIDES --minimize METRIC`: choose numeric keys so that metrics get better, and report on it.
 
 A key is tuned by its range in place of a value: controller.natural_frequency="interval(5,50)", on a logarithmic scale
-"tag(log, interval(5,50))", whole numbers "int(interval(1,9))", a grid "range(0.01,0.05,0.01)". The same command goes on
-where it was interrupted; with more --trials it adds to them.
+"tag(log, interval(5,50))", whole numbers "int(interval(1,9))", a grid "range(0.01,0.05,0.01)". An interrupted
+command continues when it is given again; with more --trials it adds to them.
 """
 
 import argparse

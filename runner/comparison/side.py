@@ -66,7 +66,7 @@ def open_side(name: str, folder: Path) -> Side:
     sweep = open_sweep(folder)
     part, damage = _stored_part(sweep)
     if not len(part.hashes):
-        raise StoreError(f"{folder}: none of its {len(sweep.hashes)} cells is stored; this goes on: {sweep.command}")
+        raise StoreError(f"{folder}: none of its {len(sweep.hashes)} cells is stored; continue with: {sweep.command}")
     missing = len(sweep.hashes) - len(part.hashes)
     return Side(name, folder, sweep.command, measure_sweep(part), missing, damage)
 

@@ -32,7 +32,7 @@ def cells_told(found: SweepComparison) -> Iterator[str]:
             yield (f"{counted(len(alone), 'cell is', 'cells are')} in {side.name} alone: {_some(alone)}")
         if side.missing:
             left = counted(side.missing, "cell", "cells")
-            yield (f"{left} of {side.name} not stored; this goes on: {side.command}")
+            yield (f"{left} of {side.name} not stored; continue with: {side.command}")
         if side.failed:
             failed = counted(side.failed, "cell", "cells")
             yield f"{failed} of {side.name} failed; a failed repetition counts as beyond every number"

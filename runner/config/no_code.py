@@ -143,7 +143,7 @@ def refuse_code(config: DictConfig) -> None:
         bad.append("sweeper")
     if bad:
         raise ConfigError(
-            f"hydra.{key}: a config cannot name code, nor change what starts it; --plugin names code, and free are "
+            f"hydra.{key}: a config cannot name code, nor change what starts it; --plugin names code, and you may set "
             "hydra.sweeper.workers, .address and .params, whose values are texts or numbers"
             for key in bad
         )

@@ -53,7 +53,7 @@ def _problem(override: str, names: set[str]) -> str | None:
         return f"{quoted(override)} is no override: {fault}"
     group = key.lstrip("+~").partition("@")[0]
     if group.startswith("hydra/"):
-        return f"{group}: Hydra's own groups are as they are; free are hydra.sweeper.workers, .address and .params"
+        return f"{group}: Hydra's own groups cannot be changed; you may set hydra.sweeper.workers, .address and .params"
     if given and group in names and (not value or "${" in value):
         return f"{group}: {quoted(value)} is no option; choose by name, see `runner list`"
     return None

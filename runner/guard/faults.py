@@ -19,7 +19,7 @@ def is_write(error: Exception) -> bool:
 
 def told_of_part(error: Exception) -> str:
     """Return what an error of the user's part says, with its place and, where it tried to write, what to do."""
-    hint = "; what a part is handed cannot be changed, work on a copy" if is_write(error) else ""
+    hint = "; a plug-in cannot change what it is given: work on a copy" if is_write(error) else ""
     return told(error) + hint
 
 

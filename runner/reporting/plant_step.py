@@ -31,9 +31,9 @@ def describe_plant(run: Run, metrics: Sequence[str] = ()) -> str:
 def _worth(run: Run, metrics: Sequence[str]) -> str:
     error = run.plant_error
     if error is None:
-        return "What the step is worth was not asked for: plant_error=true measures it."
+        return "The error of the integration step was not measured: plant_error=true measures it."
     if "reason" in error:
-        return f"What the step is worth cannot be measured on Runge-Kutta: {error['reason']}."
+        return f"The error of the integration step cannot be measured on Runge-Kutta: {error['reason']}."
     if error["parted"] is not None:
         return (
             f"Runge-Kutta, with the same noise, goes another way from {quantity(error['parted'], 's')} on: the tips "
@@ -41,7 +41,11 @@ def _worth(run: Run, metrics: Sequence[str]) -> str:
             "the end. Their metrics are not comparable."
         )
     shares = [text for name in metrics if (text := share_of(error, name))][:_MOST_TOLD]
-    return f"The step is worth {' and '.join(shares)}." if shares else "The step is worth nothing that can be told."
+    return (
+        f"The integration step contributes {' and '.join(shares)}."
+        if shares
+        else "The integration step has no measurable effect."
+    )
 
 
 def share_of(error: Mapping[str, Any], metric: str) -> str:

@@ -25,7 +25,7 @@ _LOOK_EVERY = 5.0  # s between two looks for workers
 _BACK_WITHIN = 120.0  # s without any worker
 # What a batch of runs gives back the next one takes: else the system would clear 250 KB of fresh pages for each run.
 _MEMORY = {"MALLOC_TRIM_THRESHOLD_": 2**28, "MALLOC_MMAP_THRESHOLD_": 2**25}  # bytes
-_GO_ON = "finished runs are stored, the same command goes on from there"
+_GO_ON = "finished runs are stored; the same command continues"
 
 
 def in_process(queue: Queue) -> Generator[Report]:

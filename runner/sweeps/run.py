@@ -107,7 +107,7 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
             for report in make_jobs(plan, checked, queue, left, engine, stored):
                 ends.add(report.outcomes)
                 if report.trouble:
-                    raise StoreError(f"{report.trouble}; finished runs are stored, the same command goes on from there")
+                    raise StoreError(f"{report.trouble}; finished runs are stored; the same command continues")
                 if rules.stop_at_failure and any(end.failure for end in report.outcomes):
                     break
         except KeyboardInterrupt:  # no worker is left to finish the run that it was at
@@ -160,7 +160,7 @@ def _find_stored(checked: Checked, rules: Rules) -> Ends:
             if known is None or end.rank <= known.rank:
                 ends.add([end])
     for damage in finished.damage[:_DAMAGE_SHOWN]:
-        _tell(f"{damage}; it is made again")
+        _tell(f"{damage}; making it again")
     if len(finished.damage) > _DAMAGE_SHOWN:
         _tell(f"and {len(finished.damage) - _DAMAGE_SHOWN} more; `runner verify {rules.outputs}` names them all")
     return ends

@@ -84,7 +84,7 @@ def _work_off(plan: Plan, checked: Checked, queue: TrialQueue, engine: Engine, e
     while queue.left:
         for report in make_jobs(plan, checked, queue, np.zeros(queue.left, dtype=np.intp), engine, ended):
             if report.trouble:
-                raise StoreError(f"{report.trouble}; finished trials are stored, the same command goes on from there")
+                raise StoreError(f"{report.trouble}; finished trials are stored; the same command continues")
             queue.note(report.outcomes)
             if queue.rules.stop_at_failure and any(end.failure for end in report.outcomes):
                 return

@@ -8,7 +8,7 @@ from runner.reporting.conclusions import fallen
 from runner.reporting.document import Document
 from runner.reporting.expected_caveats import unexpected_caveats
 from runner.reporting.formulas import faulty
-from runner.reporting.job import MissingError
+from runner.reporting.job import LeftOutError, MissingError
 from runner.reporting.prose.trying import never_failing
 from runner.reporting.prose.typed import levels_in, typed_numbers
 from runner.store import Calibration, Run
@@ -61,6 +61,8 @@ def _of_chapter(
     text, name = path.read_text(encoding="utf-8"), f"{work.folder.name}/{file}"
     try:
         yield from never_failing(name, text, work.chapters(runs, calibrations).names(path.stem))
+    except LeftOutError:
+        return
     except MissingError as error:
         yield f"{name}: {error}"
         return
@@ -71,5 +73,5 @@ def _of_chapter(
 
 
 def _unused(work: Work, runs: Mapping[str, Run]) -> Iterator[str]:
-    patterns = dict.fromkeys(each.runs for each in work.expected)
-    yield from (pattern for pattern in patterns if not any(fnmatchcase(name, pattern) for name in runs))
+    patterns, names = dict.fromkeys(each.runs for each in work.expected), (*runs, *work.dropped())
+    yield from (pattern for pattern in patterns if not any(fnmatchcase(name, pattern) for name in names))

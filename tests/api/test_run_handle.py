@@ -139,7 +139,7 @@ def test_a_repetition_with_other_metrics_is_refused(run):
     metrics = {name: dict(metric) for name, metric in run.stored.record["metrics"].items()}
     metrics["energy"]["values"] = [0.0, 0.0, 0.0]
     other = runner.Run(store.Run(run.folder, run.stored.config, {**run.stored.record, "metrics": metrics}))
-    with pytest.raises(runner.RunnerError, match=r"simulated again, is another one: energy is .*, stored is 0\.0"):
+    with pytest.raises(runner.RunnerError, match=r"simulated again, differs: energy is .*, stored is 0\.0"):
         other.trace(1)
 
 

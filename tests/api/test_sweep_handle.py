@@ -190,7 +190,7 @@ def test_what_is_interrupted_leaves_whole_runs_and_goes_on(tmp_path, interruptib
         process.send_signal(signal.SIGINT)
         _, told = process.communicate(timeout=60)
     assert process.returncode != 0
-    assert told.splitlines()[-1].endswith("finished runs are stored, the same call goes on from there")
+    assert told.splitlines()[-1].endswith("finished runs are stored; the same call continues")
     whole = ["config.yaml", "metrics.json", "robot.urdf", "trace.parquet"]
     folders = list(runs.iterdir())
     assert 2 <= len(folders) < 60

@@ -33,8 +33,8 @@ def test_the_worst_length_is_told_with_a_step_that_would_do():
     found = caveat_of(error(max_tracking_error=(1e-3, 0.2), rms_tracking_error=(1e-3, 0.5)), OWN, LIMIT)
     assert (found.rule, found.value, found.repetitions) == ("plant_error", 0.5, 1)
     assert found.text == (
-        "the step of bullet, 0.001 s, makes 50 % of rms_tracking_error: plant.step=0.000111111 would make it 10 % or "
-        "less, or plant=rk4 all but nothing"
+        "the integration step of bullet, 0.001 s, contributes 50 % of rms_tracking_error: plant.step=0.000111111 would "
+        "make it 10 % or less, or plant=rk4 would make it negligible"
     )
 
 

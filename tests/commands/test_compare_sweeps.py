@@ -96,7 +96,7 @@ def test_cells_that_are_not_stored_are_counted_and_the_others_are_compared(cli, 
     assert ending.code == 0
     assert "2 cells are in both" in ending.out
     assert "1 cell is in A alone: gravity=9.6" in ending.out
-    assert "1 cell of B not stored; this goes on: runner -m " in ending.out
+    assert "1 cell of B not stored; continue with: runner -m " in ending.out
 
 
 def test_failed_cells_are_counted(cli, sweep):

@@ -98,7 +98,7 @@ def test_only_how_runs_are_made_can_be_set(cli, small_work, tmp_path):
     for text in ("seed=1", "sweep.trace=never", "hydra.searchpath=[]"):
         ending = cli("reproduce", "small", text)
         assert ending.code == 2
-        assert f"reproduce: {text}: what is simulated is the work's own; free are " in ending.err
+        assert f"reproduce: {text}: the work decides what it simulates; you may set " in ending.err
     ending = cli("reproduce", "small", HERE, "limits.cpu_hours=1e-9")
     assert ending.code == 2
     assert "limits.cpu_hours: 3 runs would take about" in ending.err

@@ -27,7 +27,7 @@ def test_what_is_left_is_counted_with_the_way_to_go_on(cli, sweep):
     ending = cli("status", sweep)
     assert without_caveats(ending.out) == (
         "3 runs: 1 done, 2 left\n"
-        "not at work; this goes on with it: runner -m hydra.sweeper.workers=0 robot=macro duration=0.05 seed=0,1,2\n"
+        "not at work; continue with: runner -m hydra.sweeper.workers=0 robot=macro duration=0.05 seed=0,1,2\n"
     )
 
 

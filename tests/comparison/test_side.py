@@ -18,7 +18,7 @@ def test_what_is_stored_of_a_sweep_is_opened_and_what_is_missing_counted(cli):
     part = open_side("A", folder)
     assert (part.measurements.hashes, part.missing) == ([cli(*TASK, "gravity=9.81").folder.name], 1)
     shutil.rmtree(gone.parent)
-    with pytest.raises(StoreError, match="none of its 2 cells is stored; this goes on: runner -m "):
+    with pytest.raises(StoreError, match="none of its 2 cells is stored; continue with: runner -m "):
         open_side("A", folder)
 
 

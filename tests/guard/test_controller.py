@@ -60,8 +60,8 @@ def test_a_law_that_changes_what_it_is_handed_is_one_too(checked_config, closed_
     loop = replace(loop, loops=(Loop("macro", slice(0, 3), 0.01, WatchedController(Writes(None), 3)),), compiled=None)
     trace = simulate(loop, make_encoders(loop, checked_config("robot=macro", "duration=0.2").noise, 0, 0))
     assert re.fullmatch(
-        r"ValueError: .*read-only \(test_controller.py, line \d+, in torque\); what a part is handed cannot be "
-        "changed, work on a copy",
+        r"ValueError: .*read-only \(test_controller.py, line \d+, in torque\); a plug-in cannot change what "
+        "it is given: work on a copy",
         trace.failure.reason,
     )
 

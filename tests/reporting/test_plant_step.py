@@ -23,14 +23,16 @@ def compared(outputs):
 def test_what_the_step_is_worth_is_told_of_the_metrics_of_the_task(compared):
     share = compared.plant_error["metrics"]["max_tracking_error"]["share"]
     text = describe_plant(compared)
-    assert text.startswith(f"{PLANT[KIND]} is the plant, in steps of 1 ms. The step is worth {percent(share)} of the ")
+    assert text.startswith(
+        f"{PLANT[KIND]} is the plant, in steps of 1 ms. The integration step contributes {percent(share)} of the "
+    )
     assert f"{percent(share)} of the largest tracking error and " in text
 
 
 def test_metrics_may_be_asked_for(compared):
     share = compared.plant_error["metrics"]["rms_tracking_error"]["share"]
     assert describe_plant(compared, ["rms_tracking_error"]).endswith(
-        f"The step is worth {percent(share)} of the rms tracking error."
+        f"The integration step contributes {percent(share)} of the rms tracking error."
     )
 
 
@@ -42,7 +44,7 @@ def test_motions_that_part_are_not_compared(outputs):
 
 def test_what_was_not_asked_for_is_told_with_the_way_to_it(outputs):
     text = describe_plant(run(*CASE, outputs))
-    assert text.endswith("What the step is worth was not asked for: plant_error=true measures it.")
+    assert text.endswith("The error of the integration step was not measured: plant_error=true measures it.")
 
 
 def test_of_runge_kutta_there_is_nothing_to_tell(outputs):

@@ -76,7 +76,7 @@ def test_damage_to_the_values_is_found_and_mended(cli, many, spoil):
         open_run(many.folder).values("energy")
     assert cli("verify", many.folder.parent.parent).code == 1
     made = cli(*SHORT, f"repetitions={MANY}")
-    assert "it is made again" in made.err
+    assert "making it again" in made.err
     assert np.array_equal(open_run(many.folder).values("energy"), before)
 
 

@@ -196,7 +196,7 @@ def test_a_signal_ends_all_processes_and_says_how_to_go_on(tmp_path, number, cod
     finally:
         process.kill()
     assert (process.returncode, out) == (code, "")
-    assert err.splitlines()[2:] == [f"runner: {word}; finished runs are stored, the same command goes on from there"]
+    assert err.splitlines()[2:] == [f"runner: {word}; finished runs are stored; the same command continues"]
     deadline = time.monotonic() + 20
     while alive(process.pid):
         assert time.monotonic() < deadline

@@ -19,6 +19,7 @@ from runner.reporting.job import LeftOutError
 from runner.works.benchmark import engines
 from runner.works.benchmark.cells import cells
 from runner.works.benchmark.halves import halves
+from runner.works.benchmark.late_and_limited import bearable
 from runner.works.benchmark.made import ARMS, CONDITIONS
 from runner.works.work import load_work
 
@@ -39,6 +40,7 @@ SIZES = {
 }
 LAWS = ("operational_space", "computed_torque", "with_integral", "joint_pd", "joint_pid", "passivity", "sliding_mode",
         "adaptive", "observed", "observed_pd")  # fmt: skip
+NEEDS = {"macro": (234.0, 38.7, 8.74), "mini": (0.183, 0.222, 0.0868)}  # peak torques, N m
 FULL_ALONE = ("late_and_limited.md", "halves.md")  # chapters of the full profile alone
 LEARNED = {"macro": 1.9, "planar": 0.3, "xarm7": 0.3}  # errors of iterative learning
 TUNINGS = {
@@ -179,6 +181,7 @@ def made_of(jobs, outputs):
             "rms_torque": {"unit": "N m", "median": 10.0},
             "rms_tracking_error_last_period": {"unit": "m", "median": size},
         }
+        metrics |= {f"peak_torque_q{joint}": {"median": need} for joint, need in enumerate(NEEDS.get(arm, ()), 1)}
         made[name] = replace(real[plan, arm, condition], record={**record, "metrics": metrics})
     return made
 
@@ -220,6 +223,13 @@ def test_chapters_stand_whatever_has_failed(runs, spoil, file):
     assert unfinished_texts(chapter("benchmark", file)(spoil(runs))) == []
 
 
+def test_a_delay_of_one_tick_bears_the_root_of_its_cubic():
+    assert bearable(0).value == pytest.approx(1.0, abs=1e-9)
+    a = bearable(1).value
+    assert a**3 - 8.0 * a**2 + 22.0 * a - 8.0 == pytest.approx(0.0, abs=1e-9)
+    assert bearable(2).value == pytest.approx(0.2579, abs=1e-4)
+
+
 def test_the_orders_on_two_plants_are_held_against_each_other(runs):
     assert (engines.mean_correlation(runs).value, engines.against(runs).value) == (1.0, 0.0)
     of = {"joint_pd": "passivity", "passivity": "joint_pd"}
@@ -238,7 +248,7 @@ def test_the_orders_on_two_plants_are_held_against_each_other(runs):
 @pytest.mark.parametrize("file", FULL_ALONE)
 def test_what_the_full_profile_alone_shows(tmp_path, file):
     arms, condition, count = {
-        "late_and_limited.md": ("macro|mini", "(exact|limits_.*|delay_2)", 2),
+        "late_and_limited.md": ("macro|mini", "(exact|limits_.*|delay_2)", 3),
         "halves.md": ("macro", "masses", 1),
     }[file]
     wanted = re.compile(rf"laws/({arms})/\w+/circle/{condition}/.*")

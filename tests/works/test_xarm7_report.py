@@ -132,7 +132,7 @@ def test_the_plants_disagreement_is_measured_and_shrinks_with_the_step(document)
     (text,) = [
         block.text for block in blocks_of(document, Text) if f"{DEFAULT_PLANT} is the plant, in steps of" in block.text
     ]
-    assert text.count("The step is worth") == len(PRESETS)
+    assert text.count("The integration step contributes") == len(PRESETS)
     distances = [float(re.sub("·10⁻⁶$", "e-6", row[2]).replace("·10⁻⁷", "e-7")) for row in
                  table(document, f"{DEFAULT_PLANT}'s step against Runge-Kutta").rows]  # fmt: skip
     for first in range(0, len(distances), 3):

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 import numpy as np
+from scipy.optimize import brentq
 
 from runner.drawing.figure import Map
 from runner.reporting.document import Maps
@@ -28,21 +29,53 @@ def over_condition(runs: Mapping[str, Run], condition: str, other: str, law: str
     ]
 
 
+def frequency_times_period(runs: Mapping[str, Run], arm: str) -> Measured:
+    """Return the natural frequency of an arm's untuned gains times its period."""
+    one_cell(runs, arm, "delay_2")  # tells where there is none
+    (run, *_) = (one.run for one in found(runs, f"laws/{arm}/computed_torque/{{task}}/delay_2/{UNTUNED[0]}"))
+    own = run.config["controller"]
+    return Measured(f"natural frequency times period, {ARMS[arm]}", own["natural_frequency"] * own["period"])
+
+
+def bearable(ticks: int) -> Measured:
+    """Return the natural frequency times the period at which position and velocity feedback becomes unstable.
+
+    The loop is a mass under F = -omega^2 x - 2 omega v, held for a period h, and late by some ticks; its states are
+    x, v h and the forces on the way.
+
+    Args:
+        ticks: The delay.
+    """
+
+    def beyond(a: float) -> float:
+        step = np.eye(2 + ticks, k=1)  # each force moves up by a tick, to the first of them
+        step[:2] = 0.0
+        step[:2, :2] = [[1.0, 1.0], [0.0, 1.0]]
+        law, moved = np.zeros(2 + ticks), np.array([0.5, 1.0])
+        law[:2] = -(a**2), -2.0 * a
+        if ticks:
+            step[:2, 2], step[-1] = moved, law
+        else:
+            step[:2] += np.outer(moved, law)
+        return float(np.abs(np.linalg.eigvals(step)).max() - 1.0)
+
+    return Measured(f"stable with {ticks} ticks of delay", float(brentq(beyond, 0.1, 1.5)))
+
+
 def limits_over_need(runs: Mapping[str, Run]) -> list[Measured]:
     """Return each joint's torque limit over the share that it is to be of what the motions need, on all arms."""
     told = []
     for arm in arms_of(runs):
-        exact = [one.run for one in found(runs, f"laws/{arm}/computed_torque/{{task}}/exact/{UNTUNED[0]}")]
-        need = np.max([_peaks(run) for run in exact], axis=0)
+        peaks = [_peaks(one.run) for one in found(runs, f"laws/{arm}/computed_torque/{{task}}/exact/{UNTUNED[0]}")]
         for condition, share in _LIMITED.items():
             one_cell(runs, arm, condition)  # tells where there are none
-            (run, *_) = (
-                one.run for one in found(runs, f"laws/{arm}/computed_torque/{{task}}/{condition}/{UNTUNED[0]}")
-            )
-            limits = np.array(run.config["torque_limits"]["max"], dtype=float)
-            words = f"{ARMS[arm]}, {CONDITIONS[condition]}, joint"
-            ratios = (limits / (share * need)).tolist()
-            told += [Measured(f"limit over need, {words} {number}", each) for number, each in enumerate(ratios, 1)]
+            limited = found(runs, f"laws/{arm}/computed_torque/{{task}}/{condition}/{UNTUNED[0]}")
+            for number, limit in enumerate(limited[0].run.config["torque_limits"]["max"]):
+                need = [own[number] for own in peaks if own]
+                value = limit / (share * max(need)) if len(need) == len(peaks) else None
+                told.append(
+                    Measured(f"limit over need, {ARMS[arm]}, {CONDITIONS[condition]}, joint {number + 1}", value)
+                )
     return told
 
 
@@ -60,6 +93,7 @@ def saturated(runs: Mapping[str, Run], caption: str) -> Maps:
 
 
 def _peaks(run: Run) -> list[float]:
+    """Return the peak torque of each joint; none of a run that failed."""
     return [run.metrics[name]["median"] for name in run.metrics if name.startswith("peak_torque_")]
 
 
