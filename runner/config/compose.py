@@ -72,7 +72,7 @@ def from_hydra(
     """Take a config as Hydra made it, and resolve it.
 
     Args:
-        config: The config, with or without Hydra's own node.
+        config: The config, with or without Hydra's own node; it is completed in place.
         chosen: What Hydra took in each group, its own groups included.
         overrides: The overrides, as typed.
         config_dirs: Config folders of the user's.
@@ -82,10 +82,18 @@ def from_hydra(
         ConfigError: for an interpolation of a key that does not exist, or a key that is no text.
     """
     try:
-        raw = cast("dict[str, object]", OmegaConf.to_container(config, resolve=False))
         choices = {group: name for group, name in chosen.items() if name is not None and not group.startswith("hydra/")}
-        complete_stage_arms(raw.get("robot"))
-        own = OmegaConf.create({key: value for key, value in raw.items() if key != "hydra"})
+        own = (
+            config
+            if "hydra" not in config
+            else OmegaConf.masked_copy(config, cast("list[str]", [*config.keys() - {"hydra"}]))
+        )
+        OmegaConf.set_struct(own, False)
+        robot = own.get("robot")
+        if isinstance(robot, DictConfig) and "stages" in robot:
+            completed = OmegaConf.to_container(robot, resolve=False)
+            complete_stage_arms(completed)
+            own.robot = completed
         complete_stages(own, choices, config_dirs)
         resolved = cast("dict[str, object]", OmegaConf.to_container(own, resolve=True))
     except COMPOSITION_ERRORS as error:

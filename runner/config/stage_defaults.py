@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 
 from omegaconf import DictConfig, OmegaConf
@@ -36,11 +37,16 @@ def _references(group: str, option: str, config_dirs: Sequence[Path]) -> list[tu
     for folder in (*config_dirs, conf_dir()):
         path = folder / group / f"{option}.yaml"
         if path.is_file():
-            content = read_yaml(path.read_text(), path, CONFIG)
-            found = [
-                (key, re.fullmatch(r"\$\{([\w.]+)\}", value))
-                for key, value in (content.items() if isinstance(content, Mapping) else ())
-                if isinstance(value, str)
-            ]
-            return [(str(key), match[1]) for key, match in found if match is not None]
+            return _references_of(path.read_text(), path)
     return []
+
+
+@lru_cache(maxsize=256)
+def _references_of(text: str, path: Path) -> list[tuple[str, str]]:
+    content = read_yaml(text, path, CONFIG)
+    found = [
+        (key, re.fullmatch(r"\$\{([\w.]+)\}", value))
+        for key, value in (content.items() if isinstance(content, Mapping) else ())
+        if isinstance(value, str)
+    ]
+    return [(str(key), match[1]) for key, match in found if match is not None]
