@@ -5,10 +5,11 @@ r"""Friction of an arm's joints, identified from recorded positions and torques.
 M, V and G are those of the run's model, b viscous friction, c Coulomb friction and o a constant of each joint. The
 recorded arm may have other masses than the model, Delta theta, which the linear model of rigid bodies Y takes up
 (Atkeson, An and Hollerbach, International Journal of Robotics Research 5(3), 1986), so that they are not mistaken for
-friction. Positions, torques and sgn run through the same low-pass without delay; the rows are then thinned to what that
-leaves independent (Gautier, Dynamic identification of robots with power model, IEEE ICRA 1997). Rows near standstill
-are left out, as sgn tells nothing there. Joints are weighted by what is left over in each, and the columns of Y are
-taken out first, so that friction which cannot be told from other masses is not given.
+friction. Positions are differentiated behind a low-pass that leaves the motion as it is. Both sides of the equation
+then run through a lower one, all without delay, and are thinned to what that leaves independent (Gautier, Dynamic
+identification of robots with power model, IEEE ICRA 1997). Rows near standstill are left out, as sgn tells nothing
+there. Joints are weighted by what is left over in each, and the columns of Y are taken out first, so that friction which
+cannot be told from other masses is not given.
 """
 
 from collections.abc import Sequence
@@ -21,7 +22,10 @@ from scipy.stats import t as student
 from runner.recordings.smoothing import FloatArray, cutoff, derivative, low_pass
 from runner.robots.model import RobotModel
 
+_FIRST = 5.0  # times the cut-off: that of the low-pass before the equations, which leaves the motion as it is
+_SAMPLES = 4.0  # times that, the fewest samples in a second that the equations are worked out at
 _STANDSTILL = 0.05  # of a joint's largest speed
+_SLOW = 0.01  # of the largest speed of all joints of its kind: a joint that is slower creeps
 _ONE_WAY = 0.98  # of sgn behind the low-pass: below it the joint has just turned round
 _FEWEST = 10  # rows of a joint in each direction
 _ROUNDING = 1e-5  # of the largest singular value of Y: what is below tells of no mass
@@ -81,27 +85,31 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
         period: Time between two samples, in s.
     """
     frequency = cutoff(period)
-    smooth = low_pass(q, period, frequency)
-    dq = derivative(smooth, period)
-    ddq = derivative(dq, period)
-    edge, apart = round(1.0 / (frequency * period)), max(1, int(0.5 / (frequency * period)))
-    thinned = np.arange(edge, len(q) - edge, apart)
-    rows = list(zip(smooth[thinned], dq[thinned], ddq[thinned], strict=True))
+    first = min(_FIRST * frequency, 0.25 / period)
+    every = max(1, int(1.0 / (_SAMPLES * first * period)))
+    q, torques = (low_pass(signals, period, first)[::every] for signals in (q, torques))
+    period *= every
+    dq = derivative(q, period)
+    rows = list(zip(q, dq, derivative(dq, period), strict=True))
     pin_model, data = pin.Model(model.pin_model), model.pin_model.createData()
     rigid = np.array([pin.rnea(pin_model, data, *row) for row in rows])
     Y = np.array([pin.computeJointTorqueRegressor(pin_model, data, *row).copy() for row in rows])
+    edge, apart = round(1.0 / (frequency * period)), max(1, int(0.5 / (frequency * period)))
+    thinned = np.arange(edge, len(q) - edge, apart)
+    fastest = np.abs(dq).max(axis=0)
     lacking: list[str] = []
     parts: list[_Part] = []
     for joint, name in enumerate(model.joint_names):
-        speed, sign = dq[thinned, joint], low_pass(np.sign(dq[:, joint]), period, frequency)[thinned]
-        moving = (np.abs(speed) > _STANDSTILL * np.abs(dq[:, joint]).max()) & (np.abs(sign) > _ONE_WAY)
+        signals = (torques[:, joint] - rigid[:, joint], dq[:, joint], np.sign(dq[:, joint]), Y[:, joint])
+        residual, speed, sign, masses = (low_pass(signal, period, frequency)[thinned] for signal in signals)
+        moving = (np.abs(speed) > _STANDSTILL * fastest[joint]) & (np.abs(sign) > _ONE_WAY)
+        moving &= fastest[joint] > _SLOW * fastest[model.slides == model.slides[joint]].max()
         if not np.isfinite(torques[:, joint]).all():
             lacking.append(f"{name}: no torque is recorded")
         elif min(np.sum(moving & (speed > 0.0)), np.sum(moving & (speed < 0.0))) < _FEWEST:
             lacking.append(f"{name}: it moves too little, or in one direction alone")
         else:
-            residual = low_pass(torques[:, joint], period, frequency)[thinned] - rigid[:, joint]
-            parts.append(_Part(joint, *(signal[moving] for signal in (residual, speed, sign, Y[:, joint]))))
+            parts.append(_Part(joint, *(signal[moving] for signal in (residual, speed, sign, masses))))
     found: list[JointFriction] = []
     for part, fitted in zip(parts, _fit(parts), strict=True):
         name = model.joint_names[part.joint]

@@ -80,6 +80,21 @@ def test_what_the_points_of_the_figure_show(model):
     assert apart.max() < 0.5  # where another joint turns round, whose jump the low-pass spreads
 
 
+def test_a_joint_that_creeps_has_no_friction(model):
+    q, dq, ddq = moved()
+    motion = tuple(part * [1.0, 1.0, 1e-3] for part in (q, dq, ddq))
+    found = identify_friction(model, motion[0], torques(model, motion) + friction_of(motion[1]), H)
+    assert found.lacking == ["q3: it moves too little, or in one direction alone"]
+
+
+@pytest.mark.parametrize("every", [1, 8])
+def test_friction_does_not_depend_on_the_rate(model, every):
+    motion = moved()
+    tau = torques(model, motion) + friction_of(motion[1])
+    found = identify_friction(model, motion[0][::every], tau[::every], H * every)
+    assert [joint.coulomb for joint in found.joints] == pytest.approx(COULOMB, rel=0.05)
+
+
 def test_joints_without_torque_or_in_one_direction_have_no_friction(model):
     q, dq, ddq = (part.copy() for part in moved())
     q[:, 2], dq[:, 2], ddq[:, 2] = 0.1 * T, 0.1, 0.0

@@ -6,7 +6,7 @@ from pathlib import Path
 from runner.quantities import above_rounding, quantity
 from runner.recordings import words
 from runner.recordings.compare import RecordingComparison
-from runner.reporting.document import Block, Code, Document, Notice, Provenance, Section, Table, Text
+from runner.reporting.document import Block, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
 from runner.reporting.recording import figures
@@ -126,7 +126,5 @@ def _made(found: RecordingComparison) -> list[Block]:
     return [
         Provenance(rows),
         Table(caption, ["column", "signal", "factor", "unit"], columns, (2,), code=(0,)),
-        Text("The run is made by"),
-        Code(str(found.run.provenance["command"])),
         provenance([found.run]),
     ]
