@@ -5,7 +5,7 @@ the run as a failure that names file and line. Parts of this package are not wat
 """
 
 from runner.guard.controller import WatchedController, watch_loops
-from runner.guard.environment import WatchedEnvironment
+from runner.guard.environment import WatchedEnvironment, watch_environment
 from runner.guard.metrics import watch_metrics
 from runner.guard.plant import watch_plant
 from runner.guard.read_only import read_only
@@ -16,6 +16,7 @@ __all__ = [
     "WatchedEnvironment",
     "WatchedTrajectory",
     "read_only",
+    "watch_environment",
     "watch_loops",
     "watch_metrics",
     "watch_plant",

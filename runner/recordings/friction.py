@@ -8,8 +8,8 @@ recorded arm may have other masses than the model, Delta theta, which the linear
 friction. Positions are differentiated behind a low-pass that leaves the motion as it is. Both sides of the equation
 then run through a lower one, all without delay, and are thinned to what that leaves independent (Gautier, Dynamic
 identification of robots with power model, IEEE ICRA 1997). Rows near standstill are left out, as sgn tells nothing
-there. Joints are weighted by what is left over in each, and the columns of Y are taken out first, so that friction which
-cannot be told from other masses is not given.
+there. Joints are weighted by what is left over in each, and the columns of Y are taken out first, so that friction
+which cannot be told from other masses is not given.
 """
 
 from collections.abc import Sequence

@@ -50,6 +50,29 @@ WIND = """
     def build(config):
         return Wind()
 """
+CABLE = """
+    from typing import Literal
+    import numpy as np
+    from runner.registry import StrictModel
+    class CONFIG(StrictModel):
+        kind: Literal["NAME"]
+    class Cable:
+        points = {"link2": [0.0, 0.0, 0.5]}
+        def reset(self, tip):
+            spoil(tip)
+        def wrench(self, time, tip, velocity):
+            return np.zeros(6)
+        def link_forces(self, time, positions, velocities):
+            answer = -5.0 * velocities
+            spoil(positions, velocities)
+            return answer
+        def joint_torques(self, time, q, dq):
+            answer = -0.5 * q
+            spoil(q, dq)
+            return answer
+    def build(config):
+        return Cable()
+"""
 PLANT = """
     from typing import Literal
     import numpy as np
@@ -155,12 +178,19 @@ def write_part(mine, group, name, module, spoils):
 
 @pytest.mark.parametrize(
     ("group", "module"),
-    [("controller", LAW), ("environment", WIND), ("plant", PLANT), ("trajectory", PATH), ("metric", METRIC)],
+    [
+        ("controller", LAW),
+        ("environment", WIND),
+        ("environment", CABLE),
+        ("plant", PLANT),
+        ("trajectory", PATH),
+        ("metric", METRIC),
+    ],
 )
 def test_an_array_made_writable_again_reaches_nothing(mine, cli, group, module):
     found = {}
     for spoils in (False, True):
-        name = f"{group}_{'spoils' if spoils else 'honest'}"
+        name = f"{group}_{len(module)}_{'spoils' if spoils else 'honest'}"  # one module of a name in a process
         write_part(mine, group, name, module, spoils)
         choose = [] if group == "metric" else [f"{group}={name}"]
         path = [] if group == "trajectory" else ["trajectory=quintic"]
