@@ -1,6 +1,7 @@
 """From a checked config to the objects of a closed loop: the only place where a `kind:` becomes an object."""
 
 import math
+from collections.abc import Sequence
 from contextlib import ExitStack
 
 import numpy as np
@@ -18,15 +19,26 @@ from runner.errors import ConfigError
 from runner.feasibility import check_path
 from runner.interaction import Interaction
 from runner.loop.closed_loop import ClosedLoop
+from runner.loop.joint_torques import make_joint_torque_sensor
 from runner.metrics import MetricContext
 from runner.plants import PLANTS, ContactPlant, Plant, PositionPlant, innermost
 from runner.plants.kinds import HasServo
 from runner.plants.payload_changes import PayloadChanges
 from runner.plants.servo import JointServo, ServoLaw
 from runner.robots.inverse_kinematics import solve_tip_position
-from runner.robots.mismatch import believe
+from runner.robots.mismatch import MISMATCHES, believe
 from runner.robots.robot import Robot, end_points
-from runner.sensing import EncoderNoise, ForceTorqueConfig, ForceTorqueSensor, JointEncoders
+from runner.sensing import (
+    NOISES,
+    WRIST_SENSORS,
+    EncoderNoise,
+    Encoders,
+    ForceTorqueConfig,
+    ForceTorqueSensor,
+    JointEncoders,
+    TorqueSensors,
+    WristSensor,
+)
 from runner.servo_contact import ServoContact
 from runner.trace import FloatArray
 from runner.trajectories.joint_motion import TipOfJoints
@@ -87,7 +99,7 @@ def assemble_whole(config: RunConfig, repetition: int = 0) -> tuple[Whole, Float
     Raises:
         ConfigError: see assemble.
     """
-    if config.commands != "torque" or config.feels or config.loaded:
+    if config.commands != "torque" or config.feels or config.loaded or config.plugged:
         return None
     if PLANTS.motion(config.plant, config.arm) is None:
         return None
@@ -102,7 +114,7 @@ def describe_loop(config: RunConfig, repetition: int = 0) -> Whole | None:
         config: The checked config.
         repetition: Number of the repetition, of which the beliefs follow.
     """
-    if config.commands != "torque" or config.feels:
+    if config.commands != "torque" or config.feels or config.plugged:
         return None
     loops = _believe(config, repetition)[1]
     commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
@@ -125,7 +137,10 @@ def _find_start(config: RunConfig) -> FloatArray:
 def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...]]:
     """Return the robot as its controllers believe it to be, and the loops that they make for it."""
     generator = np.random.default_rng([config.settings.seed, repetition, _BELIEFS])
-    believed = believe(config.arm, config.mismatch, np.array(config.robot.payload.position), generator)
+    if "mismatch" in config.plugged:
+        believed = MISMATCHES.build(config.plugged["mismatch"], config.arm, generator)
+    else:
+        believed = believe(config.arm, config.mismatch, np.array(config.robot.payload.position), generator)
     loops = config.loops
     if believed is not config.arm:
         loops = CONTROLLERS.build_for(config.controller, believed, isinstance(config.path, TipOfJoints))
@@ -135,7 +150,7 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
 
 def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledCommands | None:
     """Return the closed loop as compiled code, or what its loops ask; None where neither can be had."""
-    if config.commands != "torque":
+    if config.commands != "torque" or config.plugged:
         return None
     tick, limits = config.timing.tick, config.torque_limits
     commands = find_commands(config.arm, config.parallel, loops, tick, config.noise, limits)
@@ -227,6 +242,8 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
         q_start: Joint positions at the start, shape (nq,), in rad.
     """
     plant, law, wall, timing = config.plant, config.controller, config.environment, config.timing
+    if "wrist_sensor" in config.plugged:  # of which nothing is known
+        return None
     if not isinstance(wall, WallConfig) or not isinstance(law, LeadsByForce) or not isinstance(plant, HasServo):
         return None
     if PLANTS.commands(plant.kind) != "torque" or config.commands != "position" or len(config.arm.stages) > 1:
@@ -253,8 +270,36 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
     )
 
 
+def make_sensors(
+    closed: ClosedLoop, config: RunConfig, repetition: int
+) -> tuple[Sequence[Encoders], WristSensor | None, TorqueSensors | None]:
+    """Make what measures in one repetition: the joints for each loop, and the sensors at the wrist and in the joints.
+
+    Those of plug-ins stand in place of ours; they get the same random numbers.
+    """
+    seed, plugged = config.settings.seed, config.plugged
+    encoders: Sequence[Encoders] = make_encoders(closed, config.noise, seed, repetition)
+    if "noise" in plugged:
+        joints = closed.robot.model.joint_names
+        encoders = [
+            NOISES.build(
+                plugged["noise"],
+                joints,
+                closed.ticks // closed.every(loop) + 1,
+                loop.period,
+                np.random.default_rng([seed, repetition, place]),
+            )
+            for place, loop in enumerate(closed.loops)
+        ]
+    wrist: WristSensor | None = make_wrist_sensor(closed, config.wrist_sensor, seed, repetition)
+    if wrist is not None and "wrist_sensor" in plugged:
+        generator = np.random.default_rng([seed, repetition, len(closed.loops)])
+        wrist = WRIST_SENSORS.build(plugged["wrist_sensor"], closed.ticks + 1, closed.tick, generator)
+    return encoders, wrist, make_joint_torque_sensor(closed, config, repetition)
+
+
 def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition: int) -> list[JointEncoders]:
-    """Make the joint measurement of each loop for one repetition.
+    """Make our joint measurement of each loop for one repetition.
 
     Its noise follows from (seed, repetition) and the loop's place alone: however long a run or another loop's period
     is, it starts alike, so that runs can be compared in pairs.
@@ -273,7 +318,7 @@ def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition
 def make_wrist_sensor(
     closed: ClosedLoop, sensor: ForceTorqueConfig, seed: int, repetition: int
 ) -> ForceTorqueSensor | None:
-    """Make the force/torque sensor for one repetition, where there is something to feel; noise as for the encoders."""
+    """Make our force/torque sensor for one repetition, where there is something to feel; noise as for the encoders."""
     if closed.interaction is None:
         return None
     generator = np.random.default_rng([seed, repetition, len(closed.loops)])

@@ -1,6 +1,7 @@
 """The closed loop: plant, encoders, controllers and desired motion, tick by tick, to a trace."""
 
 from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from runner.loop.drive import make_drive
 from runner.loop.joint_torques import JointTorques
 from runner.loop.recorder import Recorder
 from runner.progress.ticks import counted
-from runner.sensing import ForceTorqueSensor, JointEncoders, JointTorqueSensor
+from runner.sensing import Encoders, JointEncoders, TorqueSensors, WristSensor
 from runner.trace import Trace
 from runner.trajectories.trajectory import joint_reference
 
@@ -23,9 +24,9 @@ __all__ = ["ClosedLoop", "simulate"]
 
 def simulate(
     closed: ClosedLoop,
-    encoders: Sequence[JointEncoders],
-    wrist: ForceTorqueSensor | None = None,
-    torques: JointTorqueSensor | None = None,
+    encoders: Sequence[Encoders],
+    wrist: WristSensor | None = None,
+    torques: TorqueSensors | None = None,
 ) -> Trace:
     """Run the control loops once.
 
@@ -53,9 +54,9 @@ def simulate(
         # A diverging run ends as a failure, not as a warning.
         with counted(recorder.clock, closed.ticks), np.errstate(over="ignore", invalid="ignore"):
             if isinstance(closed.compiled, Whole):
-                run_whole(closed.compiled, closed, encoders, recorder)
+                run_whole(closed.compiled, closed, cast("Sequence[JointEncoders]", encoders), recorder)
             elif isinstance(closed.compiled, CompiledCommands):
-                run_commands(closed.compiled, closed, encoders, contact, recorder)
+                run_commands(closed.compiled, closed, cast("Sequence[JointEncoders]", encoders), contact, recorder)
             else:
                 _run(closed, encoders, contact, JointTorques(closed, torques, recorder.commands), recorder)
     except (np.linalg.LinAlgError, SimulationError) as error:
@@ -65,7 +66,7 @@ def simulate(
 
 def _run(
     closed: ClosedLoop,
-    encoders: Sequence[JointEncoders],
+    encoders: Sequence[Encoders],
     contact: Contact | None,
     torques: JointTorques,
     recorder: Recorder,

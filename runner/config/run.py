@@ -48,6 +48,8 @@ class RunConfig:
         limits: What a command may cost.
         caveats: When a run tells that its result may mislead.
         spec: Bounds on metrics, of which it tells how often they are kept.
+        plugged: Configs of plug-ins that stand in place of ours, by group: noise, wrist_sensor, joint_torque_sensor,
+            mismatch.
         resolved: The composed config as plain data, interpolations resolved.
     """
 
@@ -73,11 +75,17 @@ class RunConfig:
     limits: LimitsConfig
     caveats: CaveatsConfig
     spec: SpecConfig
+    plugged: Mapping[str, KindConfig]
     resolved: Mapping[str, object]
 
     def with_seed(self, resolved: Mapping[str, object]) -> "RunConfig":
         """Return the same run with the seed of another config, from which it differs in nothing else."""
         return replace(self, settings=self.settings.model_copy(update={"seed": resolved["seed"]}), resolved=resolved)
+
+    @property
+    def draws_beliefs(self) -> bool:
+        """Whether what the controllers believe is drawn anew in each repetition, as far as is known."""
+        return self.mismatch.spread > 0.0 or "mismatch" in self.plugged
 
     @property
     def feels(self) -> bool:

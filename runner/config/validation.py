@@ -26,6 +26,7 @@ from runner.registry import KindConfig
 from runner.robots.mismatch import MismatchConfig
 from runner.robots.model import STANDARD_GRAVITY
 from runner.robots.robot import Robot, end_points
+from runner.sensing import EncoderNoise
 from runner.trajectories import TRAJECTORIES, Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
 from runner.trajectories.kinds import HasStart
@@ -52,6 +53,8 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     made_of = (groups.robot, gravity, config_dirs, *([] if groups.wrist_sensor is None else [groups.wrist_sensor]))
     arm = problems.recall(build_robot, *made_of)
     noise = problems.recall(NoiseConfig.by_joint, groups.noise, arm)
+    if "noise" in groups.plugged and arm is not None:
+        noise = EncoderNoise.none(arm.model.nq)
     torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.torque_limits, arm)
     problems.recall(check_points, arm, groups.trajectory)
     problems.recall(_check_commands, groups.plant, groups.controller)
@@ -91,6 +94,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         limits=sure(groups.limits),
         caveats=sure(groups.caveats),
         spec=sure(groups.spec),
+        plugged=groups.plugged,
         resolved=resolved,
     ))  # fmt: skip
 
