@@ -102,11 +102,9 @@ def _read_columns(path: Path, wanted: Sequence[str]) -> dict[str, FloatArray]:
     names = [name.strip() for name in lines[0]] if lines else []
     twice = [name for name in dict.fromkeys(names) if name in wanted and names.count(name) > 1]
     problems = [f"line 1 has the column {quoted(name)} more than once" for name in twice]
-    problems += [
-        f"has no column {quoted(name)}{nearest(name, names)}; its columns: {few(names)}"
-        for name in wanted
-        if name not in names
-    ]
+    missing = [f"{quoted(name)}{nearest(name, names)}" for name in wanted if name not in names]
+    if missing:
+        problems.append(f"has no column {few(missing)}; its columns: {few(names) or 'none'}")
     if problems:
         raise _refused(path, problems)
     places = [names.index(name) for name in wanted]

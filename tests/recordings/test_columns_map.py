@@ -66,6 +66,11 @@ def test_what_does_not_fit_is_named(tmp_path, columns, wanted):
     assert wanted in str(caught.value)
 
 
+def test_a_column_that_stands_twice(tmp_path):
+    with pytest.raises(RunnerError, match=r"map.yaml, line 4: the key 'a' stands twice"):
+        read(tmp_path, "rate: 1.0\ncolumns:\n  a: {joint: q1, unit: rad}\n  a: {joint: slide, unit: m}\n")
+
+
 def test_a_map_without_time(tmp_path):
     with pytest.raises(RunnerError, match=r"needs time, as in time: \{column: t, unit: s\}, or rate"):
         read(tmp_path, "columns: {a: {joint: q1, unit: rad}}\n")

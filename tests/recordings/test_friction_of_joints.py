@@ -3,10 +3,9 @@
 import numpy as np
 import pinocchio as pin
 import pytest
-from conftest import read_thesis_urdf
 
 from runner.recordings.friction import identify_friction
-from runner.robots import RobotModel
+from runner.robots import RobotModel, find_urdf, read_urdf
 
 H = 0.004
 T = np.arange(0.0, 10.0, H)
@@ -15,7 +14,7 @@ VISCOUS, COULOMB, CONSTANT = np.array([1.2, 0.8, 0.5]), np.array([1.5, 1.0, 0.6]
 
 @pytest.fixture(scope="module")
 def model():
-    return RobotModel(read_thesis_urdf("macro"), "tip")
+    return RobotModel(read_urdf(find_urdf("macro.urdf"), {}), "tip")
 
 
 def moved(frequencies=(2.1, 3.3, 4.7)):
