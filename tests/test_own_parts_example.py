@@ -143,6 +143,19 @@ def test_encoders_of_a_plugin_serve_every_loop_of_a_robot_of_several_arms(own):
     assert run.status == "ok"
 
 
+def test_a_run_with_encoders_of_a_plugin_has_no_derivatives(own, cli):
+    run = own("noise", "backlash", "controller=computed_torque", "plant=rk4")
+    ending = cli("sensitivity", run.folder)
+    assert ending.code == 2
+    assert "no derivatives of this run: runs with noise=backlash of a plug-in are not compiled" in ending.err
+
+
+def test_a_calibration_takes_our_wrist_sensor_alone(cli):
+    ending = cli("calibrate", "--config-dir", HERE, "wrist_sensor=crosstalk")
+    assert ending.code == 2
+    assert "a calibration takes our force/torque sensor alone; found the plug-in 'crosstalk'" in ending.err
+
+
 COMMANDS = [
     line.strip()
     for page in sorted((HERE.parent.parent / "docs").glob("*.md"))
