@@ -1,7 +1,6 @@
 """From a checked config to the objects of a closed loop: the only place where a `kind:` becomes an object."""
 
 import math
-from collections.abc import Sequence
 from contextlib import ExitStack
 
 import numpy as np
@@ -19,26 +18,15 @@ from runner.errors import ConfigError
 from runner.feasibility import check_path
 from runner.interaction import Interaction
 from runner.loop.closed_loop import ClosedLoop
-from runner.loop.joint_torques import make_joint_torque_sensor
 from runner.metrics import MetricContext
 from runner.plants import PLANTS, ContactPlant, Plant, PositionPlant, innermost
 from runner.plants.kinds import HasServo
 from runner.plants.payload_changes import PayloadChanges
 from runner.plants.servo import JointServo, ServoLaw
 from runner.robots.inverse_kinematics import solve_tip_position
-from runner.robots.mismatch import MISMATCHES, believe
+from runner.robots.mismatch import believe
 from runner.robots.robot import Robot, end_points
-from runner.sensing import (
-    NOISES,
-    WRIST_SENSORS,
-    EncoderNoise,
-    Encoders,
-    ForceTorqueConfig,
-    ForceTorqueSensor,
-    JointEncoders,
-    TorqueSensors,
-    WristSensor,
-)
+from runner.sensing import EncoderNoise, ForceTorqueConfig, ForceTorqueSensor, JointEncoders
 from runner.servo_contact import ServoContact
 from runner.trace import FloatArray
 from runner.trajectories.joint_motion import TipOfJoints
@@ -137,10 +125,8 @@ def _find_start(config: RunConfig) -> FloatArray:
 def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...]]:
     """Return the robot as its controllers believe it to be, and the loops that they make for it."""
     generator = np.random.default_rng([config.settings.seed, repetition, _BELIEFS])
-    if "mismatch" in config.plugged:
-        believed = MISMATCHES.build(config.plugged["mismatch"], config.arm, generator)
-    else:
-        believed = believe(config.arm, config.mismatch, np.array(config.robot.payload.position), generator)
+    payload = np.array(config.robot.payload.position)
+    believed = believe(config.arm, config.mismatch, payload, generator, config.plugged.get("mismatch"))
     loops = config.loops
     if believed is not config.arm:
         loops = CONTROLLERS.build_for(config.controller, believed, isinstance(config.path, TipOfJoints))
@@ -242,8 +228,6 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
         q_start: Joint positions at the start, shape (nq,), in rad.
     """
     plant, law, wall, timing = config.plant, config.controller, config.environment, config.timing
-    if "wrist_sensor" in config.plugged:  # of which nothing is known
-        return None
     if not isinstance(wall, WallConfig) or not isinstance(law, LeadsByForce) or not isinstance(plant, HasServo):
         return None
     if PLANTS.commands(plant.kind) != "torque" or config.commands != "position" or len(config.arm.stages) > 1:
@@ -268,34 +252,6 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
         stiffness=wall.stiffness,
         damping=wall.damping,
     )
-
-
-def make_sensors(
-    closed: ClosedLoop, config: RunConfig, repetition: int
-) -> tuple[Sequence[Encoders], WristSensor | None, TorqueSensors | None]:
-    """Make what measures in one repetition: the joints for each loop, and the sensors at the wrist and in the joints.
-
-    Those of plug-ins stand in place of ours; they get the same random numbers.
-    """
-    seed, plugged = config.settings.seed, config.plugged
-    encoders: Sequence[Encoders] = make_encoders(closed, config.noise, seed, repetition)
-    if "noise" in plugged:
-        joints = closed.robot.model.joint_names
-        encoders = [
-            NOISES.build(
-                plugged["noise"],
-                joints,
-                closed.ticks // closed.every(loop) + 1,
-                loop.period,
-                np.random.default_rng([seed, repetition, place]),
-            )
-            for place, loop in enumerate(closed.loops)
-        ]
-    wrist: WristSensor | None = make_wrist_sensor(closed, config.wrist_sensor, seed, repetition)
-    if wrist is not None and "wrist_sensor" in plugged:
-        generator = np.random.default_rng([seed, repetition, len(closed.loops)])
-        wrist = WRIST_SENSORS.build(plugged["wrist_sensor"], closed.ticks + 1, closed.tick, generator)
-    return encoders, wrist, make_joint_torque_sensor(closed, config, repetition)
 
 
 def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition: int) -> list[JointEncoders]:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from runner import store
-from runner.assembly import assemble, make_sensors, metric_context
+from runner.assembly import assemble, metric_context
 from runner.batch_blocks import simulate_blocks
 from runner.batch_jobs import seconds_together
 from runner.caveats import PlantStep, Watch, setting_of, signals_of
@@ -15,6 +15,7 @@ from runner.config.compose import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.errors import ConfigError, SimulationError
+from runner.loop.sensors import make_sensors
 from runner.metrics import Columns, MetricContext, evaluate
 from runner.plant_error import COMPARED, PlantError, compare, hindrance, on_runge_kutta
 from runner.provenance import job_provenance
@@ -54,7 +55,7 @@ def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> sto
     told: list[str] = []
     try:
         for repetition in range(config.settings.repetitions):
-            if repetition > 0 and config.draws_beliefs:  # other beliefs
+            if repetition > 0 and (config.mismatch.spread > 0.0 or "mismatch" in config.plugged):  # other beliefs
                 last, loop = loop, assemble(config, repetition)
                 last.close()
             ran, said = _simulate(loop, config, repetition)

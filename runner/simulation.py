@@ -1,7 +1,6 @@
 """The closed loop: plant, encoders, controllers and desired motion, tick by tick, to a trace."""
 
 from collections.abc import Sequence
-from typing import cast
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from runner.loop.drive import make_drive
 from runner.loop.joint_torques import JointTorques
 from runner.loop.recorder import Recorder
 from runner.progress.ticks import counted
-from runner.sensing import Encoders, JointEncoders, TorqueSensors, WristSensor
+from runner.sensing import Encoders, TorqueSensors, WristSensor
 from runner.trace import Trace
 from runner.trajectories.trajectory import joint_reference
 
@@ -54,9 +53,9 @@ def simulate(
         # A diverging run ends as a failure, not as a warning.
         with counted(recorder.clock, closed.ticks), np.errstate(over="ignore", invalid="ignore"):
             if isinstance(closed.compiled, Whole):
-                run_whole(closed.compiled, closed, cast("Sequence[JointEncoders]", encoders), recorder)
+                run_whole(closed.compiled, closed, encoders, recorder)
             elif isinstance(closed.compiled, CompiledCommands):
-                run_commands(closed.compiled, closed, cast("Sequence[JointEncoders]", encoders), contact, recorder)
+                run_commands(closed.compiled, closed, encoders, contact, recorder)
             else:
                 _run(closed, encoders, contact, JointTorques(closed, torques, recorder.commands), recorder)
     except (np.linalg.LinAlgError, SimulationError) as error:

@@ -88,7 +88,8 @@ def _checked(run: store.Run, repetition: int) -> "RunConfig":
 
 
 def _simulate(config: "RunConfig", repetition: int) -> "Trace":
-    from runner.assembly import assemble, make_sensors
+    from runner.assembly import assemble
+    from runner.loop.sensors import make_sensors
     from runner.simulation import simulate
 
     loop = assemble(config, repetition)

@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TypeVar, cast
+from typing import cast
 
 from runner.config.caveats import CaveatsConfig
 from runner.config.limits import LimitsConfig
 from runner.config.noise import NoiseConfig
 from runner.config.parsing import group_of, parse, parse_kind, parse_robot
+from runner.config.plugged import GroupReader
 from runner.config.preset import PresetConfig
 from runner.config.problems import Problems
 from runner.config.robot import OneArmConfig, RobotConfig
@@ -21,13 +22,9 @@ from runner.environments import ENVIRONMENTS
 from runner.errors import ConfigError, nearest
 from runner.plants import PLANTS, PlantConfig
 from runner.registry import KindConfig, Kinds, StrictModel
-from runner.robots.mismatch import MISMATCHES, MismatchConfig
-from runner.robots.mismatch import NONE as NO_MISMATCH
-from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, ForceTorqueConfig, JointTorqueConfig
-from runner.sensing.force_torque import IDEAL
+from runner.robots.mismatch import MismatchConfig
+from runner.sensing import ForceTorqueConfig, JointTorqueConfig
 from runner.trajectories import TRAJECTORIES
-
-M = TypeVar("M", bound=StrictModel)
 
 GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
     **{kinds.group: kinds for kinds in (PLANTS, CONTROLLERS, TRAJECTORIES, ENVIRONMENTS)},
@@ -44,11 +41,6 @@ GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
     "caveats": CaveatsConfig,
     "spec": SpecConfig,
 }
-PLUGGED: Mapping[str, Kinds] = {
-    kinds.group: kinds for kinds in (NOISES, WRIST_SENSORS, JOINT_TORQUE_SENSORS, MISMATCHES)
-}
-"""Groups of one model of ours, in whose place a plug-in's stands where the group names its `kind`."""
-
 _SETTINGS = tuple(RunSettings.model_fields)
 
 
@@ -62,7 +54,7 @@ class Groups:
         controller: Config of the controller, likewise.
         trajectory: Config of the trajectory, likewise.
         environment: Config of the world around the tip, likewise.
-        noise: Config of the joint measurement; None too where it is a plug-in's.
+        noise: Config of the joint measurement.
         torque_limits: Config of the torque limits.
         wrist_sensor: Config of the force/torque sensor.
         joint_torque_sensor: Config of the torque sensors in the joints.
@@ -73,8 +65,7 @@ class Groups:
         limits: What a command may cost.
         caveats: When a run tells that its result may mislead.
         spec: Bounds on metrics.
-        plugged: Configs of the groups that are a plug-in's in place of ours, of the models that their kinds name. Of
-            sensors and mismatch the attribute above then holds ours without any effect.
+        plugged: Configs of plug-ins in place of ours, by group; see GroupReader.
     """
 
     settings: RunSettings | None
@@ -104,47 +95,31 @@ def read_groups(resolved: Mapping[str, object], problems: Problems) -> Groups:
         problems: Takes what is wrong.
     """
 
-    def read(model: type[M], group: str) -> M | None:
-        return problems.recall(parse, group, model, problems.attempt(group_of, group, resolved))
-
-    plugged: dict[str, KindConfig] = {}
-
-    def read_or_plugged(model: type[M], group: str, without_effect: M | None) -> M | None:
-        keys = problems.attempt(group_of, group, resolved)
-        if keys is None or "kind" not in keys:
-            return problems.recall(parse, group, model, keys)
-        found = problems.recall(parse_kind, PLUGGED[group], keys)
-        if found is None:
-            return None
-        plugged[group] = cast("KindConfig", found)
-        return without_effect
-
     def read_kind(kinds: Kinds) -> StrictModel | None:
         return problems.recall(parse_kind, kinds, problems.attempt(group_of, kinds.group, resolved))
 
     problems.attempt(_check_keys, resolved)
+    reader = GroupReader(problems, resolved)
     settings = {key: resolved.get(key) for key in _SETTINGS}
-    read(PresetConfig, "preset")  # its values have been taken by other groups
+    reader.read(PresetConfig, "preset")  # its values have been taken by other groups
     return Groups(
         settings=problems.attempt(parse, "", RunSettings, settings),
         plant=cast("PlantConfig | None", read_kind(PLANTS)),
         controller=cast("ControllerConfig | None", read_kind(CONTROLLERS)),
         trajectory=cast("KindConfig | None", read_kind(TRAJECTORIES)),
         environment=cast("KindConfig | None", read_kind(ENVIRONMENTS)),
-        noise=read_or_plugged(NoiseConfig, "noise", None),
-        torque_limits=read(TorqueLimitsConfig, "torque_limits"),
-        wrist_sensor=read_or_plugged(ForceTorqueConfig, "wrist_sensor", IDEAL),
-        joint_torque_sensor=read_or_plugged(
-            JointTorqueConfig, "joint_torque_sensor", JointTorqueConfig(noise=None, bias=0.0)
-        ),
-        mismatch=read_or_plugged(MismatchConfig, "mismatch", NO_MISMATCH),
-        disturbance_observer=read(DisturbanceObserverConfig, "disturbance_observer"),
+        noise=reader.read(NoiseConfig, "noise"),
+        torque_limits=reader.read(TorqueLimitsConfig, "torque_limits"),
+        wrist_sensor=reader.read(ForceTorqueConfig, "wrist_sensor"),
+        joint_torque_sensor=reader.read(JointTorqueConfig, "joint_torque_sensor"),
+        mismatch=reader.read(MismatchConfig, "mismatch"),
+        disturbance_observer=reader.read(DisturbanceObserverConfig, "disturbance_observer"),
         robot=problems.recall(parse_robot, problems.attempt(group_of, "robot", resolved)),
-        sweep=read(SweepConfig, "sweep"),
-        limits=read(LimitsConfig, "limits"),
-        caveats=read(CaveatsConfig, "caveats"),
-        spec=read(SpecConfig, "spec"),
-        plugged=plugged,
+        sweep=reader.read(SweepConfig, "sweep"),
+        limits=reader.read(LimitsConfig, "limits"),
+        caveats=reader.read(CaveatsConfig, "caveats"),
+        spec=reader.read(SpecConfig, "spec"),
+        plugged=reader.plugged,
     )
 
 

@@ -48,8 +48,7 @@ class RunConfig:
         limits: What a command may cost.
         caveats: When a run tells that its result may mislead.
         spec: Bounds on metrics, of which it tells how often they are kept.
-        plugged: Configs of plug-ins that stand in place of ours, by group: noise, wrist_sensor, joint_torque_sensor,
-            mismatch.
+        plugged: Configs of plug-ins in place of ours, by group: encoders, sensors, mismatch.
         resolved: The composed config as plain data, interpolations resolved.
     """
 
@@ -81,11 +80,6 @@ class RunConfig:
     def with_seed(self, resolved: Mapping[str, object]) -> "RunConfig":
         """Return the same run with the seed of another config, from which it differs in nothing else."""
         return replace(self, settings=self.settings.model_copy(update={"seed": resolved["seed"]}), resolved=resolved)
-
-    @property
-    def draws_beliefs(self) -> bool:
-        """Whether what the controllers believe is drawn anew in each repetition, as far as is known."""
-        return self.mismatch.spread > 0.0 or "mismatch" in self.plugged
 
     @property
     def feels(self) -> bool:

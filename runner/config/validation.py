@@ -11,6 +11,7 @@ from runner.config.groups import read_groups
 from runner.config.limits import check_memory
 from runner.config.memory import Memory
 from runner.config.noise import NoiseConfig
+from runner.config.plugged import exact_encoders
 from runner.config.problems import Problems, sure
 from runner.config.reach import check_path, check_points
 from runner.config.repeats import check_repeats
@@ -26,7 +27,6 @@ from runner.registry import KindConfig
 from runner.robots.mismatch import MismatchConfig
 from runner.robots.model import STANDARD_GRAVITY
 from runner.robots.robot import Robot, end_points
-from runner.sensing import EncoderNoise
 from runner.trajectories import TRAJECTORIES, Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
 from runner.trajectories.kinds import HasStart
@@ -53,8 +53,6 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     made_of = (groups.robot, gravity, config_dirs, *([] if groups.wrist_sensor is None else [groups.wrist_sensor]))
     arm = problems.recall(build_robot, *made_of)
     noise = problems.recall(NoiseConfig.by_joint, groups.noise, arm)
-    if "noise" in groups.plugged and arm is not None:
-        noise = EncoderNoise.none(arm.model.nq)
     torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.torque_limits, arm)
     problems.recall(check_points, arm, groups.trajectory)
     problems.recall(_check_commands, groups.plant, groups.controller)
@@ -82,7 +80,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         commands=CONTROLLERS.commands(sure(groups.controller).kind),
         path=sure(path),
         environment=sure(groups.environment),
-        noise=sure(noise),
+        noise=noise or exact_encoders(sure(arm)),  # a plug-in's measure in its place
         torque_limits=sure(torque_limits),
         wrist_sensor=sure(groups.wrist_sensor),
         joint_torques=sure(groups.joint_torque_sensor).by_joint(sure(arm)),
@@ -94,8 +92,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         limits=sure(groups.limits),
         caveats=sure(groups.caveats),
         spec=sure(groups.spec),
-        plugged=groups.plugged,
-        resolved=resolved,
+        plugged=groups.plugged, resolved=resolved,
     ))  # fmt: skip
 
 

@@ -9,7 +9,8 @@ friction. Positions are differentiated behind a low-pass that leaves the motion 
 then run through a lower one, all without delay, and are thinned to what that leaves independent (Gautier, Dynamic
 identification of robots with power model, IEEE ICRA 1997). Rows near standstill are left out, as sgn tells nothing
 there. Joints are weighted by what is left over in each, and the columns of Y are taken out first, so that friction
-which cannot be told from other masses is not given.
+which cannot be told from other masses is not given. The intervals allow for what is left over to be correlated within
+half a second and between joints (Liang and Zeger, Biometrika 73(1), 1986).
 """
 
 from collections.abc import Sequence
@@ -17,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 from scipy.stats import t as student
 
 from runner.recordings.smoothing import FloatArray, cutoff, derivative, low_pass
@@ -31,6 +33,7 @@ _FEWEST = 10  # rows of a joint in each direction
 _ROUNDING = 1e-5  # of the largest singular value of Y: what is below tells of no mass
 _TOLD_APART = 0.05  # share of a column of friction that other columns must leave
 _WEIGHINGS = 3
+_BLOCK = 0.5  # s, within which what is left over may be correlated
 
 
 @dataclass(frozen=True)
@@ -109,7 +112,8 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
         elif min(np.sum(moving & (speed > 0.0)), np.sum(moving & (speed < 0.0))) < _FEWEST:
             lacking.append(f"{name}: it moves too little, or in one direction alone")
         else:
-            parts.append(_Part(joint, *(signal[moving] for signal in (residual, speed, sign, masses))))
+            blocks = (thinned[moving] * period / _BLOCK).astype(np.intp)
+            parts.append(_Part(joint, blocks, *(signal[moving] for signal in (residual, speed, sign, masses))))
     found: list[JointFriction] = []
     for part, fitted in zip(parts, _fit(parts), strict=True):
         name = model.joint_names[part.joint]
@@ -125,6 +129,7 @@ class _Part:
     """The rows of a joint behind the low-pass: residual torque, speed, sign of the speed, Y of shape (N, 10 nq)."""
 
     joint: int
+    blocks: NDArray[np.intp]
     residual: FloatArray
     speed: FloatArray
     sign: FloatArray
@@ -144,12 +149,13 @@ def _fit(parts: Sequence[_Part]) -> list[_Fitted | None]:
     X = np.zeros((len(y), 3 * len(parts)))
     for number, (place, part) in enumerate(zip(places, parts, strict=True)):
         X[place, 3 * number : 3 * number + 3] = np.column_stack([part.speed, part.sign, np.ones(len(part.speed))])
-    solved = _solve(X, Y, y, np.ones(len(y)))
+    blocks = np.concatenate([part.blocks for part in parts])
+    solved = _solve(X, Y, y, np.ones(len(y)), blocks)
     for _ in range(_WEIGHINGS):
         weights = np.ones(len(y))
         for place in places:
             weights[place] = 1.0 / max(float(np.std(solved.rest[place])), 1e-12)
-        solved = _solve(X, Y, y, weights)
+        solved = _solve(X, Y, y, weights, blocks)
     found: list[_Fitted | None] = []
     for number, (place, part) in enumerate(zip(places, parts, strict=True)):
         viscous, coulomb, constant = range(3 * number, 3 * number + 3)
@@ -180,8 +186,16 @@ class _Solved:
     rest: FloatArray
 
 
-def _solve(X: FloatArray, Y: FloatArray, y: FloatArray, weights: FloatArray) -> _Solved:
-    """Return the friction that explains y with the columns X, whatever the masses in Y are."""
+def _solve(X: FloatArray, Y: FloatArray, y: FloatArray, weights: FloatArray, blocks: NDArray[np.intp]) -> _Solved:
+    """Return the friction that explains y with the columns X, whatever the masses in Y are.
+
+    Args:
+        X: Columns of friction, shape (N, n).
+        Y: Columns of the masses, shape (N, m).
+        y: Residual torques, shape (N,).
+        weights: What each row counts.
+        blocks: Number of the block in time that each row is of: rows of one may be correlated.
+    """
     scaled = Y * weights[:, None]
     sizes = np.linalg.norm(scaled, axis=0)
     u, s, _ = np.linalg.svd(scaled / np.where(sizes > 0.0, sizes, 1.0), full_matrices=False)
@@ -196,9 +210,11 @@ def _solve(X: FloatArray, Y: FloatArray, y: FloatArray, weights: FloatArray) -> 
     theta = np.asarray(np.linalg.lstsq(own, without_masses(y * weights), rcond=None)[0], dtype=np.float64)
     rest = without_masses(y * weights - columns @ theta)
     left: FloatArray = np.sqrt(np.sum(own**2, axis=0) / np.sum(columns**2, axis=0))
-    freedom = len(y) - basis.shape[1] - X.shape[1]
+    freedom, different = len(y) - basis.shape[1] - X.shape[1], np.unique(blocks)
     half = None
-    if freedom > 0:
-        variances = np.diagonal(np.linalg.pinv(own.T @ own)) * float(rest @ rest) / freedom
-        half = float(student.ppf(0.975, freedom)) * np.sqrt(variances)
+    if freedom > 0 and len(different) > 1:
+        scores = np.array([own[blocks == block].T @ rest[blocks == block] for block in different])
+        bread = np.linalg.pinv(own.T @ own)
+        variances = np.diagonal(bread @ scores.T @ scores @ bread) * len(y) / freedom
+        half = float(student.ppf(0.975, len(different) - 1)) * np.sqrt(variances)
     return _Solved(theta, half, left, rest / weights)

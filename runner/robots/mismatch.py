@@ -44,7 +44,11 @@ MISMATCHES = Registry[KindConfig, [Robot, np.random.Generator], Robot]("mismatch
 
 
 def believe(
-    robot: Robot, mismatch: MismatchConfig, payload_position: FloatArray, generator: np.random.Generator
+    robot: Robot,
+    mismatch: MismatchConfig,
+    payload_position: FloatArray,
+    generator: np.random.Generator,
+    plugged: KindConfig | None = None,
 ) -> Robot:
     """Return a robot with every model changed by a mismatch, the whole's and each stage's alike.
 
@@ -53,7 +57,10 @@ def believe(
         mismatch: How the belief differs.
         payload_position: Where the payload is, in the tip's frame, shape (3,), in m.
         generator: Source of the draws.
+        plugged: The mismatch of a plug-in in place of ours.
     """
+    if plugged is not None:
+        return MISMATCHES.build(plugged, robot, generator)
     if mismatch == NONE:
         return robot
     factors = 1.0 + mismatch.spread * generator.uniform(-1.0, 1.0, (robot.model.nq, 2))

@@ -34,11 +34,6 @@ class EncoderNoise:
     velocity: Velocity
     velocity_bandwidth: float = DEFAULT_BANDWIDTH
 
-    @classmethod
-    def none(cls, joints: int) -> "EncoderNoise":
-        """Return that of encoders without errors, for a number of joints."""
-        return cls(np.zeros(joints), np.zeros(joints), np.zeros(joints), "none", "exact")
-
 
 class JointEncoders:
     """The joint measurement of one control loop: a fresh noise draw per joint at each of its ticks.

@@ -3,6 +3,7 @@
 import numpy as np
 import pinocchio as pin
 import pytest
+from scipy.signal import lfilter
 
 from runner.recordings.friction import identify_friction
 from runner.robots import RobotModel, find_urdf, read_urdf
@@ -53,6 +54,20 @@ def test_friction_is_found_within_its_interval(model):
         assert joint.coulomb == pytest.approx(c, rel=0.05)
         assert abs(joint.viscous - b) < 2.0 * joint.viscous_half < 0.2 * b
         assert abs(joint.coulomb - c) < 2.0 * joint.coulomb_half < 0.2 * c
+
+
+def test_intervals_hold_the_friction_about_as_often_as_they_say(model):
+    motion = moved()
+    clean = torques(model, motion) + friction_of(motion[1])
+    held = []
+    for seed in range(12):
+        white = np.random.default_rng(seed).normal(0.0, 0.05, clean.shape)
+        correlated = lfilter([1.0], [1.0, -np.exp(-H / 0.1)], white, axis=0)  # over 0.1 s
+        found = identify_friction(model, motion[0], clean + correlated, H)
+        for joint, b, c in zip(found.joints, VISCOUS, COULOMB, strict=True):
+            held += [abs(joint.viscous - b) < joint.viscous_half, abs(joint.coulomb - c) < joint.coulomb_half]
+    assert len(held) == 72
+    assert 0.85 < np.mean(held) <= 1.0
 
 
 def test_other_masses_are_not_mistaken_for_friction(model):

@@ -90,7 +90,7 @@ def _friction(found: RecordingComparison) -> list[Block]:
         "Residual torque $tau - (M dot.double(q) + V + G)$ with the run's model, regressed on $dot(q)$, "
         '$upright("sgn") dot(q)$, a constant of each joint, and the linear model of the masses; all behind a low-pass '
         f"of {quantity(found.friction.frequency, 'Hz')} without delay, rows near standstill left out. The intervals "
-        "count what these terms leave over as independent noise."
+        "allow for what these terms leave over to be correlated within half a second."
     )
     return [*blocks, Table(caption, words.FRICTION_HEADER, rows, (3, 4, 5)), figures.friction(found), Text(method)]
 
