@@ -57,7 +57,7 @@ def lags(found: RecordingComparison) -> Curves:
     found_at = np.full(2, offset.start)
     panel = Panel(
         "Correlation of the speeds",
-        "time of the recording at which the run begins (s)",
+        "begin of the run in the recording (s)",
         "correlation",
         [
             Series("", offset.lags[shown], offset.correlations[shown], color=_RECORDED),
@@ -79,7 +79,7 @@ def friction(found: RecordingComparison) -> Curves:
         gap = int(np.searchsorted(speed, 0.0))  # the line jumps at rest
         x, y = np.insert(speed, gap, np.nan), np.insert(line, gap, np.nan)
         series = [
-            Series("left over", joint.speed, joint.torque, "points", color=_RECORDED),
+            Series("residual torque", joint.speed, joint.torque, "points", color=_RECORDED),
             Series("friction", x, y, color=_SIMULATED),
         ]
         label = labelled("torque" if turns else "force", "N m" if turns else "N")

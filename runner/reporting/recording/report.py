@@ -3,6 +3,7 @@
 import hashlib
 from pathlib import Path
 
+from runner.metrics import unit_of
 from runner.quantities import above_rounding, quantity
 from runner.recordings import words
 from runner.recordings.compare import RecordingComparison
@@ -98,7 +99,10 @@ def _friction(found: RecordingComparison) -> list[Block]:
 def _metrics(found: RecordingComparison) -> list[Block]:
     if not found.metrics:
         return [Text("The recording has too few signals for any metric: neither all joints nor the tip.")]
-    rows = [literals([title(row[0]), *row]) for row in words.metric_rows(found, _number)]
+    rows = [
+        literals([title(name), name, *(above_rounding(value, unit_of(name) or "1") for value in both)])
+        for name, both in found.metrics.items()
+    ]
     first, last = found.span
     text = (
         f"Both are worked out by the same code, from {quantity(first, 's')} to {quantity(last, 's')}. Speeds of the "
@@ -106,8 +110,8 @@ def _metrics(found: RecordingComparison) -> list[Block]:
         "follows from the joints by the run's model. A constant delay of the arm is part of the time offset and not "
         "of the tracking errors."
     )
-    header = ["metric", "name on the command line", "unit", "run", "recording"]
-    return [Text(text), Table("Metrics of both.", header, rows, (3, 4), code=(1,))]
+    header = ["metric", "name on the command line", "run", "recording"]
+    return [Text(text), Table("Metrics of both.", header, rows, (2, 3), code=(1,))]
 
 
 def _made(found: RecordingComparison) -> list[Block]:
