@@ -27,8 +27,10 @@ _MOST_SAMPLES = 200_000
 _STILL = 0.01  # of the largest speed of the run: a signal that is slower tells nothing of the time
 _OF_LARGEST = 0.25  # of the square of the largest norm
 _AS_GOOD = 0.95  # of the largest correlation
-_STRETCHES = (0.1, 0.2, 0.25, 0.5, 2.0, 4.0, 5.0, 10.0)
-_CLEARLY = 0.9
+_CLEARLY = 0.9  # correlation of what is the same motion, though maybe at another rate
+_SURELY = 0.98  # above which no other rate is looked for
+_STRETCHES = np.geomspace(0.1, 10.0, 157)  # of time that another rate may mean, 3 % from one to the next
+_THINNED = 0.01  # s, between the samples at which they are tried
 
 
 @dataclass(frozen=True)
@@ -86,8 +88,8 @@ def find_offset(
             f"{' and '.join(against)}: moves against the run; turn the sign of the column, or is it that of another "
             "joint?"
         )
-    if correlations[best] < RESEMBLES:
-        raise _unlike(t, recorded, run_t, simulated, float(correlations[best]))
+    if correlations[best] < _SURELY:
+        _check_likeness(t, recorded, run_t, simulated, float(correlations[best]))
     start = _refined(t, recorded, run_t, simulated, float(lags[best]))
     peaks, _ = find_peaks(correlations, height=_AS_GOOD * correlations[best])
     rivals = tuple(float(lags[peak]) for peak in peaks if peak != best)
@@ -143,14 +145,30 @@ def _refined(t: FloatArray, recorded: FloatArray, run_t: FloatArray, simulated: 
     return float(found.x)
 
 
-def _unlike(t: FloatArray, recorded: FloatArray, run_t: FloatArray, simulated: FloatArray, best: float) -> RunnerError:
-    """Return what is wrong with a recording that does not resemble the run: another rate, or another motion."""
-    told = f"the recording does not move as the run does: its speeds correlate with the run's by {best:.2f} at most"
-    for stretch in _STRETCHES:
+def _check_likeness(t: FloatArray, recorded: FloatArray, run_t: FloatArray, simulated: FloatArray, best: float) -> None:
+    """Check that a recording which correlates with the run by `best` at most is of its motion, at the rate said.
+
+    Raises:
+        RunnerError: if another rate halves what is lacking to a correlation of 1, or it correlates too little at any.
+    """
+    period = float(np.median(np.diff(t)))
+    own, other = (max(1, round(_THINNED / float(np.median(np.diff(times))))) for times in (t, run_t))
+    t, recorded, run_t, simulated = t[::own], recorded[::own], run_t[::other], simulated[::other]
+
+    def likeness(stretch: float) -> float:
         stretched = t[0] + stretch * (t - t[0])
-        if _SHORTEST * (run_t[-1] - run_t[0]) < stretched[-1] - stretched[0]:
-            found = float(_correlate(stretched, recorded, run_t, simulated)[1].max())
-            if found > _CLEARLY:
-                rate = 1.0 / (stretch * float(np.median(np.diff(t))))
-                return RunnerError(f"{told}, and by {found:.2f} at a rate of {rate:.4g} Hz: is that its rate?")
-    return RunnerError(f"{told}; needed: {RESEMBLES}; is it of the same motion, and are its joints the right ones?")
+        if stretched[-1] - stretched[0] < _SHORTEST * (run_t[-1] - run_t[0]):
+            return 0.0
+        return float(_correlate(stretched, recorded, run_t, simulated)[1].max())
+
+    coarse = _STRETCHES[int(np.argmax([likeness(stretch) for stretch in _STRETCHES.tolist()]))]
+    bounds = (coarse / 1.03, coarse * 1.03)
+    fine = minimize_scalar(lambda stretch: -likeness(stretch), bounds=bounds, method="bounded", options={"xatol": 1e-4})
+    told = f"the recording does not move as the run does: its speeds correlate with the run's by {best:.2f} at most"
+    if -fine.fun > max(_CLEARLY, 0.5 * (1.0 + best)):
+        rate = 1.0 / (float(fine.x) * period)
+        raise RunnerError(
+            f"{told} at {1.0 / period:.4g} Hz, and by {-fine.fun:.2f} at about {rate:.3g} Hz: is that the rate of its rows?"
+        )
+    if best < RESEMBLES:
+        raise RunnerError(f"{told}; needed: {RESEMBLES}; is it of the same motion, and are its joints the right ones?")

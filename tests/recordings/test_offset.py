@@ -51,8 +51,22 @@ def test_a_motion_that_repeats_itself_has_rivals():
     ("change", "wanted"),
     [
         (lambda t, q: (t, q * [1.0, -1.0]), r"columns.b: moves against the run; turn the sign of the column"),
-        (lambda t, q: (2.0 * t, q), r"and by \d.\d\d at a rate of 200 Hz: is that its rate\?"),
-        (lambda t, q: (0.25 * t, q), r"and by \d.\d\d at a rate of 200 Hz: is that its rate\?"),
+        (
+            lambda t, q: (2.0 * t, q),
+            r"at most at 100 Hz, and by 1.00 at about (199|200) Hz: is that the rate of its rows\?",
+        ),
+        (
+            lambda t, q: (0.25 * t, q),
+            r"at most at 800 Hz, and by 1.00 at about (199|200) Hz: is that the rate of its rows\?",
+        ),
+        (
+            lambda t, q: (1.05 * t, q),
+            r"at most at 190.5 Hz, and by 1.00 at about (199|200) Hz: is that the rate of its rows\?",
+        ),
+        (
+            lambda t, q: (1.2 * t, q),
+            r"at most at 166.7 Hz, and by 1.00 at about (199|200) Hz: is that the rate of its rows\?",
+        ),
         (lambda t, q: (1000.0 * t, q), r"are its times in ms\? say unit: ms"),
         (
             lambda t, q: (1e-3 * t, q),
