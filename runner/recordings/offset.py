@@ -168,7 +168,8 @@ def _check_likeness(t: FloatArray, recorded: FloatArray, run_t: FloatArray, simu
     if -fine.fun > max(_CLEARLY, 0.5 * (1.0 + best)):
         rate = 1.0 / (float(fine.x) * period)
         raise RunnerError(
-            f"{told} at {1.0 / period:.4g} Hz, and by {-fine.fun:.2f} at about {rate:.3g} Hz: is that the rate of its rows?"
+            f"{told} at {1.0 / period:.4g} Hz, and by {-fine.fun:.2f} at about {rate:.3g} Hz: is that the rate "
+            "of its rows?"
         )
     if best < RESEMBLES:
         raise RunnerError(f"{told}; needed: {RESEMBLES}; is it of the same motion, and are its joints the right ones?")
