@@ -54,7 +54,7 @@ class PushedLinks:
             arm = place.rotation @ point
             jacobians.append(J[:3] - cross_matrix(arm) @ J[3:])
             positions.append(place.translation + arm)
-        stacked = np.array(jacobians)
-        forces = self._environment.link_forces(time, np.array(positions), stacked @ dq)
+        stacked = np.reshape(jacobians, (-1, 3, len(dq)))
+        forces = self._environment.link_forces(time, np.reshape(positions, (-1, 3)), stacked @ dq)
         torques: FloatArray = np.einsum("ixj,ix->j", stacked, forces)
         return torques

@@ -135,6 +135,13 @@ def test_both_add_up(checked_config):
     assert sums[2] == pytest.approx(sums[0] + sums[1])
 
 
+def test_an_environment_without_points_pushes_nothing(checked_config):
+    arm = checked_config("robot=macro").arm
+    interaction = Interaction(arm, Pushes([], {}, lambda positions, velocities: -velocities), 1e-3)
+    interaction.reset(arm.home)
+    assert interaction.update(0.0, arm.home, np.ones(3), NOTHING).tolist() == [0.0, 0.0, 0.0]
+
+
 def test_a_link_that_is_not_there(checked_config):
     with pytest.raises(ConfigError, match=r"pushes the link 'lnk2'.* \(did you mean link2\?\); links: base, link1"):
         Interaction(checked_config("robot=macro").arm, Pushes([], {"lnk2": [0.0, 0.0, 0.0]}), 1e-3)
