@@ -87,7 +87,7 @@ def assemble_whole(config: RunConfig, repetition: int = 0) -> tuple[Whole, Float
     Raises:
         ConfigError: see assemble.
     """
-    if config.commands != "torque" or config.feels or config.loaded:
+    if config.commands != "torque" or config.feels or config.loaded or config.plugged:
         return None
     if PLANTS.motion(config.plant, config.arm) is None:
         return None
@@ -102,7 +102,7 @@ def describe_loop(config: RunConfig, repetition: int = 0) -> Whole | None:
         config: The checked config.
         repetition: Number of the repetition, of which the beliefs follow.
     """
-    if config.commands != "torque" or config.feels:
+    if config.commands != "torque" or config.feels or config.plugged:
         return None
     loops = _believe(config, repetition)[1]
     commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
@@ -125,7 +125,8 @@ def _find_start(config: RunConfig) -> FloatArray:
 def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...]]:
     """Return the robot as its controllers believe it to be, and the loops that they make for it."""
     generator = np.random.default_rng([config.settings.seed, repetition, _BELIEFS])
-    believed = believe(config.arm, config.mismatch, np.array(config.robot.payload.position), generator)
+    payload = np.array(config.robot.payload.position)
+    believed = believe(config.arm, config.mismatch, payload, generator, config.plugged.get("mismatch"))
     loops = config.loops
     if believed is not config.arm:
         loops = CONTROLLERS.build_for(config.controller, believed, isinstance(config.path, TipOfJoints))
@@ -135,7 +136,7 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
 
 def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledCommands | None:
     """Return the closed loop as compiled code, or what its loops ask; None where neither can be had."""
-    if config.commands != "torque":
+    if config.commands != "torque" or config.plugged:
         return None
     tick, limits = config.timing.tick, config.torque_limits
     commands = find_commands(config.arm, config.parallel, loops, tick, config.noise, limits)
@@ -254,7 +255,7 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
 
 
 def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition: int) -> list[JointEncoders]:
-    """Make the joint measurement of each loop for one repetition.
+    """Make our joint measurement of each loop for one repetition.
 
     Its noise follows from (seed, repetition) and the loop's place alone: however long a run or another loop's period
     is, it starts alike, so that runs can be compared in pairs.
@@ -273,7 +274,7 @@ def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition
 def make_wrist_sensor(
     closed: ClosedLoop, sensor: ForceTorqueConfig, seed: int, repetition: int
 ) -> ForceTorqueSensor | None:
-    """Make the force/torque sensor for one repetition, where there is something to feel; noise as for the encoders."""
+    """Make our force/torque sensor for one repetition, where there is something to feel; noise as for the encoders."""
     if closed.interaction is None:
         return None
     generator = np.random.default_rng([seed, repetition, len(closed.loops)])

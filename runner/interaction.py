@@ -1,9 +1,10 @@
-"""The wrench of the world on the tip, the joint torques that it makes, and the load on the wrist's sensor."""
+"""What the world puts on the arm, the joint torques that it makes, and the load on the wrist's sensor."""
 
 import numpy as np
 import pinocchio as pin
 
-from runner.environments import Environment
+from runner.environments import Environment, LoadsJoints, PushesLinks
+from runner.pushed_links import PushedLinks
 from runner.robots.robot import Robot
 from runner.robots.tool_link import find_tool, holding_wrench
 from runner.sensing.wrench import cross, wrench_transform
@@ -18,14 +19,20 @@ class Interaction:
 
     Args:
         robot: The robot; a tool on its flange is what the sensor bears.
-        environment: The world around the tip; None where a plant makes the contact itself, or there is none.
+        environment: The world around the arm; None where a plant makes the contact itself, or there is none.
         tick: Time between two updates, in s.
+
+    Raises:
+        ConfigError: if the environment pushes a link that the robot does not have.
     """
 
     def __init__(self, robot: Robot, environment: Environment | None, tick: float) -> None:
         self._model = pin.Model(robot.model.pin_model)
         self._data = self._model.createData()
         self._environment = environment
+        acts: object = environment
+        self._pushed = PushedLinks(acts, self._model) if isinstance(acts, PushesLinks) else None
+        self._loads = acts if isinstance(acts, LoadsJoints) else None
         self._tick = tick
         self._tip = robot.model.tip_frame
         self._flange = self._model.getFrameId(robot.flange)
@@ -72,6 +79,10 @@ class Interaction:
         self.external[3:] -= cross(tip.translation, contact[:3])
         self.load[:] = self._load_on_flange(tip)
         torques: FloatArray = J.T @ applied
+        if self._pushed is not None:
+            torques += self._pushed.torques(time, model, data, dq)
+        if self._loads is not None:
+            torques += self._loads.joint_torques(time, q, dq)
         return torques
 
     def to_flange_axes(self, wrench: FloatArray) -> FloatArray:

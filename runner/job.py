@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from runner import store
-from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
+from runner.assembly import assemble, metric_context
 from runner.batch_blocks import simulate_blocks
 from runner.batch_jobs import seconds_together
 from runner.caveats import PlantStep, Watch, setting_of, signals_of
@@ -15,7 +15,7 @@ from runner.config.compose import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.errors import ConfigError, SimulationError
-from runner.loop.joint_torques import make_joint_torque_sensor
+from runner.loop.sensors import make_sensors
 from runner.metrics import Columns, MetricContext, evaluate
 from runner.plant_error import COMPARED, PlantError, compare, hindrance, on_runge_kutta
 from runner.provenance import job_provenance
@@ -55,7 +55,7 @@ def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> sto
     told: list[str] = []
     try:
         for repetition in range(config.settings.repetitions):
-            if repetition > 0 and config.mismatch.spread > 0.0:  # other beliefs
+            if repetition > 0 and (config.mismatch.spread > 0.0 or "mismatch" in config.plugged):  # other beliefs
                 last, loop = loop, assemble(config, repetition)
                 last.close()
             ran, said = _simulate(loop, config, repetition)
@@ -136,9 +136,7 @@ def _judge(trace: Trace, context: MetricContext, told: list[str]) -> tuple[Trace
 
 def _simulate(closed: ClosedLoop, config: RunConfig, repetition: int) -> tuple[Trace, list[str]]:
     """Simulate a repetition; return its trace, and what the controllers and the wrist's sensor tell of it."""
-    seed = config.settings.seed
-    wrist = make_wrist_sensor(closed, config.wrist_sensor, seed, repetition)
-    torques = make_joint_torque_sensor(closed, config, repetition)
-    trace = simulate(closed, make_encoders(closed, config.noise, seed, repetition), wrist, torques)
+    encoders, wrist, torques = make_sensors(closed, config, repetition)
+    trace = simulate(closed, encoders, wrist, torques)
     told = [notice for loop in closed.loops if loop.feeling is not None for notice in loop.feeling.notices()]
     return trace, told + ([] if wrist is None else wrist.overloads())

@@ -18,7 +18,10 @@ from types import ModuleType
 
 from runner.errors import ConfigError, RunnerError, nearest, told
 
-GROUPS = ("calibration", "controller", "environment", "metric", "plant", "trajectory")
+GROUPS = (
+    "calibration", "controller", "environment", "joint_torque_sensor", "metric", "mismatch", "noise", "plant",
+    "trajectory", "wrist_sensor",
+)  # fmt: skip
 """What there can be parts of."""
 
 _VARIABLE = "RUNNER_PLUGINS"  # one a line, as given but with whole paths; worker processes inherit it

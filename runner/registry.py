@@ -111,7 +111,7 @@ class Kinds:
         """
         modules = self._modules if kind in self._modules else self._plugins()
         if kind not in modules:
-            known = ", ".join(self.names())
+            known = ", ".join(self.names()) or f"none, until a plug-in is named: --plugin {self.group}=FILE.py"
             raise ConfigError([f"{self.group}.kind: '{kind}' is unknown{nearest(kind, self.names())}; known: {known}"])
         return load(self.group, kind, modules[kind])
 

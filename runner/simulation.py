@@ -14,7 +14,7 @@ from runner.loop.drive import make_drive
 from runner.loop.joint_torques import JointTorques
 from runner.loop.recorder import Recorder
 from runner.progress.ticks import counted
-from runner.sensing import ForceTorqueSensor, JointEncoders, JointTorqueSensor
+from runner.sensing import Encoders, TorqueSensors, WristSensor
 from runner.trace import Trace
 from runner.trajectories.trajectory import joint_reference
 
@@ -23,9 +23,9 @@ __all__ = ["ClosedLoop", "simulate"]
 
 def simulate(
     closed: ClosedLoop,
-    encoders: Sequence[JointEncoders],
-    wrist: ForceTorqueSensor | None = None,
-    torques: JointTorqueSensor | None = None,
+    encoders: Sequence[Encoders],
+    wrist: WristSensor | None = None,
+    torques: TorqueSensors | None = None,
 ) -> Trace:
     """Run the control loops once.
 
@@ -65,7 +65,7 @@ def simulate(
 
 def _run(
     closed: ClosedLoop,
-    encoders: Sequence[JointEncoders],
+    encoders: Sequence[Encoders],
     contact: Contact | None,
     torques: JointTorques,
     recorder: Recorder,

@@ -88,14 +88,12 @@ def _checked(run: store.Run, repetition: int) -> "RunConfig":
 
 
 def _simulate(config: "RunConfig", repetition: int) -> "Trace":
-    from runner.assembly import assemble, make_encoders, make_wrist_sensor
-    from runner.loop.joint_torques import make_joint_torque_sensor
+    from runner.assembly import assemble
+    from runner.loop.sensors import make_sensors
     from runner.simulation import simulate
 
-    loop, seed = assemble(config, repetition), config.settings.seed
+    loop = assemble(config, repetition)
     try:
-        wrist = make_wrist_sensor(loop, config.wrist_sensor, seed, repetition)
-        torques = make_joint_torque_sensor(loop, config, repetition)
-        return simulate(loop, make_encoders(loop, config.noise, seed, repetition), wrist, torques)
+        return simulate(loop, *make_sensors(loop, config, repetition))
     finally:
         loop.close()

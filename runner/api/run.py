@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
+    from runner.recordings.compare import RecordingComparison
     from runner.reporting.key_metrics import KeyMetric
     from runner.spec import Spec
 
@@ -147,6 +148,24 @@ class Run:
         from runner.api.plots import figure_of
 
         return figure_of(signals_of(self.stored, repetition), signal)
+
+    @door
+    def compare_recording(self, recording: str | Path, columns: str | Path) -> "RecordingComparison":
+        """Hold the recording of a real arm against repetition 0: what `runner compare` prints and writes as a report.
+
+        The result has `offset`, when the run begins in the recording; `residuals`, a list of signals with `mean`,
+        `rms`, `largest` and `fit`; `metrics`, of the run and of the recording by name; `friction`, that of its joints.
+
+        Args:
+            recording: The recording, a CSV file.
+            columns: The YAML file that says what its columns hold, as docs/recordings.md tells.
+
+        Raises:
+            RunnerError: if a file cannot be read, or the recording does not fit the run.
+        """
+        from runner.recordings.compare import compare_recording
+
+        return compare_recording(self.stored, Path(recording), Path(columns))
 
     def __repr__(self) -> str:
         told = "; ".join(f"{one.title} {one.value}" for one in self._key_metrics(_IN_TEXT))

@@ -98,7 +98,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         mismatch=config.mismatch,
         mass=mass,
         in_place_of=config.plant.in_place_of if isinstance(config.plant, StandsIn) else None,
-        contact=None if q_start is None else servo_contact(config, q_start),
+        contact=None if q_start is None or "wrist_sensor" in config.plugged else servo_contact(config, q_start),
         velocity_loop=velocity_loop(config.loops, config.arm, config.path) if config.commands == "torque" else None,
         left_out=config.arm.left_out,
     )

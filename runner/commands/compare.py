@@ -1,19 +1,29 @@
 """`runner compare A B ...`: runs, or sweeps, side by side, the first with each of the others.
 
 Sweeps are compared cell by cell and repetition by repetition. `runner compare SWEEP --by controller --within robot`
-compares the levels of an axis of one sweep.
+compares the levels of an axis of one sweep. `runner compare RUN recording.csv --columns map.yaml` holds the recording
+of a real arm against a run, and writes a report; its folder is the last line.
 """
 
+from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.commands.arguments import Parser, stored
+from runner.commands.arguments import Parser, Stored
 from runner.errors import RunnerError
 from runner.quiet import quiet_environment
 
 if TYPE_CHECKING:
     from runner.store import Run
+
+
+class StoredOrRecording(Stored):
+    """The type of an argument that is the folder of something stored, or a recording, a CSV file."""
+
+    def __call__(self, text: str) -> Path:
+        """Return the folder or the file that a text names."""
+        return Path(text) if _is_recording(text) else super().__call__(text)
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -22,20 +32,25 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument(
         "folders",
         nargs="+",
-        type=stored("run", "sweep"),
+        type=StoredOrRecording(("run", "sweep")),
         metavar="DIR",
-        help="runs, or sweeps; or latest",
+        help="runs, or sweeps; or latest; or a run and a recording, a CSV file",
     )
     parser.add_argument("--metrics", type=_names, metavar="NAME,NAME", help="compare these metrics alone")
     parser.add_argument("--by", metavar="AXIS", help="of one sweep: compare the levels of this axis")
     parser.add_argument(
         "--within", type=_names, metavar="AXIS,AXIS", help="within each level of these; default: of all"
     )
+    parser.add_argument("--columns", type=Path, metavar="FILE", help="of a recording: which signal each column holds")
     options = parser.parse_args(arguments)
     metrics, within = options.metrics or (), options.within or ()
     quiet_environment()
     from runner import store
 
+    recordings = [path for path in options.folders if _is_recording(path)]
+    if recordings or options.columns:
+        _compare_recording(options.folders, recordings, options)
+        return 0
     sweeps = [store.is_sweep(folder) for folder in options.folders]
     if within and not options.by:
         raise RunnerError("--within goes with --by AXIS, which says what is compared")
@@ -61,6 +76,29 @@ def main(arguments: Sequence[str]) -> int:
             raise RunnerError(_mixed(alone[0], options.folders[sweeps.index(True)]))
         print_runs(alone, metrics)
     return 0
+
+
+def _is_recording(path: str | Path) -> bool:
+    return Path(path).suffix.lower() == ".csv"
+
+
+def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], options: Namespace) -> None:
+    from runner import store
+
+    folders = [path for path in given if path not in recordings]
+    if len(recordings) != 1 or len(folders) != 1:
+        raise RunnerError("a recording is compared with one run: `runner compare RUN recording.csv --columns map.yaml`")
+    if options.columns is None:
+        raise RunnerError(
+            f"{recordings[0]} is a recording; say by --columns FILE which signal each column holds (docs/recordings.md)"
+        )
+    if store.is_sweep(folders[0]):
+        raise RunnerError(f"{folders[0]} is a sweep; a recording is compared with one run")
+    if options.by or options.within or options.metrics:
+        raise RunnerError("--by, --within and --metrics are not for recordings")
+    from runner.commands.compare_recording import print_recording
+
+    print_recording(folders[0], recordings[0], options.columns)
 
 
 def _names(text: str) -> list[str]:

@@ -30,4 +30,5 @@ def at_once(comparisons: int) -> str:
 
 def noise_alone(configs: Iterable[Mapping[str, Any]]) -> bool:
     """Tell whether the repetitions of runs draw nothing but noise: nothing of the arm is drawn from the seed."""
-    return all(not config.get("mismatch", {}).get("spread") for config in configs)
+    mismatches = [config.get("mismatch", {}) for config in configs]
+    return all(not mismatch.get("spread") and "kind" not in mismatch for mismatch in mismatches)

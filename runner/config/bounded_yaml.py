@@ -5,7 +5,7 @@ that holds itself), or for a nesting that no loader survives.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -52,7 +52,7 @@ def read_yaml(text: str, name: str | Path, bounds: Bounds = STORED) -> Any:
     Raises:
         YamlError: if it cannot be read, or breaks a bound; see check_yaml.
     """
-    check_yaml(text, name, bounds)
+    check_yaml(text, name, bounds, once=True)
     try:
         return yaml.load(text, yaml.CSafeLoader)
     except yaml.YAMLError as error:
@@ -61,13 +61,14 @@ def read_yaml(text: str, name: str | Path, bounds: Bounds = STORED) -> Any:
         raise YamlError(f"{name}: {error}") from None
 
 
-def check_yaml(text: str, name: str | Path, bounds: Bounds = CONFIG) -> None:
+def check_yaml(text: str, name: str | Path, bounds: Bounds = CONFIG, once: bool = False) -> None:
     """Check a YAML text without making anything of it.
 
     Args:
         text: The text.
         name: Its file, for messages.
         bounds: What it may hold.
+        once: Whether to refuse a key that stands twice, which OmegaConf does and PyYAML does not.
 
     Raises:
         YamlError: if it is no YAML, too long, too deep or of too many values, an anchor holds itself, a key is no
@@ -75,7 +76,7 @@ def check_yaml(text: str, name: str | Path, bounds: Bounds = CONFIG) -> None:
     """
     if len(text) > bounds.characters:
         raise YamlError(f"{name}: has {len(text)} characters; allowed: up to {bounds.characters}")
-    scan = _Scan(str(name), bounds)
+    scan = _Scan(str(name), bounds, once)
     try:
         for event in yaml.parse(text, Loader=yaml.CSafeLoader):
             scan.take(event)
@@ -103,11 +104,12 @@ class _Open:
     anchor: str | None
     values: int
     key_next: bool | None
+    keys: set[str] = field(default_factory=set)
 
 
 class _Scan:
-    def __init__(self, name: str, bounds: Bounds) -> None:
-        self._name, self._bounds = name, bounds
+    def __init__(self, name: str, bounds: Bounds, once: bool) -> None:
+        self._name, self._bounds, self._once = name, bounds, once
         self._open = [_Open(None, 0, None)]
         self._sizes: dict[str, int] = {}
         self._resolver = Resolver()
@@ -120,6 +122,10 @@ class _Scan:
             for problem in self._problems(event):
                 raise YamlError(f"{line_of(event, self._name)}: {problem}")
             parent = self._open[-1]
+            if parent.key_next and isinstance(event, yaml.ScalarEvent):
+                if self._once and event.value in parent.keys:
+                    raise YamlError(f"{line_of(event, self._name)}: the key {quoted(event.value)} stands twice")
+                parent.keys.add(event.value)
             if parent.key_next is not None:
                 parent.key_next = not parent.key_next
             if isinstance(event, yaml.CollectionStartEvent):

@@ -19,6 +19,7 @@ from runner.registry import KindConfig, StrictModel
 from runner.robots import RobotModel
 from runner.robots.robot import Robot
 from runner.sensing import ForceTorqueConfig
+from runner.texts import quoted
 
 
 class CalibrationSettings(StrictModel):
@@ -72,7 +73,7 @@ def validate_calibration(composed: Composed) -> CalibrationConfig:
     settings = problems.attempt(parse, "", CalibrationSettings, root)
     robot = problems.attempt(parse_robot, problems.attempt(group_of, "robot", resolved))
     keys = problems.attempt(group_of, "wrist_sensor", resolved)
-    sensor = problems.attempt(parse, "wrist_sensor", ForceTorqueConfig, keys)
+    sensor = problems.attempt(_parse_sensor, keys)
     keys = problems.attempt(group_of, CALIBRATIONS.group, resolved)
     calibration = cast("KindConfig | None", problems.attempt(parse_kind, CALIBRATIONS, keys))
     arm = problems.attempt(
@@ -92,6 +93,17 @@ def _check_keys(composed: Composed) -> None:
         raise ConfigError(
             f"{key}: a calibration reads no such key{nearest(key, _KEYS)}; keys: {', '.join(_KEYS)}" for key in unread
         )
+
+
+def _parse_sensor(keys: Mapping[str, object]) -> ForceTorqueConfig:
+    if "kind" in keys:
+        raise ConfigError(
+            [
+                "wrist_sensor.kind: a calibration takes our force/torque sensor alone; found the plug-in "
+                f"{quoted(keys['kind'])}; take wrist_sensor=ideal or wrist_sensor=mini40"
+            ]
+        )
+    return parse("wrist_sensor", ForceTorqueConfig, keys)
 
 
 def _make_bench(robot: RobotConfig, arm: Robot, sensor: ForceTorqueConfig) -> Bench:

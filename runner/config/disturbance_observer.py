@@ -23,7 +23,7 @@ def check_observer(config: RunConfig) -> None:
             "plant.dynamics=coupled and plant.wrist_rotation=real"
         )
     elif config.disturbance_observer.torque == "measured":
-        if config.joint_torques is not None:
+        if config.joint_torques is not None or "joint_torque_sensor" in config.plugged:
             return
         raise ConfigError(
             [

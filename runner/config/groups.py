@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TypeVar, cast
+from typing import cast
 
 from runner.config.caveats import CaveatsConfig
 from runner.config.limits import LimitsConfig
 from runner.config.noise import NoiseConfig
 from runner.config.parsing import group_of, parse, parse_kind, parse_robot
+from runner.config.plugged import GroupReader
 from runner.config.preset import PresetConfig
 from runner.config.problems import Problems
 from runner.config.robot import OneArmConfig, RobotConfig
@@ -24,8 +25,6 @@ from runner.registry import KindConfig, Kinds, StrictModel
 from runner.robots.mismatch import MismatchConfig
 from runner.sensing import ForceTorqueConfig, JointTorqueConfig
 from runner.trajectories import TRAJECTORIES
-
-M = TypeVar("M", bound=StrictModel)
 
 GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
     **{kinds.group: kinds for kinds in (PLANTS, CONTROLLERS, TRAJECTORIES, ENVIRONMENTS)},
@@ -66,6 +65,7 @@ class Groups:
         limits: What a command may cost.
         caveats: When a run tells that its result may mislead.
         spec: Bounds on metrics.
+        plugged: Configs of plug-ins in place of ours, by group; see GroupReader.
     """
 
     settings: RunSettings | None
@@ -84,6 +84,7 @@ class Groups:
     limits: LimitsConfig | None
     caveats: CaveatsConfig | None
     spec: SpecConfig | None
+    plugged: Mapping[str, KindConfig]
 
 
 def read_groups(resolved: Mapping[str, object], problems: Problems) -> Groups:
@@ -94,32 +95,31 @@ def read_groups(resolved: Mapping[str, object], problems: Problems) -> Groups:
         problems: Takes what is wrong.
     """
 
-    def read(model: type[M], group: str) -> M | None:
-        return problems.recall(parse, group, model, problems.attempt(group_of, group, resolved))
-
     def read_kind(kinds: Kinds) -> StrictModel | None:
         return problems.recall(parse_kind, kinds, problems.attempt(group_of, kinds.group, resolved))
 
     problems.attempt(_check_keys, resolved)
+    reader = GroupReader(problems, resolved)
     settings = {key: resolved.get(key) for key in _SETTINGS}
-    read(PresetConfig, "preset")  # its values have been taken by other groups
+    reader.read(PresetConfig, "preset")  # its values have been taken by other groups
     return Groups(
         settings=problems.attempt(parse, "", RunSettings, settings),
         plant=cast("PlantConfig | None", read_kind(PLANTS)),
         controller=cast("ControllerConfig | None", read_kind(CONTROLLERS)),
         trajectory=cast("KindConfig | None", read_kind(TRAJECTORIES)),
         environment=cast("KindConfig | None", read_kind(ENVIRONMENTS)),
-        noise=read(NoiseConfig, "noise"),
-        torque_limits=read(TorqueLimitsConfig, "torque_limits"),
-        wrist_sensor=read(ForceTorqueConfig, "wrist_sensor"),
-        joint_torque_sensor=read(JointTorqueConfig, "joint_torque_sensor"),
-        mismatch=read(MismatchConfig, "mismatch"),
-        disturbance_observer=read(DisturbanceObserverConfig, "disturbance_observer"),
+        noise=reader.read(NoiseConfig, "noise"),
+        torque_limits=reader.read(TorqueLimitsConfig, "torque_limits"),
+        wrist_sensor=reader.read(ForceTorqueConfig, "wrist_sensor"),
+        joint_torque_sensor=reader.read(JointTorqueConfig, "joint_torque_sensor"),
+        mismatch=reader.read(MismatchConfig, "mismatch"),
+        disturbance_observer=reader.read(DisturbanceObserverConfig, "disturbance_observer"),
         robot=problems.recall(parse_robot, problems.attempt(group_of, "robot", resolved)),
-        sweep=read(SweepConfig, "sweep"),
-        limits=read(LimitsConfig, "limits"),
-        caveats=read(CaveatsConfig, "caveats"),
-        spec=read(SpecConfig, "spec"),
+        sweep=reader.read(SweepConfig, "sweep"),
+        limits=reader.read(LimitsConfig, "limits"),
+        caveats=reader.read(CaveatsConfig, "caveats"),
+        spec=reader.read(SpecConfig, "spec"),
+        plugged=reader.plugged,
     )
 
 

@@ -7,6 +7,7 @@ from typing import Any
 from runner.calibration.procedures import CALIBRATIONS
 from runner.config.groups import GROUPS
 from runner.config.meanings import Units, find_units
+from runner.config.plugged import PLUGGED
 from runner.config.robot import OneArmConfig, StageConfig
 from runner.config.settings import RunSettings
 from runner.errors import ConfigError
@@ -49,5 +50,8 @@ def _models(group: str, rest: Sequence[str], chosen: str | None = None) -> Itera
         for kind in known.names() if chosen is None else [chosen]:
             with contextlib.suppress(ConfigError):  # a part of the user's that cannot be imported
                 yield known.config_model(kind)
+    elif group in PLUGGED and chosen is not None:
+        with contextlib.suppress(ConfigError):
+            yield PLUGGED[group].config_model(chosen)
     elif known is not None:
         yield known

@@ -48,6 +48,7 @@ class RunConfig:
         limits: What a command may cost.
         caveats: When a run tells that its result may mislead.
         spec: Bounds on metrics, of which it tells how often they are kept.
+        plugged: Configs of plug-ins in place of ours, by group: encoders, sensors, mismatch.
         resolved: The composed config as plain data, interpolations resolved.
     """
 
@@ -73,6 +74,7 @@ class RunConfig:
     limits: LimitsConfig
     caveats: CaveatsConfig
     spec: SpecConfig
+    plugged: Mapping[str, KindConfig]
     resolved: Mapping[str, object]
 
     def with_seed(self, resolved: Mapping[str, object]) -> "RunConfig":

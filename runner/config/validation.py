@@ -11,6 +11,7 @@ from runner.config.groups import read_groups
 from runner.config.limits import check_memory
 from runner.config.memory import Memory
 from runner.config.noise import NoiseConfig
+from runner.config.plugged import exact_encoders
 from runner.config.problems import Problems, sure
 from runner.config.reach import check_path, check_points
 from runner.config.repeats import check_repeats
@@ -79,7 +80,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         commands=CONTROLLERS.commands(sure(groups.controller).kind),
         path=sure(path),
         environment=sure(groups.environment),
-        noise=sure(noise),
+        noise=noise or exact_encoders(sure(arm)),  # a plug-in's measure in its place
         torque_limits=sure(torque_limits),
         wrist_sensor=sure(groups.wrist_sensor),
         joint_torques=sure(groups.joint_torque_sensor).by_joint(sure(arm)),
@@ -91,7 +92,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         limits=sure(groups.limits),
         caveats=sure(groups.caveats),
         spec=sure(groups.spec),
-        resolved=resolved,
+        plugged=groups.plugged, resolved=resolved,
     ))  # fmt: skip
 
 

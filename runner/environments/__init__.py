@@ -1,7 +1,7 @@
-"""What the world does to the tip: pushes, walls, hands."""
+"""What the world does to the arm: pushes, walls and hands at its tip, and what plug-ins put on links and joints."""
 
-from runner.environments.environment import Environment
-from runner.guard import WatchedEnvironment
+from runner.environments.environment import Environment, LoadsJoints, PushesLinks
+from runner.guard import watch_environment
 from runner.registry import KindConfig, Registry
 
 ENVIRONMENTS = Registry[KindConfig, [], Environment | None](
@@ -12,7 +12,7 @@ ENVIRONMENTS = Registry[KindConfig, [], Environment | None](
         "push": "runner.environments.push",
         "wall": "runner.environments.wall",
     },
-    watch=WatchedEnvironment,
+    watch=watch_environment,
 )
 
-__all__ = ["ENVIRONMENTS", "Environment"]
+__all__ = ["ENVIRONMENTS", "Environment", "LoadsJoints", "PushesLinks"]

@@ -8,7 +8,7 @@ import numpy as np
 from runner.controllers import Controller, Loop, PositionController
 from runner.loop.closed_loop import ClosedLoop
 from runner.loop.recorder import Recorder
-from runner.sensing import JointEncoders
+from runner.sensing import Encoders
 from runner.trace import FloatArray
 
 Law = Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray]
@@ -27,7 +27,7 @@ class Command:
         every: Ticks between two of its own.
     """
 
-    def __init__(self, closed: ClosedLoop, loop: Loop, encoders: JointEncoders, recorder: Recorder) -> None:
+    def __init__(self, closed: ClosedLoop, loop: Loop, encoders: Encoders, recorder: Recorder) -> None:
         self.every = closed.every(loop)
         self._law = _reset(closed, loop)
         self._measure = encoders.measure

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
 
@@ -12,13 +13,13 @@ from runner.loop.contact import Contact
 from runner.loop.drive import make_drive
 from runner.loop.failures import find_failure
 from runner.loop.recorder import CHECK_EVERY, Recorder
-from runner.sensing import JointEncoders
+from runner.sensing import Encoders, JointEncoders
 
 
 def run_commands(
     compiled: CompiledCommands,
     closed: ClosedLoop,
-    encoders: Sequence[JointEncoders],
+    encoders: Sequence[Encoders],
     contact: Contact | None,
     recorder: Recorder,
 ) -> None:
@@ -27,11 +28,11 @@ def run_commands(
     Args:
         compiled: Their code.
         closed: The closed loop.
-        encoders: The joint measurement of each loop.
+        encoders: The joint measurement of each loop, ours.
         contact: What the tip feels; None where there is nothing to feel.
         recorder: Holds times and reference, and takes the rows.
     """
-    errors = [each.errors for each in encoders]
+    errors = [cast(JointEncoders, each).errors for each in encoders]
     run = compiled.begin(recorder.times, recorder.desired, errors, closed.q_start, recorder.joints)
     recorder.q, recorder.dq, recorder.commands, recorder.end_points = run.q, run.dq, run.torque, run.end_points
     drive, plant, tick, clock, now = make_drive(closed, recorder), closed.plant, run.tick, recorder.clock, recorder.now
@@ -53,16 +54,17 @@ def run_commands(
         recorder.stop(k, error)
 
 
-def run_whole(whole: Whole, closed: ClosedLoop, encoders: Sequence[JointEncoders], recorder: Recorder) -> None:
+def run_whole(whole: Whole, closed: ClosedLoop, encoders: Sequence[Encoders], recorder: Recorder) -> None:
     """Run a closed loop that is compiled as a whole.
 
     Args:
         whole: Its code.
         closed: The closed loop.
-        encoders: The joint measurement of each loop.
+        encoders: The joint measurement of each loop, ours.
         recorder: Holds times and reference, and takes the rows.
     """
-    began, commands, errors = time.perf_counter_ns(), whole.commands, [each.errors for each in encoders]
+    began, commands = time.perf_counter_ns(), whole.commands
+    errors = [cast(JointEncoders, each).errors for each in encoders]
     signals = run_all(
         whole,
         whole.values[None],

@@ -7,7 +7,7 @@ import numpy as np
 from runner.interaction import Interaction
 from runner.loop.closed_loop import ClosedLoop
 from runner.plants import ContactPlant, ToolReactionPlant, innermost
-from runner.sensing import ForceTorqueSensor
+from runner.sensing import WristSensor
 from runner.trace import ContactSignals, FloatArray
 
 _NOTHING = np.zeros(6)
@@ -22,7 +22,7 @@ class Contact:
         wrist: The force/torque sensor, with a draw for each tick.
     """
 
-    def __init__(self, closed: ClosedLoop, interaction: Interaction, wrist: ForceTorqueSensor) -> None:
+    def __init__(self, closed: ClosedLoop, interaction: Interaction, wrist: WristSensor) -> None:
         moved = innermost(closed.plant)
         self._contacts = moved if isinstance(moved, ContactPlant) else None
         self._reactions = moved if isinstance(moved, ToolReactionPlant) else None

@@ -8,7 +8,7 @@ from runner.config.run import RunConfig
 from runner.controllers.kinds import ReadsJointTorques
 from runner.loop.closed_loop import ClosedLoop
 from runner.plants.friction import friction_of
-from runner.sensing import JointTorqueSensor
+from runner.sensing import JOINT_TORQUE_SENSORS, JointTorqueSensor, TorqueSensors
 from runner.trace import FloatArray
 
 _SEED = 2**32 - 2  # in the seeds of these sensors; the loops' places count from 0, and beliefs have 2**32 - 1
@@ -33,7 +33,7 @@ class JointTorques:
         commands: What the loops asked for at each tick, shape (T, nq), in N m.
     """
 
-    def __init__(self, closed: ClosedLoop, sensor: JointTorqueSensor | None, commands: FloatArray) -> None:
+    def __init__(self, closed: ClosedLoop, sensor: TorqueSensors | None, commands: FloatArray) -> None:
         self._closed, self._sensor, self._commands = closed, sensor, commands
         self._readers = [
             _Reader(loop.controller, closed.every(loop), np.zeros(commands.shape[1]))
@@ -57,12 +57,16 @@ class JointTorques:
             reader.sum, reader.count = reader.sum + acted, reader.count + 1
 
 
-def make_joint_torque_sensor(closed: ClosedLoop, config: RunConfig, repetition: int) -> JointTorqueSensor | None:
+def make_joint_torque_sensor(closed: ClosedLoop, config: RunConfig, repetition: int) -> TorqueSensors | None:
     """Make the torque sensors of the joints for one repetition, where there are any.
 
     Their noise follows from (seed, repetition) alone, and changes no other draw.
     """
-    if config.joint_torques is None:
+    plugged = config.plugged.get("joint_torque_sensor")
+    if config.joint_torques is None and plugged is None:
         return None
     generator = np.random.default_rng([config.settings.seed, repetition, _SEED])
+    if plugged is not None:
+        return JOINT_TORQUE_SENSORS.build(plugged, closed.robot.model.joint_names, closed.ticks + 1, generator)
+    assert config.joint_torques is not None  # noqa: S101 - one of both is there
     return JointTorqueSensor(closed.ticks + 1, *config.joint_torques, generator)

@@ -1,6 +1,7 @@
 """A robot as its controllers believe it to be, apart from what it is."""
 
 import copy
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Annotated
 
@@ -8,7 +9,8 @@ import numpy as np
 import pinocchio as pin
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
-from runner.registry import StrictModel
+from runner.guard import watch_belief
+from runner.registry import KindConfig, Registry, StrictModel
 from runner.robots.model import FloatArray, RobotModel
 from runner.robots.robot import Robot
 
@@ -35,11 +37,18 @@ class MismatchConfig(StrictModel):
     spread: Annotated[float, Field(ge=0.0, lt=1.0)]
 
 
-_NONE = MismatchConfig(mass=1.0, centre_of_mass=1.0, length=1.0, gravity=1.0, payload=0.0, spread=0.0)
+NONE = MismatchConfig(mass=1.0, centre_of_mass=1.0, length=1.0, gravity=1.0, payload=0.0, spread=0.0)
+
+MISMATCHES = Registry[KindConfig, [Robot, np.random.Generator], Robot]("mismatch", {}, watch=watch_belief)
+"""Mismatches of plug-ins in place of ours: `build` gets the robot as it is and a generator, and gives the believed."""
 
 
 def believe(
-    robot: Robot, mismatch: MismatchConfig, payload_position: FloatArray, generator: np.random.Generator
+    robot: Robot,
+    mismatch: MismatchConfig,
+    payload_position: FloatArray,
+    generator: np.random.Generator,
+    plugged: KindConfig | None = None,
 ) -> Robot:
     """Return a robot with every model changed by a mismatch, the whole's and each stage's alike.
 
@@ -48,8 +57,11 @@ def believe(
         mismatch: How the belief differs.
         payload_position: Where the payload is, in the tip's frame, shape (3,), in m.
         generator: Source of the draws.
+        plugged: The mismatch of a plug-in in place of ours.
     """
-    if mismatch == _NONE:
+    if plugged is not None:
+        return MISMATCHES.build(plugged, robot, generator)
+    if mismatch == NONE:
         return robot
     factors = 1.0 + mismatch.spread * generator.uniform(-1.0, 1.0, (robot.model.nq, 2))
 
@@ -58,9 +70,19 @@ def believe(
         masses, centres = (factors[joints] * (mismatch.mass, mismatch.centre_of_mass)).T
         return scaled(loaded, masses, centres, np.full(len(masses) + 1, mismatch.length), mismatch.gravity)
 
+    return with_models(robot, change)
+
+
+def with_models(robot: Robot, change: Callable[[RobotModel, slice, bool], RobotModel]) -> Robot:
+    """Return a robot with every model changed, the whole's and each stage's alike.
+
+    Args:
+        robot: The robot.
+        change: Changes a model, given this, its joints within the robot's, and whether it bears the payload.
+    """
     last = robot.stages[-1]
     stages = tuple(replace(stage, model=change(stage.model, stage.joints, stage is last)) for stage in robot.stages)
-    whole = stages[0].model if len(stages) == 1 else change(robot.model, slice(None), bears_payload=True)
+    whole = stages[0].model if len(stages) == 1 else change(robot.model, slice(None), True)
     return replace(robot, model=whole, stages=stages)
 
 

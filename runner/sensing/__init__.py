@@ -3,13 +3,20 @@
 from runner.sensing.encoders import EncoderNoise, JointEncoders, encoder_errors
 from runner.sensing.force_torque import ForceTorqueConfig, ForceTorqueSensor
 from runner.sensing.joint_torque import JointTorqueConfig, JointTorqueSensor
+from runner.sensing.kinds import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, Encoders, TorqueSensors, WristSensor
 
 __all__ = [
+    "JOINT_TORQUE_SENSORS",
+    "NOISES",
+    "WRIST_SENSORS",
     "EncoderNoise",
+    "Encoders",
     "ForceTorqueConfig",
     "ForceTorqueSensor",
     "JointEncoders",
     "JointTorqueConfig",
     "JointTorqueSensor",
+    "TorqueSensors",
+    "WristSensor",
     "encoder_errors",
 ]

@@ -55,6 +55,20 @@ class ForceTorqueConfig(StrictModel):
         return variance
 
 
+IDEAL = ForceTorqueConfig(
+    range=[1e9] * 6,
+    resolution=[0.0] * 6,
+    noise=[0.0] * 6,
+    bias=[0.0] * 6,
+    drift=[0.0] * 6,
+    low_pass=None,
+    rotation=0.0,
+    height=0.0,
+    mass=0.0,
+)
+"""An exact sensor without mass in the flange's frame."""
+
+
 class ForceTorqueSensor:
     """Readings of the wrench that the world and the tool put on the sensor, at the ticks of one control loop.
 

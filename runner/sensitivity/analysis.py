@@ -144,6 +144,9 @@ def _why_not(config: RunConfig) -> str:
         return f"controller {config.controller.kind} commands joint positions; only laws that give torques are compiled"
     if config.feels:
         return f"environment {config.environment.kind}: runs in which the tip feels something are not compiled whole"
+    if config.plugged:
+        kinds = ", ".join(f"{group}={part.kind}" for group, part in config.plugged.items())
+        return f"runs with {kinds} of a plug-in are not compiled"
     if (config.noise.resolution > 0.0).any():
         return "noise.resolution rounds the measured positions to steps, which have no derivative; set it to 0"
     return ""

@@ -20,8 +20,8 @@ _LEFT_OUT = ("caveats", "limits", "outputs", "preset", "spec", "sweep")
 _PHYSICS = (
     "assembly.py", "batch.py", "batch_blocks.py", "batch_jobs.py", "calibration", "calibration_job.py", "compiled",
     "config", "controllers", "environments", "execution.py", "feasibility.py", "guard", "interaction.py", "job.py",
-    "loop", "metrics", "plant_error.py", "plants", "registry.py", "robots", "sensing", "simulation.py", "trace.py",
-    "trajectories",
+    "loop", "metrics", "plant_error.py", "plants", "pushed_links.py", "registry.py", "robots", "sensing",
+    "simulation.py", "trace.py", "trajectories",
 )  # fmt: skip
 
 _ENGINES = {"bullet": ("pybullet",), "mujoco": ("mujoco",), "kinematic": (), "rk4": (), "none": ()}  # of our plants

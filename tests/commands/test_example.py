@@ -18,7 +18,8 @@ def test_all_examples_are_copied_as_they_are(cli, tmp_path):
     assert ending.err == f"runner: {len(copied)} files copied; new/mine/own_robot/README.md is a start\n"
 
 
-def test_a_copied_example_runs(cli):
+def test_a_copied_example_runs(cli, monkeypatch):
+    monkeypatch.setenv("RUNNER_PLUGINS", "")  # so that the plug-in is forgotten after the test
     folder = cli("example", "mine").folder
     parts = ("--plugin", f"controller={folder}/own_robot/gravity_pd.py", "--config-dir", f"{folder}/own_robot")
     assert cli(*parts, "robot=lamp", "controller=gravity_pd", "trajectory=goal", "duration=0.05").code == 0

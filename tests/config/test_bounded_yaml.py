@@ -63,6 +63,11 @@ def test_numbers_and_dates_that_python_has_not_are_told(text):
         read_yaml(text, "f.yaml")
 
 
+def test_a_key_that_stands_twice_is_refused():
+    with pytest.raises(YamlError, match=r"own.yaml, line 3: the key 'a' stands twice"):
+        read_yaml("a: {b: 1}\nc: {a: 2}\na: 3\n", "own.yaml")
+
+
 def test_aliases_count_as_what_they_stand_for():
     text = "a: &a [1, 2, 3]\nb: [*a, *a]"
     check_yaml(text, "f", Bounds(characters=100, values=16))  # 4 of a, 9 of b, two keys and the whole

@@ -50,6 +50,90 @@ WIND = """
     def build(config):
         return Wind()
 """
+CABLE = """
+    from typing import Literal
+    import numpy as np
+    from runner.registry import StrictModel
+    class CONFIG(StrictModel):
+        kind: Literal["NAME"]
+    class Cable:
+        points = {"link2": [0.0, 0.0, 0.5]}
+        def reset(self, tip):
+            spoil(tip)
+        def wrench(self, time, tip, velocity):
+            return np.zeros(6)
+        def link_forces(self, time, positions, velocities):
+            answer = -5.0 * velocities
+            spoil(positions, velocities)
+            return answer
+        def joint_torques(self, time, q, dq):
+            answer = -0.5 * q
+            spoil(q, dq)
+            return answer
+    def build(config):
+        return Cable()
+"""
+NOISE = """
+    from typing import Literal
+    from runner.registry import StrictModel
+    class CONFIG(StrictModel):
+        kind: Literal["NAME"]
+    class Encoders:
+        def __init__(self, errors):
+            self.errors = errors
+        def measure(self, tick, q, dq):
+            answer = (q + self.errors[tick], 0.9 * dq)
+            spoil(q, dq)
+            return answer
+    def build(config, joints, ticks, period, generator):
+        return Encoders(1e-4 * generator.normal(size=(ticks, len(joints))))
+"""
+WRIST = """
+    from typing import Literal
+    from runner.registry import StrictModel
+    class CONFIG(StrictModel):
+        kind: Literal["NAME"]
+    class Sensor:
+        def read(self, tick, wrench):
+            answer = 0.9 * wrench
+            spoil(wrench)
+            return answer
+    def build(config, ticks, period, generator):
+        generator.normal(size=ticks)
+        return Sensor()
+"""
+TORQUES = """
+    from typing import Literal
+    from runner.registry import StrictModel
+    class CONFIG(StrictModel):
+        kind: Literal["NAME"]
+    class Sensors:
+        def read(self, tick, torque):
+            answer = 1.01 * torque
+            spoil(torque)
+            return answer
+    def build(config, joints, ticks, generator):
+        return Sensors()
+"""
+BELIEF = """
+    import copy
+    from typing import Literal
+    import numpy as np
+    from runner.registry import StrictModel
+    from runner.robots.mismatch import scaled, with_models
+    class CONFIG(StrictModel):
+        kind: Literal["NAME"]
+    def build(config, robot, generator):
+        def change(model, joints, bears_payload):
+            ones = np.ones(model.nq)
+            return scaled(model, 0.9 * ones, ones, np.ones(model.nq + 1))
+        believed = copy.deepcopy(with_models(robot, change))
+        if SPOILS:
+            robot.model.pin_model.gravity.linear = np.zeros(3)
+            robot.model._data.oMi[1].translation[:] = 9.0
+            spoil(robot.stages[0].home)
+        return believed
+"""
 PLANT = """
     from typing import Literal
     import numpy as np
@@ -123,6 +207,7 @@ CALIBRATION = """
         spoil(handed, bench.home, bench.tool.centre_of_mass)
         return procedure
 """
+OBSERVER = ["controller=computed_torque", "disturbance_observer=momentum", "disturbance_observer.torque=measured"]
 SPOIL = """
 import numpy as np
 SPOILS = {spoils}
@@ -155,17 +240,30 @@ def write_part(mine, group, name, module, spoils):
 
 @pytest.mark.parametrize(
     ("group", "module"),
-    [("controller", LAW), ("environment", WIND), ("plant", PLANT), ("trajectory", PATH), ("metric", METRIC)],
+    [
+        ("controller", LAW),
+        ("environment", WIND),
+        ("environment", CABLE),
+        ("noise", NOISE),
+        ("wrist_sensor", WRIST),
+        ("joint_torque_sensor", TORQUES),
+        ("mismatch", BELIEF),
+        ("plant", PLANT),
+        ("trajectory", PATH),
+        ("metric", METRIC),
+    ],
 )
 def test_an_array_made_writable_again_reaches_nothing(mine, cli, group, module):
     found = {}
     for spoils in (False, True):
-        name = f"{group}_{'spoils' if spoils else 'honest'}"
+        name = f"{group}_{len(module)}_{'spoils' if spoils else 'honest'}"  # one module of a name in a process
         write_part(mine, group, name, module, spoils)
         choose = [] if group == "metric" else [f"{group}={name}"]
         path = [] if group == "trajectory" else ["trajectory=quintic"]
         plant = [] if group == "plant" else ["plant=rk4"]
-        given = ("repetitions=2", "duration=0.4", "noise=thesis", *path, *plant, *choose)
+        noise = [] if group == "noise" else ["noise=thesis"]
+        read = {"wrist_sensor": ["environment=push"], "joint_torque_sensor": OBSERVER}.get(group, [])
+        given = ("repetitions=2", "duration=0.4", *noise, *path, *plant, *read, *choose)
         ending = cli("--config-dir", mine, "robot=macro", *given)
         assert ending.code == 0, ending.err
         found[spoils] = open_run(ending.folder)

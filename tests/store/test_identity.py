@@ -110,8 +110,9 @@ def test_every_room_is_physics_or_known_not_to_be():
         "api", "audit", "caveats", "claims", "cli.py", "commands", "comparison", "data_file.py", "doctor",
         "engine_output.py", "engines.py", "errors.py", "export", "folder_code.py",
         "completion", "drawing", "expressions", "latest.py", "paths.py", "plugins.py", "progress", "provenance.py",
-        "quantities.py", "quiet.py", "recall", "references", "reporting", "sensitivity", "servo_contact.py",
-        "spec", "statistics", "store", "sweeps", "texts.py", "tuning", "works", "__init__.py", "__main__.py",
+        "quantities.py", "quiet.py", "recall", "recordings", "references", "reporting", "sensitivity",
+        "servo_contact.py", "spec", "statistics", "store", "sweeps", "texts.py", "tuning", "works",
+        "__init__.py", "__main__.py",
     }  # fmt: skip
     rooms = {path.name for path in package_dir().iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()}
     assert set(identity._PHYSICS) | after_the_run == rooms

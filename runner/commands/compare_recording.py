@@ -1,0 +1,58 @@
+"""A recording beside a run for `runner compare`: printed, and written as a report."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from runner.commands.columns import aligned, number
+from runner.texts import one_line
+
+if TYPE_CHECKING:
+    from runner.recordings.compare import RecordingComparison
+
+
+def print_recording(folder: Path, recording: Path, columns: Path) -> None:
+    """Print how a recording differs from a run, and write the report; its folder is the last line.
+
+    Args:
+        folder: The run's.
+        recording: The recording, CSV.
+        columns: What its columns are, YAML.
+
+    Raises:
+        RunnerError: if one of them cannot be read, or the recording does not fit the run.
+    """
+    from runner import progress, store
+    from runner.latest import note
+    from runner.progress.stages import READING, SOON, of_report
+    from runner.recordings.compare import compare_recording
+    from runner.reporting.recording.report import recording_document, report_folder
+    from runner.reporting.render import write_report
+
+    progress.plan({READING: SOON, **of_report(("html", "pdf"))})
+    progress.begin(READING)
+    found = compare_recording(store.open_run(folder), recording, columns)
+    print(_told(found), end="\n\n")
+    made = report_folder(found)
+    write_report(recording_document(found), made)
+    note(made)
+    print(made)
+
+
+def _told(found: "RecordingComparison") -> str:
+    from runner.recordings import words
+
+    parts = [
+        f"run        {found.run.folder}",
+        f"recording  {found.recording.path}",
+        one_line(words.aligned_text(found)),
+        "",
+        aligned([words.RESIDUAL_HEADER, *words.residual_rows(found, number)], indent=""),
+        "",
+        one_line(words.FIT),
+        "",
+        aligned([["metric", "unit", "run", "recording"], *words.metric_rows(found, number)], indent=""),
+        "",
+        *words.friction_lines(found),
+    ]
+    rows = words.friction_rows(found, number)
+    return "\n".join([*parts, *([aligned([words.FRICTION_HEADER, *rows], indent="")] if rows else [])])

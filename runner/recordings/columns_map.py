@@ -1,0 +1,174 @@
+"""What the columns of a recording are: which signal of the arm each holds, and in which unit."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+from pydantic import Field, FiniteFloat, PositiveFloat, model_validator
+
+from runner.config.units import WRITTEN
+from runner.data_file import read_data
+from runner.errors import RunnerError, nearest
+from runner.registry import StrictModel
+from runner.texts import quoted
+
+AMPERE = "A"
+SignalKind = Literal["position", "torque", "tip"]
+
+
+class Signal(NamedTuple):
+    """A signal of an arm.
+
+    Attributes:
+        kind: The position or torque of a joint, or a coordinate of the tip in the base frame.
+        of: Name of the joint; x, y or z of the tip.
+    """
+
+    kind: SignalKind
+    of: str
+
+    @property
+    def words(self) -> str:
+        """What it is called."""
+        return f"tip {self.of}" if self.kind == "tip" else f"{self.kind} of {self.of}"
+
+
+class TimeColumn(StrictModel):
+    """Where the time stands.
+
+    Attributes:
+        column: Name of the column.
+        unit: Its unit, such as s or ms.
+    """
+
+    column: str
+    unit: str
+
+
+class Column(StrictModel):
+    """What a column holds: one of joint, torque and tip says which signal.
+
+    Attributes:
+        joint: The joint whose position it holds.
+        torque: The joint whose torque it holds, or the current of whose motor.
+        tip: The coordinate of the tip in the base frame.
+        unit: Its unit, such as deg, N m or mm; A for a current.
+        constant: Torque by current, in N m/A (N/A where the joint slides): the motor's constant times its gear ratio,
+            below zero where a current drives the joint backwards.
+    """
+
+    joint: str | None = None
+    torque: str | None = None
+    tip: Literal["x", "y", "z"] | None = None
+    unit: str
+    constant: FiniteFloat | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> "Column":
+        given = [name for name in ("joint", "torque", "tip") if getattr(self, name) is not None]
+        if len(given) != 1:
+            found = f"found {' and '.join(given)}" if given else "found none of them"
+            raise ValueError(f"must say one of joint, torque and tip; {found}")
+        if (self.unit == AMPERE) != (self.constant is not None):
+            raise ValueError("a current needs constant, in N m/A, and nothing else takes it: unit: A, constant: 1.6")
+        if self.constant is not None and self.torque is None:
+            raise ValueError("a current is that of a motor: say by torque whose")
+        return self
+
+    @property
+    def signal(self) -> Signal:
+        """The signal that it holds."""
+        if self.joint is not None:
+            return Signal("position", self.joint)
+        return Signal("torque", self.torque) if self.torque is not None else Signal("tip", str(self.tip))
+
+
+class ColumnsMap(StrictModel):
+    """What the columns of a recording are.
+
+    Attributes:
+        time: Where the time stands; None where rows come at an even rate.
+        rate: Rows in a second, in Hz; beside a column of time it must agree with that.
+        columns: What each column holds, by its name; columns that are not named are not read.
+    """
+
+    time: TimeColumn | None = None
+    rate: PositiveFloat | None = None
+    columns: dict[str, Column] = Field(min_length=1)
+
+    @model_validator(mode="after")
+    def _check(self) -> "ColumnsMap":
+        if self.time is None and self.rate is None:
+            raise ValueError("needs time, as in time: {column: t, unit: s}, or rate, in Hz, as in rate: 500.0")
+        first: dict[Signal, str] = {}
+        for name, column in self.columns.items():
+            before = first.setdefault(column.signal, name)
+            if before != name:
+                raise ValueError(f"columns: {before} and {name} both hold the {column.signal.words}; leave one out")
+        return self
+
+
+class Factor(NamedTuple):
+    """What makes the numbers of a column SI.
+
+    Attributes:
+        factor: SI units in one of the column's.
+        unit: The SI unit.
+    """
+
+    factor: float
+    unit: str
+
+
+def read_map(path: Path, joints: Sequence[str], units: Sequence[str]) -> tuple[ColumnsMap, dict[str, Factor]]:
+    """Return what a file says of a recording's columns, and the factor of each column to SI.
+
+    Args:
+        path: The file, YAML.
+        joints: Names of the robot's joints.
+        units: Unit of each joint's position: rad, or m where it slides.
+
+    Raises:
+        RunnerError: if it cannot be read, names a joint that the robot does not have, or a unit that does not fit.
+    """
+    found = read_data(path, ColumnsMap)
+    problems = list(_unknown_joints(found, joints))
+    factors: dict[str, Factor] = {}
+    slides = {joint: unit == "m" for joint, unit in zip(joints, units, strict=True)}
+    wanted = {} if found.time is None else {found.time.column: (found.time.unit, "s", "time")}
+    wanted |= {
+        name: (column.unit, _si_unit(column.signal, slides), f"columns.{name}")
+        for name, column in found.columns.items()
+        if column.unit != AMPERE
+    }
+    for name, (unit, own, key) in wanted.items():
+        factor = WRITTEN[own].get(unit)
+        if factor is None:
+            near = nearest(unit, WRITTEN[own])
+            problems.append(f"{key}.unit: must be one of {', '.join(WRITTEN[own])}; found {quoted(unit)}{near}")
+        else:
+            factors[name] = Factor(float(factor), own)
+    for name, column in found.columns.items():
+        if column.constant is not None:
+            factors[name] = Factor(column.constant, _si_unit(column.signal, slides))
+    if problems:
+        raise RunnerError(f"{path}: {'; '.join(problems)}")
+    return found, factors
+
+
+def _unknown_joints(found: ColumnsMap, joints: Sequence[str]) -> Iterator[str]:
+    for name, column in found.columns.items():
+        joint = column.joint if column.joint is not None else column.torque
+        if joint is not None and joint not in joints:
+            yield (
+                f"columns.{name}: the robot has no joint {quoted(joint)}{nearest(joint, joints)}; joints: "
+                f"{', '.join(joints)}"
+            )
+
+
+def _si_unit(signal: Signal, slides: dict[str, bool]) -> str:
+    if signal.kind == "tip":
+        return "m"
+    if signal.kind == "position":
+        return "m" if slides.get(signal.of) else "rad"
+    return "N" if slides.get(signal.of) else "N m"

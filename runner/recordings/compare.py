@@ -1,0 +1,151 @@
+"""A recording held against a run: aligned in time, signal by signal, metric by metric, and its friction."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from runner.errors import RunnerError
+from runner.recordings.columns_map import Signal, read_map
+from runner.recordings.friction import Friction, identify_friction
+from runner.recordings.metrics import both_metrics
+from runner.recordings.offset import Offset, find_offset
+from runner.recordings.recording import FEWEST_ROWS, Recording, read_recording
+from runner.recordings.residuals import Residual
+from runner.recordings.setting import Setting, setting_of
+from runner.recordings.smoothing import FloatArray, cutoff, derivative, evenly, low_pass
+from runner.recordings.unit_check import other_units
+from runner.store import Run
+
+_SLACK = 0.01  # of a recording's period: a tick so little beyond its ends is covered
+
+
+@dataclass(frozen=True)
+class RecordingComparison:
+    """A recording beside a run.
+
+    Attributes:
+        run: The run.
+        recording: The recording.
+        offset: When the run began on the recording's clock.
+        residuals: Each recorded signal beside the run's, at the run's ticks.
+        metrics: Each metric of the run and of the recording over these ticks, by name; None for no value.
+        friction: What was identified; None where nothing could be.
+        no_friction: Why nothing could be; empty otherwise.
+        simulated_friction: Viscous and Coulomb friction of each joint in the run, by joint.
+    """
+
+    run: Run
+    recording: Recording
+    offset: Offset
+    residuals: Sequence[Residual]
+    metrics: Mapping[str, tuple[float | None, float | None]]
+    friction: Friction | None
+    no_friction: str
+    simulated_friction: Mapping[str, tuple[float, float]]
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last time of the run that the recording covers, in s."""
+        t = self.residuals[0].t
+        return float(t[0]), float(t[-1])
+
+
+def compare_recording(run: Run, path: Path, columns: Path) -> RecordingComparison:
+    """Hold a recording against a run.
+
+    Args:
+        run: The run.
+        path: The recording, CSV.
+        columns: What its columns are, YAML; see ColumnsMap.
+
+    Raises:
+        RunnerError: if a file cannot be read or does not fit the run; names what is wrong, and its line or column.
+    """
+    setting = setting_of(run)
+    trace = setting.trace
+    said, factors = read_map(columns, trace.joint_names, trace.joint_units)
+    recording = read_recording(path, said, factors)
+    moving = [signal for signal in recording.signals if signal.kind != "torque"]
+    if not moving:
+        raise RunnerError(f"{columns}: columns: needs the position of a joint, or a coordinate of the tip")
+    offset = find_offset(
+        recording.t,
+        np.column_stack([recording.signals[signal] for signal in moving]),
+        trace.t,
+        np.column_stack([setting.signal(signal) for signal in moving]),
+        [f"columns.{recording.columns[signal]}" for signal in moving],
+    )
+    ticks, at = _covered(recording, trace.t, offset)
+    recorded = {signal: _at(recording, values, signal, at) for signal, values in recording.signals.items()}
+    simulated = {signal: setting.signal(signal)[ticks] for signal in recorded}
+    questions = list(other_units(recorded, simulated, recording.columns, recording.units))
+    if questions:
+        raise RunnerError(f"{columns}: {'; '.join(questions)}")
+    units = {signal: recording.units[column].unit for signal, column in recording.columns.items()}
+    q = recording.of_joints("position", trace.joint_names)
+    friction, reason = _friction(setting, recording, q)
+    return RecordingComparison(
+        run=run,
+        recording=recording,
+        offset=offset,
+        residuals=[Residual(s, units[s], trace.t[ticks], recorded[s], simulated[s]) for s in recorded],
+        metrics=both_metrics(setting, ticks, recorded, None if q is None else _speeds(recording, q, at)),
+        friction=friction,
+        no_friction=reason,
+        simulated_friction=_simulated_friction(run, trace.joint_names),
+    )
+
+
+def _covered(recording: Recording, t: FloatArray, offset: Offset) -> tuple[slice, FloatArray]:
+    """Return the ticks of a run that a recording covers, and their times on its clock, in s."""
+    at = t + offset.start
+    slack = _SLACK * recording.period
+    first, end = (int(np.searchsorted(at, edge)) for edge in (recording.t[0] - slack, recording.t[-1] + slack))
+    if end - first < FEWEST_ROWS:
+        raise RunnerError(
+            f"{recording.path}: too short: it covers {end - first} ticks of the run; needed: {FEWEST_ROWS} or more"
+        )
+    return slice(first, end), np.clip(at[first:end], recording.t[0], recording.t[-1])
+
+
+def _at(recording: Recording, values: FloatArray, signal: Signal, at: FloatArray) -> FloatArray:
+    """Return a signal at some times; torques, which jump, along straight lines."""
+    if signal.kind == "torque":
+        return np.asarray(np.interp(at, recording.t, values))
+    return evenly(recording.t, values, at)
+
+
+def _even(recording: Recording, signals: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return even times from the first row to the last, and signals at them, shape (N, n)."""
+    count = int(recording.duration / recording.period + 1e-6) + 1
+    times = np.minimum(recording.t[0] + recording.period * np.arange(count), recording.t[-1])
+    return times, evenly(recording.t, signals, times)
+
+
+def _speeds(recording: Recording, q: FloatArray, at: FloatArray) -> FloatArray:
+    times, even = _even(recording, q)
+    smooth = low_pass(even, recording.period, cutoff(recording.period))
+    return evenly(times, derivative(smooth, recording.period), np.clip(at, times[0], times[-1]))
+
+
+def _friction(setting: Setting, recording: Recording, q: FloatArray | None) -> tuple[Friction | None, str]:
+    """Return the friction of a recorded arm, or why it cannot be identified."""
+    joints = setting.trace.joint_names
+    missing = [joint for joint in joints if Signal("position", joint) not in recording.signals]
+    if q is None:
+        return None, f"no position of {', '.join(missing)} is recorded"
+    torques = [recording.signals.get(Signal("torque", joint)) for joint in joints]
+    if all(torque is None for torque in torques):
+        return None, "no torque is recorded"
+    columns = [np.full(len(q), np.nan) if torque is None else torque for torque in torques]
+    times, even = _even(recording, q)
+    held = np.column_stack([np.interp(times, recording.t, column) for column in columns])
+    return identify_friction(setting.config.arm.model, even, held, recording.period), ""
+
+
+def _simulated_friction(run: Run, joints: Sequence[str]) -> dict[str, tuple[float, float]]:
+    friction = run.config["plant"].get("friction", {})
+    viscous, coulomb = (np.broadcast_to(friction.get(key, 0.0), len(joints)) for key in ("viscous", "coulomb"))
+    return {joint: (float(b), float(c)) for joint, b, c in zip(joints, viscous, coulomb, strict=True)}

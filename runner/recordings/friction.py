@@ -1,0 +1,220 @@
+r"""Friction of an arm's joints, identified from recorded positions and torques.
+
+.. math:: \tau - (M \ddot q + V + G) = Y(q, \dot q, \ddot q)\, \Delta\theta + b\, \dot q + c\, \mathrm{sgn}\, \dot q + o
+
+M, V and G are those of the run's model, b viscous friction, c Coulomb friction and o a constant of each joint. The
+recorded arm may have other masses than the model, Delta theta, which the linear model of rigid bodies Y takes up
+(Atkeson, An and Hollerbach, International Journal of Robotics Research 5(3), 1986), so that they are not mistaken for
+friction. Positions are differentiated behind a low-pass that leaves the motion as it is. Both sides of the equation
+then run through a lower one, all without delay, and are thinned to what that leaves independent (Gautier, Dynamic
+identification of robots with power model, IEEE ICRA 1997). Rows near standstill are left out, as sgn tells nothing
+there. Joints are weighted by what is left over in each, and the columns of Y are taken out first, so that friction
+which cannot be told from other masses is not given. The intervals allow for what is left over to be correlated within
+half a second and between joints (Liang and Zeger, Biometrika 73(1), 1986).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+from scipy.stats import t as student
+
+from runner.recordings.smoothing import FloatArray, cutoff, derivative, low_pass
+from runner.robots.model import RobotModel
+
+_FIRST = 5.0  # times the cut-off: that of the low-pass before the equations, which leaves the motion as it is
+_SAMPLES = 4.0  # times that, the fewest samples in a second that the equations are worked out at
+_STANDSTILL = 0.05  # of a joint's largest speed
+_SLOW = 0.01  # of the largest speed of all joints of its kind: a joint that is slower creeps
+_ONE_WAY = 0.98  # of sgn behind the low-pass: below it the joint has just turned round
+_FEWEST = 10  # rows of a joint in each direction
+_ROUNDING = 1e-5  # of the largest singular value of Y: what is below tells of no mass
+_TOLD_APART = 0.05  # share of a column of friction that other columns must leave
+_WEIGHINGS = 3
+_BLOCK = 0.5  # s, within which what is left over may be correlated
+
+
+@dataclass(frozen=True)
+class JointFriction:
+    """Friction of a joint, each with the half-width of its 95 % interval.
+
+    Attributes:
+        joint: Its name.
+        unit: Unit of its position.
+        viscous: b, in N m s/rad; N s/m where it slides.
+        viscous_half: Half-width.
+        coulomb: c, in N m; N where it slides.
+        coulomb_half: Half-width.
+        constant: o, in N m; N where it slides.
+        speed: Speeds of the rows, shape (N,), in rad/s.
+        torque: Residual torques less what other masses and o explain, shape (N,), in N m.
+    """
+
+    joint: str
+    unit: str
+    viscous: float
+    viscous_half: float
+    coulomb: float
+    coulomb_half: float
+    constant: float
+    speed: FloatArray
+    torque: FloatArray
+
+
+@dataclass(frozen=True)
+class Friction:
+    """What was identified.
+
+    Attributes:
+        joints: The joints whose friction was found.
+        lacking: Why there is none of another joint, a text for each.
+        frequency: Cut-off of the low-pass, in Hz.
+    """
+
+    joints: Sequence[JointFriction]
+    lacking: Sequence[str]
+    frequency: float
+
+
+def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, period: float) -> Friction:
+    """Return the friction of the joints of an arm.
+
+    Args:
+        model: The run's model of the arm.
+        q: Recorded joint positions, even samples, shape (N, nq), in rad.
+        torques: Recorded joint torques, shape (N, nq), in N m; NaN throughout for a joint without.
+        period: Time between two samples, in s.
+    """
+    frequency = cutoff(period)
+    first = min(_FIRST * frequency, 0.25 / period)
+    every = max(1, int(1.0 / (_SAMPLES * first * period)))
+    q, torques = (low_pass(signals, period, first)[::every] for signals in (q, torques))
+    period *= every
+    dq = derivative(q, period)
+    rows = list(zip(q, dq, derivative(dq, period), strict=True))
+    pin_model, data = pin.Model(model.pin_model), model.pin_model.createData()
+    rigid = np.array([pin.rnea(pin_model, data, *row) for row in rows])
+    Y = np.array([pin.computeJointTorqueRegressor(pin_model, data, *row).copy() for row in rows])
+    edge, apart = round(1.0 / (frequency * period)), max(1, int(0.5 / (frequency * period)))
+    thinned = np.arange(edge, len(q) - edge, apart)
+    fastest = np.abs(dq).max(axis=0)
+    lacking: list[str] = []
+    parts: list[_Part] = []
+    for joint, name in enumerate(model.joint_names):
+        signals = (torques[:, joint] - rigid[:, joint], dq[:, joint], np.sign(dq[:, joint]), Y[:, joint])
+        residual, speed, sign, masses = (low_pass(signal, period, frequency)[thinned] for signal in signals)
+        moving = (np.abs(speed) > _STANDSTILL * fastest[joint]) & (np.abs(sign) > _ONE_WAY)
+        moving &= fastest[joint] > _SLOW * fastest[model.slides == model.slides[joint]].max()
+        if not np.isfinite(torques[:, joint]).all():
+            lacking.append(f"{name}: no torque is recorded")
+        elif min(np.sum(moving & (speed > 0.0)), np.sum(moving & (speed < 0.0))) < _FEWEST:
+            lacking.append(f"{name}: it moves too little, or in one direction alone")
+        else:
+            blocks = (thinned[moving] * period / _BLOCK).astype(np.intp)
+            parts.append(_Part(joint, blocks, *(signal[moving] for signal in (residual, speed, sign, masses))))
+    found: list[JointFriction] = []
+    for part, fitted in zip(parts, _fit(parts), strict=True):
+        name = model.joint_names[part.joint]
+        if fitted is None:
+            lacking.append(f"{name}: its motion does not tell friction from other masses")
+        else:
+            found.append(JointFriction(name, model.joint_units[part.joint], *fitted))
+    return Friction(found, lacking, frequency)
+
+
+@dataclass(frozen=True)
+class _Part:
+    """The rows of a joint behind the low-pass: residual torque, speed, sign of the speed, Y of shape (N, 10 nq)."""
+
+    joint: int
+    blocks: NDArray[np.intp]
+    residual: FloatArray
+    speed: FloatArray
+    sign: FloatArray
+    Y: FloatArray
+
+
+_Fitted = tuple[float, float, float, float, float, FloatArray, FloatArray]
+
+
+def _fit(parts: Sequence[_Part]) -> list[_Fitted | None]:
+    """Return what JointFriction holds of each joint, from its viscous friction on; None where it has none."""
+    if not parts:
+        return []
+    ends = np.cumsum([len(part.residual) for part in parts]).tolist()
+    places = [slice(end - len(part.residual), end) for end, part in zip(ends, parts, strict=True)]
+    y, Y = np.concatenate([part.residual for part in parts]), np.vstack([part.Y for part in parts])
+    X = np.zeros((len(y), 3 * len(parts)))
+    for number, (place, part) in enumerate(zip(places, parts, strict=True)):
+        X[place, 3 * number : 3 * number + 3] = np.column_stack([part.speed, part.sign, np.ones(len(part.speed))])
+    blocks = np.concatenate([part.blocks for part in parts])
+    solved = _solve(X, Y, y, np.ones(len(y)), blocks)
+    for _ in range(_WEIGHINGS):
+        weights = np.ones(len(y))
+        for place in places:
+            weights[place] = 1.0 / max(float(np.std(solved.rest[place])), 1e-12)
+        solved = _solve(X, Y, y, weights, blocks)
+    found: list[_Fitted | None] = []
+    for number, (place, part) in enumerate(zip(places, parts, strict=True)):
+        viscous, coulomb, constant = range(3 * number, 3 * number + 3)
+        if min(solved.left[viscous], solved.left[coulomb]) < _TOLD_APART or solved.half is None:
+            found.append(None)
+            continue
+        theta, half = solved.theta, solved.half
+        torque = solved.rest[place] + theta[viscous] * part.speed + theta[coulomb] * part.sign
+        values = (theta[viscous], half[viscous], theta[coulomb], half[coulomb], theta[constant])
+        found.append((*map(float, values), part.speed, torque))
+    return found
+
+
+@dataclass(frozen=True)
+class _Solved:
+    """Friction of all joints by weighted least squares.
+
+    Attributes:
+        theta: Viscous and Coulomb friction and constant of one joint after another, shape (n,).
+        half: Half-widths of their 95 % intervals, shape (n,); None where there are not enough rows.
+        left: Share of each column that no mass explains, shape (n,).
+        rest: What nothing explains, shape (N,), in N m.
+    """
+
+    theta: FloatArray
+    half: FloatArray | None
+    left: FloatArray
+    rest: FloatArray
+
+
+def _solve(X: FloatArray, Y: FloatArray, y: FloatArray, weights: FloatArray, blocks: NDArray[np.intp]) -> _Solved:
+    """Return the friction that explains y with the columns X, whatever the masses in Y are.
+
+    Args:
+        X: Columns of friction, shape (N, n).
+        Y: Columns of the masses, shape (N, m).
+        y: Residual torques, shape (N,).
+        weights: What each row counts.
+        blocks: Number of the block in time that each row is of: rows of one may be correlated.
+    """
+    scaled = Y * weights[:, None]
+    sizes = np.linalg.norm(scaled, axis=0)
+    u, s, _ = np.linalg.svd(scaled / np.where(sizes > 0.0, sizes, 1.0), full_matrices=False)
+    basis = u[:, s > _ROUNDING * s[0]]
+
+    def without_masses(columns: FloatArray) -> FloatArray:
+        rest: FloatArray = columns - basis @ (basis.T @ columns)
+        return rest
+
+    columns = X * weights[:, None]
+    own = without_masses(columns)
+    theta = np.asarray(np.linalg.lstsq(own, without_masses(y * weights), rcond=None)[0], dtype=np.float64)
+    rest = without_masses(y * weights - columns @ theta)
+    left: FloatArray = np.sqrt(np.sum(own**2, axis=0) / np.sum(columns**2, axis=0))
+    freedom, different = len(y) - basis.shape[1] - X.shape[1], np.unique(blocks)
+    half = None
+    if freedom > 0 and len(different) > 1:
+        scores = np.array([own[blocks == block].T @ rest[blocks == block] for block in different])
+        bread = np.linalg.pinv(own.T @ own)
+        variances = np.diagonal(bread @ scores.T @ scores @ bread) * len(y) / freedom
+        half = float(student.ppf(0.975, len(different) - 1)) * np.sqrt(variances)
+    return _Solved(theta, half, left, rest / weights)

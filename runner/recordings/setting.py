@@ -1,0 +1,88 @@
+"""What a recording is held against: the trace of a run, and what its metrics need to know."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from runner.assembly import metric_context
+from runner.config.run import RunConfig
+from runner.config.validation import validate
+from runner.errors import ConfigError, RunnerError
+from runner.metrics import MetricContext
+from runner.recordings.columns_map import Signal
+from runner.recordings.smoothing import FloatArray
+from runner.robots.robot import end_points
+from runner.store import Run
+from runner.trace import Trace
+
+AXES = ("x", "y", "z")
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A run that recordings are compared with.
+
+    Attributes:
+        config: Its checked config.
+        trace: Its repetition 0.
+        context: What its metrics need to know.
+    """
+
+    config: RunConfig
+    trace: Trace
+    context: MetricContext
+
+    def signal(self, wanted: Signal) -> FloatArray:
+        """Return a signal of the run, shape (T,)."""
+        if wanted.kind == "tip":
+            values: FloatArray = self.trace.tip[:, AXES.index(wanted.of)]
+            return values
+        place = self.trace.joint_names.index(wanted.of)
+        return (self.trace.q if wanted.kind == "position" else self.trace.tau)[:, place]
+
+
+def setting_of(run: Run) -> Setting:
+    """Return what a recording is compared with.
+
+    Raises:
+        RunnerError: if the run failed, is damaged, or can no longer be made by its config.
+    """
+    if run.failure is not None:
+        raise RunnerError(f"{run.folder}: {run.failure_text}; a recording is compared with a run that ended well")
+    try:
+        config = validate(run.config, run.config_dirs)
+    except ConfigError as error:
+        raise RunnerError(f"run {run.hash} cannot be made again: {'; '.join(error.problems)}") from None
+    if config.arm.urdf != run.urdf:
+        raise RunnerError(f"the file of the robot of {run.hash} has changed since the run; make the run anew")
+    return Setting(config, _stored_trace(run, config), metric_context(config))
+
+
+def _stored_trace(run: Run, config: RunConfig) -> Trace:
+    frame, model = run.trace, config.arm.model
+
+    def tip(stem: str) -> FloatArray:
+        return np.asarray(frame[[f"{stem}_{axis}" for axis in AXES]].to_numpy())
+
+    def joints(stem: str) -> FloatArray:
+        return np.asarray(frame[[f"{stem}{joint + 1}" for joint in range(model.nq)]].to_numpy())
+
+    q, t = joints("q"), np.asarray(frame["t"].to_numpy())
+    points = end_points(config.arm, q, config.parallel)
+    points[-1] = tip("tip")
+    home = end_points(config.arm, config.arm.home[None], config.parallel)[:, 0]
+    desired = np.stack([tip(stem) for stem in ("desired", "desired_velocity", "desired_acceleration")], axis=1)
+    return Trace(
+        t=t,
+        q=q,
+        dq=joints("dq"),
+        tau=joints("tau"),
+        end_points=points,
+        offsets=home[-1] - home,
+        stage_names=config.arm.stage_names,
+        desired=desired,
+        limits=config.torque_limits,
+        joint_names=model.joint_names,
+        joint_units=model.joint_units,
+        tick_seconds=np.zeros(len(t) - 1),
+    )

@@ -1,0 +1,51 @@
+"""Signals without their noise and without delay, and their derivatives."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.signal import butter, sosfiltfilt
+
+FloatArray = NDArray[np.float64]
+
+CUTOFF = 10.0
+"""Of the low-pass, in Hz: above what arms follow, below most of what encoders and motors add."""
+
+_ORDER = 4
+_OF_RATE = 5.0  # a slower recording is cut off at this part of its rate
+
+
+def cutoff(period: float) -> float:
+    """Return the cut-off frequency, in Hz, of signals with a time between two samples, in s."""
+    return min(CUTOFF, 1.0 / (_OF_RATE * period))
+
+
+def low_pass(signals: FloatArray, period: float, frequency: float) -> FloatArray:
+    """Return signals behind a Butterworth low-pass that runs forward and backward, so that it delays nothing.
+
+    Args:
+        signals: Even samples, shape (N, ...).
+        period: Time between two samples, in s.
+        frequency: Cut-off, in Hz.
+    """
+    sections = butter(_ORDER, frequency, fs=1.0 / period, output="sos")
+    padding = min(len(signals) - 2, round(3.0 / (frequency * period)))
+    smooth: FloatArray = sosfiltfilt(sections, signals, axis=0, padlen=padding)
+    return smooth
+
+
+def derivative(signals: FloatArray, period: float) -> FloatArray:
+    """Return the time derivative of even samples by central differences, shape (N, ...)."""
+    slope: FloatArray = np.gradient(signals, period, axis=0)
+    return slope
+
+
+def evenly(t: FloatArray, signals: FloatArray, times: FloatArray) -> FloatArray:
+    """Return signals at other times, by the cubic spline through their rows.
+
+    Args:
+        t: Times of the rows, shape (N,), in s.
+        signals: Shape (N, ...).
+        times: Shape (M,), in s, within t.
+    """
+    between: FloatArray = CubicSpline(t, signals, axis=0)(times)
+    return between

@@ -1,0 +1,61 @@
+"""What sensors offer to the closed loop, and the registries of those that plug-ins bring in place of ours."""
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.guard import WatchedEncoders, WatchedTorqueSensors, WatchedWristSensor
+from runner.registry import KindConfig, Registry
+
+FloatArray = NDArray[np.float64]
+
+
+class Encoders(Protocol):
+    """The joint measurement of one control loop."""
+
+    def measure(self, tick: int, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return measured joint positions and velocities from the true ones.
+
+        Args:
+            tick: Number of the measurement, from 0.
+            q: True joint positions, shape (nq,), in rad; m where a joint slides.
+            dq: True joint velocities, shape (nq,), in rad/s; m/s where a joint slides.
+        """
+        ...
+
+
+class WristSensor(Protocol):
+    """A force/torque sensor between flange and tool."""
+
+    def read(self, tick: int, wrench: FloatArray) -> FloatArray:
+        """Return the reading of a load on the flange; see ForceTorqueSensor.read."""
+        ...
+
+    def overloads(self) -> list[str]:
+        """Return what is to be told of a run that loaded it beyond its range."""
+        ...
+
+
+class TorqueSensors(Protocol):
+    """Torque sensors in the joints."""
+
+    def read(self, tick: int, torque: FloatArray) -> FloatArray:
+        """Return the readings of mean torques on the links; see JointTorqueSensor.read."""
+        ...
+
+
+NOISES = Registry[KindConfig, [tuple[str, ...], int, float, np.random.Generator], Encoders](
+    "noise", {}, watch=WatchedEncoders
+)
+"""`build` gets the names of the joints, the number of measurements, the time between two in s, and a generator."""
+
+WRIST_SENSORS = Registry[KindConfig, [int, float, np.random.Generator], WristSensor](
+    "wrist_sensor", {}, watch=WatchedWristSensor
+)
+"""`build` gets the number of readings, the time between two in s, and a generator."""
+
+JOINT_TORQUE_SENSORS = Registry[KindConfig, [tuple[str, ...], int, np.random.Generator], TorqueSensors](
+    "joint_torque_sensor", {}, watch=WatchedTorqueSensors
+)
+"""`build` gets the names of the joints, the number of readings, and a generator."""

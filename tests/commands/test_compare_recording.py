@@ -1,0 +1,108 @@
+"""`runner compare RUN recording.csv --columns map.yaml`, on the example that comes with the package."""
+
+import re
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import runner
+from runner.execution import run
+from runner.paths import examples_dir
+from runner.recordings.compare import compare_recording
+from runner.reporting.formulas import faulty
+from runner.reporting.recording.report import recording_document, report_folder
+
+HERE = examples_dir() / "recording"
+VISCOUS, COULOMB = (1.2, 0.8, 0.5), (1.5, 1.0, 0.6)  # of the arm in make_recording.py
+
+
+@pytest.fixture(scope="module")
+def swing(tmp_path_factory):
+    outputs = tmp_path_factory.mktemp("swing")
+    return run("experiment=swing", f"outputs={outputs}", config_dirs=[HERE])
+
+
+@pytest.fixture(scope="module")
+def found(swing):
+    return compare_recording(swing, HERE / "recording.csv", HERE / "columns.yaml")
+
+
+def test_the_recording_is_made_by_its_script(tmp_path, monkeypatch):
+    monkeypatch.setattr(sys, "path", [*sys.path, str(HERE)])
+    import make_recording
+
+    rows = make_recording.record(HERE, tmp_path)
+    make_recording.write(tmp_path / "recording.csv", rows)
+    lines, stored = ((path / "recording.csv").read_text().splitlines() for path in (tmp_path, HERE))
+    assert lines[0] == stored[0]
+    values, kept = (np.loadtxt(each[1:], delimiter=",") for each in (lines, stored))
+    assert np.abs(values - kept).max(axis=0) == pytest.approx(0.0, abs=1.01e-4)  # a unit of the last digit
+
+
+def test_the_offset_is_found_within_a_sample_and_the_friction_within_five_percent(found):
+    from_script = re.search(r"^START = ([\d.]+)", (HERE / "make_recording.py").read_text(), re.M)
+    assert found.offset.start == pytest.approx(float(from_script[1]), abs=found.recording.period)
+    assert found.friction.lacking == []
+    assert [joint.viscous for joint in found.friction.joints] == pytest.approx(VISCOUS, rel=0.05)
+    assert [joint.coulomb for joint in found.friction.joints] == pytest.approx(COULOMB, rel=0.05)
+
+
+def test_the_report_is_whole(found):
+    assert faulty(recording_document(found)) == []
+
+
+def test_what_is_printed_and_written(cli, swing):
+    ending = cli("compare", swing.folder, HERE / "recording.csv", "--columns", HERE / "columns.yaml")
+    assert ending.code == 0
+    assert "the run's time 0 is 0.73" in ending.out
+    assert re.search(r"^q1 +Coulomb +N m +1\.[45]\d+ ", ending.out, re.M)
+    assert re.search(r"^max_tracking_error +m ", ending.out, re.M)
+    assert {"report.html", "report.pdf"} == {path.name for path in ending.folder.iterdir()}
+    assert ending.folder.parent == swing.folder.parent.parent / "reports"
+
+
+def test_names_in_a_recording_cannot_become_markup(cli, swing, tmp_path):
+    text = (HERE / "recording.csv").read_text()
+    name = "<script>alert(1)</script>$x$"
+    (tmp_path / "a.csv").write_text(text.replace("elbow,", f"{name},", 1))
+    said = (HERE / "columns.yaml").read_text().replace("elbow:", f"{name!r}:")
+    (tmp_path / "map.yaml").write_text(said)
+    ending = cli("compare", swing.folder, tmp_path / "a.csv", "--columns", tmp_path / "map.yaml")
+    assert ending.code == 0
+    assert "<script>alert" not in (ending.folder / "report.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "wanted"),
+    [
+        (["RUN", "recording.csv"], "say by --columns FILE which signal each column holds"),
+        (["RUN", "--columns", "columns.yaml"], "a recording is compared with one run"),
+        (["RUN", "RUN", "recording.csv", "--columns", "columns.yaml"], "a recording is compared with one run"),
+        (["recording.csv", "--columns", "columns.yaml"], "a recording is compared with one run"),
+        (["RUN", "recording.csv", "--columns", "columns.yaml", "--metrics", "energy"], "are not for recordings"),
+        (["RUN", "none.csv", "--columns", "columns.yaml"], "cannot read none.csv"),
+        (["RUN", "recording.csv", "--columns", "none.yaml"], "cannot read none.yaml"),
+    ],
+)
+def test_arguments_that_do_not_fit(cli, swing, monkeypatch, arguments, wanted):
+    monkeypatch.chdir(HERE)
+    ending = cli("compare", *(str(swing.folder) if word == "RUN" else word for word in arguments))
+    assert ending.code == 2
+    assert wanted in ending.err
+
+
+def test_a_copied_run_has_its_report_in_the_working_folder(found, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    copied = replace(found, run=replace(found.run, folder=tmp_path / "copy"))
+    assert report_folder(copied).parent == Path("outputs/reports")
+
+
+def test_from_python(found, swing):
+    again = runner.open_run(swing.folder).compare_recording(HERE / "recording.csv", HERE / "columns.yaml")
+    assert again.offset.start == found.offset.start
+    assert again.metrics == found.metrics
+    with pytest.raises(runner.RunnerError, match=r"cannot read none.csv"):
+        runner.open_run(swing.folder).compare_recording("none.csv", HERE / "columns.yaml")

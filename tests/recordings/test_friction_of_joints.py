@@ -1,0 +1,119 @@
+"""Friction identified from torques that closed forms and other masses give."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from scipy.signal import lfilter
+
+from runner.recordings.friction import identify_friction
+from runner.robots import RobotModel, find_urdf, read_urdf
+
+H = 0.004
+T = np.arange(0.0, 10.0, H)
+VISCOUS, COULOMB, CONSTANT = np.array([1.2, 0.8, 0.5]), np.array([1.5, 1.0, 0.6]), np.array([0.3, -0.2, 0.0])
+
+
+@pytest.fixture(scope="module")
+def model():
+    return RobotModel(read_urdf(find_urdf("macro.urdf"), {}), "tip")
+
+
+def moved(frequencies=(2.1, 3.3, 4.7)):
+    """Return q, dq and ddq of a swing of three joints, shapes (N, 3)."""
+    w = np.array(frequencies)
+    phase, faster = np.outer(T, w) + w, 1.7 * np.outer(T, w)
+    q = 0.5 * np.sin(phase) + 0.2 * np.sin(faster)
+    dq = w * (0.5 * np.cos(phase) + 0.34 * np.cos(faster))
+    ddq = -w * w * (0.5 * np.sin(phase) + 0.578 * np.sin(faster))
+    return q, dq, ddq
+
+
+def torques(model, motion):
+    return np.array(
+        [pin.rnea(model.pin_model, model.pin_model.createData(), *row) for row in zip(*motion, strict=True)]
+    )
+
+
+def friction_of(dq):
+    return VISCOUS * dq + COULOMB * np.sign(dq) + CONSTANT
+
+
+def test_friction_is_found_within_its_interval(model):
+    motion = moved()
+    q, dq, _ = motion
+    noise = np.random.default_rng(0)
+    found = identify_friction(
+        model,
+        q + noise.uniform(-1e-4, 1e-4, q.shape),
+        torques(model, motion) + friction_of(dq) + noise.normal(0.0, 0.3, q.shape),
+        H,
+    )
+    assert (found.lacking, found.frequency) == ([], 10.0)
+    for joint, b, c in zip(found.joints, VISCOUS, COULOMB, strict=True):
+        assert joint.viscous == pytest.approx(b, rel=0.05)
+        assert joint.coulomb == pytest.approx(c, rel=0.05)
+        assert abs(joint.viscous - b) < 2.0 * joint.viscous_half < 0.2 * b
+        assert abs(joint.coulomb - c) < 2.0 * joint.coulomb_half < 0.2 * c
+
+
+def test_intervals_hold_the_friction_about_as_often_as_they_say(model):
+    motion = moved()
+    clean = torques(model, motion) + friction_of(motion[1])
+    held = []
+    for seed in range(12):
+        white = np.random.default_rng(seed).normal(0.0, 0.05, clean.shape)
+        correlated = lfilter([1.0], [1.0, -np.exp(-H / 0.1)], white, axis=0)  # over 0.1 s
+        found = identify_friction(model, motion[0], clean + correlated, H)
+        for joint, b, c in zip(found.joints, VISCOUS, COULOMB, strict=True):
+            held += [abs(joint.viscous - b) < joint.viscous_half, abs(joint.coulomb - c) < joint.coulomb_half]
+    assert len(held) == 72
+    assert 0.85 < np.mean(held) <= 1.0
+
+
+def test_other_masses_are_not_mistaken_for_friction(model):
+    other = model.with_payload(1.5, np.array([0.1, 0.0, 0.05]))
+    motion = moved()
+    found = identify_friction(model, motion[0], torques(other, motion) + friction_of(motion[1]), H)
+    assert [joint.viscous for joint in found.joints] == pytest.approx(VISCOUS, rel=0.05)
+    assert [joint.coulomb for joint in found.joints] == pytest.approx(COULOMB, rel=0.05)
+
+
+def test_an_arm_without_friction_has_none(model):
+    motion = moved()
+    noise = np.random.default_rng(1).normal(0.0, 0.3, motion[0].shape)
+    for joint in identify_friction(model, motion[0], torques(model, motion) + noise, H).joints:
+        assert abs(joint.viscous) < 1.5 * joint.viscous_half
+        assert abs(joint.coulomb) < 1.5 * joint.coulomb_half
+
+
+def test_what_the_points_of_the_figure_show(model):
+    motion = moved()
+    joint = identify_friction(model, motion[0], torques(model, motion) + friction_of(motion[1]), H).joints[0]
+    apart = np.abs(joint.torque - 1.2 * joint.speed - 1.5 * np.sign(joint.speed))
+    assert np.median(apart) < 0.03
+    assert apart.max() < 0.5  # where another joint turns round, whose jump the low-pass spreads
+
+
+def test_a_joint_that_creeps_has_no_friction(model):
+    q, dq, ddq = moved()
+    motion = tuple(part * [1.0, 1.0, 1e-3] for part in (q, dq, ddq))
+    found = identify_friction(model, motion[0], torques(model, motion) + friction_of(motion[1]), H)
+    assert found.lacking == ["q3: it moves too little, or in one direction alone"]
+
+
+@pytest.mark.parametrize("every", [1, 8])
+def test_friction_does_not_depend_on_the_rate(model, every):
+    motion = moved()
+    tau = torques(model, motion) + friction_of(motion[1])
+    found = identify_friction(model, motion[0][::every], tau[::every], H * every)
+    assert [joint.coulomb for joint in found.joints] == pytest.approx(COULOMB, rel=0.05)
+
+
+def test_joints_without_torque_or_in_one_direction_have_no_friction(model):
+    q, dq, ddq = (part.copy() for part in moved())
+    q[:, 2], dq[:, 2], ddq[:, 2] = 0.1 * T, 0.1, 0.0
+    tau = torques(model, (q, dq, ddq)) + friction_of(dq)
+    tau[:, 0] = np.nan
+    found = identify_friction(model, q, tau, H)
+    assert [joint.joint for joint in found.joints] == ["q2"]
+    assert found.lacking == ["q1: no torque is recorded", "q3: it moves too little, or in one direction alone"]

@@ -1,0 +1,94 @@
+"""Recordings held against a run: of the run itself, and of a part of its signals."""
+
+import numpy as np
+import pytest
+
+from runner.errors import RunnerError
+from runner.execution import run
+from runner.recordings.compare import compare_recording
+
+JOINTS = "a1: {joint: q1, unit: rad}, a2: {joint: q2, unit: rad}, a3: {joint: q3, unit: rad}"
+TORQUES = "c1: {torque: q1, unit: N m}, c2: {torque: q2, unit: N m}, c3: {torque: q3, unit: N m}"
+TIP = "x: {tip: x, unit: m}, y: {tip: y, unit: m}, z: {tip: z, unit: m}"
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory):
+    return run(
+        "robot=macro", "controller=computed_torque", "trajectory=joint_quintic", "plant=rk4", "duration=1.5",
+        "trajectory.duration=1.0",
+        "trajectory.goal_posture=[0.8,-0.5,0.6]", "controller.period=0.002",
+        f"outputs={tmp_path_factory.mktemp('outputs')}",
+    )  # fmt: skip
+
+
+@pytest.fixture
+def compared(stored, tmp_path):
+    """Return what holds the run's own signals against it, by the text of a map."""
+
+    def compare(columns, rows=slice(None), shift=0.0, change=lambda frame: frame):
+        trace = stored.trace.iloc[rows].copy()
+        trace["t"] += shift
+        names = {f"q{j}": f"a{j}" for j in (1, 2, 3)} | {f"tau{j}": f"c{j}" for j in (1, 2, 3)}
+        change(trace.rename(columns={**names, "tip_x": "x", "tip_y": "y", "tip_z": "z"})).to_csv(
+            tmp_path / "recording.csv", index=False
+        )
+        (tmp_path / "map.yaml").write_text(f"time: {{column: t, unit: s}}\ncolumns: {{{columns}}}\n")
+        return compare_recording(stored, tmp_path / "recording.csv", tmp_path / "map.yaml")
+
+    return compare
+
+
+def test_a_run_held_against_itself_is_the_same(stored, compared):
+    found = compared(f"{JOINTS}, {TORQUES}, {TIP}", shift=3.2)
+    assert found.offset.start == pytest.approx(3.2, abs=1e-6)
+    assert found.span == (0.0, 1.5)
+    for one in found.residuals:
+        assert one.largest == pytest.approx(0.0, abs=1e-4 * np.abs(one.simulated).max())
+        assert one.fit == pytest.approx(1.0, abs=1e-3)
+    chatter = {name for name in stored.metrics if "chatter" in name}
+    assert set(found.metrics) == set(stored.metrics) - chatter - {n for n in stored.metrics if "saturation" in n}
+    for name, (simulated, recorded) in found.metrics.items():
+        assert simulated == stored.metrics[name]["median"]
+        assert recorded == pytest.approx(simulated, rel=0.01, abs=2e-5), name
+
+
+def test_what_is_not_recorded_is_in_no_metric(compared):
+    of_tip = compared(TIP)
+    assert {"max_tracking_error", "settling_time"} <= set(of_tip.metrics)
+    assert not {"peak_torque", "energy", "peak_joint_speed"} & set(of_tip.metrics)
+    assert (of_tip.friction, of_tip.no_friction) == (None, "no position of q1, q2, q3 is recorded")
+    of_joints = compared(JOINTS)
+    assert {"max_tracking_error", "peak_joint_speed_q2"} <= set(of_joints.metrics)
+    assert not {"peak_torque", "energy"} & set(of_joints.metrics)
+    assert (of_joints.friction, of_joints.no_friction) == (None, "no torque is recorded")
+    of_some = compared("a1: {joint: q1, unit: rad}, c1: {torque: q1, unit: N m}")
+    assert of_some.metrics == {}
+    assert of_some.no_friction == "no position of q2, q3 is recorded"
+
+
+def test_a_part_of_a_run(compared):
+    found = compared(JOINTS, rows=slice(100, 500), shift=-0.2)
+    assert found.offset.start == pytest.approx(-0.2, abs=1e-4)
+    assert found.span == pytest.approx((0.2, 0.998), abs=0.003)
+
+
+@pytest.mark.parametrize(
+    ("columns", "change", "wanted"),
+    [
+        (JOINTS, lambda frame: frame.assign(a2=frame.a2 * 57.29578), "columns.a2: .* looks like deg: say unit: deg"),
+        (JOINTS.replace("rad", "deg"), lambda frame: frame, "columns.a1: .* looks like rad: say unit: rad"),
+        (f"{JOINTS}, {TIP}", lambda frame: frame.assign(z=frame.z * 1e3), "columns.z: .* looks like mm: say unit: mm"),
+        (TORQUES, lambda frame: frame, "columns: needs the position of a joint, or a coordinate of the tip"),
+        (JOINTS, lambda frame: frame.iloc[:120], "too short: it lasts 0.238 s, and the run 1.5 s"),
+    ],
+)
+def test_what_does_not_fit_the_run(compared, columns, change, wanted):
+    with pytest.raises(RunnerError, match=wanted):
+        compared(columns, change=change)
+
+
+def test_a_run_that_failed_is_refused(tmp_path):
+    failed = run("robot=macro", "duration=0.5", "plant=rk4", "controller.natural_frequency=1e5", f"outputs={tmp_path}")
+    with pytest.raises(RunnerError, match="a recording is compared with a run that ended well"):
+        compare_recording(failed, tmp_path / "recording.csv", tmp_path / "map.yaml")
