@@ -83,19 +83,11 @@ def from_hydra(
     """
     try:
         choices = {group: name for group, name in chosen.items() if name is not None and not group.startswith("hydra/")}
-        own = (
-            config
-            if "hydra" not in config
-            else OmegaConf.masked_copy(config, cast("list[str]", [*config.keys() - {"hydra"}]))
-        )
-        OmegaConf.set_struct(own, False)
-        robot = own.get("robot")
-        if isinstance(robot, DictConfig) and "stages" in robot:
-            completed = OmegaConf.to_container(robot, resolve=False)
-            complete_stage_arms(completed)
-            own.robot = completed
-        complete_stages(own, choices, config_dirs)
-        resolved = cast("dict[str, object]", OmegaConf.to_container(own, resolve=True))
+        OmegaConf.set_struct(config, False)
+        config.pop("hydra", None)
+        complete_stage_arms(config)
+        complete_stages(config, choices, config_dirs)
+        resolved = cast("dict[str, object]", OmegaConf.to_container(config, resolve=True))
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None
     problems = list(_strange_keys(resolved))

@@ -4,19 +4,22 @@ from functools import cache
 from typing import Any
 
 import yaml
+from omegaconf import DictConfig, OmegaConf
 
 from runner.config.robot import ArmConfig
 from runner.paths import conf_dir
 
 
-def complete_stage_arms(robot: Any) -> None:
+def complete_stage_arms(config: DictConfig) -> None:
     """Move the defaults of one arm from a robot that has stages to its stages, in place.
 
     What stands at the robot itself though it is of one arm, and is no default, stays there: validation refuses it.
 
     Args:
-        robot: The composed group as plain data; one without stages is left as it is.
+        config: The composed config; one whose robot has no stages is left as it is.
     """
+    group = config.get("robot")
+    robot: Any = OmegaConf.to_container(group, resolve=False) if isinstance(group, DictConfig) else None
     if not isinstance(robot, dict) or not isinstance(robot.get("stages"), dict):
         return
     for key, value in _arm_defaults().items():
@@ -25,6 +28,7 @@ def complete_stage_arms(robot: Any) -> None:
         for stage in robot["stages"].values():
             if isinstance(stage, dict):
                 stage.setdefault(key, value)
+    config["robot"] = robot
 
 
 @cache

@@ -13,7 +13,7 @@ def learned(cli, tmp_path):
     path = tmp_path / "reference.yaml"
     ending = cli("check", folder, "--learn", path)
     assert ending.code == 0
-    assert ending.out == f"learned: {_count(path)} metrics of {folder} stand in {path}\n"
+    assert ending.out == f"learned: {_count(path)} metrics of {folder} are now in {path}\n"
     return folder, path
 
 
