@@ -7,6 +7,7 @@ import numpy as np
 
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.compiled.compile import compile_commands, compile_whole, describe_whole, find_commands
+from runner.config.flexible_joints import find_flexibility
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.controllers.admittance_stability import check_wall
@@ -20,13 +21,17 @@ from runner.interaction import Interaction
 from runner.loop.closed_loop import ClosedLoop
 from runner.metrics import MetricContext
 from runner.plants import PLANTS, ContactPlant, Plant, PositionPlant, innermost
+from runner.plants.flexible_joints import FlexibleJoints
 from runner.plants.kinds import HasServo
 from runner.plants.payload_changes import PayloadChanges
+from runner.plants.rk4 import Rk4Config
 from runner.plants.servo import JointServo, ServoLaw
 from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.mismatch import believe
+from runner.robots.motors import with_motors
 from runner.robots.robot import Robot, end_points
 from runner.sensing import EncoderNoise, ForceTorqueConfig, ForceTorqueSensor, JointEncoders
+from runner.sensing.motors import MotorSide
 from runner.servo_contact import ServoContact
 from runner.trace import FloatArray
 from runner.trajectories.joint_motion import TipOfJoints
@@ -73,6 +78,7 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
         q_start=q_start,
         parallel=config.parallel,
         delay=timing.delay,
+        motor_side=_motor_side(config, plant, believed),
         compiled=compiled,
     )
 
@@ -102,7 +108,7 @@ def describe_loop(config: RunConfig, repetition: int = 0) -> Whole | None:
         config: The checked config.
         repetition: Number of the repetition, of which the beliefs follow.
     """
-    if config.commands != "torque" or config.feels:
+    if config.commands != "torque" or config.feels or find_flexibility(config) is not None:
         return None
     loops = _believe(config, repetition)[1]
     commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
@@ -126,6 +132,9 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
     """Return the robot as its controllers believe it to be, and the loops that they make for it."""
     generator = np.random.default_rng([config.settings.seed, repetition, _BELIEFS])
     believed = believe(config.arm, config.mismatch, np.array(config.robot.payload.position), generator)
+    flexibility = find_flexibility(config)
+    if flexibility is not None:
+        believed = with_motors(believed, flexibility.motors)
     loops = config.loops
     if believed is not config.arm:
         loops = CONTROLLERS.build_for(config.controller, believed, isinstance(config.path, TipOfJoints))
@@ -133,9 +142,19 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
     return believed, observed(config.disturbance_observer, believed, loops, config.torque_limits, config.timing)
 
 
+def _motor_side(config: RunConfig, plant: Plant | PositionPlant, believed: Robot) -> MotorSide | None:
+    """Return what encoders at the motors see; None where they turn with the links."""
+    if not isinstance(plant, FlexibleJoints) or not isinstance(config.plant, Rk4Config):
+        return None
+    joints, flexibility = config.plant.flexible_joints, find_flexibility(config)
+    if joints is None or flexibility is None or joints.encoders == "link":
+        return None
+    return MotorSide(plant, flexibility, believed.model if joints.static_deflection == "known" else None)
+
+
 def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledCommands | None:
     """Return the closed loop as compiled code, or what its loops ask; None where neither can be had."""
-    if config.commands != "torque":
+    if config.commands != "torque" or find_flexibility(config) is not None:
         return None
     tick, limits = config.timing.tick, config.torque_limits
     commands = find_commands(config.arm, config.parallel, loops, tick, config.noise, limits)

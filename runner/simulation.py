@@ -80,6 +80,8 @@ def _run(
             if contact is not None:
                 load = contact.update(k, recorder.times[k], q, dq)
             torques.tell(k)
+            if closed.motor_side is not None:
+                q, dq = closed.motor_side.read()
             for command in commands:
                 if k % command.every == 0:
                     command.update(k, q, dq)
