@@ -7,7 +7,7 @@ import numpy as np
 
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.compiled.compile import compile_commands, compile_whole, describe_whole, find_commands
-from runner.config.flexible_joints import find_flexibility
+from runner.config.flexible_joints import believe_motors, find_flexibility, find_motor_side
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.controllers.admittance_stability import check_wall
@@ -21,17 +21,13 @@ from runner.interaction import Interaction
 from runner.loop.closed_loop import ClosedLoop
 from runner.metrics import MetricContext
 from runner.plants import PLANTS, ContactPlant, Plant, PositionPlant, innermost
-from runner.plants.flexible_joints import FlexibleJoints
 from runner.plants.kinds import HasServo
 from runner.plants.payload_changes import PayloadChanges
-from runner.plants.rk4 import Rk4Config
 from runner.plants.servo import JointServo, ServoLaw
 from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.mismatch import believe
-from runner.robots.motors import with_motors
 from runner.robots.robot import Robot, end_points
 from runner.sensing import EncoderNoise, ForceTorqueConfig, ForceTorqueSensor, JointEncoders
-from runner.sensing.motors import MotorSide
 from runner.servo_contact import ServoContact
 from runner.trace import FloatArray
 from runner.trajectories.joint_motion import TipOfJoints
@@ -78,7 +74,7 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
         q_start=q_start,
         parallel=config.parallel,
         delay=timing.delay,
-        motor_side=_motor_side(config, plant, believed),
+        motor_side=find_motor_side(config, plant, believed),
         compiled=compiled,
     )
 
@@ -93,9 +89,7 @@ def assemble_whole(config: RunConfig, repetition: int = 0) -> tuple[Whole, Float
     Raises:
         ConfigError: see assemble.
     """
-    if config.commands != "torque" or config.feels or config.loaded:
-        return None
-    if PLANTS.motion(config.plant, config.arm) is None:
+    if config.commands != "torque" or config.feels or config.loaded or PLANTS.motion(config.plant, config.arm) is None:
         return None
     compiled = _compile(config, _believe(config, repetition)[1])
     return (compiled, _find_start(config)) if isinstance(compiled, Whole) else None
@@ -132,9 +126,7 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
     """Return the robot as its controllers believe it to be, and the loops that they make for it."""
     generator = np.random.default_rng([config.settings.seed, repetition, _BELIEFS])
     believed = believe(config.arm, config.mismatch, np.array(config.robot.payload.position), generator)
-    flexibility = find_flexibility(config)
-    if flexibility is not None:
-        believed = with_motors(believed, flexibility.motors)
+    believed = believe_motors(config, believed)
     loops = config.loops
     if believed is not config.arm:
         loops = CONTROLLERS.build_for(config.controller, believed, isinstance(config.path, TipOfJoints))
@@ -142,22 +134,11 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
     return believed, observed(config.disturbance_observer, believed, loops, config.torque_limits, config.timing)
 
 
-def _motor_side(config: RunConfig, plant: Plant | PositionPlant, believed: Robot) -> MotorSide | None:
-    """Return what encoders at the motors see; None where they turn with the links."""
-    if not isinstance(plant, FlexibleJoints) or not isinstance(config.plant, Rk4Config):
-        return None
-    joints, flexibility = config.plant.flexible_joints, find_flexibility(config)
-    if joints is None or flexibility is None or joints.encoders == "link":
-        return None
-    return MotorSide(plant, flexibility, believed.model if joints.static_deflection == "known" else None)
-
-
 def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledCommands | None:
     """Return the closed loop as compiled code, or what its loops ask; None where neither can be had."""
     if config.commands != "torque" or find_flexibility(config) is not None:
         return None
-    tick, limits = config.timing.tick, config.torque_limits
-    commands = find_commands(config.arm, config.parallel, loops, tick, config.noise, limits)
+    commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
     motion = None if config.feels or config.loaded else PLANTS.motion(config.plant, config.arm)
     whole = None if motion is None else compile_whole(commands, motion, config.timing)
     return compile_commands(commands) if whole is None else whole
@@ -301,8 +282,7 @@ def make_wrist_sensor(
 
 def metric_context(config: RunConfig) -> MetricContext:
     """Return what the metrics need to know of a run beside its trace."""
-    reach = reach_of(config.controller)
-    return MetricContext(config.path, config.robot.settling_band, config.timing.tick, reach)
+    return MetricContext(config.path, config.robot.settling_band, config.timing.tick, reach_of(config.controller))
 
 
 def reach_of(controller: ControllerConfig) -> float | None:

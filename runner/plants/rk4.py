@@ -25,7 +25,7 @@ class Rk4Config(TorquePlantConfig):
     """
 
     kind: Literal["rk4"]
-    flexible_joints: FlexibleJointsConfig | None
+    flexible_joints: FlexibleJointsConfig | None = None
 
 
 class Rk4:

@@ -83,9 +83,6 @@ _key_text = lru_cache(maxsize=256)(_sorted_text)
 def simulated_part(resolved: Mapping[str, Any]) -> dict[str, Any]:
     """Return the keys of a config that decide about the result: of a data file its content, and not its name."""
     kept = {key: value for key, value in resolved.items() if key not in _LEFT_OUT}
-    plant = kept.get("plant")
-    if isinstance(plant, Mapping) and plant.get("flexible_joints", plant) is None:  # as before there were any
-        kept["plant"] = {key: value for key, value in plant.items() if key != "flexible_joints"}
     return kept | {"trajectory": _MEMORY.recall(unnamed, kept["trajectory"])} if has_data_file(kept) else kept
 
 
