@@ -96,3 +96,15 @@ def test_the_names_of_rigid_runs_know_nothing_of_flexible_joints():
 )
 def test_what_does_not_fit_is_refused(overrides, expected):
     assert expected in problems("robot=macro", "plant=rk4_flexible", *overrides)
+
+
+def test_a_blind_mini_is_no_better_than_the_macro_that_carries_it(simulated):
+    trace = simulated(
+        *("robot=combined", "plant=rk4_flexible", "noise=none", "torque_limits=none", "trajectory=quintic"),
+        *("trajectory.duration=1", "trajectory.goal=[0.4,0.8,0.7]", "duration=1"),
+        *(f"{KEY}.stiffness={{macro: 1000, mini: null}}", f"{KEY}.motor_inertia={{macro: 2, mini: null}}"),
+    )
+    carried = trace.end_points[0] + trace.offsets[0] - trace.desired[:, 0]
+    macro, tip = (np.linalg.norm(error, axis=1).max() for error in (carried, trace.error))
+    assert tip == pytest.approx(macro, rel=0.12)
+    assert tip == pytest.approx(8.9e-3, rel=0.12)  # m, of a simulation apart from this one
