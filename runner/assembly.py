@@ -7,6 +7,7 @@ import numpy as np
 
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.compiled.compile import compile_commands, compile_whole, describe_whole, find_commands
+from runner.config.flexible_joints import believe_motors, find_flexibility, find_motor_side
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.controllers.admittance_stability import check_wall
@@ -73,6 +74,7 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
         q_start=q_start,
         parallel=config.parallel,
         delay=timing.delay,
+        motor_side=find_motor_side(config, plant, believed),
         compiled=compiled,
     )
 
@@ -102,7 +104,7 @@ def describe_loop(config: RunConfig, repetition: int = 0) -> Whole | None:
         config: The checked config.
         repetition: Number of the repetition, of which the beliefs follow.
     """
-    if config.commands != "torque" or config.feels or config.plugged:
+    if config.commands != "torque" or config.feels or config.plugged or find_flexibility(config) is not None:
         return None
     loops = _believe(config, repetition)[1]
     commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
@@ -127,6 +129,7 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
     generator = np.random.default_rng([config.settings.seed, repetition, _BELIEFS])
     payload = np.array(config.robot.payload.position)
     believed = believe(config.arm, config.mismatch, payload, generator, config.plugged.get("mismatch"))
+    believed = believe_motors(config, believed)
     loops = config.loops
     if believed is not config.arm:
         loops = CONTROLLERS.build_for(config.controller, believed, isinstance(config.path, TipOfJoints))
@@ -136,10 +139,9 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
 
 def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledCommands | None:
     """Return the closed loop as compiled code, or what its loops ask; None where neither can be had."""
-    if config.commands != "torque" or config.plugged:
+    if config.commands != "torque" or config.plugged or find_flexibility(config) is not None:
         return None
-    tick, limits = config.timing.tick, config.torque_limits
-    commands = find_commands(config.arm, config.parallel, loops, tick, config.noise, limits)
+    commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
     motion = None if config.feels or config.loaded else PLANTS.motion(config.plant, config.arm)
     whole = None if motion is None else compile_whole(commands, motion, config.timing)
     return compile_commands(commands) if whole is None else whole
@@ -283,8 +285,7 @@ def make_wrist_sensor(
 
 def metric_context(config: RunConfig) -> MetricContext:
     """Return what the metrics need to know of a run beside its trace."""
-    reach = reach_of(config.controller)
-    return MetricContext(config.path, config.robot.settling_band, config.timing.tick, reach)
+    return MetricContext(config.path, config.robot.settling_band, config.timing.tick, reach_of(config.controller))
 
 
 def reach_of(controller: ControllerConfig) -> float | None:

@@ -80,6 +80,7 @@ def _run(
             if contact is not None:
                 load = contact.update(k, recorder.times[k], q, dq)
             torques.tell(k)
+            q, dq = (q, dq) if closed.motor_side is None else closed.motor_side.read()
             for command in commands:
                 if k % command.every == 0:
                     command.update(k, q, dq)

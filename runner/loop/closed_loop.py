@@ -8,6 +8,7 @@ from runner.interaction import Interaction
 from runner.plants import Plant, PositionPlant
 from runner.registry import Commands
 from runner.robots.robot import Robot
+from runner.sensing.motors import MotorSide
 from runner.trace import FloatArray
 from runner.trajectories import Trajectory
 
@@ -29,6 +30,7 @@ class ClosedLoop:
         q_start: Joint positions at t = 0, shape (nq,), in rad; the robot starts at rest.
         parallel: Whether riding stages keep the orientation of home, as the plant has it.
         delay: Ticks from a command until it acts.
+        motor_side: What encoders at the motors of flexible joints see; None where encoders turn with the links.
         compiled: The closed loop as compiled code, or what its loops ask; None where neither is to be had.
     """
 
@@ -44,6 +46,7 @@ class ClosedLoop:
     q_start: FloatArray
     parallel: bool
     delay: int
+    motor_side: MotorSide | None = None
     compiled: Whole | CompiledCommands | None = None
 
     def close(self) -> None:

@@ -55,8 +55,8 @@ class ContactsImplicitly(Protocol):
 class MovesByRungeKutta(Protocol):
     """A module whose plants are the classical Runge-Kutta scheme on a motion, so that runs may be compiled whole."""
 
-    def motion(self, config: PlantConfig, robot: Robot) -> Motion:
-        """Return what a plant moves."""
+    def motion(self, config: PlantConfig, robot: Robot) -> Motion | None:
+        """Return what a plant moves; None where this plant is more than rigid bodies with friction."""
         ...
 
 

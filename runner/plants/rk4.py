@@ -7,6 +7,8 @@ import pinocchio as pin
 
 from runner.compiled.compile import compile_motion
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
+from runner.plants.flexible_config import FlexibleJointsConfig
+from runner.plants.flexible_joints import FlexibleJoints
 from runner.plants.motion import Motion, find_motion
 from runner.plants.plant import FloatArray, Plant
 from runner.robots.model import RobotModel
@@ -19,9 +21,11 @@ class Rk4Config(TorquePlantConfig):
     Attributes:
         kind: Its name in the registry.
         step: Integration step, in s; None is the fastest controller period.
+        flexible_joints: Springs between motors and links; None is an arm with rigid joints.
     """
 
     kind: Literal["rk4"]
+    flexible_joints: FlexibleJointsConfig | None = None
 
 
 class Rk4:
@@ -91,13 +95,15 @@ CONFIG = Rk4Config
 
 def build(config: Rk4Config, robot: Robot, step: float, steps_per_tick: int) -> Plant:
     """Make the plant that a config describes."""
+    if config.flexible_joints is not None:
+        return FlexibleJoints(robot.model, config.flexible_joints.by_joint(robot), step, steps_per_tick)
     tick = step * steps_per_tick
     return assemble_plant(config, robot, tick, lambda _, model: Rk4(model, step, steps_per_tick))
 
 
-def motion(config: Rk4Config, robot: Robot) -> Motion:
-    """Return what the plant moves; see MovesByRungeKutta."""
-    return find_motion(robot, config)
+def motion(config: Rk4Config, robot: Robot) -> Motion | None:
+    """Return what the plant moves; None for flexible joints, which are not compiled; see MovesByRungeKutta."""
+    return None if config.flexible_joints is not None else find_motion(robot, config)
 
 
 def default_step(tick: float, stages: int) -> float:

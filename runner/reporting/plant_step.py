@@ -15,7 +15,7 @@ _LEAST = 1e-4  # of a metric: smaller shares are told as less than that
 
 
 def describe_plant(run: Run, metrics: Sequence[str] = ()) -> str:
-    """Return a run's plant, its step, and what that is worth in some metrics, in two sentences at most.
+    """Return a run's plant, its step, and what that is worth in some metrics, in three sentences at most.
 
     Args:
         run: The run.
@@ -23,6 +23,9 @@ def describe_plant(run: Run, metrics: Sequence[str] = ()) -> str:
     """
     kind, step = str(run.config["plant"]["kind"]), run.provenance["plant_step"]
     head = f"{PLANT.get(kind, kind)} is the plant, in steps of {quantity(step, 's')}."
+    flexible = run.config["plant"].get("flexible_joints")
+    if flexible is not None:
+        head += f" Joints are flexible, with encoders at the {flexible['encoders']}s."
     if kind not in COMPARED:
         return head
     return f"{head} {_worth(run, metrics or key_names(run))}"

@@ -10,6 +10,7 @@ from runner.assembly import assemble_whole, metric_context
 from runner.batch import Batcher, Together, Wanted
 from runner.compiled.directed import Setting, tangents
 from runner.compiled.engine import evaluator
+from runner.config.flexible_joints import find_flexibility
 from runner.config.run import RunConfig
 from runner.errors import ConfigError, RunnerError
 from runner.metrics import measure, of_run
@@ -142,6 +143,8 @@ def _why_not(config: RunConfig) -> str:
         return "llvmlite, which compiles runs, is not installed; `pip install llvmlite`"
     if config.commands != "torque":
         return f"controller {config.controller.kind} commands joint positions; only laws that give torques are compiled"
+    if find_flexibility(config) is not None:
+        return "plant.flexible_joints: runs of arms with flexible joints are not compiled; take plant=rk4"
     if config.feels:
         return f"environment {config.environment.kind}: runs in which the tip feels something are not compiled whole"
     if config.plugged:

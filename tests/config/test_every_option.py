@@ -28,6 +28,7 @@ NEEDS = {  # what an option does not run without
     "environment=wall": ("robot=meca500",),
     "experiment=xarm7/as_printed": ("controller.inverse=right",),
     "plant=kinematic": ("robot=xarm7",),
+    "plant=rk4_flexible": ("robot=macro",),
     "trajectory=from_file": (f"trajectory.file={SWING}",),
 }
 

@@ -74,3 +74,10 @@ def test_the_report_of_a_run_has_a_column_for_it(compared, outputs):
 )
 def test_shares_are_written_in_two_digits(share, text):
     assert percent(share) == text
+
+
+@pytest.mark.parametrize("side", ["motor", "link"])
+def test_flexible_joints_are_told_with_the_side_of_their_encoders(outputs, side):
+    soft = ("robot=macro", "plant=rk4_flexible", f"plant.flexible_joints.encoders={side}", "duration=0.05")
+    expected = f"Runge-Kutta is the plant, in steps of 10 ms. Joints are flexible, with encoders at the {side}s."
+    assert describe_plant(run(*soft, outputs)) == expected

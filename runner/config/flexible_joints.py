@@ -1,0 +1,90 @@
+"""What flexible joints change in a run: whether it can have them, what laws believe, and what encoders see."""
+
+import numpy as np
+
+from runner.config.run import RunConfig
+from runner.errors import ConfigError
+from runner.plants import Plant
+from runner.plants.flexible_joints import Flexibility, FlexibleJoints
+from runner.plants.rk4 import Rk4Config
+from runner.robots.motors import with_motors
+from runner.robots.robot import Robot
+from runner.sensing.motors import MotorSide
+
+_FASTEST = 0.5  # step times the largest rate: the scheme's own damping ratio, (rate h)^5/144, is 2.2e-4 there
+
+
+def find_flexibility(config: RunConfig) -> Flexibility | None:
+    """Return springs and motors of a run's joints; None where they are rigid.
+
+    Raises:
+        ConfigError: see FlexibleJointsConfig.by_joint.
+    """
+    if not isinstance(config.plant, Rk4Config) or config.plant.flexible_joints is None:
+        return None
+    return config.plant.flexible_joints.by_joint(config.arm)
+
+
+def believe_motors(config: RunConfig, believed: Robot) -> Robot:
+    """Return a robot as its controllers believe it to be, who know the motors of flexible joints."""
+    flexibility = find_flexibility(config)
+    return believed if flexibility is None else with_motors(believed, flexibility.motors)
+
+
+def find_motor_side(config: RunConfig, plant: Plant, believed: Robot) -> MotorSide | None:
+    """Return what encoders at the motors of a plant see; None where encoders turn with the links."""
+    if not isinstance(plant, FlexibleJoints) or not isinstance(config.plant, Rk4Config):
+        return None
+    joints, flexibility = config.plant.flexible_joints, find_flexibility(config)
+    if joints is None or flexibility is None or joints.encoders == "link":
+        return None
+    return MotorSide(plant, flexibility, believed.model if joints.static_deflection == "known" else None)
+
+
+def check_flexible_joints(config: RunConfig) -> None:
+    """Check that flexible joints meet a step that follows their fastest mode, and nothing that takes them for rigid.
+
+    Raises:
+        ConfigError: where they do not.
+    """
+    flexibility = find_flexibility(config)
+    if flexibility is None or not isinstance(config.plant, Rk4Config):
+        return
+    problems = [f"plant.flexible_joints: {problem}" for problem in _refused(config, config.plant, flexibility)]
+    rate, step = flexibility.largest_rate(config.arm.model.mass_matrix(config.arm.home)), config.timing.step
+    if rate * step > _FASTEST:
+        steps = int(np.ceil(rate * config.timing.tick / _FASTEST))
+        problems.append(
+            f"plant.step: {step:g} s is too long for the fastest mode of the flexible joints, {rate / (2 * np.pi):.3g} "
+            f"Hz at home; allowed: up to {_FASTEST / rate:.3g} s, such as {config.timing.tick / steps:g}"
+        )
+    if problems:
+        raise ConfigError(problems)
+
+
+def _refused(config: RunConfig, plant: Rk4Config, flexibility: Flexibility) -> list[str]:
+    """Return what of a config takes its joints for rigid."""
+    problems = []
+    if config.commands != "torque":
+        problems.append(
+            f"{config.controller.kind} commands joint positions, whose servos turn links; take a controller that gives "
+            "torques"
+        )
+    if len(config.arm.stages) > 1 and plant.dynamics == "decoupled":
+        problems.append("stages that do not feel each other have rigid joints; take plant.dynamics=coupled")
+    if np.any(plant.friction.viscous) or np.any(plant.friction.coulomb):
+        problems.append("plant.friction acts on the links of rigid joints; take 0 for both")
+    if config.feels:
+        problems.append("a force on the tip would act on the motors; take environment=free and a law that feels none")
+    if config.loaded:
+        problems.append("the payload cannot change on the way; take robot.payload.schedule=[]")
+    if config.joint_torques is not None:
+        problems.append("torque sensors are read at rigid joints; take joint_torque_sensor.noise=null")
+    for name, arm, stage in zip(config.robot.arms, config.robot.arms.values(), config.arm.stages, strict=True):
+        if arm.rotor_inertia not in (0.0, 0) and flexibility.flexible[stage.joints].any():
+            key = f"robot.stages.{name}.rotor_inertia" if len(config.arm.stages) > 1 else "robot.rotor_inertia"
+            problems.append(
+                f"{key}: {arm.rotor_inertia} turns with the links, beside motor_inertia with which the motors turn; "
+                "take 0 for one arm to have its motors once"
+            )
+    return problems

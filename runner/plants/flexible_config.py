@@ -1,0 +1,72 @@
+"""Config of the springs between motors and links."""
+
+from typing import Literal
+
+import numpy as np
+from pydantic import NonNegativeFloat
+
+from runner.config.per_joint import expand
+from runner.config.per_stage import SpringPerStage, by_stage
+from runner.errors import ConfigError
+from runner.plants.flexible_joints import Flexibility
+from runner.plants.plant import FloatArray
+from runner.registry import StrictModel
+from runner.robots.robot import Robot
+
+
+class FlexibleJointsConfig(StrictModel):
+    """Config of flexible joints; by stage where the robot has several.
+
+    Attributes:
+        stiffness: Stiffness between motor and link, in N m/rad. One for all joints or a list with one for each; None
+            for a joint that is rigid.
+        motor_inertia: Inertia of the motor after its gear, in kg m^2; likewise, None for the same joints.
+        damping_ratio: Damping of each joint's spring, of its link alone with the others held at home: 1 is critical.
+        encoders: Whether the encoders turn with the motors or with the links.
+        static_deflection: Whether readings at the motors are corrected for the deflection under the believed weight.
+    """
+
+    stiffness: SpringPerStage
+    motor_inertia: SpringPerStage
+    damping_ratio: NonNegativeFloat
+    encoders: Literal["motor", "link"]
+    static_deflection: Literal["known", "unknown"]
+
+    def by_joint(self, arm: Robot) -> Flexibility:
+        """Return springs, dampers and motors of a robot's joints.
+
+        Raises:
+            ConfigError: for values that do not fit the robot's stages and joints, no spring at all, one without motor
+                or a motor without spring, or a spring in a joint that slides.
+        """
+        springs = _expand("stiffness", self.stiffness, arm)
+        motors = _expand("motor_inertia", self.motor_inertia, arm)
+        key, names = "plant.flexible_joints", arm.model.joint_names
+        flexible = np.isfinite(springs)
+        problems = []
+        if not flexible.any():
+            problems.append(f"{key}.stiffness: null for every joint; take plant.flexible_joints=null for a rigid arm")
+        for name, spring, motor, slides in zip(names, flexible, np.isfinite(motors), arm.model.slides, strict=True):
+            if spring != motor:
+                problems.append(
+                    f"{key}.motor_inertia: {name} has {'a spring and no motor' if spring else 'a motor and no spring'};"
+                    " give each joint both, or null for both"
+                )
+            if spring and slides:
+                problems.append(f"{key}.stiffness: {name} slides; springs are for joints that turn, so null")
+        if problems:
+            raise ConfigError(problems)
+        held = np.diag(arm.model.mass_matrix(arm.home))
+        damping = np.zeros(len(springs))
+        damping[flexible] = 2.0 * self.damping_ratio * np.sqrt(springs[flexible] * held[flexible])
+        return Flexibility(springs, np.where(flexible, motors, 0.0), damping)
+
+
+def _expand(name: str, value: SpringPerStage, arm: Robot) -> FloatArray:
+    """Return a key's value of each joint of a robot, shape (nq,); infinite for null."""
+    key, several = f"plant.flexible_joints.{name}", len(arm.stages) > 1
+    values: list[float | None] = []
+    for stage, given in zip(arm.stages, by_stage(key, value, arm.stage_names), strict=True):
+        at = f"{key}.{stage.name}" if several else key
+        values += expand(at, given, stage.model.joint_names)  # type: ignore[arg-type]
+    return np.array([np.inf if each is None else each for each in values])

@@ -1,0 +1,128 @@
+"""Joints with springs between motors and links, integrated by the Runge-Kutta scheme."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from runner.plants.plant import FloatArray
+from runner.robots.model import RobotModel
+
+
+@dataclass(frozen=True)
+class Flexibility:
+    """Springs, dampers and motors of the joints of an arm.
+
+    Attributes:
+        stiffness: K of each joint, shape (nq,), in N m/rad; infinite where it is rigid.
+        motors: B, inertia of each motor after its gear, shape (nq,), in kg m^2; 0 where the joint is rigid.
+        damping: D of each joint, shape (nq,), in N m s/rad; 0 where it is rigid.
+    """
+
+    stiffness: FloatArray
+    motors: FloatArray
+    damping: FloatArray
+
+    @property
+    def flexible(self) -> np.ndarray:
+        """Which joints have a spring, shape (nq,)."""
+        return np.isfinite(self.stiffness)
+
+    def deflection(self, load: FloatArray) -> FloatArray:
+        """Return theta - q of joints at rest under the torques of their links, shapes (nq,), in rad and N m."""
+        return load / self.stiffness
+
+    def largest_rate(self, M: FloatArray) -> float:
+        r"""Return the largest magnitude of an eigenvalue of the arm about a posture, in 1/s, without gravity.
+
+        .. math:: \begin{bmatrix} M & \\ & B \end{bmatrix} \ddot x +
+            \begin{bmatrix} D & -D \\ -D & D \end{bmatrix} \dot x +
+            \begin{bmatrix} K & -K \\ -K & K \end{bmatrix} x = 0, \qquad x = (q, \theta)
+
+        Args:
+            M: Mass matrix of the links in that posture, shape (nq, nq), in kg m^2.
+        """
+        on, nq = self.flexible, len(M)
+        picks = np.hstack([np.eye(nq)[on], -np.eye(int(on.sum()))])  # deflections from (q, theta of flexible joints)
+        inertia = np.diag(np.concatenate([np.zeros(nq), self.motors[on]]))
+        inertia[:nq, :nq] = M
+        K = picks.T @ np.diag(self.stiffness[on]) @ picks
+        D = picks.T @ np.diag(self.damping[on]) @ picks
+        slopes = np.linalg.solve(inertia, np.hstack([-K, -D]))
+        n = len(inertia)
+        return float(np.abs(np.linalg.eigvals(np.vstack([np.eye(n, 2 * n, n), slopes]))).max())
+
+
+class FlexibleJoints:
+    r"""An arm with flexible joints, by the classical Runge-Kutta scheme on Pinocchio's forward dynamics.
+
+    .. math:: M(q) \ddot q + h(q, \dot q) = K (\theta - q) + D (\dot\theta - \dot q), \qquad
+        B \ddot\theta + K (\theta - q) + D (\dot\theta - \dot q) = \tau
+
+    The model is that of Spong (J. Dyn. Syst. Meas. Control 109, 1987): a motor feels no inertia but its own spin.
+    A rigid joint takes its torque as it is.
+
+    Args:
+        model: The arm's rigid-body model, of the links alone.
+        flexibility: Springs, dampers and motors of its joints.
+        step: Integration step, in s.
+        steps_per_tick: Integration steps for which the torques of one tick are held.
+    """
+
+    def __init__(self, model: RobotModel, flexibility: Flexibility, step: float, steps_per_tick: int) -> None:
+        self._model = pin.Model(model.pin_model)
+        self._data = self._model.createData()
+        self._flexibility, self._on = flexibility, flexibility.flexible
+        self._stiffness, self._motors = flexibility.stiffness[self._on], flexibility.motors[self._on]
+        self._damping = flexibility.damping[self._on]
+        self._step, self._steps_per_tick = step, steps_per_tick
+        self.q, self.dq = np.zeros(model.nq), np.zeros(model.nq)
+        self.theta: FloatArray = np.zeros(model.nq)
+        """Motor positions after the gear, shape (nq,), in rad; of a rigid joint its own."""
+        self.dtheta: FloatArray = np.zeros(model.nq)
+        """Motor velocities after the gear, shape (nq,), in rad/s; likewise."""
+
+    def reset(self, q: FloatArray, dq: FloatArray) -> None:
+        """Put the links into a state, and the motors where their springs carry the links' weight; see Plant."""
+        self.q[:], self.dq[:], self.dtheta[:] = q, dq, dq
+        weight = pin.computeGeneralizedGravity(self._model, self._data, self.q)
+        self.theta[:] = self.q + self._flexibility.deflection(weight)
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector; see Plant."""
+        self._model.gravity.linear = gravity
+
+    def advance(self, tau: FloatArray) -> None:
+        """Hold the motors' torques for one tick; see Plant."""
+        on, nq, h = self._on, len(self.q), self._step
+        x = np.concatenate([self.q, self.theta[on], self.dq, self.dtheta[on]])
+        for _ in range(self._steps_per_tick):
+            k1 = self._slope(x, tau)
+            k2 = self._slope(x + 0.5 * h * k1, tau)
+            k3 = self._slope(x + 0.5 * h * k2, tau)
+            k4 = self._slope(x + h * k3, tau)
+            x = x + (h / 6.0) * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+        places, speeds = x[: len(x) // 2], x[len(x) // 2 :]
+        self.q[:], self.dq[:] = places[:nq], speeds[:nq]
+        self.theta[:], self.dtheta[:] = self.q, self.dq
+        self.theta[on], self.dtheta[on] = places[nq:], speeds[nq:]
+
+    def _slope(self, x: FloatArray, tau: FloatArray) -> FloatArray:
+        """Return the slope of links' and motors' positions, then of their velocities."""
+        on, nq, n = self._on, len(self.q), len(x) // 2
+        places, speeds = x[:n], x[n:]
+        spring = self._stiffness * (places[nq:] - places[:nq][on]) + self._damping * (speeds[nq:] - speeds[:nq][on])
+        acting = tau.copy()
+        acting[on] = spring
+        links = pin.aba(self._model, self._data, places[:nq], speeds[:nq], acting)
+        return np.concatenate([speeds, links, (tau[on] - spring) / self._motors])
+
+    def energy(self) -> float:
+        """Return the energy of links, springs and motors, in J."""
+        bent = (self.theta - self.q)[self._on]
+        links = pin.computeMechanicalEnergy(self._model, self._data, self.q, self.dq)
+        springs = 0.5 * float(self._stiffness @ bent**2)
+        return float(links) + springs + 0.5 * float(self._motors @ self.dtheta[self._on] ** 2)
+
+    def close(self) -> None:
+        """Hold nothing, release nothing."""

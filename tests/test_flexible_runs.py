@@ -1,0 +1,110 @@
+"""Runs of arms with flexible joints, from the config to the metrics."""
+
+import numpy as np
+import pytest
+
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.errors import ConfigError
+from runner.robots.motors import with_motors
+from runner.store import simulated_part
+
+MACRO = ("robot=macro", "plant=rk4_flexible", "noise=none", "torque_limits=none")
+MOVE = ("trajectory=quintic", "trajectory.duration=1", "trajectory.goal=[0.4,0.7,0.6]", "duration=1.5")
+KEY = "plant.flexible_joints"
+
+
+def problems(*overrides):
+    with pytest.raises(ConfigError) as caught:
+        validate(compose([*overrides]).resolved)
+    return str(caught.value)
+
+
+def test_stiffer_joints_bring_the_arm_nearer_to_its_path(simulated):
+    soft, stiff = (
+        np.linalg.norm(simulated(*MACRO, *MOVE, "plant.step=0.001", f"{KEY}.stiffness={K}").error, axis=1).max()
+        for K in (1e3, 1e4)
+    )
+    assert 9.0 < soft / stiff < 13.0
+
+
+def test_under_control_the_distance_to_the_rigid_arm_falls_as_one_over_the_stiffness(simulated):
+    rigid = simulated("robot=macro", "plant=rk4", "noise=none", "torque_limits=none", *MOVE).error
+    stiffness = np.array([1e4, 2e4, 4e4])
+    flexible = [simulated(*MACRO, *MOVE, "plant.step=0.001", f"{KEY}.stiffness={K}").error for K in stiffness]
+    distances = [np.linalg.norm(error - rigid, axis=1).max() for error in flexible]
+    assert np.polyfit(np.log(stiffness), np.log(distances), 1)[0] == pytest.approx(-1.0, abs=0.05)
+
+
+def test_encoders_at_the_links_make_the_rigid_law_unstable(simulated):
+    trace = simulated(*MACRO, *MOVE, f"{KEY}.encoders=link")
+    assert trace.failure is not None
+    assert "diverged" in trace.failure.reason
+
+
+def test_at_rest_the_known_deflection_leaves_an_error_of_second_order(simulated):
+    def rest(K, known):
+        keys = (f"{KEY}.stiffness={K}", f"{KEY}.static_deflection={known}", f"{KEY}.damping_ratio=0.2")
+        trace = simulated(*MACRO, "trajectory=goal", "trajectory.goal=[0,1,1]", "duration=6", "plant.step=0.002", *keys)
+        return np.abs(trace.error[-1]).max()
+
+    assert rest(2e3, "unknown") / rest(4e3, "unknown") == pytest.approx(2.0, rel=0.1)
+    assert rest(2e3, "known") / rest(4e3, "known") == pytest.approx(4.0, rel=0.1)
+
+
+def test_a_stage_with_null_stays_rigid():
+    config = validate(
+        compose(
+            [
+                "robot=combined",
+                "plant=rk4_flexible",
+                f"{KEY}.stiffness={{macro: 1000, mini: null}}",
+                f"{KEY}.motor_inertia={{macro: 2, mini: null}}",
+            ]
+        ).resolved
+    )
+    flexibility = config.plant.flexible_joints.by_joint(config.arm)
+    assert flexibility.flexible.tolist() == [True] * 3 + [False] * 3
+    M = config.arm.model.mass_matrix(config.arm.home)
+    gained = with_motors(config.arm, flexibility.motors).model.mass_matrix(config.arm.home) - M
+    assert gained == pytest.approx(np.diag([2.0] * 3 + [0.0] * 3), abs=1e-12)
+
+
+def test_the_names_of_rigid_runs_know_nothing_of_flexible_joints():
+    assert "flexible_joints" not in simulated_part(compose(["robot=macro", "plant=rk4"]).resolved)["plant"]
+    assert "flexible_joints" in simulated_part(compose(["robot=macro", "plant=rk4_flexible"]).resolved)["plant"]
+
+
+@pytest.mark.parametrize(
+    ("overrides", "expected"),
+    [
+        ((f"{KEY}.stiffness=0",), f"{KEY}.stiffness: must be a number above 0, null for rigid joints"),
+        ((f"{KEY}.stiffness=-5",), "found -5"),
+        ((f"{KEY}.motor_inertia=-1",), f"{KEY}.motor_inertia: must be a number above 0"),
+        ((f"{KEY}.damping_ratio=-0.1",), f"{KEY}.damping_ratio: must be 0 or more"),
+        ((f"{KEY}.stiffness=[1,2]",), "2 values for 3 joints (q1, q2, q3)"),
+        ((f"{KEY}.stiffness=null",), "null for every joint"),
+        ((f"{KEY}.motor_inertia=null",), "q1 has a spring and no motor"),
+        ((f"{KEY}.stiffness=[null,1,1]",), "q1 has a motor and no spring"),
+        ((f"{KEY}.stiffness=1e6",), "Hz at home; allowed: up to 0.0003"),
+        ((f"{KEY}.encoders=motr",), "did you mean motor?"),
+        (("robot.rotor_inertia=0.1",), "robot.rotor_inertia: 0.1 turns with the links"),
+        (("plant.friction.coulomb=1",), "plant.friction acts on the links"),
+        (("joint_torque_sensor=ideal",), "joint_torque_sensor.noise=null"),
+        (("robot.payload.schedule=[{at: 1.0, mass: 0.5}]",), "robot.payload.schedule=[]"),
+    ],
+)
+def test_what_does_not_fit_is_refused(overrides, expected):
+    assert expected in problems("robot=macro", "plant=rk4_flexible", *overrides)
+
+
+def test_a_blind_mini_is_no_better_than_the_macro_that_carries_it(simulated):
+    trace = simulated(
+        *("robot=combined", "plant=rk4_flexible", "noise=none", "torque_limits=none", "trajectory=quintic"),
+        *("trajectory.duration=1", "trajectory.goal=[0.4,0.8,0.7]", "duration=1"),
+        *(f"{KEY}.stiffness={{macro: 1000, mini: null}}", f"{KEY}.motor_inertia={{macro: 2, mini: null}}"),
+    )
+    carried = trace.end_points[0] + trace.offsets[0] - trace.desired[:, 0]
+    macro, tip = (np.linalg.norm(error, axis=1).max() for error in (carried, trace.error))
+    assert tip == pytest.approx(macro, rel=0.12)
+    assert tip == pytest.approx(8.9e-3, rel=0.12)  # m, of a simulation apart from this one
