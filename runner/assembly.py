@@ -23,6 +23,7 @@ from runner.plants import PLANTS, ContactPlant, Plant, PositionPlant, innermost
 from runner.plants.kinds import HasServo
 from runner.plants.payload_changes import PayloadChanges
 from runner.plants.servo import JointServo, ServoLaw
+from runner.plants.touched import Touched
 from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.mismatch import believe
 from runner.robots.robot import Robot, end_points
@@ -53,10 +54,11 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
     believed, loops = _believe(config, repetition)
     environment = ENVIRONMENTS.build(config.environment)
     with ExitStack() as on_error:
-        plant = _make_plant(config, believed, loops[0].period)
+        touched = environment if isinstance(environment, Wall) and _touches_by_tip(config) else None
+        plant = _make_plant(config, believed, loops[0].period, touched)
         on_error.callback(plant.close)
         if isinstance(environment, Wall):
-            environment = _put_up(environment, config, plant)
+            environment = None if touched else _put_up(environment, config, plant)
         interaction = Interaction(arm, environment, timing.tick) if config.feels else None
         compiled = _compile(config, loops)
         on_error.pop_all()
@@ -166,13 +168,15 @@ def _start_posture(controller: ControllerConfig, arm: Robot, start: FloatArray, 
     )
 
 
-def _make_plant(config: RunConfig, believed: Robot, period: float) -> Plant | PositionPlant:
+def _make_plant(
+    config: RunConfig, believed: Robot, period: float, touched: Wall | None = None
+) -> Plant | PositionPlant:
     """Return the plant, behind joint servos where it takes torques and loops of a period command joint positions."""
     arm, timing = config.arm, config.timing
     ticks_per_command = round(period / timing.tick)
     if PLANTS.commands(config.plant.kind) == "position":
         return PLANTS.build(config.plant, arm, timing.tick, ticks_per_command)
-    plant = _make_torque_plant(config)
+    plant = _make_torque_plant(config) if touched is None else _make_touched_plant(config, touched)
     if config.commands == "torque" or not isinstance(config.plant, HasServo):
         return plant
     with ExitStack() as on_error:
@@ -196,15 +200,37 @@ def _make_torque_plant(config: RunConfig) -> Plant:
     return PayloadChanges(plants, ticks) if ticks else plants[0]
 
 
+def _touches_by_tip(config: RunConfig) -> bool:
+    """Tell whether the tip of a moving arm, a point, touches a wall within the plant's steps; a tool does else.
+
+    Raises:
+        ConfigError: where the plant's tip is none that rigid bodies have.
+    """
+    if config.parallel:
+        raise ConfigError(
+            [
+                "environment.kind: a wall is touched where rigid bodies bring the tip, and "
+                "plant.wrist_rotation=parallel leaves the rider's base unturned; set plant.wrist_rotation=real, or "
+                "environment=free"
+            ]
+        )
+    return config.robot.tool is None and PLANTS.commands(config.plant.kind) == "torque"
+
+
+def _make_touched_plant(config: RunConfig, wall: Wall) -> Plant:
+    """Return the plant of an arm without a tool, whose tip touches a wall within its steps."""
+    timing = config.timing
+    plant = PLANTS.build(config.plant, config.arm, timing.step, 1)
+    lead = 0.5 if PLANTS.moves_exactly(config.plant) else 0.0
+    return Touched(plant, config.arm.model, wall, timing.step, timing.steps_per_tick, lead)
+
+
 def _put_up(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
     """Put up a wall in a plant that makes contacts itself, and return what of it is left for the loop to do.
 
     Raises:
-        ConfigError: where there is no tool to touch it, or the controller would bounce on it with ideal joints.
+        ConfigError: where the controller would bounce on it with ideal joints, or the plant makes no friction.
     """
-    tool = config.robot.tool
-    if tool is None:
-        raise ConfigError(["environment.kind: a wall is touched by the tip of a tool, and robot.tool is null"])
     ideal = PLANTS.commands(config.plant.kind) == "position"
     if ideal and isinstance(config.controller, ChecksStability) and config.controller.check_stability:
         late = math.ceil(config.timing.delay * config.timing.tick / config.controller.period - 1e-9)
@@ -213,8 +239,16 @@ def _put_up(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
     within = innermost(plant)
     if not isinstance(within, ContactPlant):
         return wall
+    if wall.config.friction:
+        raise ConfigError(
+            [
+                f"environment.friction: {wall.config.friction:g} found, and plant={config.plant.kind} makes the "
+                "contact of a tool without friction; take 0, robot.tool=null (the tip touches), or plant=rk4"
+            ]
+        )
     wall.reset(config.path.start)
-    ball = tool.tip_radius * wall.normal  # it is the ball's centre that is led
+    tool = config.robot.tool
+    ball = (0.0 if tool is None else tool.tip_radius) * wall.normal  # it is the ball's centre that is led
     within.add_wall(wall.point - ball, wall.normal.copy(), wall.config.stiffness, wall.config.damping)
     return None
 
@@ -230,6 +264,8 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
     if not isinstance(wall, WallConfig) or not isinstance(law, LeadsByForce) or not isinstance(plant, HasServo):
         return None
     if PLANTS.commands(plant.kind) != "torque" or config.commands != "position" or len(config.arm.stages) > 1:
+        return None
+    if config.robot.tool is None:
         return None
     low_pass = config.wrist_sensor.low_pass
     return ServoContact(
