@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from runner.robots.model import FloatArray
-from runner.robots.robot import Robot
+from runner.robots.model import FloatArray, RobotModel
 
 
-def tip_mobility(robot: Robot, q: FloatArray, stage: int = 0) -> FloatArray:
-    r"""Return how the tip yields to a force when a stage and all after it move, shape (3, 3), in 1/kg.
+def tip_mobility(model: RobotModel, q: FloatArray, first: int = 0) -> FloatArray:
+    r"""Return how the tip yields to a force when joints from one on move, shape (3, 3), in 1/kg.
 
     .. math:: \Lambda^{-1} = J M^{-1} J^T
 
@@ -17,12 +16,11 @@ def tip_mobility(robot: Robot, q: FloatArray, stage: int = 0) -> FloatArray:
     Research 14(1), 1995), the difference to the next one is positive semi-definite.
 
     Args:
-        robot: The robot.
-        q: Joint positions of all stages, shape (nq,), in rad.
-        stage: Index of the first stage that moves.
+        model: The whole arm.
+        q: Its joint positions, shape (nq,), in rad.
+        first: The first joint that moves, such as that of a stage.
     """
-    first = robot.stages[stage].joints.start
-    J, M = robot.model.tip_jacobian(q)[:3, first:], robot.model.mass_matrix(q)[first:, first:]
+    J, M = model.tip_jacobian(q)[:3, first:], model.mass_matrix(q)[first:, first:]
     return np.asarray(J @ np.linalg.solve(M, J.T))
 
 
