@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runner.controllers.force_stability import force_loop_limit
 from runner.reporting.document import FloatArray, Series
@@ -23,11 +24,11 @@ def push(run: Run) -> FloatArray:
     return np.asarray(columns(run.trace, "external_force") @ np.array(run.config["environment"]["normal"]))
 
 
-def rise_time(run: Run) -> float | None:
-    """Return how long the force takes from 10 % to 90 % of what is asked, in s; None where it never does."""
+def rise_time(run: Run) -> float:
+    """Return how long the force takes from 10 % to 90 % of what is asked, in s; NaN where it never does."""
     force, asked, t = push(run), float(run.config["controller"]["force"]), clock(run)
     if not (force >= 0.9 * asked).any():
-        return None
+        return float("nan")
     low, high = (_first_at(t, force, share * asked) for share in (0.1, 0.9))
     return high - low
 
@@ -70,8 +71,10 @@ def stiffest_of(mass: float, force_gain: float, late: int) -> Callable[[float], 
 
 
 def speed_at_touch(run: Run) -> float:
-    """Return how fast a tip comes to the wall, in m/s."""
+    """Return how fast a tip comes to the wall, in m/s; NaN where it does not."""
     row = _touch(run)
+    if row is None:
+        return float("nan")
     t, tip = clock(run), columns(run.trace, "tip") @ np.array(run.config["environment"]["normal"])
     return float((tip[row - 1] - tip[row]) / (t[row] - t[row - 1]))
 
@@ -82,9 +85,9 @@ def peak(run: Run) -> float:
 
 
 def closed_peak(run: Run) -> float:
-    """Return the same of a mass on the wall's spring, v sqrt(k m), in N."""
-    stiffness = float(run.config["environment"]["stiffness"])
-    return speed_at_touch(run) * float(np.sqrt(stiffness * _mass(run, _touch(run))))
+    """Return the same of a mass on the wall's spring, v sqrt(k m), in N; NaN where nothing is touched."""
+    row, stiffness = _touch(run), float(run.config["environment"]["stiffness"])
+    return float("nan") if row is None else speed_at_touch(run) * float(np.sqrt(stiffness * _mass(run, row)))
 
 
 def peak_over_closed(run: Run) -> float:
@@ -92,19 +95,23 @@ def peak_over_closed(run: Run) -> float:
     return peak(run) / closed_peak(run)
 
 
-def worst_while_sliding(run: Run) -> float:
+def worst_while_sliding(run: Run) -> float | None:
     """Return by how much the force is off what is asked, at most, in the middle of the motion along a wall, in N."""
-    t = clock(run)
-    slides = (t >= _SLIDES[0]) & (t <= _SLIDES[1])
-    return float(np.abs(push(run)[slides] - float(run.config["controller"]["force"])).max())
+    off = np.abs(push(run)[_slides(run)] - float(run.config["controller"]["force"]))
+    return float(off.max()) if len(off) else None
 
 
-def friction_while_sliding(run: Run) -> float:
+def friction_while_sliding(run: Run) -> float | None:
     """Return the mean force along the wall over that into it, in the middle of the motion along a wall."""
-    t, force, along = clock(run), push(run), columns(run.trace, "external_force")
-    slides = (t >= _SLIDES[0]) & (t <= _SLIDES[1])
-    beside = along - force[:, None] * np.array(run.config["environment"]["normal"])
-    return float(np.mean(np.linalg.norm(beside[slides], axis=1) / force[slides]))
+    slides, force, along = _slides(run), push(run), columns(run.trace, "external_force")
+    beside = np.linalg.norm(along - force[:, None] * np.array(run.config["environment"]["normal"]), axis=1)
+    return float(np.mean(beside[slides] / force[slides])) if slides.any() else None
+
+
+def _slides(run: Run) -> NDArray[np.bool_]:
+    """Return which rows are in the middle of the motion along a wall."""
+    t = clock(run)
+    return np.asarray((t >= _SLIDES[0]) & (t <= _SLIDES[1]))
 
 
 def _first_at(t: FloatArray, force: FloatArray, level: float) -> float:
@@ -113,9 +120,10 @@ def _first_at(t: FloatArray, force: FloatArray, level: float) -> float:
     return float(np.interp(level, force[row - 1 : row + 1], t[row - 1 : row + 1]))
 
 
-def _touch(run: Run) -> int:
-    """Return the first row that touches, 1 or more."""
-    return max(1, int(np.flatnonzero(push(run) > 0.0)[0]))
+def _touch(run: Run) -> int | None:
+    """Return the first row that touches, 1 or more; None where none does."""
+    touching = np.flatnonzero(push(run) > 0.0)
+    return max(1, int(touching[0])) if len(touching) else None
 
 
 def _mass(run: Run, row: int) -> float:
@@ -155,3 +163,13 @@ def beside_the_wall(run: Run) -> FloatArray:
     """Return the tip's error along the wall at each row, in m."""
     error, n = columns(run.trace, "error"), np.array(run.config["environment"]["normal"])
     return np.asarray(np.linalg.norm(error - np.outer(error @ n, n), axis=1))
+
+
+def masses_around(runs: Mapping[str, Run], run: str, name: str, color: int) -> list[Series]:
+    """Return the mass of what pushes in each direction of the plane x = 0 where a run starts, as a curve in kg."""
+    model, q = model_of(runs[run]), joint_columns(runs[run].trace, "q")[0]
+    yields = tip_mobility(model, q, _first_that_pushes(runs[run]))
+    turns = np.linspace(0.0, 2.0 * np.pi, 181)
+    ways = np.array([np.zeros_like(turns), np.cos(turns), np.sin(turns)])
+    masses = 1.0 / np.einsum("it,ij,jt->t", ways, yields, ways)
+    return [Series(name, masses * ways[1], masses * ways[2], "line", color=color)]

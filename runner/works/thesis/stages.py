@@ -51,7 +51,7 @@ def least_gain(run: Run) -> float:
     return least
 
 
-def force_rise_time(run: Run) -> float | None:
+def force_rise_time(run: Run) -> float:
     """Return how long the force on a wall takes from 10 % to 90 % of what is asked, in s."""
     return rise_time(run)
 
