@@ -11,6 +11,8 @@ from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.controllers.admittance_stability import check_wall
 from runner.controllers.disturbance_observer import observed
+from runner.controllers.force_stability import touch_radius
+from runner.controllers.hybrid_force import HybridForceConfig
 from runner.controllers.kinds import ChecksStability, FollowsWithinReach, LeadsByForce
 from runner.environments import ENVIRONMENTS, Environment
 from runner.environments.wall import Wall, WallConfig
@@ -24,6 +26,7 @@ from runner.plants.kinds import HasServo
 from runner.plants.payload_changes import PayloadChanges
 from runner.plants.servo import JointServo, ServoLaw
 from runner.plants.touched import Touched
+from runner.robots.effective_mass import mass_along, tip_mobility
 from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.mismatch import believe
 from runner.robots.robot import Robot, end_points
@@ -287,6 +290,22 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
         stiffness=wall.stiffness,
         damping=wall.damping,
     )
+
+
+def force_contact(config: RunConfig, q_start: FloatArray) -> float | None:
+    """Return how a small motion on a wall grows in a period of a law that pushes on it, at the start; None without one.
+
+    Args:
+        config: The checked config.
+        q_start: Joint positions at the start, shape (nq,), in rad.
+    """
+    wall, law, loop, timing = config.environment, config.controller, config.loops[-1], config.timing
+    if not isinstance(wall, WallConfig) or not isinstance(law, HybridForceConfig) or law.reading != "wrist":
+        return None
+    normal = np.array(wall.normal) / np.linalg.norm(wall.normal)
+    mass = mass_along(tip_mobility(config.arm.model, q_start, loop.joints.start), normal)
+    late = math.ceil(timing.delay * timing.tick / loop.period - 1e-9)
+    return touch_radius(law, mass, wall.stiffness, wall.damping, law.wall_stiffness, loop.period, late)
 
 
 def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition: int) -> list[JointEncoders]:

@@ -1,10 +1,26 @@
 """How stiff a wall a sampled force law stands, by the map of one period."""
 
+from typing import Protocol
+
 import numpy as np
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
 from runner.controllers.controller import FloatArray
+
+
+class ForceLaw(Protocol):
+    """The gains of a law that pushes, as HybridForceConfig has them."""
+
+    @property
+    def force_gain(self) -> float:
+        """Gain of the force's error."""
+        ...
+
+    @property
+    def force_damping(self) -> float:
+        """Damping ratio of the motion into the wall."""
+        ...
 
 
 def force_loop_radius(rate: float, force_gain: float, damping: float, delay: int = 0) -> float:
@@ -24,8 +40,31 @@ def force_loop_radius(rate: float, force_gain: float, damping: float, delay: int
         delay: d.
     """
     wall = 0.0 if np.isinf(force_gain) else rate**2 / (1.0 + force_gain)  # k h^2 / m; the period is the unit of time
-    gain = np.array([wall - rate**2, -2.0 * damping * rate])
-    step = expm(np.array([[0.0, 1.0, 0.0], [-wall, 0.0, 1.0], [0.0, 0.0, 0.0]]))
+    return _radius(np.array([-wall, 0.0]), np.array([wall - rate**2, -2.0 * damping * rate]), delay)
+
+
+def touch_radius(
+    law: ForceLaw, mass: float, stiffness: float, drag: float, believed: float, period: float, delay: int
+) -> float:
+    """Return the same of a law on a wall that is not as it believes, and damps.
+
+    Args:
+        law: The law's gains.
+        mass: Of the tip along the normal, in kg.
+        stiffness: Of the wall, in N/m.
+        drag: Its damping, in N s/m.
+        believed: The stiffness that the law believes in, in N/m.
+        period: h, in s.
+        delay: Periods from a push until it acts.
+    """
+    brake = 2.0 * law.force_damping * float(np.sqrt(believed * (1.0 + law.force_gain) * mass))
+    wall = np.array([stiffness * period, drag]) * period / mass
+    return _radius(-wall, -law.force_gain * wall - np.array([0.0, brake * period / mass]), delay)
+
+
+def _radius(passive: FloatArray, gain: FloatArray, delay: int) -> float:
+    """Return the spectral radius of a unit mass under passive . (x, v) and a held push gain . (x, v), a period long."""
+    step = expm(np.array([[0.0, 1.0, 0.0], [*passive, 1.0], [0.0, 0.0, 0.0]]))
     motion, push = step[:2, :2], step[:2, 2]
     goes: FloatArray = np.zeros((2 + delay, 2 + delay))  # position, velocity, and the pushes to come, the next first
     goes[:2, :2] = motion

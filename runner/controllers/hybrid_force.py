@@ -20,7 +20,7 @@ class HybridForceConfig(TipForceConfig):
     Attributes:
         kind: Its name in the registry.
         normal: Out of the wall, as it is believed, a unit vector along the base's axes.
-        stiffness: Of the wall, as it is believed, in N/m; it sets the damping.
+        wall_stiffness: Of the wall, as it is believed, in N/m; it sets the damping.
         force: f_d, how hard the tip is to push, in N.
         force_gain: k_f of the force's error; 0 leaves f_d as it is.
         integral_gain: k_i, in 1/s; 0 is none. It integrates while something is felt.
@@ -31,7 +31,7 @@ class HybridForceConfig(TipForceConfig):
 
     kind: Literal["hybrid_force"]
     normal: Annotated[list[float], Field(min_length=3, max_length=3)]
-    stiffness: PositiveFloat
+    wall_stiffness: PositiveFloat
     force: PositiveFloat
     force_gain: NonNegativeFloat
     integral_gain: NonNegativeFloat
@@ -100,7 +100,7 @@ class HybridForce:
         if f > 0.0:
             self._sum += self._period * (config.force - f)
         mass = 1.0 / float(n @ seen.mobility @ n)
-        rate = np.sqrt(config.stiffness * (1.0 + config.force_gain) / mass)
+        rate = np.sqrt(config.wall_stiffness * (1.0 + config.force_gain) / mass)
         push = config.force + config.force_gain * (config.force - f) + config.integral_gain * self._sum
         push += 2.0 * config.force_damping * mass * rate * float(n @ seen.velocity)
         return self._tip.torque(seen, seen.asked - n * (n @ seen.asked), -push * n)

@@ -19,13 +19,13 @@ class ImpedanceConfig(TipForceConfig):
 
     Attributes:
         kind: Its name in the registry.
-        stiffness: K_d, in N/m; 0 lets an axis go.
-        damping: D_d, in N s/m.
+        tip_stiffness: K_d, in N/m; 0 lets an axis go.
+        tip_damping: D_d, in N s/m.
     """
 
     kind: Literal["impedance"]
-    stiffness: Three
-    damping: Three
+    tip_stiffness: Three
+    tip_damping: Three
 
 
 class Impedance:
@@ -48,7 +48,7 @@ class Impedance:
 
     def __init__(self, tip: TipForce, config: ImpedanceConfig) -> None:
         self._tip = tip
-        self._stiffness, self._damping = np.diag(config.stiffness), np.diag(config.damping)
+        self._stiffness, self._damping = np.diag(config.tip_stiffness), np.diag(config.tip_damping)
 
     def reset(self) -> None:
         """Do nothing: the law keeps nothing."""

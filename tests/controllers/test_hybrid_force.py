@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from runner.controllers.force_stability import force_loop_limit
+from runner.execution import run
 
 POSTURE = "[0.3,0.4,-0.5]"
 NORMAL = np.array([0.0, -1.0, 0.0])
@@ -133,6 +134,16 @@ def test_it_goes_to_the_wall_slides_along_it_and_pushes(push, checked_config):
     assert force[sliding] == pytest.approx(np.full(sliding.sum(), 2.0), abs=0.1)
     np.testing.assert_allclose(contact[sliding, 0], -0.3 * force[sliding], rtol=0.02)
     assert abs(trace.end_points[-1, -1, 0] - goal[0]) < 1e-4
+
+
+@pytest.mark.parametrize(("stiffness", "told"), [(4e4, False), (6e4, True)])
+def test_a_wall_that_is_too_stiff_is_told_before_it_is_found_out(tmp_path, stiffness, told):
+    made = run(
+        *("robot=mini", f"robot.home={POSTURE}", *LAW, f"environment.normal={NORMAL.tolist()}", "duration=0.01"),
+        f"environment.stiffness={stiffness}",
+        *("trajectory.goal=[-0.03,0.0975,0.138]", f"outputs={tmp_path}"),
+    )
+    assert ("unstable_contact" in {caveat["rule"] for caveat in made.caveats}) == told
 
 
 def test_khatibs_null_space_leaves_the_tip_alone(checked_config):

@@ -25,8 +25,8 @@ def test_it_gives_way_by_the_force_over_the_stiffness(checked_config, simulated)
         simulated,
         "macro",
         "environment.force=[0.3,-0.2,0.4]",
-        "controller.stiffness=[100,200,400]",
-        "controller.damping=[30,30,30]",
+        "controller.tip_stiffness=[100,200,400]",
+        "controller.tip_damping=[30,30,30]",
         "duration=4",
     )
     np.testing.assert_allclose(moved[-1], [0.003, -0.001, 0.001], rtol=1e-6)
@@ -42,8 +42,8 @@ def test_on_the_way_it_has_the_mass_of_the_tip(checked_config, simulated):
         simulated,
         "macro",
         f"environment.force={f.tolist()}",
-        f"controller.stiffness={np.diag(K).tolist()}",
-        f"controller.damping={np.diag(D).tolist()}",
+        f"controller.tip_stiffness={np.diag(K).tolist()}",
+        f"controller.tip_damping={np.diag(D).tolist()}",
         "controller.period=2e-4",
         "duration=0.5",
     )
@@ -63,8 +63,8 @@ def test_a_mini_on_a_macro_gives_way_alone_or_with_it(checked_config, simulated,
         simulated,
         "combined",
         "environment.force=[0.3,-0.2,0.4]",
-        "controller.stiffness=[100,200,400]",
-        "controller.damping=[10,10,10]",
+        "controller.tip_stiffness=[100,200,400]",
+        "controller.tip_damping=[10,10,10]",
         f"controller.acts={acts}",
         "duration=3",
     )
@@ -73,6 +73,6 @@ def test_a_mini_on_a_macro_gives_way_alone_or_with_it(checked_config, simulated,
 
 
 def test_a_negative_stiffness_is_refused(cli):
-    ending = cli("robot=macro", "controller=impedance", "controller.stiffness=[1,-1,1]")
+    ending = cli("robot=macro", "controller=impedance", "controller.tip_stiffness=[1,-1,1]")
     assert ending.code == 2
-    assert "controller.stiffness" in ending.err
+    assert "controller.tip_stiffness" in ending.err
