@@ -146,20 +146,6 @@ def test_a_wall_that_is_too_stiff_is_told_before_it_is_found_out(tmp_path, stiff
     assert ("unstable_contact" in {caveat["rule"] for caveat in made.caveats}) == told
 
 
-def test_khatibs_null_space_leaves_the_tip_alone(checked_config):
-    """J M^-1 N^T tau_0 = 0 with the dynamically consistent inverse, and not with the plain one (line 18)."""
-    model = checked_config("robot=combined").arm.model
-    draw = np.random.default_rng(0)
-    for _ in range(20):
-        q, tau_0 = draw.uniform(-1.5, 1.5, 6), draw.uniform(-1.0, 1.0, 6)
-        J, M = model.tip_jacobian(q)[:3], model.mass_matrix(q)
-        moves = J @ np.linalg.solve(M, tau_0)
-        consistent = np.linalg.solve(M, J.T) @ np.linalg.inv(J @ np.linalg.solve(M, J.T))
-        assert np.linalg.norm(J @ np.linalg.solve(M, tau_0 - J.T @ consistent.T @ tau_0)) < 1e-10 * np.linalg.norm(
-            moves
-        )
-
-
 @pytest.mark.parametrize(
     ("overrides", "text"),
     [
