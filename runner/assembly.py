@@ -10,27 +10,27 @@ from runner.compiled.compile import compile_commands, compile_whole, describe_wh
 from runner.config.flexible_joints import believe_motors, find_flexibility, find_motor_side
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
-from runner.controllers.admittance_stability import check_wall
 from runner.controllers.disturbance_observer import observed
-from runner.controllers.kinds import ChecksStability, FollowsWithinReach, LeadsByForce
-from runner.environments import ENVIRONMENTS, Environment
-from runner.environments.wall import Wall, WallConfig
+from runner.controllers.kinds import FollowsWithinReach
+from runner.environments import ENVIRONMENTS
+from runner.environments.wall import Wall
 from runner.errors import ConfigError
 from runner.feasibility import check_path
 from runner.interaction import Interaction
 from runner.loop.closed_loop import ClosedLoop
 from runner.metrics import MetricContext
-from runner.plants import PLANTS, ContactPlant, Plant, PositionPlant, innermost
+from runner.plants import PLANTS, Plant, PositionPlant
 from runner.plants.kinds import HasServo
 from runner.plants.payload_changes import PayloadChanges
-from runner.plants.servo import JointServo, ServoLaw
+from runner.plants.servo import JointServo
+from runner.plants.touched import Touched
 from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.mismatch import believe
 from runner.robots.robot import Robot, end_points
 from runner.sensing import EncoderNoise, ForceTorqueConfig, ForceTorqueSensor, JointEncoders
-from runner.servo_contact import ServoContact
 from runner.trace import FloatArray
 from runner.trajectories.joint_motion import TipOfJoints
+from runner.walls import put_up, touches_by_tip
 
 _BELIEFS = 2**32 - 1  # in the seeds of what controllers believe; the loops' places count from 0
 
@@ -54,10 +54,11 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
     believed, loops = _believe(config, repetition)
     environment = ENVIRONMENTS.build(config.environment)
     with ExitStack() as on_error:
-        plant = _make_plant(config, believed, loops[0].period)
+        touched = environment if isinstance(environment, Wall) and touches_by_tip(config) else None
+        plant = _make_plant(config, believed, loops[0].period, touched)
         on_error.callback(plant.close)
         if isinstance(environment, Wall):
-            environment = _put_up(environment, config, plant)
+            environment = None if touched else put_up(environment, config, plant)
         interaction = Interaction(arm, environment, timing.tick) if config.feels else None
         compiled = _compile(config, loops)
         on_error.pop_all()
@@ -169,13 +170,15 @@ def _start_posture(controller: ControllerConfig, arm: Robot, start: FloatArray, 
     )
 
 
-def _make_plant(config: RunConfig, believed: Robot, period: float) -> Plant | PositionPlant:
+def _make_plant(
+    config: RunConfig, believed: Robot, period: float, touched: Wall | None = None
+) -> Plant | PositionPlant:
     """Return the plant, behind joint servos where it takes torques and loops of a period command joint positions."""
     arm, timing = config.arm, config.timing
     ticks_per_command = round(period / timing.tick)
     if PLANTS.commands(config.plant.kind) == "position":
         return PLANTS.build(config.plant, arm, timing.tick, ticks_per_command)
-    plant = _make_torque_plant(config)
+    plant = _make_torque_plant(config) if touched is None else _make_touched_plant(config, touched)
     if config.commands == "torque" or not isinstance(config.plant, HasServo):
         return plant
     with ExitStack() as on_error:
@@ -199,61 +202,12 @@ def _make_torque_plant(config: RunConfig) -> Plant:
     return PayloadChanges(plants, ticks) if ticks else plants[0]
 
 
-def _put_up(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
-    """Put up a wall in a plant that makes contacts itself, and return what of it is left for the loop to do.
-
-    Raises:
-        ConfigError: where there is no tool to touch it, or the controller would bounce on it with ideal joints.
-    """
-    tool = config.robot.tool
-    if tool is None:
-        raise ConfigError(["environment.kind: a wall is touched by the tip of a tool, and robot.tool is null"])
-    ideal = PLANTS.commands(config.plant.kind) == "position"
-    if ideal and isinstance(config.controller, ChecksStability) and config.controller.check_stability:
-        late = math.ceil(config.timing.delay * config.timing.tick / config.controller.period - 1e-9)
-        controller, values = config.controller, wall.config
-        check_wall(controller.law, controller.period, values.stiffness, values.damping, late)
-    within = innermost(plant)
-    if not isinstance(within, ContactPlant):
-        return wall
-    wall.reset(config.path.start)
-    ball = tool.tip_radius * wall.normal  # it is the ball's centre that is led
-    within.add_wall(wall.point - ball, wall.normal.copy(), wall.config.stiffness, wall.config.damping)
-    return None
-
-
-def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None:
-    """Return the contact of an arm behind joint servos with a wall; None where a run has none that can be followed.
-
-    Args:
-        config: The checked config.
-        q_start: Joint positions at the start, shape (nq,), in rad.
-    """
-    plant, law, wall, timing = config.plant, config.controller, config.environment, config.timing
-    if not isinstance(wall, WallConfig) or not isinstance(law, LeadsByForce) or not isinstance(plant, HasServo):
-        return None
-    if PLANTS.commands(plant.kind) != "torque" or config.commands != "position" or len(config.arm.stages) > 1:
-        return None
-    low_pass = config.wrist_sensor.low_pass
-    return ServoContact(
-        arm=config.arm,
-        q=q_start,
-        servo=ServoLaw(config.arm.model, plant.servo, config.arm.home),
-        step=timing.step,
-        steps=timing.steps_per_tick,
-        tick=timing.tick,
-        ticks=round(law.period / timing.tick),
-        delay=timing.delay,
-        interpolate=plant.servo.interpolate,
-        implicit=PLANTS.contacts_implicitly(plant.kind),
-        law=law.law,
-        at_tip=law.at == "tip",
-        inertia=law.compensation == "gravity_and_inertia",
-        seen=1.0 if low_pass is None else float(-np.expm1(-2.0 * np.pi * low_pass * timing.tick)),
-        normal=np.array(wall.normal) / np.linalg.norm(wall.normal),
-        stiffness=wall.stiffness,
-        damping=wall.damping,
-    )
+def _make_touched_plant(config: RunConfig, wall: Wall) -> Plant:
+    """Return the plant of an arm without a tool, whose tip touches a wall within its steps."""
+    timing = config.timing
+    plant = PLANTS.build(config.plant, config.arm, timing.step, 1)
+    lead = 0.5 if PLANTS.moves_exactly(config.plant) else 0.0
+    return Touched(plant, config.arm.model, wall, timing.step, timing.steps_per_tick, lead)
 
 
 def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition: int) -> list[JointEncoders]:

@@ -27,6 +27,7 @@ composing.begin()
 from runner.assembly import assemble, make_encoders, make_wrist_sensor  # noqa: E402 - after the environment
 from runner.cli import dispatch  # noqa: E402
 from runner.engines import has_pybullet  # noqa: E402
+from runner.loop.joint_torques import make_joint_torque_sensor  # noqa: E402
 from runner.robots import RobotModel, find_urdf, read_urdf  # noqa: E402
 from runner.robots.robot import Robot, Stage  # noqa: E402
 from runner.simulation import ClosedLoop, simulate  # noqa: E402
@@ -166,7 +167,8 @@ def simulated(checked_config: Callable[..., RunConfig]) -> Callable[..., Trace]:
         loop = assemble(config)
         try:
             wrist = make_wrist_sensor(loop, config.wrist_sensor, config.settings.seed, repetition)
-            return simulate(loop, make_encoders(loop, config.noise, config.settings.seed, repetition), wrist)
+            torques = make_joint_torque_sensor(loop, config, repetition)
+            return simulate(loop, make_encoders(loop, config.noise, config.settings.seed, repetition), wrist, torques)
         finally:
             loop.plant.close()
 

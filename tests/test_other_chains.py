@@ -84,6 +84,14 @@ def test_without_noise_each_stage_gains_a_decade(moved, plant):
     assert tip < 0.3 * mini
 
 
+@pytest.mark.parametrize("coupling", ["one_way", "two_way"])
+def test_where_bases_do_not_turn_three_stages_track_as_where_they_do(moved, coupling):
+    apart = ("plant=rk4", "noise=none", "preset.dynamics=decoupled", f"controller.coupling={coupling}")
+    turning = moved("experiment=staged/macro_mini_mini", *apart)
+    parallel = moved("experiment=staged/macro_mini_mini", *apart, "preset.wrist_rotation=parallel")
+    assert largest_error(parallel, 2) < 2.0 * largest_error(turning, 2)
+
+
 @pytest.mark.parametrize("chain", CHAINS)
 def test_the_plants_agree(moved, chain):
     default, rk4 = (moved(f"experiment=staged/{chain}", f"plant={plant}", "noise=none") for plant in PLANTS)

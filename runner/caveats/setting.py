@@ -41,6 +41,7 @@ class Setting:
         mass: Mass of all moving links, in kg.
         in_place_of: Kind of the default plant, where it is missing and this one stands in for it; else None.
         contact: Of an arm behind joint servos with a wall, under an admittance law; None where there is none.
+        touch: How a small motion on a wall grows in a period of a law that pushes by torques; None where none does.
         velocity_loop: How near a velocity loop is to what its period bears; None where no law says its gain.
         left_out: What would change the motion and stands in the robot's MJCFs, in words, by the file's name.
     """
@@ -61,6 +62,7 @@ class Setting:
     mass: float
     in_place_of: str | None
     contact: "ServoContact | None"
+    touch: float | None
     velocity_loop: "VelocityLoop | None"
     left_out: Mapping[str, Sequence[str]]
 
@@ -72,9 +74,9 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         config: The checked config.
         q_start: Joint positions at the start, shape (nq,), in rad; None leaves contact out.
     """
-    from runner.assembly import servo_contact
     from runner.controllers.sampled_stability import velocity_loop
     from runner.plants.kinds import StandsIn
+    from runner.wall_contact import force_contact, servo_contact
 
     model = config.arm.model
     units, position_limits, mass = _of_model(model)
@@ -99,6 +101,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         mass=mass,
         in_place_of=config.plant.in_place_of if isinstance(config.plant, StandsIn) else None,
         contact=None if q_start is None or "wrist_sensor" in config.plugged else servo_contact(config, q_start),
+        touch=None if q_start is None or "wrist_sensor" in config.plugged else force_contact(config, q_start),
         velocity_loop=velocity_loop(config.loops, config.arm, config.path) if config.commands == "torque" else None,
         left_out=config.arm.left_out,
     )

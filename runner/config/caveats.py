@@ -152,7 +152,7 @@ class CaveatsConfig(StrictModel):
         overload: A payload beyond the rating.
         no_effort_limit: A payload on an arm that lifts anything.
         unstable_gains: A velocity gain that its control period does not bear.
-        unstable_contact: A wall too stiff for an admittance behind joint servos.
+        unstable_contact: A wall too stiff for an admittance behind joint servos, or for a law that pushes by torques.
         default_plant: Another plant in place of the default one.
         mjcf: What is not taken from the robot's MJCF.
         plant_error: What the plant's step is worth, of a run that was held against Runge-Kutta.

@@ -8,6 +8,7 @@ import numpy as np
 from runner.config.arms import build_loaded, build_robot
 from runner.config.disturbance_observer import check_observer
 from runner.config.flexible_joints import check_flexible_joints
+from runner.config.force_reading import check_reading
 from runner.config.groups import read_groups
 from runner.config.limits import check_memory
 from runner.config.memory import Memory
@@ -112,6 +113,7 @@ def _checked(config: RunConfig) -> RunConfig:
     _check_schedule(config)
     check_observer(config)
     check_flexible_joints(config)
+    check_reading(config)
     check_repeats(config)
     check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.feels)
     return config

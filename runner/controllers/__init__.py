@@ -9,6 +9,8 @@ CONTROLLERS = Controllers(
         "admittance": "runner.controllers.admittance",
         "computed_torque": "runner.controllers.computed_torque",
         "differential_inverse_kinematics": "runner.controllers.differential_inverse_kinematics",
+        "hybrid_force": "runner.controllers.hybrid_force",
+        "impedance": "runner.controllers.impedance",
         "iterative_learning": "runner.controllers.iterative_learning",
         "joint_pd": "runner.controllers.joint_pd",
         "joint_pid": "runner.controllers.joint_pid",

@@ -60,8 +60,8 @@ class PositionController(Protocol):
         ...
 
 
-class FeelingController(PositionController, Protocol):
-    """A control law that feels what its tool touches.
+class FeelingController(Protocol):
+    """A control law, of torques or of joint positions, that feels what its tip touches.
 
     Attributes:
         felt: Wrench of the world on the tip as it believes it: force in N, moment about the tip in N m, along the

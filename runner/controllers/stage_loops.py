@@ -47,6 +47,7 @@ class RiderNumbers(NamedTuple):
         offset: Offset r_0 that it keeps as a motion, shape (3, 3): it stands still.
         later: Home offset of what rides on it, in the robot's base frame, shape (3,), in m.
         rotation: From its base frame at home into the robot's, shape (3, 3).
+        between: The same of each riding stage below it, shape (k, 3, 3), where bases are taken parallel; else k is 0.
         gravity: In the robot's base frame, shape (3,), in m/s^2.
         reach: Distance up to which it follows its target, in m.
         turn: Length of a turn, in s.
@@ -56,6 +57,7 @@ class RiderNumbers(NamedTuple):
     offset: Array
     later: Array
     rotation: Array
+    between: Array
     gravity: Array
     reach: Scalar
     turn: Scalar
@@ -169,6 +171,7 @@ class RiderController(_StageLoop[RiderNumbers]):
     Its target is the rest of the way, R^T (x_d - o - x_E), seen from its base. As for the first stage, o is the home
     offset of the stages that ride on it, whatever way they have turned; each of them makes up for what is left. Reach
     counts from its base to this target, so that it is that of the stage's own arm. Gravity seen from its base is R^T g.
+    Where bases are taken parallel, x_E is the carrier's end point and the offsets of the stages between, none turned.
 
     Or it follows nothing and keeps its own home offset: r_0 in its own frame, which turns with the carrier, or R^T r_0
     with r_0 in the robot's base frame.
@@ -207,17 +210,21 @@ class RiderController(_StageLoop[RiderNumbers]):
         self._follows = aim == "rest"
         self._holds = self._follows and (self._turns or not stretch)
         self._released = _no_posture(self._end - self._first if self._holds else None)
-        base, at_home = _base(robot, stage)
+        at_home, between = _base(robot, stage)[1], robot.stages[1:stage] if parallel else ()
+        self._between = [(below.joints.start, below.joints.stop) for below in between]
+        base, _ = _base(robot, stage - len(between))
         numbers = RiderNumbers(
             law=law.numbers,
             offset=_at_rest(at_home.dot(r_0) if aim == "base_offset" else r_0),
             later=later_offset,
             rotation=at_home,
+            between=np.array([_base(robot, index)[1] for index in range(1, 1 + len(between))]).reshape(-1, 3, 3),
             gravity=robot.model.gravity,
             reach=reach,
             turn=0.0 if turn is None else turn,
         )
-        super().__init__([law.model, base], law.gravity_compensation, numbers, robot.model.nq)
+        models = [law.model, base, *(below.model for below in between)]
+        super().__init__(models, law.gravity_compensation, numbers, robot.model.nq)
 
     def start(self, q: FloatArray) -> FloatArray:
         """Return that no posture is held; see TorqueLaw."""
@@ -234,9 +241,9 @@ class RiderController(_StageLoop[RiderNumbers]):
         memory: Array,
     ) -> tuple[Array, Array]:
         """Return the torques of this stage, and the posture held; see TorqueLaw."""
-        own, base = arms
+        own = arms[0]
         maths, own_q, own_dq = own.maths, q[self._first : self._end], dq[self._first : self._end]
-        way, target, gravity = self._seen(base, numbers, q, dq, reference)
+        way, target, gravity = self._seen(arms[1:], numbers, q, dq, reference)
         if not self._follows:
             return self._law.move(own, numbers.law, own_q, own_dq, target, gravity), memory
         squared, near = way.dot(way), target
@@ -254,13 +261,21 @@ class RiderController(_StageLoop[RiderNumbers]):
         )
 
     def _seen(
-        self, base: Arm, numbers: RiderNumbers, q: Array, dq: Array, reference: Array
+        self, below: Sequence[Arm], numbers: RiderNumbers, q: Array, dq: Array, reference: Array
     ) -> tuple[Array, Array, Array]:
         """Return the way to the target in the robot's base frame, and target and gravity in the stage's own."""
+        base, *between = below
         if self._moving:
             x, R, moves = base.motion(q, dq)
         else:
             x, R = base.place(q)
+        for (first, end), arm, turned in zip(self._between, between, numbers.between, strict=True):
+            if self._moving:
+                offset, _, goes = arm.motion(q[first:end], dq[first:end])
+                moves = np.concatenate([moves[:3] + turned.dot(goes[:3]), moves[3:]])
+            else:
+                offset, _ = arm.place(q[first:end])
+            x = x + turned.dot(offset)
         if self._parallel:
             R = numbers.rotation
         if self._aim == "own_offset":

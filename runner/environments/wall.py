@@ -1,4 +1,4 @@
-"""A flat wall that gives way as a spring and a damper do."""
+"""A flat wall that gives way as a spring and a damper do, with dry friction along its face."""
 
 from typing import Annotated, Literal
 
@@ -10,6 +10,8 @@ from runner.registry import StrictModel
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 
+_LENGTH = 1e-6  # by which a typed unit vector may differ from 1
+
 
 class WallConfig(StrictModel):
     """Config of a wall.
@@ -17,9 +19,10 @@ class WallConfig(StrictModel):
     Attributes:
         kind: Its name in the registry.
         distance: From the tip at its start to the wall, against the normal, in m; below 0 it stands in the wall.
-        normal: Out of the wall, along the base's axes; its length has no influence.
+        normal: Unit vector out of the wall, along the base's axes.
         stiffness: In N/m.
         damping: In N s/m.
+        friction: Coulomb's coefficient along the face; 0 is a frictionless wall.
     """
 
     kind: Literal["wall"]
@@ -27,17 +30,30 @@ class WallConfig(StrictModel):
     normal: Vector
     stiffness: PositiveFloat
     damping: NonNegativeFloat
+    friction: NonNegativeFloat = 0.0
 
     @field_validator("normal")
     @classmethod
-    def _point_somewhere(cls, normal: list[float]) -> list[float]:
+    def _have_unit_length(cls, normal: list[float]) -> list[float]:
         if not any(normal):
             raise ValueError("must not be zero")
+        length = float(np.linalg.norm(normal))
+        if abs(length - 1.0) > _LENGTH:
+            unit = ", ".join(f"{value / length:.8g}" for value in normal)
+            raise ValueError(f"must be a unit vector, and its length is {length:.7g}; take [{unit}]")
         return normal
 
 
 class Wall:
-    """The wall, frictionless, felt by the tip as a point; see Environment.
+    r"""The wall, felt by the tip as a point; see Environment.
+
+    The tip at a depth d > 0 is pushed out by k d + c dd, and never pulled. Friction is a spring and a damper like these
+    along the face, from the place where the tip sticks, which slides where they would pull more than Coulomb's limit
+    (Cundall and Strack, Geotechnique 29(1), 1979):
+
+    .. math:: f_t = -k (p - a) - c v_t, \qquad |f_t| \le \mu f_n
+
+    So a tip at rest stays at rest, and the wall gives way alike in every direction.
 
     Attributes:
         config: Its numbers.
@@ -49,18 +65,37 @@ class Wall:
         self.config = config
         self.normal: FloatArray = np.array(config.normal) / np.linalg.norm(config.normal)
         self.point = np.zeros(3)
+        self._sticks_at: FloatArray | None = None
 
     def reset(self, tip: FloatArray) -> None:
         """Stand at its distance from the tip."""
         self.point = tip - self.config.distance * self.normal
+        self._sticks_at = None
 
     def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
-        """Return the wrench on the tip, k d + c dd for a depth d > 0, never a pull; see Environment.wrench."""
+        """Return the wrench on the tip, which is asked in the order of time; see Environment.wrench."""
         depth = float((self.point - tip) @ self.normal)
         if depth <= 0.0:
+            self._sticks_at = None
             return np.zeros(6)
         force = self.config.stiffness * depth - self.config.damping * float(velocity @ self.normal)
-        return np.concatenate([max(force, 0.0) * self.normal, np.zeros(3)])
+        push = max(force, 0.0) * self.normal
+        if self.config.friction:
+            push = push + self._rub(self.config.friction * max(force, 0.0), tip, velocity)
+        return np.concatenate([push, np.zeros(3)])
+
+    def _rub(self, limit: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
+        """Return the force along the face, shape (3,), in N, and let the place where the tip sticks slide."""
+        stiffness, n = self.config.stiffness, self.normal
+        place, drag = tip - (tip @ n) * n, self.config.damping * (velocity - (velocity @ n) * n)
+        if self._sticks_at is None:
+            self._sticks_at = place
+        pull: FloatArray = stiffness * (self._sticks_at - place) - drag
+        size = float(np.linalg.norm(pull))
+        if size > limit:
+            pull *= limit / size
+            self._sticks_at = place + (pull + drag) / stiffness
+        return pull
 
 
 CONFIG = WallConfig

@@ -6,7 +6,7 @@ import numpy as np
 
 from runner.interaction import Interaction
 from runner.loop.closed_loop import ClosedLoop
-from runner.plants import ContactPlant, ToolReactionPlant, innermost
+from runner.plants import TellsContact, ToolReactionPlant, innermost
 from runner.sensing import WristSensor
 from runner.trace import ContactSignals, FloatArray
 
@@ -24,7 +24,7 @@ class Contact:
 
     def __init__(self, closed: ClosedLoop, interaction: Interaction, wrist: WristSensor) -> None:
         moved = innermost(closed.plant)
-        self._contacts = moved if isinstance(moved, ContactPlant) else None
+        self._contacts = moved if isinstance(moved, TellsContact) else None
         self._reactions = moved if isinstance(moved, ToolReactionPlant) else None
         self._interaction = interaction
         self._wrist = wrist

@@ -1,8 +1,17 @@
 """Simulated arms: from torques, or joint positions commanded, to true motion."""
 
 from runner.plants.kinds import PlantConfig, Plants
-from runner.plants.plant import ContactPlant, Plant, PositionPlant, ToolReactionPlant, innermost
+from runner.plants.plant import ContactPlant, Plant, PositionPlant, TellsContact, ToolReactionPlant, innermost
 
 PLANTS = Plants({name: f"runner.plants.{name}" for name in ("bullet", "kinematic", "mujoco", "rk4")})
 
-__all__ = ["PLANTS", "ContactPlant", "Plant", "PlantConfig", "PositionPlant", "ToolReactionPlant", "innermost"]
+__all__ = [
+    "PLANTS",
+    "ContactPlant",
+    "Plant",
+    "PlantConfig",
+    "PositionPlant",
+    "TellsContact",
+    "ToolReactionPlant",
+    "innermost",
+]

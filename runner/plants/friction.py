@@ -7,7 +7,7 @@ import pinocchio as pin
 from scipy.linalg.lapack import dposv
 
 from runner.config.per_joint import NonNegativePerJoint
-from runner.plants.plant import ContactPlant, FloatArray, Plant, PlantAround
+from runner.plants.plant import FloatArray, Plant, PlantAround, TellsContact
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 
@@ -54,7 +54,7 @@ class Frictional:
     def __init__(self, plant: Plant, model: RobotModel, viscous: FloatArray, coulomb: FloatArray, tick: float) -> None:
         self.plant = plant
         """What friction brakes."""
-        self._contacts = plant if isinstance(plant, ContactPlant) else None
+        self._contacts = plant if isinstance(plant, TellsContact) else None
         self.q, self.dq = plant.q, plant.dq
         self._model = pin.Model(model.pin_model)
         self._data = self._model.createData()

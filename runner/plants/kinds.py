@@ -52,6 +52,15 @@ class ContactsImplicitly(Protocol):
 
 
 @runtime_checkable
+class MovesExactly(Protocol):
+    """A module that says whether a step moves positions exactly under a held force, or by the velocity at its end."""
+
+    def moves_exactly(self, config: PlantConfig) -> bool:
+        """Tell it of a config."""
+        ...
+
+
+@runtime_checkable
 class MovesByRungeKutta(Protocol):
     """A module whose plants are the classical Runge-Kutta scheme on a motion, so that runs may be compiled whole."""
 
@@ -112,6 +121,11 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
         """
         module = self.module(config.kind)
         return module.motion(config, robot) if isinstance(module, MovesByRungeKutta) else None
+
+    def moves_exactly(self, config: PlantConfig) -> bool:
+        """Tell whether a step moves positions exactly under a held force; see MovesExactly."""
+        module = self.module(config.kind)
+        return isinstance(module, MovesExactly) and module.moves_exactly(config)
 
     def contacts_implicitly(self, kind: str) -> bool:
         """Tell whether a kind makes contacts in each step, from the velocity at its end; see ContactsImplicitly."""

@@ -167,6 +167,11 @@ def build(config: MujocoConfig, robot: Robot, step: float, steps_per_tick: int) 
     return assemble_plant(config, robot, tick, lambda urdf, model: Mujoco(urdf, model, step, steps_per_tick, *chosen))
 
 
+def moves_exactly(config: MujocoConfig) -> bool:
+    """Tell whether the integrator is the Runge-Kutta scheme; see MovesExactly."""
+    return config.integrator == "rk4"
+
+
 def default_step(tick: float, stages: int) -> float:
     """Return the step taken when the config names none, in s: that of PyBullet, to be compared with it.
 

@@ -59,18 +59,24 @@ class PlantAround(Protocol):
 
 
 @runtime_checkable
-class ContactPlant(Protocol):
-    """A plant that makes the contact of the arm with a wall itself.
-
-    One that does not gets the wall's force on the tip as joint torques, held for a tick.
-    """
+class TellsContact(Protocol):
+    """A plant that tells what the world puts on the arm while it moves it."""
 
     def contact_wrench(self) -> FloatArray:
-        """Return the wrench of the wall on the arm in the last tick, shape (6,).
+        """Return the wrench of the wall on the arm at the end of the last tick, shape (6,).
 
         Force in N, moment about the base's origin in N m, along its axes.
         """
         ...
+
+
+@runtime_checkable
+class ContactPlant(TellsContact, Protocol):
+    """A plant that makes the contact of a tool with a wall itself.
+
+    One that does not gets the wall's force on the tool as joint torques, held for a tick. A tip without a tool touches
+    walls by `Touched`, on any plant.
+    """
 
     def add_wall(self, point: FloatArray, normal: FloatArray, stiffness: float, damping: float) -> None:
         """Put up a flat frictionless wall that gives way.

@@ -28,6 +28,8 @@ _WORDS = {
     "with_integral": "computed torque + integral",
     "observed": "computed torque + observer",
     "observed_pd": "joint PD + observer",
+    "hybrid_force": "force and motion",
+    "last_stage": "the last stage alone",
     "iterative_learning": "iterative learning",
     "euler": "Euler",
     "macro_mini": "Macro and Mini coupled",

@@ -21,7 +21,7 @@ _PHYSICS = (
     "assembly.py", "batch.py", "batch_blocks.py", "batch_jobs.py", "calibration", "calibration_job.py", "compiled",
     "config", "controllers", "environments", "execution.py", "feasibility.py", "guard", "interaction.py", "job.py",
     "loop", "metrics", "plant_error.py", "plants", "pushed_links.py", "registry.py", "robots", "sensing",
-    "simulation.py", "trace.py", "trajectories",
+    "simulation.py", "trace.py", "trajectories", "walls.py",
 )  # fmt: skip
 
 _ENGINES = {"bullet": ("pybullet",), "mujoco": ("mujoco",), "kinematic": (), "rk4": (), "none": ()}  # of our plants

@@ -14,6 +14,7 @@ SWING = Path(__file__).parents[2] / "examples" / "swing.csv"
 OPTIONS = [f"{group}={name}" for group in groups() if group != "calibration" for name in group_options(group)]
 NEEDS = {  # what an option does not run without
     "controller=admittance": ("robot=meca500",),
+    "controller=hybrid_force": ("robot=mini",),
     "controller=iterative_learning": (
         "robot=macro",
         "trajectory=circle",

@@ -8,6 +8,7 @@ import pytest
 from runner.assembly import assemble, make_encoders
 from runner.controllers.maths import FLOATS
 from runner.controllers.stage_loops import CarrierController, RiderController, rider_moves
+from runner.robots.robot import end_points
 from runner.simulation import simulate
 
 REACH = 0.2
@@ -169,6 +170,23 @@ def test_the_rider_sees_target_and_gravity_from_its_base(combined):
         np.testing.assert_allclose(target[0], R.T @ way, atol=1e-12)
         np.testing.assert_allclose(target[1], R.T @ (desired[1] - velocity - np.cross(spin, way)), atol=1e-12)
         np.testing.assert_allclose(law.gravity, R.T @ [0.0, 0.0, -9.81], atol=1e-12)
+
+
+def test_under_bases_taken_parallel_the_second_rider_sees_offsets_that_do_not_turn(three_stages):
+    """R_0^T (x_d - x_E) and its rate, with the x_E that end_points gives where bases keep the orientation of home."""
+    law = Spy(three_stages.stages[2].model)
+    loop = RiderController(three_stages, 2, law, "rest", np.zeros(3), True, True, 10.0, False, None)
+    R = three_stages.model.with_tip(three_stages.stages[2].base_frame).tip_pose(three_stages.home)[:3, :3]
+    generator, step = np.random.default_rng(3), 1e-6
+    for _ in range(5):
+        q, dq = generator.uniform(-2.0, 2.0, (2, 9))
+        desired = generator.uniform(-1.0, 1.0, (3, 3))
+        rows = q + step * np.array([[-1.0], [0.0], [1.0]]) * dq
+        before, now, after = end_points(three_stages, rows, parallel=True)[1]
+        loop.torque(0.0, q, dq, desired)
+        _, target = law.told[-1]
+        np.testing.assert_allclose(target[0], R.T @ (desired[0] - now), atol=1e-12)
+        np.testing.assert_allclose(target[1], R.T @ (desired[1] - (after - before) / (2.0 * step)), atol=1e-8)
 
 
 # Turns.

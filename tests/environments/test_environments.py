@@ -44,7 +44,7 @@ def test_a_sine_starts_from_zero_with_its_frequency():
 
 
 def wall(**changes):
-    values = {"distance": 0.01, "normal": [-3.0, 0.0, 0.0], "stiffness": 1e4, "damping": 20.0}
+    values = {"distance": 0.01, "normal": [-1.0, 0.0, 0.0], "stiffness": 1e4, "damping": 20.0}
     return make(WallConfig(kind="wall", **(values | changes)))
 
 
@@ -64,6 +64,11 @@ def test_a_wall_resists_being_entered_and_never_pulls():
 def test_a_wall_without_direction_is_refused():
     with pytest.raises(ValidationError, match="must not be zero"):
         wall(normal=[0.0, 0.0, 0.0])
+
+
+def test_a_normal_of_another_length_than_one_is_refused_with_the_unit_vector():
+    with pytest.raises(ValidationError, match=r"its length is 5; take \[0, 0.6, -0.8\]"):
+        wall(normal=[0.0, 3.0, -4.0])
 
 
 def hand(**changes):

@@ -1,0 +1,21 @@
+"""Whether a law that feels by torque sensors in the joints has them."""
+
+from runner.config.run import RunConfig
+from runner.controllers.hybrid_force import HybridForceConfig
+from runner.errors import ConfigError
+
+
+def check_reading(config: RunConfig) -> None:
+    """Check that joints have torque sensors where a law reads the force from them.
+
+    Raises:
+        ConfigError: where they have none.
+    """
+    law = config.controller
+    if isinstance(law, HybridForceConfig) and law.reading == "joint_torque" and config.joint_torques is None:
+        raise ConfigError(
+            [
+                "controller.reading: joint_torque needs torque sensors in the joints, and joint_torque_sensor.noise is "
+                "null; take joint_torque_sensor=ideal, or controller.reading=wrist"
+            ]
+        )

@@ -1,0 +1,89 @@
+"""How stiff a wall a sampled force law stands, by the map of one period."""
+
+from typing import Protocol
+
+import numpy as np
+from scipy.linalg import expm
+from scipy.optimize import brentq
+
+from runner.controllers.controller import FloatArray
+
+
+class ForceLaw(Protocol):
+    """The gains of a law that pushes, as HybridForceConfig has them."""
+
+    @property
+    def force_gain(self) -> float:
+        """Gain of the force's error."""
+        ...
+
+    @property
+    def force_damping(self) -> float:
+        """Damping ratio of the motion into the wall."""
+        ...
+
+
+def force_loop_radius(rate: float, force_gain: float, damping: float, delay: int = 0) -> float:
+    r"""Return how a small motion in contact grows in a period: the spectral radius of the force loop's map.
+
+    A mass on a wall of stiffness k under a push that is held for a period h and is d periods late,
+
+    .. math:: m \ddot x = u - k x, \qquad u = -k k_f x - 2 \xi m \omega_c \dot x, \qquad
+        \omega_c^2 = k (1 + k_f) / m,
+
+    which is HybridForce about its rest, and Impedance with K_d for k k_f.
+
+    Args:
+        rate: omega_c h.
+        force_gain: k_f; infinite is a position loop on no wall.
+        damping: xi.
+        delay: d.
+    """
+    wall = 0.0 if np.isinf(force_gain) else rate**2 / (1.0 + force_gain)  # k h^2 / m; the period is the unit of time
+    return _radius(np.array([-wall, 0.0]), np.array([wall - rate**2, -2.0 * damping * rate]), delay)
+
+
+def touch_radius(
+    law: ForceLaw, mass: float, stiffness: float, drag: float, believed: float, period: float, delay: int
+) -> float:
+    """Return the same of a law on a wall that is not as it believes, and damps.
+
+    Args:
+        law: The law's gains.
+        mass: Of the tip along the normal, in kg.
+        stiffness: Of the wall, in N/m.
+        drag: Its damping, in N s/m.
+        believed: The stiffness that the law believes in, in N/m.
+        period: h, in s.
+        delay: Periods from a push until it acts.
+    """
+    brake = 2.0 * law.force_damping * float(np.sqrt(believed * (1.0 + law.force_gain) * mass))
+    wall = np.array([stiffness * period, drag]) * period / mass
+    return _radius(-wall, -law.force_gain * wall - np.array([0.0, brake * period / mass]), delay)
+
+
+def _radius(passive: FloatArray, gain: FloatArray, delay: int) -> float:
+    """Return the spectral radius of a unit mass under passive . (x, v) and a held push gain . (x, v), a period long."""
+    step = expm(np.array([[0.0, 1.0, 0.0], [*passive, 1.0], [0.0, 0.0, 0.0]]))
+    motion, push = step[:2, :2], step[:2, 2]
+    goes: FloatArray = np.zeros((2 + delay, 2 + delay))  # position, velocity, and the pushes to come, the next first
+    goes[:2, :2] = motion
+    if delay:
+        goes[:2, 2] = push
+        goes[2:-1, 3:] = np.eye(delay - 1)
+        goes[-1, :2] = gain
+    else:
+        goes += np.outer(push, gain)
+    return float(np.abs(np.linalg.eigvals(goes)).max())
+
+
+def force_loop_limit(force_gain: float, damping: float, delay: int = 0) -> float:
+    """Return the largest omega_c h at which the loop of force_loop_radius is stable.
+
+    The stiffest wall of a mass m at a period h is then k = m (omega_c h)^2 / (h^2 (1 + k_f)).
+    """
+    low = 1e-3
+    high = low
+    while force_loop_radius(high, force_gain, damping, delay) < 1.0:
+        low, high = high, 1.05 * high
+    return float(brentq(lambda rate: force_loop_radius(rate, force_gain, damping, delay) - 1.0, low, high))

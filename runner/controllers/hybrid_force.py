@@ -1,0 +1,157 @@
+"""Hybrid control: the tip pushes on a wall with a force, and moves along it."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field, NonNegativeFloat, PositiveFloat
+
+from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.force_reading import ForceReading, JointTorqueReading, ReadingName, WristReading
+from runner.controllers.sampled_stability import VelocityGain
+from runner.controllers.tip_force import Acting, TipForceConfig, find_acting
+from runner.errors import ConfigError
+from runner.robots.robot import Robot
+from runner.sensing.force_torque import ForceTorqueConfig
+
+
+class HybridForceConfig(TipForceConfig):
+    """Config of hybrid force and motion control; the motion is that along the wall.
+
+    Attributes:
+        kind: Its name in the registry.
+        normal: Out of the wall, as it is believed, a unit vector along the base's axes.
+        wall_stiffness: Of the wall, as it is believed, in N/m; it sets the damping.
+        force: f_d, how hard the tip is to push, in N.
+        force_gain: k_f of the force's error; 0 leaves f_d as it is.
+        integral_gain: k_i, in 1/s; 0 is none. It integrates while something is felt.
+        force_damping: xi of the motion into the wall.
+        reading: Where the force is read: at the wrist, or from torque sensors in the joints.
+        sensor: What is believed of the wrist's sensor: its bias, rotation and height.
+    """
+
+    kind: Literal["hybrid_force"]
+    normal: Annotated[list[float], Field(min_length=3, max_length=3)]
+    wall_stiffness: PositiveFloat
+    force: PositiveFloat
+    force_gain: NonNegativeFloat
+    integral_gain: NonNegativeFloat
+    force_damping: NonNegativeFloat
+    reading: ReadingName
+    sensor: ForceTorqueConfig
+
+
+class HybridForce:
+    r"""Force along a wall's normal n, motion along its face (Khatib 1987; Raibert and Craig 1981).
+
+    .. math::
+
+        \tau = J^T [\Lambda (\Omega F^* - \dot J \dot q) - n (f_d + k_f (f_d - f) + k_i \int (f_d - f) dt
+        + 2 \xi m_n \omega_c \, n \cdot v)] + V + G + N^T \tau_0, \qquad \Omega = 1 - n n^T
+
+    with the tip's mass along the normal m_n = 1 / (n^T Lambda^-1 n) and omega_c = sqrt(k (1 + k_f) / m_n), so that on
+    a wall of the believed stiffness k
+
+    .. math:: m_n \ddot d + 2 \xi m_n \omega_c \dot d + k (1 + k_f) \, d = (1 + k_f) f_d
+
+    of the depth d. Before the wall is felt the tip goes there at (1 + k_f) f_d / (2 xi m_n omega_c). F* is TipTask's.
+
+    Args:
+        acting: What pushes.
+        config: The law's numbers.
+        reading: What reads the force.
+
+    Raises:
+        ConfigError: where the arm cannot push along the normal, or that leaves no direction to move in.
+    """
+
+    def __init__(self, acting: Acting, config: HybridForceConfig, reading: ForceReading) -> None:
+        self._tip, self._config, self._period, self._reading = acting.tip, config, acting.period, reading
+        self._normal = _unit(config.normal)
+        _check_directions(acting, self._normal)
+        self.felt: FloatArray = np.zeros(6)
+        """See FeelingController."""
+        self.reset()
+
+    @property
+    def velocity_gain(self) -> VelocityGain:
+        """K_v of the motion along the wall; see HasVelocityGain."""
+        return self._tip.velocity_gain
+
+    def reset(self) -> None:
+        """Forget an earlier run; see Controller."""
+        self._reading.reset()
+        self._sum, self.felt = 0.0, np.zeros(6)
+
+    def feel(self, reading: FloatArray) -> None:
+        """Take the wrist sensor's reading; see FeelingController."""
+        self._reading.feel(reading)
+
+    def read_joint_torques(self, reading: FloatArray) -> None:
+        """Take the joint torque sensors' reading; see ReadsJointTorques."""
+        self._reading.read_joint_torques(reading)
+
+    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
+        """Return the torques of the law above; see Controller.torque."""
+        config = self._config
+        self.felt = self._reading.wrench(q, dq)
+        f = float(self.felt[:3] @ self._normal)
+        seen = self._tip.see(q, dq, reference)
+        n = seen.axes @ self._normal
+        if f > 0.0:
+            self._sum += self._period * (config.force - f)
+        mass = 1.0 / float(n @ seen.mobility @ n)
+        rate = np.sqrt(config.wall_stiffness * (1.0 + config.force_gain) / mass)
+        push = config.force + config.force_gain * (config.force - f) + config.integral_gain * self._sum
+        push += 2.0 * config.force_damping * mass * rate * float(n @ seen.velocity)
+        return self._tip.torque(seen, seen.asked - n * (n @ seen.asked), -push * n)
+
+    def notices(self) -> list[str]:
+        """Return nothing; see FeelingController."""
+        return []
+
+
+CONFIG = HybridForceConfig
+
+
+def build(config: HybridForceConfig, robot: Robot) -> tuple[Loop, ...]:
+    """Make the loops that a config describes: one, or one for each stage where the last one pushes alone.
+
+    Raises:
+        ConfigError: where a value misses a stage, the arm has too few joints, or cannot push and move.
+    """
+    acting = find_acting(config, robot)
+    reading: ForceReading = (
+        WristReading(robot, config.sensor, acting.period)
+        if config.reading == "wrist"
+        else JointTorqueReading(robot, acting.period)
+    )
+    return acting.loops(HybridForce(acting, config, reading), feels=True)
+
+
+def _unit(normal: list[float]) -> FloatArray:
+    length = float(np.linalg.norm(normal))
+    if abs(length - 1.0) > 1e-6:
+        raise ConfigError([f"controller.normal: must be a unit vector; found {normal}, of length {length:.7g}"])
+    return np.array(normal) / length
+
+
+def _check_directions(acting: Acting, normal: FloatArray) -> None:
+    directions = acting.tip.directions
+    if len(directions) == 3:
+        return
+    along = float(np.linalg.norm(directions @ normal))
+    names = "; ".join(str(np.round(row, 6).tolist()) for row in directions)
+    if along < 1.0 - 1e-6:
+        raise ConfigError(
+            [
+                f"controller.normal: {acting.name} cannot push along {normal.tolist()}, as its tip goes along "
+                f"{names} alone; take a normal among these"
+            ]
+        )
+    if len(directions) < 2:
+        raise ConfigError(
+            [
+                f"controller.normal: a force along {normal.tolist()} leaves no direction to move in, as the tip of "
+                f"{acting.name} goes along {names} alone; take an arm whose tip has two directions or more"
+            ]
+        )

@@ -1,0 +1,74 @@
+"""Impedance control: the tip yields to the world as its own mass on a spring and a damper, without a force sensor."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field, NonNegativeFloat
+
+from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.tip_force import TipForce, TipForceConfig, find_acting
+from runner.robots.robot import Robot
+
+Three = Annotated[list[NonNegativeFloat], Field(min_length=3, max_length=3)]
+
+
+class ImpedanceConfig(TipForceConfig):
+    """Config of impedance control; lists hold values along x, y, z of the base.
+
+    The natural frequency and damping ratio are those of the stages that carry the one that acts; see acts.
+
+    Attributes:
+        kind: Its name in the registry.
+        tip_stiffness: K_d, in N/m; 0 lets an axis go.
+        tip_damping: D_d, in N s/m.
+    """
+
+    kind: Literal["impedance"]
+    tip_stiffness: Three
+    tip_damping: Three
+
+
+class Impedance:
+    r"""A tip that gives way as a spring and a damper do, with the mass that it has (Hogan 1985).
+
+    .. math::
+
+        \tau = J^T [\Lambda (\ddot x_d - \dot J \dot q) + K_d (x_d - x) + D_d (\dot x_d - \dot x)] + V + G + N^T \tau_0
+
+    so that under a force f of the world, with M_d = Lambda,
+
+    .. math:: \Lambda (\ddot x - \ddot x_d) + D_d (\dot x - \dot x_d) + K_d (x - x_d) = f
+
+    Another M_d would need f.
+
+    Args:
+        tip: What gives way.
+        config: The law's numbers.
+    """
+
+    def __init__(self, tip: TipForce, config: ImpedanceConfig) -> None:
+        self._tip = tip
+        self._stiffness, self._damping = np.diag(config.tip_stiffness), np.diag(config.tip_damping)
+
+    def reset(self) -> None:
+        """Do nothing: the law keeps nothing."""
+
+    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
+        """Return the torques of the law above; see Controller.torque."""
+        seen = self._tip.see(q, dq, reference)
+        axes = seen.axes
+        force = axes @ self._stiffness @ axes.T @ seen.error + axes @ self._damping @ axes.T @ seen.lag
+        return self._tip.torque(seen, seen.desired, force)
+
+
+CONFIG = ImpedanceConfig
+
+
+def build(config: ImpedanceConfig, robot: Robot) -> tuple[Loop, ...]:
+    """Make the loops that a config describes: one, or one for each stage where the last one gives way alone.
+
+    Raises:
+        ConfigError: where a value misses a stage, or the arm has too few joints.
+    """
+    acting = find_acting(config, robot)
+    return acting.loops(Impedance(acting.tip, config), feels=False)

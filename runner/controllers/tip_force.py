@@ -1,0 +1,254 @@
+"""The tip of an arm, or of a stage on its moving base, under an acceleration and a force that a law asks for."""
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+from pydantic import NonNegativeFloat
+
+from runner.config.per_stage import PositivePerStage, by_stage
+from runner.controllers.controller import Controller, FloatArray, Loop
+from runner.controllers.macro_mini import MacroMiniConfig
+from runner.controllers.macro_mini import build as build_stages
+from runner.controllers.maths import FLOATS
+from runner.controllers.sampled_stability import VelocityGain
+from runner.controllers.tip_task import TipTask
+from runner.controllers.torque_law import PinocchioArm
+from runner.controllers.whole_body import WholeBodyLaw
+from runner.controllers.whole_body_posture import HeldJoints, HeldPosture
+from runner.errors import ConfigError
+from runner.registry import StrictModel
+from runner.robots.robot import Robot
+
+
+class TipForceConfig(StrictModel):
+    """What the configs of laws have in common that put a force on the tip.
+
+    Attributes:
+        acts: What acts on the world where stages ride on each other: the whole arm, or the last stage alone, while
+            those below hold its base on the way and know its mass.
+        natural_frequency: omega_n of the tip's motion where it is led, in rad/s; of each stage. The whole arm takes the
+            last stage's, and so for the next two.
+        damping_ratio: xi of it.
+        period: Time between two ticks, in s.
+        gravity_compensation: Whether the law holds the gravity term.
+        feedforward: Whether the law follows the desired velocity and acceleration.
+        singularity_damping: As in operational-space control.
+        null_space_frequency: omega_n of the posture task, home, of an arm with joints to spare, in rad/s.
+    """
+
+    acts: Literal["whole", "last_stage"]
+    natural_frequency: PositivePerStage
+    damping_ratio: PositivePerStage
+    period: PositivePerStage
+    gravity_compensation: bool
+    feedforward: bool
+    singularity_damping: NonNegativeFloat
+    null_space_frequency: NonNegativeFloat
+
+
+class Seen(NamedTuple):
+    """The tip's task in one state, along the axes of the arm's own base; rows as the task has them.
+
+    Attributes:
+        axes: The task's rows in the robot's base frame, shape (rows, 3): what a vector there has along them.
+        q: Joint positions of the arm, shape (n,), in rad.
+        dq: Joint velocities, likewise, in rad/s.
+        gravity: Along the base's axes, shape (3,), in m/s^2.
+        J: The task's Jacobian, shape (rows, n).
+        dJ_dq: dJ/dt dq, shape (rows,), in m/s^2.
+        M_inverse_J: M^-1 J^T, shape (n, rows).
+        error: Desired less actual position, shape (rows,), in m.
+        lag: Desired less actual velocity, likewise, in m/s; without feedforward nothing is desired but rest.
+        velocity: Velocity of the tip as the robot's base sees it, likewise, in m/s.
+        asked: F* of TipTask, likewise, in m/s^2.
+        desired: Desired acceleration, likewise.
+    """
+
+    axes: FloatArray
+    q: FloatArray
+    dq: FloatArray
+    gravity: FloatArray
+    J: FloatArray
+    dJ_dq: FloatArray  # noqa: N815 - as the papers write it
+    M_inverse_J: FloatArray
+    error: FloatArray
+    lag: FloatArray
+    velocity: FloatArray
+    asked: FloatArray
+    desired: FloatArray
+
+    @property
+    def mobility(self) -> FloatArray:
+        """Lambda^-1 = J M^-1 J^T, shape (rows, rows), in 1/kg."""
+        return np.asarray(self.J @ self.M_inverse_J)
+
+
+class TipForce:
+    r"""The joint torques that give a tip an acceleration a and put a force F on it beside, with a null space.
+
+    .. math:: \tau = h + J^T (\Lambda (a - \dot J \dot q) + F) + N^T \tau_0
+
+    as WholeBody, whose law it is with F = 0. A stage that rides has its own Lambda, J and h as if its base stood still;
+    target, velocities and gravity are seen from there, turned by R.
+
+    Args:
+        robot: The robot.
+        stage: Index of the stage that acts; None is the whole arm.
+        law: The numbers of the tip's motion and of the posture.
+
+    Raises:
+        ConfigError: if the arm has fewer joints than the tip has directions to go, or leaves nothing to choose.
+    """
+
+    def __init__(self, robot: Robot, stage: int | None, law: WholeBodyLaw) -> None:
+        own = None if stage is None else robot.stages[stage]
+        model = robot.model if own is None else own.model
+        self.joints = slice(0, robot.model.nq) if own is None else own.joints
+        frame = None if own is None else own.base_frame
+        self._base = None if frame is None else PinocchioArm(robot.model.with_tip(frame))
+        self._arm = PinocchioArm(model, law.gravity_compensation)
+        self._gravity, self._feedforward = robot.model.gravity, law.feedforward
+        self._task = TipTask(
+            model,
+            None,
+            law.natural_frequency,
+            law.damping_ratio,
+            law.feedforward,
+            law.max_tip_speed,
+            law.singularity_damping,
+        )
+        if not 0 < self._task.rows <= model.nq:
+            raise ConfigError(
+                [
+                    f"controller.kind: needs {self._task.rows or 1} joints or more to bring the tip anywhere; the arm "
+                    f"has {model.nq} ({', '.join(model.joint_names)})"
+                ]
+            )
+        rides = own is None and len(robot.stages) > 1
+        home = robot.home if own is None else own.home
+        frequency = law.null_space_frequency
+        self._posture = HeldJoints(model, frequency, home, self._task.rows) if rides else HeldPosture(frequency, home)
+
+    @property
+    def velocity_gain(self) -> VelocityGain:
+        """K_v of the motion that F* asks for; see HasVelocityGain."""
+        return VelocityGain(0.0, float(self._task.numbers.k_v))
+
+    @property
+    def directions(self) -> FloatArray:
+        """Directions in which the arm can move its tip, in its own base frame, shape (rows, 3)."""
+        return self._task.numbers.directions
+
+    def see(self, q: FloatArray, dq: FloatArray, reference: FloatArray) -> Seen:
+        """Return the task at the robot's measured state, shapes (nq,), and reference, shape (3, 3)."""
+        numbers, own_q, own_dq = self._task.numbers, q[self.joints], dq[self.joints]
+        tip = self._arm.tip(own_q, own_dq)
+        J, dJ_dq = (values.copy() for values in self._task.jacobian(numbers, tip))
+        R, carried, target, gravity = np.eye(3), np.zeros(3), reference, self._gravity
+        if self._base is not None:
+            x, R, moves = (values.copy() for values in self._base.motion(q, dq))
+            way = reference[0] - x
+            drift = reference[1] - moves[:3] - np.cross(moves[3:], way)
+            target = np.array([way, drift, np.zeros(3)]) @ R  # R^T of each row
+            carried = (moves[:3] + np.cross(moves[3:], R @ tip.x)) @ R
+            gravity = R.T @ gravity
+        error = self._task.error(FLOATS, numbers, tip, target)
+        velocity, axes = J @ own_dq, numbers.directions[:, :3] @ R.T
+        asked = self._task.acceleration(FLOATS, numbers, error, velocity, target)
+        wanted = target[1:] @ numbers.directions[:, :3].T if self._feedforward else np.zeros((2, self._task.rows))
+        M_inverse_J = FLOATS.solve_symmetric(self._arm.mass_matrix(own_q), J.T, "the mass matrix is singular")
+        return Seen(
+            axes,
+            own_q,
+            own_dq,
+            gravity,
+            J,
+            dJ_dq,
+            M_inverse_J,
+            error,
+            wanted[0] - velocity,
+            velocity + numbers.directions[:, :3] @ carried,
+            asked,
+            wanted[1],
+        )
+
+    def torque(self, seen: Seen, acceleration: FloatArray, force: FloatArray) -> FloatArray:
+        """Return the torques of the law above for an acceleration and a force along the task's rows, shapes (rows,)."""
+        J, numbers = seen.J, self._task.numbers
+        ddq_0, spring = self._posture.ask(FLOATS, self._posture.numbers, J, seen.q, seen.dq)
+        F = acceleration - seen.dJ_dq - J @ ddq_0
+        if spring is not None:
+            F = F - seen.M_inverse_J.T @ spring
+        mobility = self._task.damp(FLOATS, numbers, J, seen.error, seen.mobility)
+        moving = FLOATS.solve_symmetric(mobility, F, "the tip's Jacobian is singular")
+        torque: FloatArray = self._arm.inverse_dynamics(seen.q, seen.dq, ddq_0, seen.gravity) + J.T @ (moving + force)
+        return torque if spring is None else torque + spring
+
+
+class Acting(NamedTuple):
+    """What acts on the world, and what carries it.
+
+    Attributes:
+        name: Name of the stage at whose end it acts.
+        tip: Its tip.
+        period: Time between two ticks of its law, in s.
+        below: Loops of the stages that hold its base on the way; none where the whole arm acts.
+    """
+
+    name: str
+    tip: TipForce
+    period: float
+    below: tuple[Loop, ...]
+
+    def loops(self, controller: Controller, feels: bool) -> tuple[Loop, ...]:
+        """Return the loops of a robot whose tip a controller leads, which may be given the wrist sensor's reading."""
+        return (*self.below, Loop(self.name, self.tip.joints, self.period, controller, feels=feels))
+
+
+def find_acting(config: TipForceConfig, robot: Robot) -> Acting:
+    """Return what of a robot acts on the world.
+
+    Raises:
+        ConfigError: where a value misses a stage, or an arm has too few joints.
+    """
+    names = robot.stage_names
+    frequencies = by_stage("controller.natural_frequency", config.natural_frequency, names)
+    ratios = by_stage("controller.damping_ratio", config.damping_ratio, names)
+    periods = by_stage("controller.period", config.period, names)
+    apart = config.acts == "last_stage" and len(names) > 1
+    law = WholeBodyLaw(
+        natural_frequency=frequencies[-1],
+        damping_ratio=ratios[-1],
+        gravity_compensation=config.gravity_compensation,
+        feedforward=config.feedforward,
+        null_space_frequency=config.null_space_frequency,
+        max_tip_speed=None,
+        singularity_damping=config.singularity_damping,
+    )
+    below = _carrying(config, robot, frequencies, ratios, periods) if apart else ()
+    return Acting(names[-1], TipForce(robot, len(names) - 1 if apart else None, law), periods[-1], below)
+
+
+def _carrying(
+    config: TipForceConfig, robot: Robot, frequencies: list[float], ratios: list[float], periods: list[float]
+) -> tuple[Loop, ...]:
+    """Return the loops of all stages but the last, by the one-way coupling; they know what rides on them."""
+    names = robot.stage_names
+    stages = MacroMiniConfig(
+        kind="macro_mini",
+        natural_frequency=dict(zip(names, frequencies, strict=True)),
+        damping_ratio=dict(zip(names, ratios, strict=True)),
+        period=dict(zip(names, periods, strict=True)),
+        coupling="one_way",
+        macro_target="minus_home",
+        mini_reference_velocity="full" if config.feedforward else "zero",
+        wrist_rotation="real",
+        gravity_compensation=config.gravity_compensation,
+        feedforward=config.feedforward,
+        schedule="both",
+        reach=robot.reach(),
+        beyond_reach="hold",
+        payload="known",
+        singularity_damping=config.singularity_damping,
+    )
+    return build_stages(stages, robot)[:-1]

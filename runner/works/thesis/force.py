@@ -1,0 +1,175 @@
+"""What the chapter on force works out: rise times, effective masses, the stiffest wall, impacts, sliding."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.controllers.force_stability import force_loop_limit
+from runner.reporting.document import FloatArray, Series
+from runner.reporting.figures import columns, joint_columns, model_of
+from runner.reporting.prose.patterns import found
+from runner.reporting.run_values import clock
+from runner.robots.effective_mass import mass_along, tip_mobility
+from runner.store import Run
+
+_RISE = 3.3579  # of omega_c times the time from 10 % to 90 % of a critically damped step
+_BOUNCES = 0.05  # of the force that is asked for, from which it differs at the end
+_END = 20  # ticks
+_SLIDES = (0.3, 0.6)  # s, in the middle of the motion along the wall
+
+
+def push(run: Run) -> FloatArray:
+    """Return the force of the tip on the wall at each row, in N."""
+    return np.asarray(columns(run.trace, "external_force") @ np.array(run.config["environment"]["normal"]))
+
+
+def rise_time(run: Run) -> float:
+    """Return how long the force takes from 10 % to 90 % of what is asked, in s; NaN where it never does."""
+    force, asked, t = push(run), float(run.config["controller"]["force"]), clock(run)
+    if not (force >= 0.9 * asked).any():
+        return float("nan")
+    low, high = (_first_at(t, force, share * asked) for share in (0.1, 0.9))
+    return high - low
+
+
+def closed_rise_time(run: Run) -> float:
+    """Return the same of a mass on the wall under the law in continuous time, in s."""
+    law, stiffness = run.config["controller"], float(run.config["environment"]["stiffness"])
+    return _RISE / float(np.sqrt(stiffness * (1.0 + law["force_gain"]) / mass_at_start(run)))
+
+
+def force_at_rest(run: Run) -> float:
+    """Return the force at the end of a run, in N."""
+    return float(push(run)[-1])
+
+
+def bounces(run: Run) -> bool:
+    """Tell whether the force does not come to rest at what is asked."""
+    asked = float(run.config["controller"]["force"])
+    return run.status == "failed" or bool(np.abs(push(run)[-_END:] - asked).max() > _BOUNCES * asked)
+
+
+def mass_at_start(run: Run) -> float:
+    """Return the mass that the tip of what pushes has along the wall's normal where a run starts, in kg."""
+    return _mass(run, 0)
+
+
+def stiffest_wall(run: Run) -> float:
+    """Return the stiffness up to which the sampled law of a run is stable, in N/m."""
+    law = run.config["controller"]
+    period = _last(law["period"])
+    late = round(float(run.config["plant"]["command_delay"]) / period)
+    limit = force_loop_limit(float(law["force_gain"]), float(law["force_damping"]), late)
+    return mass_at_start(run) * (limit / period) ** 2 / (1.0 + float(law["force_gain"]))
+
+
+def stiffest_of(mass: float, force_gain: float, late: int) -> Callable[[float], float]:
+    """Return the stiffest wall of a mass in kg against the period in ms, in N/m, so many ticks late."""
+    limit = force_loop_limit(force_gain, 1.0, late)
+    return lambda period: mass * (1e3 * limit / period) ** 2 / (1.0 + force_gain)
+
+
+def speed_at_touch(run: Run) -> float:
+    """Return how fast a tip comes to the wall, in m/s; NaN where it does not."""
+    row = _touch(run)
+    if row is None:
+        return float("nan")
+    t, tip = clock(run), columns(run.trace, "tip") @ np.array(run.config["environment"]["normal"])
+    return float((tip[row - 1] - tip[row]) / (t[row] - t[row - 1]))
+
+
+def peak(run: Run) -> float:
+    """Return the largest force on the wall, in N."""
+    return float(push(run).max())
+
+
+def closed_peak(run: Run) -> float:
+    """Return the same of a mass on the wall's spring, v sqrt(k m), in N; NaN where nothing is touched."""
+    row, stiffness = _touch(run), float(run.config["environment"]["stiffness"])
+    return float("nan") if row is None else speed_at_touch(run) * float(np.sqrt(stiffness * _mass(run, row)))
+
+
+def peak_over_closed(run: Run) -> float:
+    """Return the largest force over what a mass on a spring gives."""
+    return peak(run) / closed_peak(run)
+
+
+def worst_while_sliding(run: Run) -> float | None:
+    """Return by how much the force is off what is asked, at most, in the middle of the motion along a wall, in N."""
+    off = np.abs(push(run)[_slides(run)] - float(run.config["controller"]["force"]))
+    return float(off.max()) if len(off) else None
+
+
+def friction_while_sliding(run: Run) -> float | None:
+    """Return the mean force along the wall over that into it, in the middle of the motion along a wall."""
+    slides, force, along = _slides(run), push(run), columns(run.trace, "external_force")
+    beside = np.linalg.norm(along - force[:, None] * np.array(run.config["environment"]["normal"]), axis=1)
+    return float(np.mean(beside[slides] / force[slides])) if slides.any() else None
+
+
+def _slides(run: Run) -> NDArray[np.bool_]:
+    """Return which rows are in the middle of the motion along a wall."""
+    t = clock(run)
+    return np.asarray((t >= _SLIDES[0]) & (t <= _SLIDES[1]))
+
+
+def _first_at(t: FloatArray, force: FloatArray, level: float) -> float:
+    """Return when a force first comes to a level, between rows on a straight line, in s."""
+    row = max(1, int(np.flatnonzero(force >= level)[0]))
+    return float(np.interp(level, force[row - 1 : row + 1], t[row - 1 : row + 1]))
+
+
+def _touch(run: Run) -> int | None:
+    """Return the first row that touches, 1 or more; None where none does."""
+    touching = np.flatnonzero(push(run) > 0.0)
+    return max(1, int(touching[0])) if len(touching) else None
+
+
+def _mass(run: Run, row: int) -> float:
+    q = joint_columns(run.trace, "q")[row]
+    return mass_along(
+        tip_mobility(model_of(run), q, _first_that_pushes(run)), np.array(run.config["environment"]["normal"])
+    )
+
+
+def _first_that_pushes(run: Run) -> int:
+    """Return the first joint of what pushes on a wall."""
+    stages = run.config["robot"].get("stages")
+    if not stages or run.config["controller"]["acts"] == "whole":
+        return 0
+    return sum(len(stage["home"]) for stage in list(stages.values())[:-1])
+
+
+def _last(value: object) -> float:
+    """Return a value by stage of the last stage."""
+    return float(list(value.values())[-1] if isinstance(value, dict) else value)  # type: ignore[arg-type]
+
+
+def count_all(run: Run) -> bool:
+    """Tell that a run is there."""
+    return True
+
+
+def walls_tried(runs: Mapping[str, Run], name: str, bounce: bool, color: int) -> list[Series]:
+    """Return the walls on which runs come to rest, or bounce, as points: period of the law in ms, stiffness in N/m."""
+    tried = [one.run for one in found(runs, "force/limit/{case}/{share}") if bounces(one.run) == bounce]
+    periods = np.array([1e3 * _last(run.config["controller"]["period"]) for run in tried])
+    stiffness = np.array([float(run.config["environment"]["stiffness"]) for run in tried])
+    return [Series(name, periods, stiffness, "points", color=color)]
+
+
+def beside_the_wall(run: Run) -> FloatArray:
+    """Return the tip's error along the wall at each row, in m."""
+    error, n = columns(run.trace, "error"), np.array(run.config["environment"]["normal"])
+    return np.asarray(np.linalg.norm(error - np.outer(error @ n, n), axis=1))
+
+
+def masses_around(runs: Mapping[str, Run], run: str, name: str, color: int) -> list[Series]:
+    """Return the mass of what pushes in each direction of the plane x = 0 where a run starts, as a curve in kg."""
+    model, q = model_of(runs[run]), joint_columns(runs[run].trace, "q")[0]
+    yields = tip_mobility(model, q, _first_that_pushes(runs[run]))
+    turns = np.linspace(0.0, 2.0 * np.pi, 181)
+    ways = np.array([np.zeros_like(turns), np.cos(turns), np.sin(turns)])
+    masses = 1.0 / np.einsum("it,ij,jt->t", ways, yields, ways)
+    return [Series(name, masses * ways[1], masses * ways[2], "line", color=color)]
