@@ -11,11 +11,9 @@ from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.controllers.admittance_stability import check_wall
 from runner.controllers.disturbance_observer import observed
-from runner.controllers.force_stability import touch_radius
-from runner.controllers.hybrid_force import HybridForceConfig
-from runner.controllers.kinds import ChecksStability, FollowsWithinReach, LeadsByForce
+from runner.controllers.kinds import ChecksStability, FollowsWithinReach
 from runner.environments import ENVIRONMENTS, Environment
-from runner.environments.wall import Wall, WallConfig
+from runner.environments.wall import Wall
 from runner.errors import ConfigError
 from runner.feasibility import check_path
 from runner.interaction import Interaction
@@ -24,14 +22,12 @@ from runner.metrics import MetricContext
 from runner.plants import PLANTS, ContactPlant, Plant, PositionPlant, innermost
 from runner.plants.kinds import HasServo
 from runner.plants.payload_changes import PayloadChanges
-from runner.plants.servo import JointServo, ServoLaw
-from runner.plants.touched import Touched
-from runner.robots.effective_mass import mass_along, tip_mobility
+from runner.plants.servo import JointServo
+from runner.plants.touched import make_touched
 from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.mismatch import believe
 from runner.robots.robot import Robot, end_points
 from runner.sensing import EncoderNoise, ForceTorqueConfig, ForceTorqueSensor, JointEncoders
-from runner.servo_contact import ServoContact
 from runner.trace import FloatArray
 from runner.trajectories.joint_motion import TipOfJoints
 
@@ -57,7 +53,8 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
     believed, loops = _believe(config, repetition)
     environment = ENVIRONMENTS.build(config.environment)
     with ExitStack() as on_error:
-        touched = environment if isinstance(environment, Wall) and _touches_by_tip(config) else None
+        moves = config.robot.tool is None and PLANTS.commands(config.plant.kind) == "torque"
+        touched = environment if moves and isinstance(environment, Wall) else None
         plant = _make_plant(config, believed, loops[0].period, touched)
         on_error.callback(plant.close)
         if isinstance(environment, Wall):
@@ -179,7 +176,10 @@ def _make_plant(
     ticks_per_command = round(period / timing.tick)
     if PLANTS.commands(config.plant.kind) == "position":
         return PLANTS.build(config.plant, arm, timing.tick, ticks_per_command)
-    plant = _make_torque_plant(config) if touched is None else _make_touched_plant(config, touched)
+    if touched is None:
+        plant = _make_moved(config)
+    else:
+        plant = make_touched(PLANTS, config.plant, arm, touched, timing, config.parallel)
     if config.commands == "torque" or not isinstance(config.plant, HasServo):
         return plant
     with ExitStack() as on_error:
@@ -190,7 +190,7 @@ def _make_plant(
     return driven
 
 
-def _make_torque_plant(config: RunConfig) -> Plant:
+def _make_moved(config: RunConfig) -> Plant:
     """Return the plant; one of each payload where that changes on the way."""
     timing = config.timing
     with ExitStack() as on_error:
@@ -201,31 +201,6 @@ def _make_torque_plant(config: RunConfig) -> Plant:
         ticks = [math.ceil(at / timing.tick - 1e-9) for at, _ in config.loaded]
         on_error.pop_all()
     return PayloadChanges(plants, ticks) if ticks else plants[0]
-
-
-def _touches_by_tip(config: RunConfig) -> bool:
-    """Tell whether the tip of a moving arm, a point, touches a wall within the plant's steps; a tool does else.
-
-    Raises:
-        ConfigError: where the plant's tip is none that rigid bodies have.
-    """
-    if config.parallel:
-        raise ConfigError(
-            [
-                "environment.kind: a wall is touched where rigid bodies bring the tip, and "
-                "plant.wrist_rotation=parallel leaves the rider's base unturned; set plant.wrist_rotation=real, or "
-                "environment=free"
-            ]
-        )
-    return config.robot.tool is None and PLANTS.commands(config.plant.kind) == "torque"
-
-
-def _make_touched_plant(config: RunConfig, wall: Wall) -> Plant:
-    """Return the plant of an arm without a tool, whose tip touches a wall within its steps."""
-    timing = config.timing
-    plant = PLANTS.build(config.plant, config.arm, timing.step, 1)
-    lead = 0.5 if PLANTS.moves_exactly(config.plant) else 0.0
-    return Touched(plant, config.arm.model, wall, timing.step, timing.steps_per_tick, lead)
 
 
 def _put_up(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
@@ -254,58 +229,6 @@ def _put_up(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
     ball = (0.0 if tool is None else tool.tip_radius) * wall.normal  # it is the ball's centre that is led
     within.add_wall(wall.point - ball, wall.normal.copy(), wall.config.stiffness, wall.config.damping)
     return None
-
-
-def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None:
-    """Return the contact of an arm behind joint servos with a wall; None where a run has none that can be followed.
-
-    Args:
-        config: The checked config.
-        q_start: Joint positions at the start, shape (nq,), in rad.
-    """
-    plant, law, wall, timing = config.plant, config.controller, config.environment, config.timing
-    if not isinstance(wall, WallConfig) or not isinstance(law, LeadsByForce) or not isinstance(plant, HasServo):
-        return None
-    if PLANTS.commands(plant.kind) != "torque" or config.commands != "position" or len(config.arm.stages) > 1:
-        return None
-    if config.robot.tool is None:
-        return None
-    low_pass = config.wrist_sensor.low_pass
-    return ServoContact(
-        arm=config.arm,
-        q=q_start,
-        servo=ServoLaw(config.arm.model, plant.servo, config.arm.home),
-        step=timing.step,
-        steps=timing.steps_per_tick,
-        tick=timing.tick,
-        ticks=round(law.period / timing.tick),
-        delay=timing.delay,
-        interpolate=plant.servo.interpolate,
-        implicit=PLANTS.contacts_implicitly(plant.kind),
-        law=law.law,
-        at_tip=law.at == "tip",
-        inertia=law.compensation == "gravity_and_inertia",
-        seen=1.0 if low_pass is None else float(-np.expm1(-2.0 * np.pi * low_pass * timing.tick)),
-        normal=np.array(wall.normal) / np.linalg.norm(wall.normal),
-        stiffness=wall.stiffness,
-        damping=wall.damping,
-    )
-
-
-def force_contact(config: RunConfig, q_start: FloatArray) -> float | None:
-    """Return how a small motion on a wall grows in a period of a law that pushes on it, at the start; None without one.
-
-    Args:
-        config: The checked config.
-        q_start: Joint positions at the start, shape (nq,), in rad.
-    """
-    wall, law, loop, timing = config.environment, config.controller, config.loops[-1], config.timing
-    if not isinstance(wall, WallConfig) or not isinstance(law, HybridForceConfig) or law.reading != "wrist":
-        return None
-    normal = np.array(wall.normal) / np.linalg.norm(wall.normal)
-    mass = mass_along(tip_mobility(config.arm.model, q_start, loop.joints.start), normal)
-    late = math.ceil(timing.delay * timing.tick / loop.period - 1e-9)
-    return touch_radius(law, mass, wall.stiffness, wall.damping, law.wall_stiffness, loop.period, late)
 
 
 def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition: int) -> list[JointEncoders]:

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.assembly import assemble, make_encoders, make_wrist_sensor, servo_contact
+from runner.assembly import assemble, make_encoders, make_wrist_sensor
 from runner.caveats import Watch, setting_of
+from runner.caveats.touch import servo_contact
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.controllers.admittance_filter import Admittance, discretise

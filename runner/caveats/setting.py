@@ -74,7 +74,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         config: The checked config.
         q_start: Joint positions at the start, shape (nq,), in rad; None leaves contact out.
     """
-    from runner.assembly import force_contact, servo_contact
+    from runner.caveats.touch import servo_contact, touch_of
     from runner.controllers.sampled_stability import velocity_loop
     from runner.plants.kinds import StandsIn
 
@@ -101,7 +101,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         mass=mass,
         in_place_of=config.plant.in_place_of if isinstance(config.plant, StandsIn) else None,
         contact=None if q_start is None else servo_contact(config, q_start),
-        touch=None if q_start is None else force_contact(config, q_start),
+        touch=None if q_start is None else touch_of(config, q_start),
         velocity_loop=velocity_loop(config.loops, config.arm, config.path) if config.commands == "torque" else None,
         left_out=config.arm.left_out,
     )

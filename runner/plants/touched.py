@@ -5,9 +5,12 @@ from typing import Protocol
 import numpy as np
 import pinocchio as pin
 
+from runner.errors import ConfigError
 from runner.plants.friction import friction_of
+from runner.plants.kinds import PlantConfig, Plants
 from runner.plants.plant import FloatArray, Plant
 from runner.robots.model import RobotModel
+from runner.robots.robot import Robot
 
 
 class Surface(Protocol):
@@ -96,3 +99,46 @@ class Touched:
     def close(self) -> None:
         """Release what the plant holds."""
         self._plant.close()
+
+
+class Steps(Protocol):
+    """The integration steps of a run."""
+
+    @property
+    def step(self) -> float:
+        """Integration step, in s."""
+        ...
+
+    @property
+    def steps_per_tick(self) -> int:
+        """Steps for which the torques of one tick are held."""
+        ...
+
+
+def make_touched(
+    plants: Plants, config: PlantConfig, robot: Robot, surface: Surface, steps: Steps, parallel: bool
+) -> Plant:
+    """Make the plant of an arm without a tool, whose tip touches a surface.
+
+    Args:
+        plants: The kinds of plants.
+        config: The plant's config.
+        robot: The robot.
+        surface: What its tip touches.
+        steps: The integration steps.
+        parallel: Whether riding stages keep the orientation of home, in the plant's truth.
+
+    Raises:
+        ConfigError: where they do, as the tip is then none that rigid bodies have, or the plant refuses its config.
+    """
+    if parallel:
+        raise ConfigError(
+            [
+                "environment.kind: a wall is touched where rigid bodies bring the tip, and "
+                "plant.wrist_rotation=parallel leaves the rider's base unturned; set plant.wrist_rotation=real, or "
+                "environment=free"
+            ]
+        )
+    lead = 0.5 if plants.moves_exactly(config) else 0.0
+    plant = plants.build(config, robot, steps.step, 1)
+    return Touched(plant, robot.model, surface, steps.step, steps.steps_per_tick, lead)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from runner.assembly import servo_contact
+from runner.caveats.touch import servo_contact
 from runner.config.validation import validate
 from runner.controllers.admittance_stability import stiffest_wall
 from runner.quantities import number

@@ -1,0 +1,69 @@
+"""Contact with a wall as it is at the start of a run; imported where rigid bodies are to be had."""
+
+import math
+
+import numpy as np
+
+from runner.config.run import RunConfig
+from runner.controllers.force_stability import touch_radius
+from runner.controllers.hybrid_force import HybridForceConfig
+from runner.controllers.kinds import LeadsByForce
+from runner.environments.wall import WallConfig
+from runner.plants import PLANTS
+from runner.plants.kinds import HasServo
+from runner.plants.servo import ServoLaw
+from runner.robots.effective_mass import mass_along, tip_mobility
+from runner.servo_contact import ServoContact
+from runner.trace import FloatArray
+
+
+def touch_of(config: RunConfig, q_start: FloatArray) -> float | None:
+    """Return how a small motion on a wall grows in a period of a law that pushes on it, at the start; None without one.
+
+    Args:
+        config: The checked config.
+        q_start: Joint positions at the start, shape (nq,), in rad.
+    """
+    wall, law, loop, timing = config.environment, config.controller, config.loops[-1], config.timing
+    if not isinstance(wall, WallConfig) or not isinstance(law, HybridForceConfig) or law.reading != "wrist":
+        return None
+    normal = np.array(wall.normal) / np.linalg.norm(wall.normal)
+    mass = mass_along(tip_mobility(config.arm.model, q_start, loop.joints.start), normal)
+    late = math.ceil(timing.delay * timing.tick / loop.period - 1e-9)
+    return touch_radius(law, mass, wall.stiffness, wall.damping, law.wall_stiffness, loop.period, late)
+
+
+def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None:
+    """Return the contact of an arm behind joint servos with a wall; None where a run has none that can be followed.
+
+    Args:
+        config: The checked config.
+        q_start: Joint positions at the start, shape (nq,), in rad.
+    """
+    plant, law, wall, timing = config.plant, config.controller, config.environment, config.timing
+    if not isinstance(wall, WallConfig) or not isinstance(law, LeadsByForce) or not isinstance(plant, HasServo):
+        return None
+    if PLANTS.commands(plant.kind) != "torque" or config.commands != "position" or len(config.arm.stages) > 1:
+        return None
+    if config.robot.tool is None:
+        return None
+    low_pass = config.wrist_sensor.low_pass
+    return ServoContact(
+        arm=config.arm,
+        q=q_start,
+        servo=ServoLaw(config.arm.model, plant.servo, config.arm.home),
+        step=timing.step,
+        steps=timing.steps_per_tick,
+        tick=timing.tick,
+        ticks=round(law.period / timing.tick),
+        delay=timing.delay,
+        interpolate=plant.servo.interpolate,
+        implicit=PLANTS.contacts_implicitly(plant.kind),
+        law=law.law,
+        at_tip=law.at == "tip",
+        inertia=law.compensation == "gravity_and_inertia",
+        seen=1.0 if low_pass is None else float(-np.expm1(-2.0 * np.pi * low_pass * timing.tick)),
+        normal=np.array(wall.normal) / np.linalg.norm(wall.normal),
+        stiffness=wall.stiffness,
+        damping=wall.damping,
+    )
