@@ -7,6 +7,7 @@ import pytest
 
 from runner.assembly import assemble, make_encoders, make_wrist_sensor
 from runner.caveats import Watch, setting_of
+from runner.caveats.touch import servo_contact
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.controllers.admittance_filter import Admittance, discretise
@@ -14,7 +15,6 @@ from runner.controllers.admittance_stability import spectral_radius
 from runner.plants.servo import ServoLaw
 from runner.servo_contact import contact_map, contact_radius, stiffest_servo_wall
 from runner.simulation import simulate
-from runner.wall_contact import servo_contact
 
 PRESSED = (
     "experiment=meca500/wall", "environment.distance=0", "environment.damping=0", "trajectory.goal=[0.185,0.01,0.06]",

@@ -74,9 +74,9 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         config: The checked config.
         q_start: Joint positions at the start, shape (nq,), in rad; None leaves contact out.
     """
+    from runner.caveats.touch import force_contact, servo_contact
     from runner.controllers.sampled_stability import velocity_loop
     from runner.plants.kinds import StandsIn
-    from runner.wall_contact import force_contact, servo_contact
 
     model = config.arm.model
     units, position_limits, mass = _of_model(model)

@@ -111,7 +111,7 @@ def test_every_room_is_physics_or_known_not_to_be():
         "engine_output.py", "engines.py", "errors.py", "export", "folder_code.py",
         "completion", "drawing", "expressions", "latest.py", "paths.py", "plugins.py", "progress", "provenance.py",
         "quantities.py", "quiet.py", "recall", "recordings", "references", "reporting", "sensitivity",
-        "servo_contact.py", "spec", "statistics", "store", "sweeps", "texts.py", "tuning", "wall_contact.py",
+        "servo_contact.py", "spec", "statistics", "store", "sweeps", "texts.py", "tuning",
         "works",
         "__init__.py", "__main__.py",
     }  # fmt: skip

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from runner.caveats.touch import servo_contact
 from runner.config.validation import validate
 from runner.controllers.admittance_stability import stiffest_wall
 from runner.quantities import number
@@ -15,7 +16,6 @@ from runner.reporting.figures import joint_columns
 from runner.reporting.prose.patterns import found
 from runner.servo_contact import ServoContact, contact_radius, stiffest_servo_wall
 from runner.store import Run
-from runner.wall_contact import servo_contact
 from runner.works.meca500.figures import Runs, bounces, law_of, once
 from runner.works.meca500.plan import law
 

@@ -1,4 +1,4 @@
-"""What a checked config says of the contact with its wall, for caveats and maps of stability."""
+"""Contact with a wall as it is at the start of a run; imported where rigid bodies are to be had."""
 
 import math
 
