@@ -20,7 +20,7 @@ test: install
 test-pages: install
 	$(BIN)/python -m pytest -m slow tests/test_readme.py tests/test_tutorial.py tests/test_compare_page.py \
 		tests/test_figures_and_tables_docs.py tests/test_how_sure_page.py tests/test_sensitivity_page.py \
-		tests/test_docs_pages.py
+		tests/test_docs_pages.py tests/test_recordings_page.py
 
 test-slow: install
 	$(BIN)/python -m pytest -m slow
