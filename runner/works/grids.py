@@ -21,11 +21,10 @@ for what it holds. Calibrations are grids under `calibrations`.
 `runner reproduce` is given by --plugin is one more level, by its name.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-import yaml
 from pydantic import ValidationError
 
 from runner.config.bounded_yaml import read_yaml
@@ -72,7 +71,7 @@ class Grids:
         except (OSError, ValueError) as error:
             raise RunnerError(f"cannot read {path}: {error}") from None
         content = read_yaml(text, path)
-        problems = [*_twice(yaml.compose(text, yaml.CSafeLoader))]
+        problems: list[str] = []
         roots = {root: _parse(root, Grid, content, problems) for root in ("grids", "calibrations")}
         tuned = _parse("tunings", TunedGrid, content, problems)
         if profile is not None:
@@ -193,12 +192,3 @@ def _expanded(
         except RunnerError as error:
             problems.append(f"{root}.{key}: {error}")
     return runs
-
-
-def _twice(node: yaml.Node | None) -> Iterator[str]:
-    """Yield the keys that stand twice in one group, of which YAML would keep the last alone."""
-    for child in node.value if isinstance(node, yaml.CollectionNode) else ():
-        yield from _twice(child[1] if isinstance(child, tuple) else child)
-    if isinstance(node, yaml.MappingNode):
-        keys = [key.value for key, _ in node.value]
-        yield from (f"the key '{key}' stands twice in one group" for key in dict.fromkeys(keys) if keys.count(key) > 1)

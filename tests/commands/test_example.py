@@ -1,4 +1,5 @@
 import os
+import sys
 
 import pytest
 
@@ -20,9 +21,11 @@ def test_all_examples_are_copied_as_they_are(cli, tmp_path):
 
 def test_a_copied_example_runs(cli, monkeypatch):
     monkeypatch.setenv("RUNNER_PLUGINS", "")  # so that the plug-in is forgotten after the test
+    monkeypatch.setattr(sys, "path", [*sys.path])
     folder = cli("example", "mine").folder
     parts = ("--plugin", f"controller={folder}/own_robot/gravity_pd.py", "--config-dir", f"{folder}/own_robot")
     assert cli(*parts, "robot=lamp", "controller=gravity_pd", "trajectory=goal", "duration=0.05").code == 0
+    sys.modules.pop("gravity_pd")
 
 
 @pytest.mark.parametrize("kind", ["folder", "file"])

@@ -41,7 +41,7 @@ def end_of(trace):
         (lambda q, dq: None, r"gave None; it must be positions and velocities"),
         (
             lambda q, dq: (q.fill(0.0), dq),
-            r"read-only \(test_sensors.py, line \d+, in <lambda>\); what a part is handed",
+            r"read-only \(test_sensors.py, line \d+, in <lambda>\); a plug-in cannot change",
         ),
         (lambda q, dq: (q, dq.fill(0.0)), r"read-only \(test_sensors.py"),
     ],

@@ -115,7 +115,7 @@ def test_a_whole_path_of_a_urdf_is_not_kept(cli, composed, mine):
 def test_a_damaged_or_lost_run_is_made_again(cli, composed):
     run = cli(*LINE).folder
     (run / "trace.parquet").write_bytes(b"")
-    assert "made again" in cli(*LINE).err
+    assert "making it again" in cli(*LINE).err
     shutil.rmtree(run)
     assert cli(*LINE).folder == run
     assert len(composed) == 3
