@@ -25,6 +25,7 @@ _GROUPS = {
     "mismatch": "mismatch",
     "disturbance_observers": "disturbance_observer",
     "joint_torque_sensors": "joint_torque_sensor",
+    "endpoint_sensors": "endpoint_sensor",
     "noise": "noise",
     "presets": "preset",
     "torque_limits": "torque_limits",

@@ -7,6 +7,7 @@ import numpy as np
 
 from runner.config.arms import build_loaded, build_robot
 from runner.config.disturbance_observer import check_observer
+from runner.config.endpoint_sensor import endpoint_ticks
 from runner.config.flexible_joints import check_flexible_joints
 from runner.config.force_reading import check_reading
 from runner.config.groups import read_groups
@@ -86,7 +87,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         torque_limits=sure(torque_limits),
         wrist_sensor=sure(groups.wrist_sensor),
         joint_torques=sure(groups.joint_torque_sensor).by_joint(sure(arm)),
-        mismatch=sure(groups.mismatch),
+        mismatch=sure(groups.mismatch), endpoint_sensor=sure(groups.endpoint_sensor),
         disturbance_observer=sure(groups.disturbance_observer),
         timing=Timing(*sure(steps), sure(delay), sure(ticks)),
         parallel=sure(parallel),
@@ -114,6 +115,7 @@ def _checked(config: RunConfig) -> RunConfig:
     check_observer(config)
     check_flexible_joints(config)
     check_reading(config)
+    endpoint_ticks(config)
     check_repeats(config)
     check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.feels)
     return config
