@@ -96,7 +96,7 @@ def test_a_sensor_that_is_late_or_slow_or_noisy_serves_worse_and_alike_in_equal_
 def damping_ratios(frequency, *keys):
     """Frequencies in Hz and damping ratios of the modes of the Macro with its brakes on, under the Mini's law."""
     config = validate(
-        compose([*FLEXIBLE, "gravity=0", stiff(1000), f"{KEY}.damping_ratio=0", f"{KEY}.braked=[macro]",
+        compose([*FLEXIBLE, "gravity=0", stiff(1000), f"{KEY}.damping_ratio=0", f"{KEY}.braked={{macro: 0}}",
                  f"controller.natural_frequency={{macro: 30, mini: {frequency}}}", *keys]).resolved
     )  # fmt: skip
     closed = assemble(config)
@@ -182,7 +182,7 @@ def test_inertial_damping_damps_as_its_formula_says(gain):
             (SENSED, "plant=rk4", "plant.dynamics=decoupled", "plant.wrist_rotation=parallel"),
             "plant.wrist_rotation=real",
         ),
-        ((SENSED, "plant=rk4", "environment=wall", "controller=hybrid_force"), "take environment=free"),
+        ((SENSED, "plant=rk4", "environment=wall", "controller=hybrid_force"), "take a law that feels no force"),
         ((DAMPED, "controller.damping_gain=-1"), "controller.damping_gain: must be 0 or more"),
     ],
 )

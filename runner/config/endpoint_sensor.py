@@ -46,8 +46,8 @@ def _refused(config: RunConfig, loop: Loop) -> list[str]:
         problems.append(f"{config.controller.kind} commands joint positions; take a controller that gives torques")
     elif loop.follows_joints:
         problems.append("the trajectory is one of joints, which ask for no tip; take one of the tip, or []")
-    elif config.feels:
-        problems.append("a law near a wall tells it by the encoders; take environment=free and a law that feels none")
+    elif loop.feels:
+        problems.append(f"{config.controller.kind} finds the wall by the encoders; take a law that feels no force")
     if config.parallel:
         problems.append(
             "bases that keep the orientation of home turn otherwise than the encoders tell; take "

@@ -33,8 +33,8 @@ class DampingNumbers(NamedTuple):
 class InertialDamping(TorqueLaw[DampingNumbers]):
     r"""The loop of a riding stage that takes energy out of the vibration of its base, and gives tracking up.
 
-    After the inertial damping of Book and coworkers (Lew, Trudnowski, Evans and Bennett, Journal of Robotic Systems
-    12(5), 1995, call it that): the tip, seen from its base, is held to its home offset softly, and pushed along the
+    As others damped flexible arms by small ones at their ends (Lew and Trudnowski, IEEE Control Systems 16(1), 1996,
+    the thesis' reference 14): the tip, seen from its base, is held to its home offset softly, and pushed along the
     base's velocity v_E, less the desired one.
 
     .. math:: F = g R^T (\dot x_E - \dot x_d) - 2 \xi \omega_c \dot p - \omega_c^2 (p - r_0), \qquad \tau = J^T

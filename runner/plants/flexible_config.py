@@ -25,7 +25,8 @@ class FlexibleJointsConfig(StrictModel):
         damping_ratio: Damping of each joint's spring, of its link alone with the others held at home: 1 is critical.
         torsion_damping: Ratio of the damping that drives add, of each motor alone against its spring, from encoders at
             motor and link: the fast part of Spong's composite control. 0 is none.
-        braked: Names of the stages whose motors are held by brakes from the start.
+        braked: When the brakes of a stage's motors close, in s, by stage; 0 is from the start. They stay open where a
+            stage is not named.
         encoders: Whether the encoders turn with the motors or with the links.
         static_deflection: Whether readings at the motors are corrected for the deflection under the believed weight.
     """
@@ -34,7 +35,7 @@ class FlexibleJointsConfig(StrictModel):
     motor_inertia: SpringPerStage
     damping_ratio: NonNegativeFloat
     torsion_damping: NonNegativeFloat
-    braked: list[str]
+    braked: dict[str, NonNegativeFloat]
     encoders: Literal["motor", "link"]
     static_deflection: Literal["known", "unknown"]
 
@@ -69,11 +70,11 @@ class FlexibleJointsConfig(StrictModel):
         motors = np.where(flexible, motors, 0.0)
         return Flexibility(springs, motors, damping, self._find_braked(arm, flexible), fed_back)
 
-    def _find_braked(self, arm: Robot, flexible: np.ndarray) -> np.ndarray:
-        """Return which joints are braked, shape (nq,)."""
-        braked, stages, key = np.zeros(len(flexible), dtype=bool), arm.stage_names, "plant.flexible_joints.braked"
+    def _find_braked(self, arm: Robot, flexible: np.ndarray) -> FloatArray:
+        """Return when joints are braked, shape (nq,), in s."""
+        braked, stages, key = np.full(len(flexible), np.inf), arm.stage_names, "plant.flexible_joints.braked"
         problems = []
-        for name in self.braked:
+        for name, time in self.braked.items():
             if name not in stages:
                 problems.append(
                     f"{key}: no such stage: {quoted(name)}{nearest(name, stages)}; stages: {', '.join(stages)}"
@@ -82,7 +83,7 @@ class FlexibleJointsConfig(StrictModel):
             joints = arm.stages[stages.index(name)].joints
             if not flexible[joints].all():
                 problems.append(f"{key}: {name} has rigid joints, whose motors are links; give each of them a spring")
-            braked[joints] = True
+            braked[joints] = time
         if problems:
             raise ConfigError(problems)
         return braked

@@ -17,7 +17,7 @@ class Flexibility:
         stiffness: K of each joint, shape (nq,), in N m/rad; infinite where it is rigid.
         motors: B, inertia of each motor after its gear, shape (nq,), in kg m^2; 0 where the joint is rigid.
         damping: D of each joint, shape (nq,), in N m s/rad; 0 where it is rigid.
-        braked: Whether the motor of each joint is held by a brake, shape (nq,).
+        braked: When the brake of each motor closes, shape (nq,), in s; infinite where it stays open.
         fed_back: K_f of each joint, shape (nq,), in N m s/rad: what its drive asks of the motor against the rate at
             which its spring turns.
     """
@@ -25,7 +25,7 @@ class Flexibility:
     stiffness: FloatArray
     motors: FloatArray
     damping: FloatArray
-    braked: np.ndarray
+    braked: FloatArray
     fed_back: FloatArray
 
     @property
@@ -65,7 +65,7 @@ class FlexibleJoints:
         B \ddot\theta + K (\theta - q) + D (\dot\theta - \dot q) = \tau
 
     The model is that of Spong (J. Dyn. Syst. Meas. Control 109, 1987): a motor feels no inertia but its own spin.
-    A rigid joint takes its torque as it is. A motor that is braked stands still, whatever its torque.
+    A rigid joint takes its torque as it is. A brake that closes stops its motor at once, whatever the torque.
 
     Args:
         model: The arm's rigid-body model, of the links alone.
@@ -79,7 +79,7 @@ class FlexibleJoints:
         self._data = self._model.createData()
         self.flexibility, self._on = flexibility, flexibility.flexible
         self._stiffness, self._motors = flexibility.stiffness[self._on], flexibility.motors[self._on]
-        self._free = ~flexibility.braked[self._on]
+        self._ticks, self._free = 0, np.ones(int(self._on.sum()), dtype=bool)
         self._damping = flexibility.damping[self._on]
         self._step, self._steps_per_tick = step, steps_per_tick
         self.q, self.dq = np.zeros(model.nq), np.zeros(model.nq)
@@ -93,7 +93,7 @@ class FlexibleJoints:
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Put the links into a state, and the motors where their springs carry the links' weight; see Plant."""
         self.q[:], self.dq[:], self.dtheta[:] = q, dq, dq
-        self.dtheta[self.flexibility.braked] = self.load[:] = 0.0
+        self._ticks, self.load[:] = 0, 0.0
         weight = pin.computeGeneralizedGravity(self._model, self._data, self.q)
         self.theta[:] = self.q + self.flexibility.deflection(weight)
 
@@ -104,6 +104,7 @@ class FlexibleJoints:
     def advance(self, tau: FloatArray) -> None:
         """Hold the motors' torques for one tick; see Plant."""
         on, nq, h = self._on, len(self.q), self._step
+        self._brake(on)
         x = np.concatenate([self.q, self.theta[on], self.dq, self.dtheta[on]])
         for _ in range(self._steps_per_tick):
             k1 = self._slope(x, tau)
@@ -115,6 +116,12 @@ class FlexibleJoints:
         self.q[:], self.dq[:] = places[:nq], speeds[:nq]
         self.theta[:], self.dtheta[:] = self.q, self.dq
         self.theta[on], self.dtheta[on] = places[nq:], speeds[nq:]
+
+    def _brake(self, on: np.ndarray) -> None:
+        """Stop the motors whose brakes close in the tick that begins."""
+        now, self._ticks = self._ticks * self._steps_per_tick * self._step, self._ticks + 1
+        self._free = now < self.flexibility.braked[on] - 1e-9
+        self.dtheta[on] *= self._free
 
     def _slope(self, x: FloatArray, tau: FloatArray) -> FloatArray:
         """Return the slope of links' and motors' positions, then of their velocities."""

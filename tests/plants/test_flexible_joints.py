@@ -20,7 +20,7 @@ def macro():
 
 def springs(stiffness, motors, damping):
     zero = np.zeros(len(stiffness))
-    return Flexibility(stiffness, motors, damping, zero > 0.0, zero)
+    return Flexibility(stiffness, motors, damping, zero + np.inf, zero)
 
 
 def made(model, stiffness, motor, step, damping=0.0, steps=1):

@@ -15,7 +15,7 @@ B, K = 0.5, 200.0  # kg m^2, N m/rad
 TICK = 1e-3  # s
 
 
-def rubbed(viscous=0.0, coulomb=0.0, braked=False, motor=B):
+def rubbed(viscous=0.0, coulomb=0.0, braked=np.inf, motor=B):
     springs = Flexibility(*(np.array([value]) for value in (K, motor, 0.0, braked, 0.0)))
     plant = FlexibleJoints(RobotModel(ONE_JOINT, "arm"), springs, TICK, 1)
     return plant, MotorFriction(plant, np.array([viscous]), np.array([coulomb]), TICK)
@@ -49,7 +49,7 @@ def test_viscous_friction_lets_motor_and_link_turn_at_torque_over_friction_in_th
 
 
 def test_a_braked_motor_stands_still_and_the_link_swings_on_its_spring_alone():
-    plant, around = rubbed(braked=True)
+    plant, around = rubbed(braked=0.0)
     around.reset(np.zeros(1), np.zeros(1))
     q = []
     for _ in range(2000):
@@ -64,10 +64,24 @@ def test_a_braked_motor_stands_still_and_the_link_swings_on_its_spring_alone():
 
 
 def test_the_world_pushes_links_and_not_motors():
-    plant, around = rubbed(braked=True)
+    plant, around = rubbed(braked=0.0)
     around.reset(np.zeros(1), np.zeros(1))
     q = []
     for _ in range(4000):
         push(around, np.zeros(1), np.array([2.0]))
         q.append(plant.q[0])
     assert np.max(q) == pytest.approx(2.0 * 2.0 / K, rel=1e-4)  # twice the deflection at rest
+
+
+def test_a_brake_that_closes_on_the_way_leaves_the_link_its_speed():
+    plant, around = rubbed(braked=0.1)
+    around.reset(np.zeros(1), np.full(1, 0.2))
+    for _ in range(100):
+        around.advance(np.zeros(1))
+    assert plant.theta[0] == pytest.approx(0.02, rel=1e-9)
+    q = []
+    for _ in range(1000):
+        around.advance(np.zeros(1))
+        q.append(plant.q[0] - 0.02)
+    assert plant.theta[0] == pytest.approx(0.02, rel=1e-9)
+    assert np.max(q) == pytest.approx(0.2 / np.sqrt(K / 3.0), rel=1e-3)
