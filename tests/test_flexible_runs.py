@@ -128,3 +128,33 @@ def test_brakes_hold_the_motors_and_a_push_bends_the_arm(simulated):
     arm = validate(compose([*MACRO]).resolved).arm.model
     J = arm.tip_jacobian(np.zeros(3))[:3]
     assert trace.tip[-1] - trace.tip[0] == pytest.approx(J @ J.T @ [2.0, 0.0, 0.0] / 1000.0, abs=2e-5)  # m
+
+
+def test_the_motors_of_tomeis_law_bring_the_links_exactly_to_rest(simulated):
+    def rest(*law):
+        keys = (
+            f"{KEY}.stiffness=1000",
+            f"{KEY}.damping_ratio=0.3",
+            "plant.step=0.001",
+            "controller.natural_frequency=5",
+        )
+        trace = simulated(*MACRO, "trajectory=goal", "trajectory.goal=[0.1,0.9,0.9]", "duration=12", *keys, *law)
+        return np.abs(trace.error[-1]).max()
+
+    by_motors = rest("controller=motor_pd", f"{KEY}.static_deflection=unknown")
+    assert by_motors < 1e-8
+    assert rest("controller=joint_pd") > 1e4 * by_motors  # off by the second order of 1/K
+    believed_stiffer = ("controller=motor_pd", f"{KEY}.static_deflection=unknown", "controller.stiffness=2000")
+    assert rest(*believed_stiffer) > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("overrides", "expected"),
+    [
+        (("plant=rk4", "controller=motor_pd", "controller.stiffness=1000"), "motor_pd turns motors behind springs"),
+        (("plant=rk4_flexible", "controller=motor_pd"), "motor_pd reads theta as it is"),
+        (("plant=rk4_flexible", "controller=motor_pd", "controller.stiffness=[1,2]"), "2 values for 3 joints"),
+    ],
+)
+def test_motor_pd_wants_motors(overrides, expected):
+    assert expected in problems("robot=macro", *overrides)

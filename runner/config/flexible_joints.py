@@ -3,6 +3,7 @@
 import numpy as np
 
 from runner.config.run import RunConfig
+from runner.controllers.motor_pd import MotorPdConfig
 from runner.errors import ConfigError
 from runner.plants import Plant
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
@@ -50,7 +51,11 @@ def check_flexible_joints(config: RunConfig) -> None:
     Raises:
         ConfigError: where they do not.
     """
-    flexibility = find_flexibility(config)
+    flexibility, by_motors = find_flexibility(config), isinstance(config.controller, MotorPdConfig)
+    if by_motors and flexibility is None:
+        raise ConfigError(
+            ["controller.kind: motor_pd turns motors behind springs; take plant=rk4_flexible, or controller=joint_pd"]
+        )
     if flexibility is None or not isinstance(config.plant, Rk4Config):
         return
     problems = [f"plant.flexible_joints: {problem}" for problem in _refused(config, config.plant, flexibility)]
@@ -87,6 +92,12 @@ def _refused(config: RunConfig, plant: Rk4Config, flexibility: Flexibility) -> l
         problems.append("the payload cannot change on the way; take robot.payload.schedule=[]")
     if config.joint_torques is not None:
         problems.append("torque sensors are read at rigid joints; take joint_torque_sensor.noise=null")
+    joints = plant.flexible_joints
+    theta = joints is not None and joints.encoders == "motor" and joints.static_deflection == "unknown"
+    if isinstance(config.controller, MotorPdConfig) and not theta:
+        problems.append(
+            "motor_pd reads theta as it is; take plant.flexible_joints.encoders=motor and .static_deflection=unknown"
+        )
     for name, arm, stage in zip(config.robot.arms, config.robot.arms.values(), config.arm.stages, strict=True):
         if arm.rotor_inertia not in (0.0, 0) and flexibility.flexible[stage.joints].any():
             key = f"robot.stages.{name}.rotor_inertia" if len(config.arm.stages) > 1 else "robot.rotor_inertia"
