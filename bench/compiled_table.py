@@ -35,7 +35,7 @@ _CASES = {
         "noise.velocity=finite_difference",
     ),
     "torque limits": ("torque_limits=thesis",),
-    "a command delay": ("plant.command_delay=0.02",),
+    "a command delay": ("plant.computation.delay=2",),
     "several steps a tick": ("plant.step=0.005",),
     "viscous and dry friction": ("plant.friction.viscous=1", "plant.friction.coulomb=1"),
     "a payload": ("robot.payload.mass=0.5",),

@@ -107,6 +107,8 @@ def describe_loop(config: RunConfig, repetition: int = 0) -> Whole | None:
     """
     if config.commands != "torque" or config.feels or not config.compilable or find_flexibility(config) is not None:
         return None
+    if config.timing.delay is None:
+        return None
     loops = _believe(config, repetition)[1]
     commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
     motion = PLANTS.motion(config.plant, config.arm)
@@ -184,7 +186,7 @@ def _make_plant(
     with ExitStack() as on_error:
         on_error.callback(plant.close)
         servo, limits = config.plant.servo, config.torque_limits
-        driven = JointServo(plant, believed.model, servo, arm.home, limits, ticks_per_command, timing.delay)
+        driven = JointServo(plant, believed.model, servo, arm.home, limits, ticks_per_command, timing.late[0])
         on_error.pop_all()
     return driven
 

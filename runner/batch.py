@@ -6,7 +6,7 @@ Each has the results that it has alone, to the last bit.
 import math
 import time
 from collections.abc import Callable, Hashable, Iterator, Sequence
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from runner.assembly import assemble_whole, metric_context, reach_of
 from runner.compiled.closed_loop import Signals, Whole, run_all
 from runner.config.memory import Memory
 from runner.config.run import RunConfig
+from runner.config.timing import Timing
 from runner.loop.failures import ended_well, find_failure
 from runner.metrics import MetricContext
 from runner.plugins import added
@@ -117,7 +118,7 @@ class Batcher:
         drawn = (config.settings.seed, repetition) if config.mismatch.spread > 0.0 else ()
         parts = (
             *("whole", config.arm, config.loops, config.plant, config.controller, config.noise, config.torque_limits),
-            *(config.path, config.mismatch, config.robot, config.environment, *astuple(config.timing), *drawn),
+            *(config.path, config.mismatch, config.robot, config.environment, *_times(config.timing), *drawn),
         )
         return self.memory.known(parts, lambda: assemble_whole(config, repetition))
 
@@ -217,6 +218,11 @@ class Batcher:
             joint_units=model.joint_units,
             tick_seconds=np.full(len(t) - 1, seconds),
         )
+
+
+def _times(timing: Timing) -> tuple[object, ...]:
+    """Return what times a closed loop follows from, one by one."""
+    return (timing.tick, timing.step, timing.steps_per_tick, timing.even, timing.ticks, *timing.late)
 
 
 def _start(runs: Sequence[Wanted], errors: Sequence[FloatArray]) -> FloatArray:

@@ -6,6 +6,7 @@ import numpy as np
 
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.errors import SimulationError
+from runner.loop.acting import Acting, evenly_late
 from runner.loop.closed_loop import ClosedLoop
 from runner.loop.command import Command
 from runner.loop.compiled_loop import run_commands, run_whole
@@ -28,6 +29,7 @@ def simulate(
     wrist: WristSensor | None = None,
     torques: TorqueSensors | None = None,
     tips: Mapping[str, MeasuredTip] | None = None,
+    acting: Acting | None = None,
 ) -> Trace:
     """Run the control loops once.
 
@@ -42,12 +44,14 @@ def simulate(
         encoders: The joint measurement of each loop, with a draw for each of its ticks.
         wrist: The force/torque sensor, with a draw for each tick; needed where there is something to feel.
         torques: The torque sensors in the joints, likewise; needed where a control law reads them.
+        acting: Which commands act in each tick; else all act as late as the closed loop says.
         tips: What loops know of the tip beside their encoders, by loop; needed where one reads a sensor of the tip.
 
     Returns:
         The trace; one that ends early carries a failure.
     """
-    recorder, contact = Recorder(closed), None
+    recorder = Recorder(closed, acting or evenly_late(closed.robot.model.nq, closed.delay or 0, closed.ticks + 1))
+    contact = None
     try:
         recorder.desired[:] = closed.trajectory.sample(recorder.times)
         recorder.joints = joint_reference(closed.trajectory, recorder.times)
@@ -62,7 +66,7 @@ def simulate(
             else:
                 each = zip(closed.loops, encoders, strict=True)
                 commands = [Command(closed, *own, recorder, (tips or {}).get(own[0].name)) for own in each]
-                _run(closed, commands, contact, JointTorques(closed, torques, recorder.commands), recorder)
+                _run(closed, commands, contact, JointTorques(closed, torques, recorder), recorder)
     except (np.linalg.LinAlgError, SimulationError) as error:
         recorder.stop(0, error)
     return recorder.trace(contact)

@@ -36,7 +36,7 @@ def put_up(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
     """
     ideal = PLANTS.commands(config.plant.kind) == "position"
     if ideal and isinstance(config.controller, ChecksStability) and config.controller.check_stability:
-        late = math.ceil(config.timing.delay * config.timing.tick / config.controller.period - 1e-9)
+        late = math.ceil(config.timing.late[0] * config.timing.tick / config.controller.period - 1e-9)
         controller, values = config.controller, wall.config
         check_wall(controller.law, controller.period, values.stiffness, values.damping, late)
     within = innermost(plant)

@@ -97,7 +97,7 @@ def test_repetitions_draw_their_own_noise_and_beliefs():
 @pytest.mark.parametrize(
     "overrides",
     [
-        ("plant.command_delay=0.03", "noise=thesis"),
+        ("plant.computation.delay=3", "noise=thesis"),
         ("noise.velocity=finite_difference", "noise.resolution=1e-4", "noise.distribution=gaussian"),
         ("plant.friction.viscous=1", "plant.friction.coulomb=2", "plant.step=0.005"),
         ("robot=combined", "controller=macro_mini", "controller.period={macro: 0.02, mini: 0.002}", "noise=thesis"),

@@ -44,7 +44,7 @@ def test_without_delay_theory_ends_stability_at_the_known_product():
 def test_an_error_that_is_led_to_zero_goes_as_a_sampled_mass_with_delay_does(simulated, delay):
     frequency = 0.6 * limit(delay)
     trace = simulated(
-        *NEAR, f"controller.natural_frequency={frequency}", f"plant.command_delay={delay * H}", "duration=1"
+        *NEAR, f"controller.natural_frequency={frequency}", f"plant.computation.delay={delay}", "duration=1"
     )
     state = np.array([-1e-5, 0.0, *[frequency**2 * 1e-5] * delay])  # the first command is there from the start
     expected = []
@@ -58,7 +58,7 @@ def test_an_error_that_is_led_to_zero_goes_as_a_sampled_mass_with_delay_does(sim
 def test_stability_ends_where_theory_says(simulated, delay):
     def grows(factor):
         law = f"controller.natural_frequency={factor * limit(delay)}"
-        error = np.abs(simulated(*NEAR, law, f"plant.command_delay={delay * H}", "duration=8").error[:, 0])
+        error = np.abs(simulated(*NEAR, law, f"plant.computation.delay={delay}", "duration=8").error[:, 0])
         return error[-100:].max() > error[300:400].max()
 
     assert not grows(0.98)
@@ -66,7 +66,7 @@ def test_stability_ends_where_theory_says(simulated, delay):
 
 
 def test_a_trace_holds_the_torques_that_act(simulated):
-    prompt, late = (simulated("robot=macro", *LINE, f"plant.command_delay={delay}") for delay in (0.0, 0.03))
+    prompt, late = (simulated("robot=macro", *LINE, f"plant.computation.delay={delay}") for delay in (0, 3))
     np.testing.assert_array_equal(late.tau[:4], np.tile(prompt.tau[0], (4, 1)))
     assert not np.array_equal(late.tau[5], late.tau[4])
 
@@ -74,7 +74,7 @@ def test_a_trace_holds_the_torques_that_act(simulated):
 @pytest.mark.parametrize("delay", [1, 3, 10])
 def test_joints_led_without_feedback_move_as_without_delay_but_later(simulated, delay):
     prompt = simulated(*FORWARD, *LINE)
-    late = simulated(*FORWARD, *LINE, f"plant.command_delay={delay * H}")
+    late = simulated(*FORWARD, *LINE, f"plant.computation.delay={delay}")
     np.testing.assert_array_equal(late.q[delay + 1 :], prompt.q[1:-delay])
     np.testing.assert_array_equal(late.q_command, prompt.q_command)
     assert np.abs(late.q - prompt.q).max() > 1e-3
@@ -84,14 +84,14 @@ def test_joints_led_without_feedback_move_as_without_delay_but_later(simulated, 
 def test_servos_move_evenly_from_one_late_command_to_the_next(simulated, ticks):
     """Ten servo periods to a command: a delay of any number of them only shifts the motion."""
     servo = (*FORWARD, "plant=rk4", *LINE)
-    prompt, late = simulated(*servo), simulated(*servo, f"plant.command_delay={ticks * 1e-3}")
+    prompt, late = simulated(*servo), simulated(*servo, f"plant.computation.delay={ticks}")
     np.testing.assert_allclose(late.q[ticks:], prompt.q[:-ticks], atol=2e-6)  # the very first command is a jump
     assert np.abs(late.q - prompt.q).max() > 1e-3
 
 
 def test_a_delay_counts_where_a_wall_is_judged(cli):
     assert cli("experiment=meca500/wall", "duration=0.01").code == 0
-    ending = cli("experiment=meca500/wall", "plant.command_delay=0.05")
+    ending = cli("experiment=meca500/wall", "plant.computation.delay=50")
     assert ending.code == 2
     assert "controller.period: at 0.001 s the admittance along x is unstable against a wall" in ending.err
 
@@ -100,14 +100,22 @@ def test_a_delay_counts_where_a_wall_is_judged(cli):
     ("overrides", "message"),
     [
         (
-            ("robot=macro", "plant.command_delay=0.013"),
-            "plant.command_delay: 0.013 s is no multiple of the fastest loop's period, 0.01 s; take 0.01 or 0.02",
+            ("robot=macro", "plant.command_delay=0.01"),
+            "plant.command_delay: unknown key (it is plant.computation.delay now, in ticks of the fastest loop)",
         ),
+        (("robot=macro", "plant.computation.delay=0.5"), "plant.computation.delay: must be a whole number; found 0.5"),
+        (("robot=xarm7", "plant.computation.delay=-1"), "plant.computation.delay: must be 0 or more; found -1"),
+        (("robot=combined", "plant.computation.delay={macro: 1}"), "plant.computation.delay.mini: missing"),
+        (("robot=combined", "plant.computation.delay={macro: 1, mimi: 2}"), "no such loop (did you mean mini?)"),
+        (("robot=macro", "plant.computation.miss=1.5"), "plant.computation.miss: must be 1 or less; found 1.5"),
+        (("robot=macro", "plant.computation.jitter=[0.5,0.4]"), "probabilities must add up to 1"),
+        (("robot=macro", "plant.computation.miss=[1,1]"), "a pattern needs a 0"),
+        (("robot=macro", "duration=0.02", "plant.computation.miss=[0,0,0,0,1]"), "a pattern of 5 ticks, and the loop"),
+        (("robot=xarm7", "plant.computation.miss=0.1"), "commands joint positions, which come all as late"),
         (
-            ("robot=macro", "plant.command_delay=0.004"),
-            "plant.command_delay: 0.004 s is no multiple of the fastest loop's period, 0.01 s; take 0 or 0.01",
+            ("robot=macro", "disturbance_observer=momentum", "plant.computation.miss=0.1"),
+            "it has to know which torque acts",
         ),
-        (("robot=xarm7", "plant.command_delay=-0.01"), "plant.command_delay: must be 0 or more; found -0.01"),
     ],
 )
 def test_delays_that_cannot_be(cli, overrides, message):

@@ -144,16 +144,19 @@ def test_the_motors_of_tomeis_law_bring_the_links_exactly_to_rest(simulated):
     by_motors = rest("controller=motor_pd", f"{KEY}.static_deflection=unknown")
     assert by_motors < 1e-8
     assert rest("controller=joint_pd") > 1e4 * by_motors  # off by the second order of 1/K
-    believed_stiffer = ("controller=motor_pd", f"{KEY}.static_deflection=unknown", "controller.stiffness=2000")
+    believed_stiffer = ("controller=motor_pd", f"{KEY}.static_deflection=unknown", "controller.joint_stiffness=2000")
     assert rest(*believed_stiffer) > 1e-3
 
 
 @pytest.mark.parametrize(
     ("overrides", "expected"),
     [
-        (("plant=rk4", "controller=motor_pd", "controller.stiffness=1000"), "motor_pd turns motors behind springs"),
+        (
+            ("plant=rk4", "controller=motor_pd", "controller.joint_stiffness=1000"),
+            "motor_pd turns motors behind springs",
+        ),
         (("plant=rk4_flexible", "controller=motor_pd"), "motor_pd reads theta as it is"),
-        (("plant=rk4_flexible", "controller=motor_pd", "controller.stiffness=[1,2]"), "2 values for 3 joints"),
+        (("plant=rk4_flexible", "controller=motor_pd", "controller.joint_stiffness=[1,2]"), "2 values for 3 joints"),
     ],
 )
 def test_motor_pd_wants_motors(overrides, expected):

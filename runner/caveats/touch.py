@@ -40,7 +40,7 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
         steps=timing.steps_per_tick,
         tick=timing.tick,
         ticks=round(law.period / timing.tick),
-        delay=timing.delay,
+        delay=timing.late[0],
         interpolate=plant.servo.interpolate,
         implicit=PLANTS.contacts_implicitly(plant.kind),
         law=law.law,
@@ -65,5 +65,5 @@ def force_contact(config: RunConfig, q_start: FloatArray) -> float | None:
         return None
     normal = np.array(wall.normal) / np.linalg.norm(wall.normal)
     mass = mass_along(tip_mobility(config.arm.model, q_start, loop.joints.start), normal)
-    late = math.ceil(timing.delay * timing.tick / loop.period - 1e-9)
+    late = math.ceil(timing.late[-1] * timing.tick / loop.period - 1e-9)
     return touch_radius(law, mass, wall.stiffness, wall.damping, law.wall_stiffness, loop.period, late)

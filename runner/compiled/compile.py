@@ -65,8 +65,8 @@ def compile_commands(commands: Commands | None) -> CompiledCommands | None:
 
 
 def compile_whole(commands: Commands | None, motion: Motion, timing: Timing) -> Whole | None:
-    """Return a closed loop compiled as a whole, with what moves; None where it cannot be."""
-    if commands is None:
+    """Return a closed loop compiled as a whole, with what moves; None where it cannot be, as with uneven commands."""
+    if commands is None or timing.delay is None:
         return None
     whole = describe_whole(commands, motion, timing)
     try:
@@ -78,7 +78,7 @@ def compile_whole(commands: Commands | None, motion: Motion, timing: Timing) -> 
 
 def describe_whole(commands: Commands, motion: Motion, timing: Timing) -> Whole:
     """Return a closed loop, of which code can be made as a whole."""
-    return Whole(commands, motion, timing.tick, timing.step, timing.steps_per_tick, timing.delay)
+    return Whole(commands, motion, timing.tick, timing.step, timing.steps_per_tick, timing.late[0])
 
 
 def compile_motion(model: RobotModel, step: float) -> CompiledStep | None:

@@ -48,12 +48,16 @@ def _parted(config: RunConfig) -> bool:
 
 def _late(config: RunConfig) -> str | None:
     timing = config.timing
-    for loop in config.loops:
+    if not timing.even:
+        return (
+            "it has to know which torque acts, and plant.computation has commands come unevenly; take jitter=null and "
+            "miss=null, or disturbance_observer.torque=measured"
+        )
+    for loop, late in zip(config.loops, timing.late, strict=True):
         every = round(loop.period / timing.tick)
-        if timing.delay % every:
-            late = timing.delay * timing.tick
+        if late % every:
             return (
-                f"it has to know which torque acts between two ticks of the loop {loop.name}, {loop.period:g} s apart, "
-                f"and plant.command_delay with {late:g} s is no multiple of that; take {every * timing.tick:g} s"
+                f"it has to know which torque acts between two ticks of the loop {loop.name}, {every} ticks of the "
+                f"fastest loop apart, and plant.computation.delay with {late} is no multiple of that; take {every}"
             )
     return None

@@ -31,6 +31,8 @@ _NUMBERS = {
 }
 _OF_NUMBERS = ("float_type", "int_type", "list_type", "value_error")
 
+_MOVED = {"command_delay": "it is plant.computation.delay now, in ticks of the fastest loop"}  # keys of before
+
 
 def describe(group: str, model: type[StrictModel], error: ValidationError) -> Iterator[str]:
     """Yield one message for each problem that pydantic found in a group.
@@ -59,7 +61,8 @@ def _explain(model: type[StrictModel], location: list[str], item: dict[str, Any]
         return explain_quantity(quantity, units.at([int(part) if part.isdecimal() else part for part in location]))
     if kind == "extra_forbidden":
         keys = [field.alias or name for name, field in _innermost(model, location).model_fields.items()]
-        return f"unknown key{nearest(location[-1], keys)}; keys: {', '.join(keys)}"
+        moved = f" ({_MOVED[location[-1]]})" if location[-1] in _MOVED else nearest(location[-1], keys)
+        return f"unknown key{moved}; keys: {', '.join(keys)}"
     if kind == "missing":
         return "missing"
     if kind == "literal_error":

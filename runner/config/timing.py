@@ -10,11 +10,10 @@ from runner.config.settings import RunSettings
 from runner.controllers import CONTROLLERS, ControllerConfig
 from runner.errors import ConfigError
 from runner.plants import PLANTS, PlantConfig
-from runner.plants.kinds import DelaysCommands, HasServo
+from runner.plants.kinds import HasServo
 from runner.robots.robot import Robot
 from runner.trajectories import Trajectory
 
-_MAX_TICKS = 10_000_000
 _MAX_STEPS = 100_000  # of the plant in a tick
 
 
@@ -40,15 +39,22 @@ class Timing:
         tick: Period of the fastest loop, in s: of the controller, or of the servo below it.
         step: Integration step of the plant, in s.
         steps_per_tick: Integration steps in one tick.
-        delay: Ticks from a command until it acts.
+        late: Ticks from a command until it acts, of each control loop, without jitter.
+        even: Whether every command acts, all of a loop as late.
         ticks: Number of ticks of the run.
     """
 
     tick: float
     step: float
     steps_per_tick: int
-    delay: int
+    late: tuple[int, ...]
+    even: bool
     ticks: int
+
+    @property
+    def delay(self) -> int | None:
+        """Ticks from any command until it acts; None where they differ."""
+        return self.late[0] if self.even and len(set(self.late)) == 1 else None
 
 
 def count_steps(arm: Robot, plant: PlantConfig, controller: ControllerConfig) -> Steps:
@@ -90,28 +96,6 @@ def count_steps(arm: Robot, plant: PlantConfig, controller: ControllerConfig) ->
     if problems:
         raise ConfigError(problems)
     return Steps(tick, step, steps)
-
-
-def count_delay(plant: PlantConfig, steps: Steps) -> int:
-    """Return the number of ticks from a command until it acts; a plant whose config has no such key has none.
-
-    Raises:
-        ConfigError: if the delay is no multiple of the tick, or longer than any run.
-    """
-    delay, tick = plant.command_delay if isinstance(plant, DelaysCommands) else 0.0, steps.tick
-    ticks = round(delay / tick)
-    if ticks > _MAX_TICKS:
-        raise ConfigError(
-            [f"plant.command_delay: {delay:g} s are {ticks:.3g} ticks of {tick:g} s; allowed: up to {_MAX_TICKS:g}"]
-        )
-    if delay and not _is_multiple(delay, tick):
-        raise ConfigError(
-            [
-                f"plant.command_delay: {delay:g} s is no multiple of the fastest loop's period, {tick:g} s; take "
-                f"{ticks * tick:g} or {(ticks + (1 if delay > ticks * tick else -1)) * tick:g}"
-            ]
-        )
-    return ticks
 
 
 def count_ticks(settings: RunSettings, steps: Steps, path: Trajectory) -> int:

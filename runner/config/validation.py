@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from runner.config.arms import build_loaded, build_robot
+from runner.config.computation import check_computation, computation_of, count_late
 from runner.config.disturbance_observer import check_observer
 from runner.config.endpoint_sensor import endpoint_ticks
 from runner.config.flexible_joints import check_flexible_joints
@@ -20,7 +21,7 @@ from runner.config.reach import check_path, check_points
 from runner.config.repeats import check_repeats
 from runner.config.robot import RobotConfig
 from runner.config.run import RunConfig
-from runner.config.timing import Timing, count_delay, count_steps, count_ticks
+from runner.config.timing import Timing, count_steps, count_ticks
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS, ControllerConfig
 from runner.errors import ConfigError
@@ -60,7 +61,6 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     problems.recall(check_points, arm, groups.trajectory)
     problems.recall(_check_commands, groups.plant, groups.controller)
     steps = problems.recall(count_steps, arm, groups.plant, groups.controller)
-    delay = problems.recall(count_delay, groups.plant, steps)
     problems.report()
     # What follows is made from parts that are sound, each for itself. Parts of the user's may remember other runs.
     build_loops = problems.recall if CONTROLLERS.is_ours(sure(groups.controller).kind) else problems.attempt
@@ -71,6 +71,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     loops = build_loops(CONTROLLERS.build_for, groups.controller, arm, isinstance(path, TipOfJoints))
     build_path(check_path, arm, path)
     ticks = problems.attempt(count_ticks, groups.settings, steps, path)
+    late = problems.recall(count_late, groups.plant, loops)
     problems.report()
     return _checked(RunConfig(
         settings=sure(groups.settings),
@@ -89,7 +90,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         joint_torques=sure(groups.joint_torque_sensor).by_joint(sure(arm)),
         mismatch=sure(groups.mismatch), endpoint_sensor=sure(groups.endpoint_sensor),
         disturbance_observer=sure(groups.disturbance_observer),
-        timing=Timing(*sure(steps), sure(delay), sure(ticks)),
+        timing=Timing(*sure(steps), sure(late), computation_of(sure(groups.plant)).is_even, sure(ticks)),
         parallel=sure(parallel),
         sweep=sure(groups.sweep),
         limits=sure(groups.limits),
@@ -112,6 +113,7 @@ def _check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
 def _checked(config: RunConfig) -> RunConfig:
     """Return a config after the checks of what only the whole of it tells."""
     _check_schedule(config)
+    check_computation(config)
     check_observer(config)
     check_flexible_joints(config)
     check_reading(config)

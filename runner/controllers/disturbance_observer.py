@@ -250,7 +250,7 @@ class Ticks(Protocol):
 
     Attributes:
         tick: Time between two ticks of the fastest loop, in s.
-        delay: Ticks from a command until it acts.
+        late: Such ticks from a command until it acts, of each loop.
     """
 
     @property
@@ -259,7 +259,7 @@ class Ticks(Protocol):
         ...
 
     @property
-    def delay(self) -> int:
+    def late(self) -> tuple[int, ...]:
         """See above."""
         ...
 
@@ -280,8 +280,8 @@ def observed(
     if bandwidths is None:
         return loops
     measures, carried = config.torque == "measured", []
-    for loop, bandwidth in zip(loops, bandwidths, strict=True):
-        late = 0 if measures else ticks.delay // round(loop.period / ticks.tick)
+    for loop, bandwidth, delay in zip(loops, bandwidths, ticks.late, strict=True):
+        late = 0 if measures else delay // round(loop.period / ticks.tick)
         observer = MomentumObserver(robot, loop.joints, bandwidth, loop.period, limits[loop.joints], late)
         carried.append(replace(loop, controller=observe(cast(Controller, loop.controller), observer, measures)))
     return tuple(carried)

@@ -22,11 +22,11 @@ class MotorPdConfig(JointLawConfig):
         kind: Its name in the registry.
         natural_frequency: omega_n of every joint that no other moves and no spring bends, and of the motion that leads
             the tip, in rad/s.
-        stiffness: K of the springs as it is believed, in N m/rad; one for all joints or a list with one for each.
+        joint_stiffness: K of the springs as it is believed, in N m/rad; one for all joints or a list with one for each.
     """
 
     kind: Literal["motor_pd"]
-    stiffness: PositivePerJoint
+    joint_stiffness: PositivePerJoint
 
 
 class MotorPdNumbers(NamedTuple):
@@ -69,7 +69,7 @@ class MotorPd(JointLaw[MotorPdNumbers]):
 
     def __init__(self, model: RobotModel, config: MotorPdConfig, rest: FloatArray, joints: bool = False) -> None:
         motion = JointMotion(model, config, rest, joints)
-        stiffness = expand("controller.stiffness", config.stiffness, model.joint_names)
+        stiffness = expand("controller.joint_stiffness", config.joint_stiffness, model.joint_names)
         numbers = MotorPdNumbers(
             motion=motion.numbers,
             k_p=config.natural_frequency**2,

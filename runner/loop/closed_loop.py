@@ -29,7 +29,7 @@ class ClosedLoop:
         interaction: What the tip feels of the world; None where there is nothing to feel.
         q_start: Joint positions at t = 0, shape (nq,), in rad; the robot starts at rest.
         parallel: Whether riding stages keep the orientation of home, as the plant has it.
-        delay: Ticks from a command until it acts.
+        delay: Ticks from a command until it acts; None where they differ, as the run's `Acting` tells.
         motor_side: What drives and encoders know of the motors of flexible joints; None where joints are rigid.
         believed: The robot as its controllers believe it to be.
         compiled: The closed loop as compiled code, or what its loops ask; None where neither is to be had.
@@ -46,7 +46,7 @@ class ClosedLoop:
     interaction: Interaction | None
     q_start: FloatArray
     parallel: bool
-    delay: int
+    delay: int | None
     believed: Robot
     motor_side: MotorSide | None = None
     compiled: Whole | CompiledCommands | None = None

@@ -21,16 +21,15 @@ class TorqueDrive:
 
     Args:
         plant: The plant.
-        delay: Ticks from a command until it acts; the first one acts from the start.
-        recorder: Holds the commands.
+        recorder: Holds the commands, and tells which act.
     """
 
-    def __init__(self, plant: Plant, delay: int, recorder: Recorder) -> None:
-        self._plant, self._delay, self._commands = plant, delay, recorder.commands
+    def __init__(self, plant: Plant, recorder: Recorder) -> None:
+        self._plant, self._acting, self._commands = plant, recorder.acting, recorder.commands
 
     def advance(self, k: int, load: FloatArray | None) -> None:
         """Move the plant; see Drive."""
-        acting = self._commands[max(k - self._delay, 0)]
+        acting = self._acting.at(self._commands, k)
         self._plant.advance(acting) if load is None else push(self._plant, acting, load)
 
 
@@ -39,24 +38,23 @@ class PositionDrive:
 
     Args:
         plant: The plant.
-        delay: Ticks from a command until it acts; the first one acts from the start.
-        recorder: Holds the commands, and takes the torques.
+        recorder: Holds the commands, tells which act, and takes the torques.
     """
 
-    def __init__(self, plant: PositionPlant, delay: int, recorder: Recorder) -> None:
-        self._plant, self._delay, self._commands = plant, delay, recorder.commands
+    def __init__(self, plant: PositionPlant, recorder: Recorder) -> None:
+        self._plant, self._acting, self._commands = plant, recorder.acting, recorder.commands
         self._torques = recorder.torques
 
     def advance(self, k: int, load: FloatArray | None) -> None:
         """Move the plant; see Drive."""
         if load is not None:
             self._plant.load[:] = load
-        self._plant.advance(self._commands[max(k - self._delay, 0)])
+        self._plant.advance(self._acting.at(self._commands, k))
         self._torques[k] = self._torques[k + 1] = self._plant.tau
 
 
 def make_drive(closed: ClosedLoop, recorder: Recorder) -> Drive:
     """Return what drives the plant of a closed loop, as its loops command it."""
     if closed.commands == "position":
-        return PositionDrive(cast(PositionPlant, closed.plant), closed.delay, recorder)
-    return TorqueDrive(closed.plant, closed.delay, recorder)
+        return PositionDrive(cast(PositionPlant, closed.plant), recorder)
+    return TorqueDrive(closed.plant, recorder)

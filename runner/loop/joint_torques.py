@@ -7,6 +7,7 @@ import numpy as np
 from runner.config.run import RunConfig
 from runner.controllers.kinds import ReadsJointTorques
 from runner.loop.closed_loop import ClosedLoop
+from runner.loop.recorder import Recorder
 from runner.plants.friction import friction_of
 from runner.sensing import JOINT_TORQUE_SENSORS, JointTorqueSensor, TorqueSensors
 from runner.trace import FloatArray
@@ -30,13 +31,13 @@ class JointTorques:
     Args:
         closed: The closed loop.
         sensor: The sensors, with a draw for each tick; None where there are none.
-        commands: What the loops asked for at each tick, shape (T, nq), in N m.
+        recorder: Holds what the loops asked for, and tells which of it acts.
     """
 
-    def __init__(self, closed: ClosedLoop, sensor: TorqueSensors | None, commands: FloatArray) -> None:
-        self._closed, self._sensor, self._commands = closed, sensor, commands
+    def __init__(self, closed: ClosedLoop, sensor: TorqueSensors | None, recorder: Recorder) -> None:
+        self._closed, self._sensor, self._recorder = closed, sensor, recorder
         self._readers = [
-            _Reader(loop.controller, closed.every(loop), np.zeros(commands.shape[1]))
+            _Reader(loop.controller, closed.every(loop), np.zeros(recorder.commands.shape[1]))
             for loop in closed.loops
             if sensor is not None and isinstance(loop.controller, ReadsJointTorques)
         ]
@@ -52,7 +53,7 @@ class JointTorques:
         """Keep what acted from tick k to the next one."""
         if not self._readers:
             return
-        acted = self._commands[max(k - self._closed.delay, 0)] - friction_of(self._closed.plant)
+        acted = self._recorder.acting.at(self._recorder.commands, k) - friction_of(self._closed.plant)
         for reader in self._readers:
             reader.sum, reader.count = reader.sum + acted, reader.count + 1
 

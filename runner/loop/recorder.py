@@ -5,6 +5,7 @@ import time
 import numpy as np
 
 from runner.errors import SimulationError
+from runner.loop.acting import Acting
 from runner.loop.closed_loop import ClosedLoop
 from runner.loop.contact import Contact
 from runner.loop.failures import find_divergence
@@ -20,6 +21,7 @@ class Recorder:
 
     Args:
         closed: The closed loop whose run is recorded.
+        acting: Which commands act in each tick.
 
     Attributes:
         times: Time of each row, shape (T,), in s.
@@ -28,6 +30,7 @@ class Recorder:
             the tip alone.
         command: What the loops ask for now, shape (nq,): torques in N m, or joint positions in rad.
         commands: What they asked for in each tick, shape (T, nq).
+        acting: As above.
         torques: Torques of a plant that follows positions, shape (T, nq), in N m.
         clock: When each tick began, shape (T,), in ns.
         now: Tells the time for it.
@@ -36,9 +39,9 @@ class Recorder:
         end_points: End point of each stage, shape (stages, T, 3), in m; None until they are worked out.
     """
 
-    def __init__(self, closed: ClosedLoop) -> None:
+    def __init__(self, closed: ClosedLoop, acting: Acting) -> None:
         rows, nq = closed.ticks + 1, closed.robot.model.nq
-        self._closed, self._plant, self.now = closed, closed.plant, time.perf_counter_ns
+        self._closed, self._plant, self.acting, self.now = closed, closed.plant, acting, time.perf_counter_ns
         self.times: FloatArray = np.arange(rows, dtype=np.float64) * closed.tick
         self.desired: FloatArray = np.zeros((rows, 3, 3))
         self.joints: FloatArray | None = None
@@ -101,7 +104,7 @@ class Recorder:
         """Return the record, with what the tip felt."""
         closed, kept = self._closed, self._kept
         positions = closed.commands == "position"
-        acted = self.commands[np.maximum(np.arange(len(self.times)) - closed.delay, 0)]
+        acted = self.acting.throughout(self.commands)
         home = end_points(closed.robot, closed.robot.home[None], closed.parallel)[:, 0]
         return Trace(
             t=self.times[kept],

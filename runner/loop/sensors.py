@@ -4,7 +4,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from runner.config.computation import computation_of
 from runner.config.run import RunConfig
+from runner.loop.acting import Acting
 from runner.loop.closed_loop import ClosedLoop
 from runner.loop.endpoint import MeasuredTip, make_measured_tips
 from runner.loop.joint_torques import make_joint_torque_sensor
@@ -20,11 +22,13 @@ from runner.sensing import (
     WristSensor,
 )
 
+_COMPUTATION = 2**32 - 4  # in the seeds; the loops' places count from 0, others are 2**32 - 3 to - 1
+
 
 def make_sensors(
     closed: ClosedLoop, config: RunConfig, repetition: int
-) -> tuple[Sequence[Encoders], WristSensor | None, TorqueSensors | None, Mapping[str, MeasuredTip]]:
-    """Make the joint measurement of each loop, and the sensors at wrist, joints and tip, where there are any.
+) -> tuple[Sequence[Encoders], WristSensor | None, TorqueSensors | None, Mapping[str, MeasuredTip], Acting | None]:
+    """Make what differs between repetitions: encoders, sensors at wrist, joints and tip, and which commands act.
 
     Those of plug-ins get random numbers from the same seeds as ours.
     """
@@ -47,7 +51,24 @@ def make_sensors(
         generator = np.random.default_rng([seed, repetition, len(closed.loops)])
         wrist = WRIST_SENSORS.build(plugged["wrist_sensor"], closed.ticks + 1, closed.tick, generator)
     torques, tips = make_joint_torque_sensor(closed, config, repetition), make_measured_tips(closed, config, repetition)
-    return encoders, wrist, torques, tips
+    return encoders, wrist, torques, tips, make_acting(closed, config, repetition)
+
+
+def make_acting(closed: ClosedLoop, config: RunConfig, repetition: int) -> Acting | None:
+    """Draw which commands act in each tick of one repetition; None where all act as late as the closed loop says.
+
+    The draws follow from (seed, repetition) and the loop's place alone, and change no other.
+    """
+    if closed.delay is not None:
+        return None
+    computation, seed = computation_of(config.plant), config.settings.seed
+    rows = [
+        computation.arrivals(
+            late, closed.every(loop), closed.ticks + 1, np.random.default_rng([seed, repetition, _COMPUTATION, place])
+        )
+        for place, (loop, late) in enumerate(zip(closed.loops, config.timing.late, strict=True))
+    ]
+    return Acting([loop.joints for loop in closed.loops], rows)
 
 
 def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition: int) -> list[JointEncoders]:

@@ -5,8 +5,9 @@ from contextlib import ExitStack
 from typing import Literal
 
 import numpy as np
-from pydantic import NonNegativeFloat, PositiveFloat
+from pydantic import PositiveFloat
 
+from runner.plants.computation import ComputationConfig
 from runner.plants.friction import FrictionConfig, friction_of, with_friction
 from runner.plants.motion import find_motion
 from runner.plants.plant import FloatArray, Plant
@@ -25,7 +26,7 @@ class TorquePlantConfig(StrictModel):
         dynamics: Whether stages that ride on each other act on each other; see assemble_plant.
         wrist_rotation: Whether the carrier turns the rider's base; see assemble_plant.
         friction: Friction in the joints.
-        command_delay: Time from a controller's command until it acts, in s.
+        computation: What a computer does to the controllers' torques: how late they act, and which are missed.
         servo: The joints' position servos, where the controller commands joint positions.
     """
 
@@ -34,7 +35,7 @@ class TorquePlantConfig(StrictModel):
     dynamics: Literal["coupled", "decoupled"]
     wrist_rotation: Literal["real", "parallel"]
     friction: FrictionConfig
-    command_delay: NonNegativeFloat
+    computation: ComputationConfig
     servo: ServoConfig
 
 

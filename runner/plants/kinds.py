@@ -7,6 +7,7 @@ from typing import Literal, Protocol, runtime_checkable
 from runner import engines
 from runner.errors import ConfigError
 from runner.guard import watch_plant
+from runner.plants.computation import ComputationConfig
 from runner.plants.motion import Motion
 from runner.plants.plant import Plant
 from runner.plants.servo import ServoConfig
@@ -31,10 +32,10 @@ class TurnsBases(Protocol):
 
 
 @runtime_checkable
-class DelaysCommands(Protocol):
-    """A config of plants with the time from a controller's command until it acts, in s; else there is none."""
+class ComputesLate(Protocol):
+    """A config of plants with what a computer does to a controller's commands; without, they act at once."""
 
-    command_delay: float
+    computation: ComputationConfig
 
 
 @runtime_checkable

@@ -4,8 +4,8 @@ from typing import Literal
 
 import numpy as np
 import pinocchio as pin
-from pydantic import NonNegativeFloat
 
+from runner.plants.computation import ComputationConfig
 from runner.plants.plant import FloatArray, Plant
 from runner.plants.set_points import SetPoints
 from runner.registry import StrictModel
@@ -22,13 +22,13 @@ class KinematicConfig(StrictModel):
         kind: Its name in the registry.
         step: None: nothing is integrated.
         wrist_rotation: Whether the carrier turns the rider's base, where arms ride on each other.
-        command_delay: Time from a controller's command until it acts, in s.
+        computation: How late commands act; all as late.
     """
 
     kind: Literal["kinematic"]
     step: None
     wrist_rotation: Literal["real"]
-    command_delay: NonNegativeFloat
+    computation: ComputationConfig
 
 
 class Kinematic:

@@ -61,6 +61,18 @@ def clock(run: Run) -> FloatArray:
     return np.asarray(run.trace["t"].to_numpy())
 
 
+def delay_of(run: Run) -> int:
+    """Return how late the commands of a run's last control loop act, without jitter, in ticks of the fastest loop.
+
+    Runs that were stored before `plant.computation` have `plant.command_delay`, in s.
+    """
+    plant, t = run.config["plant"], clock(run)
+    if "computation" not in plant:
+        return round(float(plant.get("command_delay", 0.0)) / float(t[1] - t[0]))
+    delay = plant["computation"]["delay"]
+    return int(list(delay.values())[-1] if isinstance(delay, Mapping) else delay)
+
+
 def apart(first: Run, second: Run, signal: str) -> FloatArray:
     """Return the distance between a tip signal of two runs at their common ticks, shape (T,), in m."""
     rows = min(len(first.trace), len(second.trace))

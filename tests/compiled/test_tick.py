@@ -27,7 +27,7 @@ RUNS = [
     ("robot=macro", "controller=operational_space", *NOISY, "noise.velocity=luenberger", "noise.resolution=1e-4"),
     ("robot=combined", "controller=macro_mini", "noise.velocity=luenberger", "noise.velocity_bandwidth=5000"),
     ("robot=macro", "controller=operational_space", *NOISY, "noise.resolution=1e-4", "noise.bias=1e-3"),
-    ("robot=macro", "controller=operational_space", *NOISY, "plant.command_delay=0.02"),
+    ("robot=macro", "controller=operational_space", *NOISY, "plant.computation.delay=2"),
     ("robot=macro", "controller=operational_space", *NOISY, "plant.step=0.0025"),
     ("robot=macro", "controller=operational_space", *NOISY, "plant.friction.viscous=[3,0,0.5]"),
     ("robot=macro", "controller=operational_space", *NOISY, "plant.friction.coulomb=[0,8,1]"),

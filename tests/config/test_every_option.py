@@ -24,6 +24,7 @@ NEEDS = {  # what an option does not run without
         "duration=0.05",
     ),
     "controller=macro_mini": ("robot=combined",),
+    "controller=motor_pd": ("robot=macro", "plant=rk4_flexible", "plant.flexible_joints.static_deflection=unknown"),
     "controller=three_joint": ("robot=xarm7",),
     "controller=xarm7_as_printed": ("robot=xarm7", "controller.inverse=right"),
     "environment=wall": ("robot=meca500",),

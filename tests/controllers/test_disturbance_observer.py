@@ -57,7 +57,7 @@ def test_a_step_of_torque_is_found_by_the_gain_of_each_tick(name):
 
 @pytest.mark.parametrize(("more", "limits", "late"), [
     (("torque_limits.max=[30,60,20]",), [30.0, 60.0, 20.0], 0),
-    (("plant.command_delay=0.003",), np.inf, 3),
+    (("plant.computation.delay=3",), np.inf, 3),
 ])  # fmt: skip
 def test_it_knows_the_torque_that_acts(more, limits, late):
     """Under an exact model nothing is found, while torques are at their limits, and where commands come late."""
@@ -162,7 +162,7 @@ REFUSED = {
     "robot=combined controller=macro_mini plant.dynamics=decoupled": "take plant.dynamics=coupled",
     "robot=combined controller=whole_body plant.dynamics=decoupled": "take plant.dynamics=coupled",
     "controller.period=0.002 plant.step=0.001 controller=macro_mini robot=combined "
-    "controller.period={macro: 0.01, mini: 0.001} plant.command_delay=0.003": "no multiple",
+    "controller.period={macro: 0.01, mini: 0.001} plant.computation.delay=3": "no multiple",
     "robot=macro disturbance_observer.bandwidth={mini: 3}": "one for each control loop (macro)",
     "robot=macro disturbance_observer.bandwidth=-1": "above 0",
 }

@@ -92,7 +92,7 @@ def test_the_stiffest_wall_is_that_of_the_sampled_map(push, checked_config, arm,
     mass = 1.0 / (NORMAL @ J @ np.linalg.solve(model.mass_matrix(q), J.T @ NORMAL))
     stiffest = mass * force_loop_limit(1.0, 1.0, delay) ** 2 / (2.0 * period**2)
     for share, stays in ((0.85, True), (1.15, False)):
-        trace, force = push(arm, share * stiffest, f"duration={200 * period}", f"plant.command_delay={delay * period}")
+        trace, force = push(arm, share * stiffest, f"duration={200 * period}", f"plant.computation.delay={delay}")
         ripple = np.ptp(force[-20:]) if trace.failure is None else np.inf
         assert (ripple < 0.05 * force.mean()) == stays
 

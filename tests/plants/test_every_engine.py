@@ -147,7 +147,7 @@ def test_torques_act_for_one_tick_are_only_read_and_the_state_is_renewed_in_plac
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_a_run_is_what_its_torques_do_late_and_limited(simulated, closed_loop, name):
-    case = (*LINE, *ENGINES[name].split(), "torque_limits.max=20", "plant.command_delay=0.03", "noise=thesis")
+    case = (*LINE, *ENGINES[name].split(), "torque_limits.max=20", "plant.computation.delay=3", "noise=thesis")
     trace = simulated(*case)
     prompt = simulated(*(part for part in case if "delay" not in part))
     assert np.abs(trace.tau).max() == 20.0

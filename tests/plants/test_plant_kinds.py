@@ -98,24 +98,25 @@ def test_a_delay_in_its_config_is_heeded(own_part, cli):
     module = """
         from typing import Literal
         from runner.plants.rk4 import Rk4
+        from runner.plants.computation import ComputationConfig
         from runner.registry import StrictModel
         class CONFIG(StrictModel):
             kind: Literal["late"]
             step: None
-            command_delay: float
+            computation: ComputationConfig
         def build(config, robot, step, steps_per_tick):
             return Rk4(robot.model, step, steps_per_tick)
         def default_step(tick, stages):
             return tick
     """
-    own = own_part("plant", "late", module, "step: null\ncommand_delay: 0.0\n")
+    own = own_part("plant", "late", module, "step: null\ncomputation: {delay: 0, jitter: null, miss: null}\n")
     given = ("--config-dir", own, "robot=macro", "trajectory=quintic", "duration=0.2", "plant=late")
     taus = {
-        delay: open_run(cli(*given, f"plant.command_delay={delay}").folder).trace["tau2"].to_numpy()
-        for delay in (0.0, 0.03)
+        delay: open_run(cli(*given, f"plant.computation.delay={delay}").folder).trace["tau2"].to_numpy()
+        for delay in (0, 3)
     }
-    assert len(np.unique(taus[0.0][:5])) == 5
-    assert len(np.unique(taus[0.03][:4])) == 1
+    assert len(np.unique(taus[0][:5])) == 5
+    assert len(np.unique(taus[3][:4])) == 1
 
 
 FOLLOWING = """

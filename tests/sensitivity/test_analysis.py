@@ -15,7 +15,7 @@ INTEGRAL = ("robot=macro", "controller=computed_torque", "controller.integral_ga
 # Clipped torques, friction that holds, commands that act late, velocities that are differences, and a payload.
 HARD = (
     "robot=macro", "plant=rk4", "trajectory=goal", "torque_limits=thesis", "duration=0.2", "noise=thesis",
-    "plant.friction.viscous=0.2", "plant.friction.coulomb=0.1", "plant.command_delay=0.01", "noise.bias=1e-4",
+    "plant.friction.viscous=0.2", "plant.friction.coulomb=0.1", "plant.computation.delay=1", "noise.bias=1e-4",
     "noise.velocity=finite_difference", "robot.payload.mass=0.5",
 )  # fmt: skip
 

@@ -9,7 +9,7 @@ from runner.controllers.force_stability import force_loop_limit
 from runner.reporting.document import FloatArray, Series
 from runner.reporting.figures import columns, joint_columns, model_of
 from runner.reporting.prose.patterns import found
-from runner.reporting.run_values import clock
+from runner.reporting.run_values import clock, delay_of
 from runner.robots.effective_mass import mass_along, tip_mobility
 from runner.store import Run
 
@@ -59,8 +59,7 @@ def stiffest_wall(run: Run) -> float:
     """Return the stiffness up to which the sampled law of a run is stable, in N/m."""
     law = run.config["controller"]
     period = _last(law["period"])
-    late = round(float(run.config["plant"]["command_delay"]) / period)
-    limit = force_loop_limit(float(law["force_gain"]), float(law["force_damping"]), late)
+    limit = force_loop_limit(float(law["force_gain"]), float(law["force_damping"]), delay_of(run))
     return mass_at_start(run) * (limit / period) ** 2 / (1.0 + float(law["force_gain"]))
 
 
