@@ -49,7 +49,7 @@ def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> sto
     first: Trace | None = None
     of_first: dict[str, float | None] = {}
     failure: tuple[int, Failure] | None = None
-    columns, ticks = Columns(config.settings.repetitions), []
+    columns, ticks, laws = Columns(config.settings.repetitions), [], []
     clocked = 0
     notices: list[str] = []
     told: list[str] = []
@@ -70,6 +70,7 @@ def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> sto
             columns.put(repetition, measured)
             if clocked < _CLOCKED_TICKS:
                 ticks.append(trace.tick_seconds)
+                laws += [] if trace.law_seconds is None else [trace.law_seconds]
                 clocked += len(trace.tick_seconds)
     finally:
         loop.close()
@@ -85,7 +86,7 @@ def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> sto
         caveats=watch.found(error, step),
         repetitions=config.settings.repetitions,
         failure=failure,
-        timing=timing(np.concatenate(ticks), *seconds),
+        timing=timing(np.concatenate(ticks), *seconds, np.concatenate(laws) if laws else None),
         provenance=job_provenance(config, composed, [*notices, *dict.fromkeys(told)]),
         plant_error=error,
     )

@@ -80,7 +80,8 @@ def _run(
     recorder: Recorder,
 ) -> None:
     """Run control loops that are asked one by one."""
-    drive, load, k = make_drive(closed, recorder), None, 0
+    drive, load, k, now = make_drive(closed, recorder), None, 0, recorder.now
+    recorder.asked = asked = np.zeros_like(recorder.clock)
     closed.plant.reset(closed.q_start, np.zeros_like(closed.q_start))
     try:
         for k in range(closed.ticks + 1):
@@ -89,9 +90,11 @@ def _run(
                 load = contact.update(k, recorder.times[k], q, dq)
             torques.tell(k)
             q, dq = (q, dq) if closed.motor_side is None else closed.motor_side.read()
+            begun = now()
             for command in commands:
                 if k % command.every == 0:
                     command.update(k, q, dq)
+            asked[k] = now() - begun
             recorder.keep_command(k)
             if k < closed.ticks:
                 drive.advance(k, load)

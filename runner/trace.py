@@ -64,6 +64,8 @@ class Trace:
         q_command: Joint positions commanded, held until the next row, shape (T, nq), in rad; None under torques.
         contact: What the tip felt, by what is meant; None where there was nothing to feel.
         failure: Why the run ended early, or None.
+        law_seconds: Wall-clock time that all control loops took in each tick, shape (T,), in s, encoders included; None
+            where plant and loops are one piece of code.
     """
 
     t: FloatArray
@@ -81,6 +83,7 @@ class Trace:
     q_command: FloatArray | None = None
     contact: ContactSignals | None = None
     failure: Failure | None = None
+    law_seconds: FloatArray | None = None
 
     @property
     def tip(self) -> FloatArray:

@@ -37,6 +37,7 @@ def run_commands(
     recorder.q, recorder.dq, recorder.commands, recorder.end_points = run.q, run.dq, run.torque, run.end_points
     drive, plant, tick, clock, now = make_drive(closed, recorder), closed.plant, run.tick, recorder.clock, recorder.now
     load, k = None, 0
+    recorder.asked = asked = np.zeros_like(clock)
     plant.reset(closed.q_start, np.zeros_like(closed.q_start))
     try:
         for k in range(closed.ticks + 1):
@@ -44,7 +45,9 @@ def run_commands(
             q, dq = plant.q, plant.dq
             if contact is not None:
                 load = contact.update(k, recorder.times[k], q, dq)
+            begun = now()
             tick(k, q, dq)
+            asked[k] = now() - begun
             if k % CHECK_EVERY == 0:
                 recorder.check_divergence(k)
             if k < closed.ticks:

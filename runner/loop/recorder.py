@@ -3,6 +3,7 @@
 import time
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runner.errors import SimulationError
 from runner.loop.acting import Acting
@@ -33,6 +34,7 @@ class Recorder:
         acting: As above.
         torques: Torques of a plant that follows positions, shape (T, nq), in N m.
         clock: When each tick began, shape (T,), in ns.
+        asked: How long the control loops took in each tick, likewise; None where nobody tells.
         now: Tells the time for it.
         q: True joint positions in each tick, shape (T, nq), in rad.
         dq: True joint velocities, likewise, in rad/s.
@@ -51,6 +53,7 @@ class Recorder:
         self.end_points: FloatArray | None = None
         self._checked = 0
         self.clock = np.zeros(rows, dtype=np.int64)
+        self.asked: NDArray[np.int64] | None = None
         self._kept = slice(0, rows)
         self._failure: Failure | None = None
 
@@ -122,6 +125,7 @@ class Recorder:
             joint_units=closed.robot.model.joint_units,
             tick_seconds=np.diff(self.clock[kept]) * 1e-9,
             failure=self._failure,
+            law_seconds=None if self.asked is None else np.asarray(self.asked[kept] * 1e-9),
         )
 
     def _end_points(self, kept: slice) -> FloatArray:

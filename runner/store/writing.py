@@ -1,6 +1,7 @@
 """Writing a run: its config, its first trace, and last of all the metrics, whose presence means done."""
 
 import io
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -232,7 +233,21 @@ def _parquet(trace: Trace) -> bytes:
     return buffer.getvalue()
 
 
-def timing(tick_seconds: np.ndarray, wall_s: float, cpu_s: float) -> dict[str, float | None]:
-    """Return the timing record from the seconds of every tick, shape (N,); a run that failed at once has no tick."""
+def timing(
+    tick_seconds: np.ndarray, wall_s: float, cpu_s: float, law_seconds: np.ndarray | None = None
+) -> dict[str, float | None]:
+    """Return the timing record.
+
+    Args:
+        tick_seconds: Time of every tick, shape (N,), in s; a run that failed at once has no tick.
+        wall_s: Wall-clock time of the whole, in s.
+        cpu_s: CPU time of it, in s.
+        law_seconds: What the control loops took in each tick, shape (N,), in s; None where nobody can tell.
+    """
     median, p99 = np.percentile(tick_seconds, [50, 99]).tolist() if len(tick_seconds) else (None, None)
-    return {"tick_time_median": median, "tick_time_p99": p99, "wall_s": wall_s, "cpu_s": cpu_s}
+    record = {"tick_time_median": median, "tick_time_p99": p99, "wall_s": wall_s, "cpu_s": cpu_s}
+    if law_seconds is not None and len(law_seconds):
+        names = ("law_time_median", "law_time_p99", "law_time_p999", "law_time_max")
+        record |= dict(zip(names, np.percentile(law_seconds, [50, 99, 99.9, 100]).tolist(), strict=True))
+        record["load_average"] = os.getloadavg()[0]
+    return record

@@ -40,7 +40,7 @@ def test_the_record_follows_its_schema(run):
     for metric in record["metrics"].values():
         assert set(metric) == {"unit", "values", "median", "min", "max"}
         assert len(metric["values"]) == 2
-    assert set(record["timing"]) == {"tick_time_median", "tick_time_p99", "wall_s", "cpu_s"}
+    assert {"tick_time_median", "tick_time_p99", "wall_s", "cpu_s"} <= set(record["timing"])
     assert {"commit", "versions", "machine", "seed", "command", "plant_step", "choices"} <= set(record["provenance"])
 
 
