@@ -107,6 +107,36 @@ def friction_while_sliding(run: Run) -> float | None:
     return float(np.mean(beside[slides] / force[slides])) if slides.any() else None
 
 
+def along_the_push(run: Run) -> FloatArray:
+    """Return how far the tip has gone along a push at each row, in m."""
+    tip, way = columns(run.trace, "tip"), _way(run)
+    return np.asarray((tip - tip[0]) @ way)
+
+
+def given_way(run: Run) -> float:
+    """Return how far a push has moved the tip in the end, in m."""
+    return float(along_the_push(run)[-1])
+
+
+def beside_the_push(run: Run) -> float:
+    """Return how far the tip is beside the line of a push in the end, in m."""
+    tip, way = columns(run.trace, "tip"), _way(run)
+    moved = tip[-1] - tip[0]
+    return float(np.linalg.norm(moved - way * (moved @ way)))
+
+
+def push_over_stiffness(run: Run) -> float:
+    """Return a push over the stiffness that the tip is to have, in m."""
+    return float(np.linalg.norm(run.config["environment"]["force"])) / float(
+        run.config["controller"]["tip_stiffness"][0]
+    )
+
+
+def _way(run: Run) -> FloatArray:
+    force = np.array(run.config["environment"]["force"])
+    return np.asarray(force / np.linalg.norm(force))
+
+
 def _slides(run: Run) -> NDArray[np.bool_]:
     """Return which rows are in the middle of the motion along a wall."""
     t = clock(run)
