@@ -21,6 +21,7 @@ from runner.calibration.procedures import CALIBRATIONS
 from runner.cli import COMMANDS
 from runner.config.calibration import CalibrationSettings
 from runner.config.caveats import CaveatsConfig
+from runner.config.input_shaper import InputShaperConfig
 from runner.config.meanings import meanings, nested_model
 from runner.config.noise import NoiseConfig
 from runner.config.options import group_options
@@ -82,6 +83,7 @@ _PLAIN: Mapping[str, tuple[type[StrictModel], str]] = {
     "mismatch": (MismatchConfig, "none"),
     "joint_torque_sensor": (JointTorqueConfig, "none"),
     "disturbance_observer": (DisturbanceObserverConfig, "none"),
+    "input_shaper": (InputShaperConfig, "zv"),
     "preset": (PresetConfig, "sound"),
 }
 

@@ -9,12 +9,12 @@ from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.compiled.compile import compile_commands, compile_whole, describe_whole, find_commands
 from runner.config.flexible_joints import believe_motors, find_flexibility, find_motor_side
 from runner.config.run import RunConfig
+from runner.config.start import start_posture
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.controllers.disturbance_observer import observed
 from runner.controllers.kinds import FollowsWithinReach
 from runner.environments import ENVIRONMENTS
 from runner.environments.wall import Wall
-from runner.errors import ConfigError
 from runner.feasibility import check_path
 from runner.interaction import Interaction
 from runner.loop.closed_loop import ClosedLoop
@@ -24,9 +24,8 @@ from runner.plants.kinds import HasServo
 from runner.plants.payload_changes import PayloadChanges
 from runner.plants.servo import JointServo
 from runner.plants.touched import Touched
-from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.mismatch import believe
-from runner.robots.robot import Robot, end_points
+from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise, ForceTorqueConfig, ForceTorqueSensor, JointEncoders
 from runner.trace import FloatArray
 from runner.trajectories.joint_motion import TipOfJoints
@@ -119,7 +118,7 @@ def _find_start(config: RunConfig) -> FloatArray:
     if isinstance(path, TipOfJoints):
         q_start = path.q_start
     else:
-        q_start = _start_posture(config.controller, arm, path.start, config.parallel)
+        q_start = start_posture(config.controller, arm, path.start, config.parallel)
     if CONTROLLERS.follows_paths(config.controller.kind):
         check_path(config.controller, arm, path, q_start, config.robot.settling_band)
     return q_start
@@ -146,28 +145,6 @@ def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledComm
     motion = None if config.feels or config.loaded else PLANTS.motion(config.plant, config.arm)
     whole = None if motion is None else compile_whole(commands, motion, config.timing)
     return compile_commands(commands) if whole is None else whole
-
-
-def _start_posture(controller: ControllerConfig, arm: Robot, start: FloatArray, parallel: bool) -> FloatArray:
-    """Return joint positions that bring the tip to a start, as the controller wants it.
-
-    Where it has no wish, the first stage moves and riding ones stay at home.
-    """
-    try:
-        wanted = CONTROLLERS.start_posture(controller, arm, start)
-    except np.linalg.LinAlgError as error:
-        raise ConfigError([f"trajectory.start: {error}"]) from error
-    if wanted is not None:
-        return np.array(wanted, dtype=np.float64)
-    home = end_points(arm, arm.home[None], parallel)[:, 0]
-    if np.array_equal(start, home[-1]):
-        return arm.home
-    if len(arm.stages) == 1 or not parallel:
-        return solve_tip_position(arm.model, start, arm.home)
-    first = arm.stages[0]
-    return np.concatenate(
-        [solve_tip_position(first.model, start - (home[-1] - home[0]), first.home), arm.home[first.joints.stop :]]
-    )
 
 
 def _make_plant(

@@ -24,6 +24,7 @@ _GROUPS = {
     "wrist_sensors": "wrist_sensor",
     "mismatch": "mismatch",
     "disturbance_observers": "disturbance_observer",
+    "input_shapers": "input_shaper",
     "joint_torque_sensors": "joint_torque_sensor",
     "noise": "noise",
     "presets": "preset",

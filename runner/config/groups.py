@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import cast
 
 from runner.config.caveats import CaveatsConfig
+from runner.config.input_shaper import InputShaperConfig
 from runner.config.limits import LimitsConfig
 from runner.config.noise import NoiseConfig
 from runner.config.parsing import group_of, parse, parse_kind, parse_robot
@@ -34,6 +35,7 @@ GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
     "joint_torque_sensor": JointTorqueConfig,
     "mismatch": MismatchConfig,
     "disturbance_observer": DisturbanceObserverConfig,
+    "input_shaper": InputShaperConfig,
     "robot": OneArmConfig,
     "preset": PresetConfig,
     "sweep": SweepConfig,
@@ -60,6 +62,7 @@ class Groups:
         joint_torque_sensor: Config of the torque sensors in the joints.
         mismatch: How what the controllers believe of the robot differs from it.
         disturbance_observer: Config of the observer that control laws carry.
+        input_shaper: Config of what shapes the desired motion; None where nothing does.
         robot: Config of the robot.
         sweep: How a sweep that the run is part of is run.
         limits: What a command may cost.
@@ -79,6 +82,7 @@ class Groups:
     joint_torque_sensor: JointTorqueConfig | None
     mismatch: MismatchConfig | None
     disturbance_observer: DisturbanceObserverConfig | None
+    input_shaper: InputShaperConfig | None
     robot: RobotConfig | None
     sweep: SweepConfig | None
     limits: LimitsConfig | None
@@ -114,6 +118,7 @@ def read_groups(resolved: Mapping[str, object], problems: Problems) -> Groups:
         joint_torque_sensor=reader.read(JointTorqueConfig, "joint_torque_sensor"),
         mismatch=reader.read(MismatchConfig, "mismatch"),
         disturbance_observer=reader.read(DisturbanceObserverConfig, "disturbance_observer"),
+        input_shaper=reader.read(InputShaperConfig, "input_shaper") if "input_shaper" in resolved else None,
         robot=problems.recall(parse_robot, problems.attempt(group_of, "robot", resolved)),
         sweep=reader.read(SweepConfig, "sweep"),
         limits=reader.read(LimitsConfig, "limits"),

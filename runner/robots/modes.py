@@ -1,0 +1,39 @@
+"""Natural vibrations of an arm about a posture."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from runner.robots.model import FloatArray
+
+
+class Mode(NamedTuple):
+    """A natural vibration.
+
+    Attributes:
+        frequency: Undamped, in Hz.
+        damping_ratio: From 0 to below 1.
+    """
+
+    frequency: float
+    damping_ratio: float
+
+
+def find_modes(M: FloatArray, D: FloatArray, K: FloatArray) -> list[Mode]:
+    r"""Return the vibrations of a system by frequency; what creeps back without ringing is none.
+
+    .. math:: M \ddot x + D \dot x + K x = 0, \qquad s = -\zeta \omega \pm j \omega \sqrt{1 - \zeta^2}
+
+    Args:
+        M: Inertia, shape (n, n), positive definite.
+        D: Damping, likewise.
+        K: Stiffness, likewise.
+    """
+    n = len(M)
+    slopes = np.linalg.solve(M, np.hstack([-K, -D]))
+    roots = np.linalg.eigvals(np.vstack([np.eye(n, 2 * n, n), slopes]))
+    rates = np.abs(roots)
+    ringing = roots.imag > 1e-9 * rates.max()
+    return sorted(
+        Mode(rate / (2.0 * np.pi), -root.real / rate) for rate, root in zip(rates[ringing], roots[ringing], strict=True)
+    )
