@@ -34,6 +34,7 @@ from runner.config.torque_limits import TorqueLimitsConfig
 from runner.config.units import WRITTEN
 from runner.controllers import CONTROLLERS
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
+from runner.controllers.notch_config import NotchConfig
 from runner.environments import ENVIRONMENTS
 from runner.metrics.summary import families
 from runner.paths import conf_dir
@@ -84,6 +85,7 @@ _PLAIN: Mapping[str, tuple[type[StrictModel], str]] = {
     "joint_torque_sensor": (JointTorqueConfig, "none"),
     "disturbance_observer": (DisturbanceObserverConfig, "none"),
     "input_shaper": (InputShaperConfig, "zv"),
+    "notch": (NotchConfig, "torques"),
     "preset": (PresetConfig, "sound"),
 }
 

@@ -13,6 +13,7 @@ from runner.config.start import start_posture
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.controllers.disturbance_observer import observed
 from runner.controllers.kinds import FollowsWithinReach
+from runner.controllers.notch import notched
 from runner.environments import ENVIRONMENTS
 from runner.environments.wall import Wall
 from runner.feasibility import check_path
@@ -134,6 +135,8 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
     if believed is not config.arm:
         loops = CONTROLLERS.build_for(config.controller, believed, isinstance(config.path, TipOfJoints))
     loops = CONTROLLERS.tell_limits(config.controller, loops, config.torque_limits)
+    if config.notch is not None:
+        loops = notched(loops, config.notch.by_joint(config.arm), config.notch.width)
     return believed, observed(config.disturbance_observer, believed, loops, config.torque_limits, config.timing)
 
 

@@ -25,6 +25,7 @@ _GROUPS = {
     "mismatch": "mismatch",
     "disturbance_observers": "disturbance_observer",
     "input_shapers": "input_shaper",
+    "notches": "notch",
     "joint_torque_sensors": "joint_torque_sensor",
     "noise": "noise",
     "presets": "preset",

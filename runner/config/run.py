@@ -12,6 +12,7 @@ from runner.config.sweep import SweepConfig
 from runner.config.timing import Timing
 from runner.controllers import ControllerConfig, Loop
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
+from runner.controllers.notch_config import NotchConfig
 from runner.plants import PLANTS, PlantConfig
 from runner.registry import Commands, KindConfig
 from runner.robots.mismatch import MismatchConfig
@@ -42,6 +43,7 @@ class RunConfig:
         joint_torques: Noise and bias of each joint's torque sensor, shapes (nq,), in N m; None where there are none.
         mismatch: How what the controllers believe of the robot differs from it.
         disturbance_observer: Config of the observer that control laws carry.
+        notch: Config of the notch in the torques; None where there is none.
         timing: The times of a run.
         parallel: Whether riding stages keep the orientation of home, in the plant's truth.
         sweep: How a sweep that the run is part of is run.
@@ -68,6 +70,7 @@ class RunConfig:
     joint_torques: tuple[FloatArray, FloatArray] | None
     mismatch: MismatchConfig
     disturbance_observer: DisturbanceObserverConfig
+    notch: NotchConfig | None
     timing: Timing
     parallel: bool
     sweep: SweepConfig

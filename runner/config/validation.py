@@ -14,6 +14,7 @@ from runner.config.input_shaper import shape
 from runner.config.limits import check_memory
 from runner.config.memory import Memory
 from runner.config.noise import NoiseConfig
+from runner.config.notch import check_notch
 from runner.config.plugged import exact_encoders
 from runner.config.problems import Problems, sure
 from runner.config.reach import check_path, check_points
@@ -90,7 +91,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         wrist_sensor=sure(groups.wrist_sensor),
         joint_torques=sure(groups.joint_torque_sensor).by_joint(sure(arm)),
         mismatch=sure(groups.mismatch),
-        disturbance_observer=sure(groups.disturbance_observer),
+        disturbance_observer=sure(groups.disturbance_observer), notch=groups.notch,
         timing=Timing(*sure(steps), sure(delay), sure(ticks)),
         parallel=sure(parallel),
         sweep=sure(groups.sweep),
@@ -127,6 +128,7 @@ def _checked(config: RunConfig) -> RunConfig:
     """Return a config after the checks of what only the whole of it tells."""
     _check_schedule(config)
     check_observer(config)
+    check_notch(config)
     check_flexible_joints(config)
     check_reading(config)
     check_repeats(config)
