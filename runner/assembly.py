@@ -7,7 +7,8 @@ import numpy as np
 
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.compiled.compile import compile_commands, compile_whole, describe_whole, find_commands
-from runner.config.flexible_joints import believe_motors, find_flexibility, find_motor_side
+from runner.config.flexible_joints import believe_motors, find_motor_side
+from runner.config.flexible_links import believe_links, is_flexible
 from runner.config.run import RunConfig
 from runner.config.start import start_posture
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
@@ -105,7 +106,7 @@ def describe_loop(config: RunConfig, repetition: int = 0) -> Whole | None:
         config: The checked config.
         repetition: Number of the repetition, of which the beliefs follow.
     """
-    if config.commands != "torque" or config.feels or config.plugged or find_flexibility(config) is not None:
+    if config.commands != "torque" or config.feels or config.plugged or is_flexible(config):
         return None
     loops = _believe(config, repetition)[1]
     commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
@@ -130,7 +131,7 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
     generator = np.random.default_rng([config.settings.seed, repetition, _BELIEFS])
     payload = np.array(config.robot.payload.position)
     believed = believe(config.arm, config.mismatch, payload, generator, config.plugged.get("mismatch"))
-    believed = believe_motors(config, believed)
+    believed = believe_links(config, believe_motors(config, believed))
     loops = config.loops
     if believed is not config.arm:
         loops = CONTROLLERS.build_for(config.controller, believed, isinstance(config.path, TipOfJoints))
@@ -142,7 +143,7 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
 
 def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledCommands | None:
     """Return the closed loop as compiled code, or what its loops ask; None where neither can be had."""
-    if config.commands != "torque" or config.plugged or find_flexibility(config) is not None:
+    if config.commands != "torque" or config.plugged or is_flexible(config):
         return None
     commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
     motion = None if config.feels or config.loaded else PLANTS.motion(config.plant, config.arm)

@@ -70,9 +70,10 @@ FinitePerStage = Annotated[float | dict[str, float], _per_stage(_finite)]
 PositivePerStage = Annotated[float | dict[str, float], _per_stage(lambda value: _number(value, zero_allowed=False))]
 NonNegativePerStage = Annotated[float | dict[str, float], _per_stage(lambda value: _number(value, zero_allowed=True))]
 TorquePerStage = Annotated[float | list[float] | dict[str, float | list[float]], _per_stage(_torque)]
-_OptionalPerStage = float | list[float | None] | dict[str, float | list[float | None] | None] | None
-SpringPerStage = Annotated[_OptionalPerStage, _optional("rigid joints")]
-NotchPerStage = Annotated[_OptionalPerStage, _optional("joints without a notch")]
+OptionalPerStage = float | list[float | None] | dict[str, float | list[float | None] | None] | None
+SpringPerStage = Annotated[OptionalPerStage, _optional("rigid joints")]
+MotorPerStage = Annotated[OptionalPerStage, _optional("a joint whose motor has none")]
+NotchPerStage = Annotated[OptionalPerStage, _optional("joints without a notch")]
 
 
 def by_stage(key: str, value: T | Mapping[str, T], stages: Sequence[str]) -> list[T]:

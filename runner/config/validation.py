@@ -8,6 +8,7 @@ import numpy as np
 from runner.config.arms import build_loaded, build_robot
 from runner.config.disturbance_observer import check_observer
 from runner.config.flexible_joints import check_flexible_joints
+from runner.config.flexible_links import check_flexible_links
 from runner.config.force_reading import check_reading
 from runner.config.groups import Groups, read_groups
 from runner.config.input_shaper import shape
@@ -130,6 +131,7 @@ def _checked(config: RunConfig) -> RunConfig:
     check_observer(config)
     check_notch(config)
     check_flexible_joints(config)
+    check_flexible_links(config)
     check_reading(config)
     check_repeats(config)
     check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.feels)

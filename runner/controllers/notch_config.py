@@ -3,8 +3,8 @@
 import numpy as np
 from pydantic import PositiveFloat
 
-from runner.config.per_joint import expand
-from runner.config.per_stage import NotchPerStage, by_stage
+from runner.config.by_joint import by_joint
+from runner.config.per_stage import NotchPerStage
 from runner.controllers.controller import FloatArray
 from runner.errors import ConfigError
 from runner.registry import StrictModel
@@ -29,11 +29,9 @@ class NotchConfig(StrictModel):
         Raises:
             ConfigError: for values that do not fit the robot's stages and joints, or no notch at all.
         """
-        key, several = "notch.frequency", len(arm.stages) > 1
-        values: list[float | None] = []
-        for stage, given in zip(arm.stages, by_stage(key, self.frequency, arm.stage_names), strict=True):
-            at = f"{key}.{stage.name}" if several else key
-            values += expand(at, given, stage.model.joint_names)  # type: ignore[arg-type]
-        if all(each is None for each in values):
-            raise ConfigError([f"{key}: null for every joint; take notch=none for torques as the laws ask for them"])
-        return np.array([np.inf if each is None else each for each in values])
+        frequency = by_joint("notch.frequency", self.frequency, arm)
+        if not np.isfinite(frequency).any():
+            raise ConfigError(
+                ["notch.frequency: null for every joint; take notch=none for torques as the laws ask for them"]
+            )
+        return frequency

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runner.robots.model import FloatArray
 
@@ -29,11 +30,20 @@ def find_modes(M: FloatArray, D: FloatArray, K: FloatArray) -> list[Mode]:
         D: Damping, likewise.
         K: Stiffness, likewise.
     """
-    n = len(M)
-    slopes = np.linalg.solve(M, np.hstack([-K, -D]))
-    roots = np.linalg.eigvals(np.vstack([np.eye(n, 2 * n, n), slopes]))
+    roots = _roots(M, D, K)
     rates = np.abs(roots)
     ringing = roots.imag > 1e-9 * rates.max()
     return sorted(
         Mode(rate / (2.0 * np.pi), -root.real / rate) for rate, root in zip(rates[ringing], roots[ringing], strict=True)
     )
+
+
+def largest_rate(M: FloatArray, D: FloatArray, K: FloatArray) -> float:
+    """Return the largest magnitude of s of such a system, in 1/s; K and D may be singular."""
+    return float(np.abs(_roots(M, D, K)).max())
+
+
+def _roots(M: FloatArray, D: FloatArray, K: FloatArray) -> NDArray[np.complex128]:
+    n = len(M)
+    slopes = np.linalg.solve(M, np.hstack([-K, -D]))
+    return np.asarray(np.linalg.eigvals(np.vstack([np.eye(n, 2 * n, n), slopes])), dtype=np.complex128)
