@@ -10,6 +10,7 @@ from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.robots.beams import stiffened
+from runner.robots.modes import Mode
 from runner.robots.motors import with_motors
 from runner.store import simulated_part
 from runner.trajectories.impulses import zero_vibration
@@ -87,12 +88,7 @@ def test_a_mode_of_the_links_rests_by_its_name(simulated):
 
 def ringing(trace, end):
     """Return the amplitude at an end of the tip's vibration along x after it, in m."""
-    omega, on = 2.0 * np.pi * F0, trace.t >= end - 1e-9
-    after = trace.t[on] - end
-    phase = omega * np.sqrt(1.0 - 0.02**2) * after
-    waves = np.exp(-0.02 * omega * after)[:, None] * np.stack([np.cos(phase), np.sin(phase)], axis=1)
-    found = np.linalg.lstsq(np.column_stack([waves, np.ones(len(after))]), trace.tip[on, 0], rcond=None)[0]
-    return float(np.hypot(*found[:2]))
+    return Mode(F0, 0.02).amplitude(trace.t, trace.tip[:, 0], end)
 
 
 def test_a_mini_rides_on_links_that_bend(simulated):

@@ -6,6 +6,7 @@ import pytest
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.errors import ConfigError
+from runner.robots.modes import Mode
 from runner.store import simulated_part
 from runner.trajectories.impulses import zero_vibration
 
@@ -21,12 +22,7 @@ F0 = np.sqrt(1000.0 / 2.0) / (2.0 * np.pi)  # Hz, K 1000 N m/rad on 2 kg m^2
 
 def ringing(trace, end, zeta):
     """Return the amplitude at an end of joint 1's vibration after it, in rad."""
-    omega, on = 2.0 * np.pi * F0, trace.t >= end - 1e-9
-    after = trace.t[on] - end
-    phase = omega * np.sqrt(1.0 - zeta**2) * after
-    waves = np.exp(-zeta * omega * after)[:, None] * np.stack([np.cos(phase), np.sin(phase)], axis=1)
-    found = np.linalg.lstsq(np.column_stack([waves, np.ones(len(after))]), trace.q[on, 0], rcond=None)[0]
-    return float(np.hypot(*found[:2]))
+    return Mode(F0, zeta).amplitude(trace.t, trace.q[:, 0], end)
 
 
 @pytest.mark.parametrize("zeta", [0.0, 0.05])

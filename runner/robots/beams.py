@@ -1,11 +1,10 @@
-"""Links that bend: cut into rigid parts with springs between them, and what Euler and Bernoulli say of a whole one."""
+"""Links that bend, and the rigid parts into which they are cut."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
-from scipy.optimize import brentq
 
 from runner.robots.model import FloatArray, RobotModel
 from runner.robots.robot import Robot
@@ -91,24 +90,3 @@ def stiffened(robot: Robot, beams: Mapping[str, Beam]) -> Robot:
 
     stages = tuple(replace(stage, model=loaded(stage.model, stage.joints.start)) for stage in robot.stages)
     return replace(robot, model=stages[0].model if len(stages) == 1 else loaded(robot.model, 0), stages=stages)
-
-
-def cantilever_roots(tip_ratio: float) -> Iterator[float]:
-    r"""Yield b of the modes of a clamped beam with a mass at its tip, by frequency (Euler and Bernoulli).
-
-    .. math:: 1 + \cos b \cosh b + b r (\cos b \sinh b - \sin b \cosh b) = 0, \qquad
-        \omega = b^2 \sqrt{\frac{EI}{m L^3}}
-
-    Args:
-        tip_ratio: r, mass at the tip over m, the mass of the beam.
-    """
-
-    def equation(b: float) -> float:  # over cosh b, which grows without end
-        fall = 1.0 / np.cosh(b)
-        return float(fall + np.cos(b) + b * tip_ratio * (np.cos(b) * np.tanh(b) - np.sin(b)))
-
-    step, b = 0.05, 0.05
-    while True:
-        if equation(b) * equation(b + step) < 0.0:
-            yield float(brentq(equation, b, b + step, xtol=1e-14))
-        b += step

@@ -19,6 +19,23 @@ class Mode(NamedTuple):
     frequency: float
     damping_ratio: float
 
+    def amplitude(self, times: FloatArray, signal: FloatArray, after: float) -> float:
+        """Return how much of this vibration is in a signal, at a time from which on the mode rings freely.
+
+        It is fitted from there to the signal's end, with a constant beside it.
+
+        Args:
+            times: Ascending, shape (T,), in s.
+            signal: Shape (T,).
+            after: That time, in s.
+        """
+        on, omega = times >= after - 1e-9, 2.0 * np.pi * self.frequency
+        since = times[on] - after
+        phase = omega * np.sqrt(1.0 - self.damping_ratio**2) * since
+        fall = np.exp(-self.damping_ratio * omega * since)
+        waves = np.stack([fall * np.cos(phase), fall * np.sin(phase), np.ones_like(since)], axis=1)
+        return float(np.hypot(*np.linalg.lstsq(waves, signal[on], rcond=None)[0][:2]))
+
 
 def find_modes(M: FloatArray, D: FloatArray, K: FloatArray) -> list[Mode]:
     r"""Return the vibrations of a system by frequency; what creeps back without ringing is none.

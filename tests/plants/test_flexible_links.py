@@ -1,8 +1,9 @@
 """Arms whose links bend, as plants: energy, modes, rest, and the rigid limit."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from one_beam import LENGTH, one_beam
 
 from runner.config.compose import compose
 from runner.config.validation import validate
@@ -12,14 +13,17 @@ from runner.plants.flexible_links import FlexibleLinks
 from runner.plants.rk4 import Rk4
 from runner.plants.rk4_flexible_links import BeamConfig, Rk4FlexibleLinksConfig
 from runner.robots.beams import Beam, stiffened
+from runner.robots.cantilever import clamped_arm
 from runner.robots.chain import cut
 
+LENGTH = 1.5  # m
 LOCKED = 1e12  # kg m^2, a motor that does not turn
 POSTURE = np.array([0.2, 0.5, 0.6])
 
 
 def macro():
-    return validate(compose(["robot=macro"]).resolved).arm
+    arm = validate(compose(["robot=macro"]).resolved).arm  # which other tests share
+    return replace(arm, model=arm.model.copy())
 
 
 def made(robot, EI, mass, parts, motors, step, steps=1, damping=0.0):
@@ -55,10 +59,10 @@ def test_damping_takes_energy_away():
 
 def test_at_rest_the_springs_carry_the_weight_and_the_tip_sags_as_a_beam_does():
     """A straight level link under the weight of its end alone: m g L^3/(3 EI) (1 - 1/(4 n^2)), for small bends."""
-    arm = one_beam(0.5)
+    arm = clamped_arm(LENGTH, 0.5)
     arm.pin_model.gravity.linear = np.array([0.0, 0.0, -9.81])
     for parts in (1, 3):
-        chain = cut(arm, "tip", {"arm": Beam(4e3, 1e-9)}, parts)
+        chain = cut(arm, "tip", {"beam": Beam(4e3, 1e-9)}, parts)
         plant = FlexibleLinks(chain, np.ones(1), np.zeros((2 * parts, 2 * parts)), 1e-5, 1, ["tip"])
         plant.reset(np.zeros(1), np.zeros(1))
         sag = 0.5 * 9.81 * LENGTH**3 / (3.0 * 4e3) * (1.0 - 0.25 / parts**2)

@@ -8,7 +8,8 @@ import pytest
 
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.robots.beams import Beam, cantilever_roots, moving_links, parts_of, span, stiffened
+from runner.robots.beams import Beam, moving_links, parts_of, span, stiffened
+from runner.robots.cantilever import cantilever_roots
 
 
 @pytest.mark.parametrize(

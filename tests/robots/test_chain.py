@@ -1,26 +1,17 @@
 """Chains of rigid parts against the beams that they stand for."""
 
-from itertools import islice
-
 import numpy as np
 import pinocchio as pin
 import pytest
-from one_beam import LENGTH, one_beam
 
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.robots.beams import Beam, cantilever_roots, stiffened
+from runner.robots.beams import Beam, stiffened
+from runner.robots.cantilever import cantilever, cantilever_roots, clamped_arm, frequency_errors
 from runner.robots.chain import cut
 from runner.robots.modes import find_modes
 
-EI, MASS = 70.0, 0.8
-
-
-def frequencies(tip_ratio, parts):
-    """Return omega of the modes with the motor held, each in both planes, shape (2 parts,), in rad/s."""
-    chain = cut(one_beam(tip_ratio * MASS), "tip", {"arm": Beam(EI, MASS)}, parts)
-    M = chain.mass_matrix(np.zeros(1))[np.ix_(chain.springs, chain.springs)]
-    return 2 * np.pi * np.array([mode.frequency for mode in find_modes(M, 0.0 * M, np.diag(chain.stiffness))])
+EI, LENGTH = 70.0, 1.5  # N m^2, m
 
 
 @pytest.mark.parametrize(
@@ -33,16 +24,19 @@ def frequencies(tip_ratio, parts):
     ],
 )
 def test_frequencies_converge_from_above_with_the_second_order(tip_ratio, mode, errors):
-    b = list(islice(cantilever_roots(tip_ratio), mode + 1))[mode]
-    exact = b**2 * np.sqrt(EI / (MASS * LENGTH**3))
-    found = {parts: frequencies(tip_ratio, parts)[2 * mode] / exact - 1.0 for parts in errors}
+    found = {parts: frequency_errors(tip_ratio, parts, mode + 1)[mode] for parts in errors}
     assert found == pytest.approx(errors, rel=0.02, abs=5e-5)
     orders = [np.log2(found[parts] / found[2 * parts]) for parts in (4, 8)]
     assert all(1.9 < order < 2.1 for order in orders)
 
 
-def test_both_planes_bend_alike():
-    assert frequencies(1.0, 3)[::2] == pytest.approx(frequencies(1.0, 3)[1::2], rel=1e-9)
+def test_both_planes_bend_alike_and_units_are_si():
+    chain = cantilever(Beam(EI, 0.8), LENGTH, 0.8, 3)
+    M = chain.mass_matrix(np.zeros(1))[np.ix_(chain.springs, chain.springs)]
+    found = [mode.frequency for mode in find_modes(M, 0.0 * M, np.diag(chain.stiffness))]
+    assert found[::2] == pytest.approx(found[1::2], rel=1e-9)
+    exact = next(cantilever_roots(1.0)) ** 2 * np.sqrt(EI / (0.8 * LENGTH**3)) / (2.0 * np.pi)
+    assert found[0] == pytest.approx(exact * (1.0 + frequency_errors(1.0, 3, 1)[0]), rel=1e-9)
 
 
 def compliance(chain):
@@ -55,14 +49,14 @@ def compliance(chain):
 
 @pytest.mark.parametrize("parts", [1, 2, 3, 8, 32])
 def test_the_static_deflection_falls_short_by_a_quarter_over_the_square_of_the_parts(parts):
-    chain = cut(one_beam(1.0), "tip", {"arm": Beam(EI, 0.0)}, parts)
+    chain = cantilever(Beam(EI, 0.0), LENGTH, 1.0, parts)
     beam = (1.0 - 0.25 / parts**2) * LENGTH**3 / (3.0 * EI)
     assert compliance(chain) == pytest.approx(np.diag([beam, 0.0, beam]), rel=1e-9, abs=1e-15)
 
 
 def test_a_link_without_mass_has_one_mode_at_its_end_mass():
     """omega^2 = 3 EI/(m L^3), of one spring over 1 - 1/4."""
-    chain = cut(one_beam(2.0), "tip", {"arm": Beam(EI, 0.0)}, 1)
+    chain = cantilever(Beam(EI, 0.0), LENGTH, 2.0, 1)
     M = chain.mass_matrix(np.zeros(1))[np.ix_(chain.springs, chain.springs)]
     omega = np.sqrt(np.diag(chain.stiffness) @ np.linalg.inv(M)).max()
     assert omega**2 == pytest.approx(3.0 * EI / (2.0 * LENGTH**3) / 0.75, rel=1e-12)
@@ -86,9 +80,9 @@ def test_with_straight_links_a_chain_is_the_rigid_arm():
 
 def test_what_the_file_gives_of_a_link_stays_where_its_centre_of_mass_is():
     """A point mass in the middle of the link lies behind one of two springs."""
-    arm = one_beam(1.0)
+    arm = clamped_arm(LENGTH, 1.0)
     arm.pin_model.inertias[1] = pin.Inertia(1.0, np.array([0.0, 0.5 * LENGTH, 0.0]), np.zeros((3, 3)))
-    chain = cut(arm, "tip", {"arm": Beam(EI, 0.0)}, 2)
+    chain = cut(arm, "tip", {"beam": Beam(EI, 0.0)}, 2)
     M = chain.mass_matrix(np.zeros(1))
     way = 0.25 * LENGTH  # from the first spring to the mass
     assert np.diag(M)[chain.springs] == pytest.approx([way**2, way**2, 0.0, 0.0], abs=1e-15)

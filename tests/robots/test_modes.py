@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.robots.modes import find_modes
+from runner.robots.modes import Mode, find_modes, largest_rate
 
 
 def test_of_one_mass_on_a_spring():
@@ -23,3 +23,19 @@ def test_of_a_chain_of_masses():
 
 def test_what_creeps_back_is_no_vibration():
     assert find_modes(np.eye(2), np.diag([3.0, 0.1]), np.eye(2)) == [pytest.approx((1 / (2 * np.pi), 0.05))]
+
+
+def test_its_amplitude_in_a_signal_is_that_at_the_time_asked_for():
+    times = np.linspace(0.0, 3.0, 601)
+    omega, zeta = 2 * np.pi * 2.0, 0.05
+    signal = 4.0 + 0.3 * np.exp(-zeta * omega * times) * np.sin(omega * np.sqrt(1 - zeta**2) * times + 0.7)
+    for after in (0.0, 1.0):
+        amplitude = Mode(2.0, zeta).amplitude(times, signal, after)
+        assert amplitude == pytest.approx(0.3 * np.exp(-zeta * omega * after), rel=1e-9)
+
+
+def test_the_largest_rate_is_that_of_the_fastest_mode_or_of_what_creeps_fastest():
+    assert largest_rate(np.eye(2), np.zeros((2, 2)), np.diag([4.0, 25.0])) == pytest.approx(5.0)
+    assert largest_rate(np.eye(1), np.array([[10.0]]), np.eye(1)) == pytest.approx(5.0 + np.sqrt(24.0))
+    free = np.array([[1.0, -1.0], [-1.0, 1.0]])  # two masses and a spring, free as a whole
+    assert largest_rate(np.eye(2), 0.0 * free, free) == pytest.approx(np.sqrt(2.0))
