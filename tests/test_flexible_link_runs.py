@@ -102,6 +102,12 @@ def test_a_mini_rides_on_links_that_bend(simulated):
     assert np.abs(trace.end_points[0, 0] - [0.0, 1.0, 1.0]).max() > 0.01
 
 
+def test_a_run_ends_where_links_bend_too_far(simulated):
+    failure = simulated(*MACRO, "trajectory=goal", "duration=0.5").failure
+    assert "a spring of the links bends by more than 0.5 rad" in failure.reason
+    assert 0.0 < failure.time < 0.2
+
+
 def test_runs_on_other_plants_know_nothing_of_it():
     assert "links" not in simulated_part(compose(["robot=macro", "plant=rk4"]).resolved)["plant"]
 

@@ -54,6 +54,7 @@ class FlexibleLinks:
         """x, shape (nq + k,), in rad."""
         self.speeds: FloatArray = np.zeros(self._model.nq)
         """Its rate, shape (nq + k,), in rad/s."""
+        self._time = 0.0
         self.q, self.dq = np.zeros(len(chain.motors)), np.zeros(len(chain.motors))
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
@@ -62,6 +63,7 @@ class FlexibleLinks:
         Raises:
             SimulationError: where they do not carry it, or bend so far that a chain stands for no beam.
         """
+        self._time = 0.0
         self.q[:], self.dq[:] = q, dq
         self.places[:] = self.speeds[:] = 0.0
         self.places[self._driven], self.speeds[self._driven] = q, dq
@@ -72,14 +74,20 @@ class FlexibleLinks:
                 return
             slope = pin.computeGeneralizedGravityDerivatives(self._model, self._data, self.places) + np.diag(self._K)
             self.places[on] -= np.linalg.solve(slope[np.ix_(on, on)], left[on])
-        raise SimulationError(f"the links bend by more than {_FARTHEST:g} rad under their weight", 0.0, None)
+        raise SimulationError(
+            f"a spring of the links bends by more than {_FARTHEST:g} rad under their weight", 0.0, None
+        )
 
     def set_gravity(self, gravity: FloatArray) -> None:
         """Take another gravity vector; see Plant."""
         self._model.gravity.linear = gravity
 
     def advance(self, tau: FloatArray) -> None:
-        """Hold the motors' torques for one tick; see Plant."""
+        """Hold the motors' torques for one tick; see Plant.
+
+        Raises:
+            SimulationError: where a spring bends so far that a chain stands for no beam.
+        """
         h, n = self._step, len(self.places)
         acting = np.zeros(n)
         acting[self._driven] = tau
@@ -91,6 +99,9 @@ class FlexibleLinks:
             k4 = self._slope(x + h * k3, acting)
             x = x + (h / 6.0) * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
         self.places[:], self.speeds[:] = x[:n], x[n:]
+        self._time += self._steps_per_tick * h
+        if np.abs(self.places[self._springs]).max() > _FARTHEST:  # of what is not finite others tell
+            raise SimulationError(f"a spring of the links bends by more than {_FARTHEST:g} rad", self._time, None)
         self.q[:], self.dq[:] = self.places[self._driven], self.speeds[self._driven]
 
     def _slope(self, x: FloatArray, acting: FloatArray) -> FloatArray:

@@ -32,7 +32,7 @@ NEEDS = {  # what an option does not run without
     "input_shaper=zvd": ("robot=macro", "plant=rk4_flexible"),
     "plant=kinematic": ("robot=xarm7",),
     "plant=rk4_flexible": ("robot=macro",),
-    "plant=rk4_flexible_links": ("robot=macro",),
+    "plant=rk4_flexible_links": ("robot=macro", "trajectory=quintic"),
     "trajectory=from_file": (f"trajectory.file={SWING}",),
 }
 
