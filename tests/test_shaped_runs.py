@@ -45,6 +45,22 @@ def test_the_mode_that_is_named_rests(simulated, kind):
     assert ringing(left, end, 0.02) / ringing(simulated(*arm), 0.2, 0.02) < 1e-3
 
 
+def test_on_a_move_of_the_whole_arm_a_shaper_for_each_mode_beats_a_slower_move(simulated):
+    """The table of docs/vibration.md, in mm."""
+
+    def rings(duration, *shaper):
+        arm = (*FLEXIBLE, "plant.step=0.0025", "trajectory=quintic", "trajectory.goal=[0.4,0.7,0.6]", "duration=4")
+        trace = simulated(*arm, f"trajectory.duration={duration}", *shaper)
+        moving = np.flatnonzero(np.abs(trace.desired[:, 1]).max(axis=1) > 1e-9)[-1]
+        away = trace.error[moving + 1 :] - trace.error[trace.t > 3.7].mean(axis=0)
+        return 1e3 * np.linalg.norm(away, axis=1).max()
+
+    modes = ("input_shaper=zv", "input_shaper.frequency=[mode_1,mode_2,mode_3]")
+    found = [rings(0.5), rings(0.5, "input_shaper=zv"), rings(0.5, "input_shaper=zvd"), rings(0.5, *modes)]
+    assert found == pytest.approx([21.6, 6.5, 3.4, 1.0], rel=0.05)
+    assert [rings(0.68), rings(0.87), rings(0.9)] == pytest.approx([7.8, 4.6, 4.0], rel=0.05)
+
+
 def test_modes_are_those_of_the_posture_where_the_arm_starts():
     def delay(*keys):
         config = validate(compose([*FLEXIBLE, *PATH, *keys]).resolved)
