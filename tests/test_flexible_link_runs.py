@@ -1,6 +1,6 @@
 """Runs of arms whose links bend, from the config to the metrics."""
 
-from itertools import pairwise
+from itertools import islice, pairwise
 
 import numpy as np
 import pytest
@@ -9,7 +9,9 @@ from runner.assembly import assemble
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.errors import ConfigError
+from runner.plants import PLANTS
 from runner.robots.beams import stiffened
+from runner.robots.cantilever import cantilever_roots
 from runner.robots.modes import Mode
 from runner.robots.motors import with_motors
 from runner.store import simulated_part
@@ -58,6 +60,20 @@ def test_more_parts_change_the_motion_less_and_less(simulated):
     tips = [simulated(*MACRO, *move, *keys, f"plant.parts={parts}").tip for parts in (1, 2, 3)]
     first, second = (np.abs(after - before).max() for before, after in pairwise(tips))
     assert second / first == pytest.approx((1 / 4 - 1 / 9) / (1 - 1 / 4), rel=0.4)
+
+
+def test_a_link_of_the_macro_with_mass_along_it_is_a_cantilever_of_the_second_order():
+    """Link 3 with its end mass of 1 kg, all motors held: the first two modes in each plane."""
+    errors = []
+    for parts in (4, 8, 16):
+        keys = ("plant.links.link2=null", "plant.links.link3.mass=0.5", f"plant.parts={parts}", "plant.step=1e-6")
+        config = validate(compose([*MACRO, *keys]).resolved)
+        omega = [2.0 * np.pi * mode.frequency for mode in PLANTS.modes(config.plant, config.arm, config.arm.home)]
+        exact = np.array(list(islice(cantilever_roots(2.0), 2))) ** 2 * np.sqrt(300.0 / 0.5)
+        assert omega[0] == pytest.approx(omega[1], rel=1e-6)
+        errors.append(np.array([omega[0], omega[2]]) / exact - 1.0)
+    orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+    assert np.all(np.abs(orders - 2.0) < 0.1)
 
 
 def test_laws_believe_a_rigid_arm_of_the_same_masses_and_motors():

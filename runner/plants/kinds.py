@@ -133,9 +133,9 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
         return module.motion(config, robot) if isinstance(module, MovesByRungeKutta) else None
 
     def modes(self, config: PlantConfig, robot: Robot, q: FloatArray) -> list[Mode]:
-        """Return how a plant rings about a posture with its motors held; nothing for a rigid one. See Rings."""
+        """Return how a plant rings about a posture with its motors held, where a kind of ours may ring; see Rings."""
         module = self.module(config.kind)
-        return module.modes(config, robot, q) if isinstance(module, Rings) else []
+        return module.modes(config, robot, q) if self.is_ours(config.kind) and isinstance(module, Rings) else []
 
     def moves_exactly(self, config: PlantConfig) -> bool:
         """Tell whether a step moves positions exactly under a held force; see MovesExactly."""
