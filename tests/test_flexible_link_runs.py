@@ -143,6 +143,10 @@ def test_runs_on_other_plants_know_nothing_of_it():
         (("+plant.links.link1={EI: 300, mass: 0}",), "plant.links.link1: the link has no length"),
         (("plant.links.link2=null", "plant.links.link3=null"), "null for every link; take plant=rk4"),
         (("plant.step=0.01",), "11.9 Hz at home; allowed: up to 0.00671 s, such as 0.005"),
+        (
+            ("plant.parts=2", "plant.links.link2.mass=1e-11", "plant.links.link3.mass=1e-11", "input_shaper=zv"),
+            "plant.links: parts between springs have next to no inertia",
+        ),
         (("plant.motor_inertia=null",), "a link without mass turns with its motor alone; give each joint one"),
         (("plant.motor_inertia=[1,2]",), "plant.motor_inertia: 2 values for 3 joints"),
         (("plant.motor_inertia=0",), "must be a number above 0, null for a joint whose motor has none"),

@@ -6,6 +6,7 @@ import pytest
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.errors import ConfigError
+from runner.plants import PLANTS
 from runner.robots.modes import Mode
 from runner.store import simulated_part
 from runner.trajectories.impulses import zero_vibration
@@ -71,6 +72,17 @@ def test_modes_are_those_of_the_posture_where_the_arm_starts():
     assert delay("input_shaper.damping_ratio=0.6") == pytest.approx(0.5 / (2.724 * 0.8), rel=1e-3)
     assert delay("robot.home=[0,1.1,1.1]") != pytest.approx(delay(), rel=0.05)
     assert delay("input_shaper.frequency=[2.5,5.0]") == pytest.approx(0.2 + 0.1)
+
+
+def test_the_macro_with_its_mini_rings_slower():
+    soft = ("stiffness={macro: 1000, mini: null}", "motor_inertia={macro: 2, mini: null}")
+    keys = ("robot=combined", "plant=rk4_flexible", *(f"plant.flexible_joints.{key}" for key in soft))
+    config = validate(
+        compose([*keys, "trajectory=quintic", "trajectory.goal=[0.4,0.8,0.7]", "input_shaper=zv"]).resolved
+    )
+    frequencies = [mode.frequency for mode in PLANTS.modes(config.plant, config.arm, config.arm.home)]
+    assert frequencies == pytest.approx([2.511, 3.361, 6.149], abs=5e-4)
+    assert config.path.duration - 3.0 == pytest.approx(0.5 / 2.511, rel=1e-3)
 
 
 def test_it_shapes_on_any_plant_with_a_frequency_in_hertz(simulated):

@@ -103,7 +103,7 @@ class ToolReactionPlant(Protocol):
 
 @runtime_checkable
 class TellsEndPoints(Protocol):
-    """A plant whose stages end elsewhere than its joints tell, as its links bend."""
+    """A plant of ours whose stages end elsewhere than its joints tell, as its links bend."""
 
     def end_points(self) -> FloatArray:
         """Return the end point of each stage now, shape (stages, 3), in m; see runner.robots.robot.end_points."""

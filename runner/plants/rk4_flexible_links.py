@@ -18,6 +18,7 @@ from runner.robots.modes import Mode, find_modes, largest_rate
 from runner.robots.robot import Robot
 
 _MOST_PARTS = 32
+_LIGHTEST = 1e-10  # smallest inertia of a bend over the largest
 
 
 class BeamConfig(StrictModel):
@@ -88,8 +89,22 @@ class Rk4FlexibleLinksConfig(StrictModel):
         return np.where(np.isfinite(given), given, 0.0)
 
     def chain(self, robot: Robot) -> Chain:
-        """Return the parts of a robot; see cut, and beams for its errors."""
-        return cut(robot.model, robot.flange, self.beams(robot), self.parts)
+        """Return the parts of a robot; see cut.
+
+        Raises:
+            ConfigError: see beams; and for parts that have next to no inertia of their own.
+        """
+        chain = cut(robot.model, robot.flange, self.beams(robot), self.parts)
+        M = chain.mass_matrix(robot.home)[np.ix_(chain.springs, chain.springs)]
+        least, *_, most = np.linalg.eigvalsh(M)
+        if least < _LIGHTEST * most:
+            raise ConfigError(
+                [
+                    "plant.links: parts between springs have next to no inertia, and no step follows them; take more "
+                    "mass along the links, or plant.parts=1"
+                ]
+            )
+        return chain
 
     def damping(self, robot: Robot) -> FloatArray:
         r"""Return the dampers among the springs, shape (k, k), in N m s/rad, by the modes with the motors held at home.

@@ -86,7 +86,7 @@ def test_flexible_joints_are_told_with_the_side_of_their_encoders(outputs, side)
 def test_links_that_bend_are_told_and_that_pictures_show_them_straight(outputs):
     soft = ("robot=macro", "plant=rk4_flexible_links", "plant.links.link2=null", "trajectory=quintic", "duration=0.05")
     expected = (
-        "Runge-Kutta is the plant, in steps of 1 ms. Links bend (link3); pictures show the arm with straight ones, and "
-        "the tip where it is."
+        "Runge-Kutta with bending links is the plant, in steps of 1 ms. Links bend (link3); pictures show the arm with "
+        "straight ones, and the tip where it is."
     )
     assert describe_plant(run(*soft, outputs)) == expected
