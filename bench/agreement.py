@@ -8,10 +8,11 @@ from unittest.mock import patch
 
 import numpy as np
 
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
 from runner.compiled import compile
 from runner.config.compose import compose
 from runner.config.validation import validate
+from runner.loop.sensors import make_encoders
 from runner.simulation import simulate
 from runner.trace import Trace
 

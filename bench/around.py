@@ -11,10 +11,11 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.assembly import assemble, make_encoders, metric_context
+from runner.assembly import assemble, metric_context
 from runner.caveats import Watch, look_together, setting_of, signals_of
 from runner.config.compose import compose
 from runner.config.validation import validate
+from runner.loop.sensors import make_encoders
 from runner.metrics import measure
 from runner.metrics.summary import units_of
 from runner.provenance import job_provenance

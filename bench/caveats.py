@@ -7,10 +7,11 @@ only ever slows one.
 import time
 from collections.abc import Callable
 
-from runner.assembly import assemble, make_encoders, make_wrist_sensor, metric_context
+from runner.assembly import assemble, metric_context
 from runner.caveats import Watch, setting_of, signals_of
 from runner.config.compose import compose
 from runner.config.validation import validate
+from runner.loop.sensors import make_encoders, make_wrist_sensor
 from runner.metrics import evaluate
 from runner.simulation import simulate
 

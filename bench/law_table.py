@@ -15,12 +15,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.doctor.config_folder import robot_name, write_folder
 from runner.doctor.examination import examine
 from runner.errors import ConfigError
+from runner.loop.sensors import make_encoders
 from runner.simulation import simulate
 
 LAWS = {

@@ -21,7 +21,7 @@ from bench.least_loops import MissingError, least_loop
 from bench.tick import pybullet_alone, whole_run
 from bench.tip_loop import FloatArray, TipLoop, tip_loop
 from bench.turns import Block, measure, ratio
-from runner.assembly import make_encoders
+from runner.loop.sensors import make_encoders
 from runner.simulation import simulate
 
 TICKS = 2000

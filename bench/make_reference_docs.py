@@ -41,7 +41,7 @@ from runner.paths import conf_dir
 from runner.plants import PLANTS
 from runner.registry import Registry, StrictModel
 from runner.robots.mismatch import MismatchConfig
-from runner.sensing import ForceTorqueConfig, JointTorqueConfig
+from runner.sensing import EndpointSensorConfig, ForceTorqueConfig, JointTorqueConfig
 from runner.trajectories import TRAJECTORIES
 from runner.works.chapters import SHARED
 from runner.works.code import public_functions
@@ -83,6 +83,7 @@ _PLAIN: Mapping[str, tuple[type[StrictModel], str]] = {
     "wrist_sensor": (ForceTorqueConfig, "ideal"),
     "mismatch": (MismatchConfig, "none"),
     "joint_torque_sensor": (JointTorqueConfig, "none"),
+    "endpoint_sensor": (EndpointSensorConfig, "none"),
     "disturbance_observer": (DisturbanceObserverConfig, "none"),
     "input_shaper": (InputShaperConfig, "zv"),
     "notch": (NotchConfig, "torques"),

@@ -12,8 +12,8 @@ from bench.arms import ARMS, Arm, assembled
 from bench.tick import whole_run
 from bench.tip_loop import FloatArray
 from bench.turns import Block, measure, ratio
-from runner.assembly import make_encoders
 from runner.loop.closed_loop import ClosedLoop
+from runner.loop.sensors import make_encoders
 from runner.plants.mujoco import Mujoco
 from runner.simulation import simulate
 

@@ -16,10 +16,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from runner import store
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.job import simulate_job
+from runner.loop.sensors import make_encoders
 from runner.quiet import quiet_environment
 from runner.simulation import simulate
 

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.assembly import make_encoders
 from runner.config.run import RunConfig
 from runner.controllers.operational_space import OperationalSpaceConfig
 from runner.controllers.whole_body import WholeBodyConfig
 from runner.loop.closed_loop import ClosedLoop
+from runner.loop.sensors import make_encoders
 
 FloatArray = NDArray[np.float64]
 

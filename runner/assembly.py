@@ -28,7 +28,6 @@ from runner.plants.servo import JointServo
 from runner.plants.touched import Touched
 from runner.robots.mismatch import believe
 from runner.robots.robot import Robot
-from runner.sensing import EncoderNoise, ForceTorqueConfig, ForceTorqueSensor, JointEncoders
 from runner.trace import FloatArray
 from runner.trajectories.joint_motion import TipOfJoints
 from runner.walls import put_up, touches_by_tip
@@ -76,6 +75,7 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
         q_start=q_start,
         parallel=config.parallel,
         delay=timing.delay,
+        believed=believed,
         motor_side=find_motor_side(config, plant, believed),
         compiled=compiled,
     )
@@ -91,7 +91,7 @@ def assemble_whole(config: RunConfig, repetition: int = 0) -> tuple[Whole, Float
     Raises:
         ConfigError: see assemble.
     """
-    if config.commands != "torque" or config.feels or config.loaded or config.plugged:
+    if config.commands != "torque" or config.feels or config.loaded or not config.compilable:
         return None
     if PLANTS.motion(config.plant, config.arm) is None:
         return None
@@ -106,7 +106,7 @@ def describe_loop(config: RunConfig, repetition: int = 0) -> Whole | None:
         config: The checked config.
         repetition: Number of the repetition, of which the beliefs follow.
     """
-    if config.commands != "torque" or config.feels or config.plugged or is_flexible(config):
+    if config.commands != "torque" or config.feels or not config.compilable or is_flexible(config):
         return None
     loops = _believe(config, repetition)[1]
     commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
@@ -143,7 +143,7 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
 
 def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledCommands | None:
     """Return the closed loop as compiled code, or what its loops ask; None where neither can be had."""
-    if config.commands != "torque" or config.plugged or is_flexible(config):
+    if config.commands != "torque" or not config.compilable or is_flexible(config):
         return None
     commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
     motion = None if config.feels or config.loaded else PLANTS.motion(config.plant, config.arm)
@@ -189,33 +189,6 @@ def _make_touched_plant(config: RunConfig, wall: Wall) -> Plant:
     plant = PLANTS.build(config.plant, config.arm, timing.step, 1)
     lead = 0.5 if PLANTS.moves_exactly(config.plant) else 0.0
     return Touched(plant, config.arm.model, wall, timing.step, timing.steps_per_tick, lead)
-
-
-def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition: int) -> list[JointEncoders]:
-    """Make our joint measurement of each loop for one repetition.
-
-    Its noise follows from (seed, repetition) and the loop's place alone: however long a run or another loop's period
-    is, it starts alike, so that runs can be compared in pairs.
-    """
-    return [
-        JointEncoders(
-            closed.ticks // closed.every(loop) + 1,
-            loop.period,
-            noise,
-            np.random.default_rng([seed, repetition, place]),
-        )
-        for place, loop in enumerate(closed.loops)
-    ]
-
-
-def make_wrist_sensor(
-    closed: ClosedLoop, sensor: ForceTorqueConfig, seed: int, repetition: int
-) -> ForceTorqueSensor | None:
-    """Make our force/torque sensor for one repetition, where there is something to feel; noise as for the encoders."""
-    if closed.interaction is None:
-        return None
-    generator = np.random.default_rng([seed, repetition, len(closed.loops)])
-    return ForceTorqueSensor(closed.ticks + 1, closed.tick, sensor, generator)
 
 
 def metric_context(config: RunConfig) -> MetricContext:

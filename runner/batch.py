@@ -97,7 +97,7 @@ class Batcher:
         Raises:
             ConfigError: see assemble.
         """
-        if added("metric") or config.plugged:  # metrics that look at one trace; sensors and beliefs that no code has
+        if added("metric") or not config.compilable:  # metrics of one trace; sensors that no code has
             return None
         numbers = range(config.settings.repetitions) if chosen is None else chosen
         if config.mismatch.spread == 0.0:

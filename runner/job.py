@@ -136,7 +136,7 @@ def _judge(trace: Trace, context: MetricContext, told: list[str]) -> tuple[Trace
 
 def _simulate(closed: ClosedLoop, config: RunConfig, repetition: int) -> tuple[Trace, list[str]]:
     """Simulate a repetition; return its trace, and what the controllers and the wrist's sensor tell of it."""
-    encoders, wrist, torques = make_sensors(closed, config, repetition)
-    trace = simulate(closed, encoders, wrist, torques)
+    encoders, wrist, torques, tips = make_sensors(closed, config, repetition)
+    trace = simulate(closed, encoders, wrist, torques, tips)
     told = [notice for loop in closed.loops if loop.feeling is not None for notice in loop.feeling.notices()]
     return trace, told + ([] if wrist is None else wrist.overloads())

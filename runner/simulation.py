@@ -1,6 +1,6 @@
 """The closed loop: plant, encoders, controllers and desired motion, tick by tick, to a trace."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from runner.loop.command import Command
 from runner.loop.compiled_loop import run_commands, run_whole
 from runner.loop.contact import Contact
 from runner.loop.drive import make_drive
+from runner.loop.endpoint import MeasuredTip
 from runner.loop.joint_torques import JointTorques
 from runner.loop.recorder import Recorder
 from runner.progress.ticks import counted
@@ -26,6 +27,7 @@ def simulate(
     encoders: Sequence[Encoders],
     wrist: WristSensor | None = None,
     torques: TorqueSensors | None = None,
+    tips: Mapping[str, MeasuredTip] | None = None,
 ) -> Trace:
     """Run the control loops once.
 
@@ -40,6 +42,7 @@ def simulate(
         encoders: The joint measurement of each loop, with a draw for each of its ticks.
         wrist: The force/torque sensor, with a draw for each tick; needed where there is something to feel.
         torques: The torque sensors in the joints, likewise; needed where a control law reads them.
+        tips: What loops know of the tip beside their encoders, by loop; needed where one reads a sensor of the tip.
 
     Returns:
         The trace; one that ends early carries a failure.
@@ -57,7 +60,9 @@ def simulate(
             elif isinstance(closed.compiled, CompiledCommands):
                 run_commands(closed.compiled, closed, encoders, contact, recorder)
             else:
-                _run(closed, encoders, contact, JointTorques(closed, torques, recorder.commands), recorder)
+                each = zip(closed.loops, encoders, strict=True)
+                commands = [Command(closed, *own, recorder, (tips or {}).get(own[0].name)) for own in each]
+                _run(closed, commands, contact, JointTorques(closed, torques, recorder.commands), recorder)
     except (np.linalg.LinAlgError, SimulationError) as error:
         recorder.stop(0, error)
     return recorder.trace(contact)
@@ -65,13 +70,12 @@ def simulate(
 
 def _run(
     closed: ClosedLoop,
-    encoders: Sequence[Encoders],
+    commands: Sequence[Command],
     contact: Contact | None,
     torques: JointTorques,
     recorder: Recorder,
 ) -> None:
     """Run control loops that are asked one by one."""
-    commands = [Command(closed, *pair, recorder) for pair in zip(closed.loops, encoders, strict=True)]
     drive, load, k = make_drive(closed, recorder), None, 0
     closed.plant.reset(closed.q_start, np.zeros_like(closed.q_start))
     try:

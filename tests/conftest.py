@@ -24,10 +24,10 @@ from runner.quiet import quiet_environment
 quiet_environment()
 composing.begin()
 
-from runner.assembly import assemble, make_encoders, make_wrist_sensor  # noqa: E402 - after the environment
+from runner.assembly import assemble  # noqa: E402 - after the environment
 from runner.cli import dispatch  # noqa: E402
 from runner.engines import has_pybullet  # noqa: E402
-from runner.loop.joint_torques import make_joint_torque_sensor  # noqa: E402
+from runner.loop.sensors import make_sensors  # noqa: E402
 from runner.robots import RobotModel, find_urdf, read_urdf  # noqa: E402
 from runner.robots.robot import Robot, Stage  # noqa: E402
 from runner.simulation import ClosedLoop, simulate  # noqa: E402
@@ -166,9 +166,7 @@ def simulated(checked_config: Callable[..., RunConfig]) -> Callable[..., Trace]:
         config = checked_config(*overrides)
         loop = assemble(config)
         try:
-            wrist = make_wrist_sensor(loop, config.wrist_sensor, config.settings.seed, repetition)
-            torques = make_joint_torque_sensor(loop, config, repetition)
-            return simulate(loop, make_encoders(loop, config.noise, config.settings.seed, repetition), wrist, torques)
+            return simulate(loop, *make_sensors(loop, config, repetition))
         finally:
             loop.plant.close()
 

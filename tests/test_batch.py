@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from runner import batch
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
 from runner.batch import Batcher, Together
 from runner.compiled.engine import evaluator
 from runner.config.compose import compose
 from runner.config.validation import validate
+from runner.loop.sensors import make_encoders
 from runner.simulation import simulate
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a whole by llvmlite")

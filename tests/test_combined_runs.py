@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from printed import without_caveats, without_results
 
-from runner.assembly import assemble, make_encoders, metric_context
+from runner.assembly import assemble, metric_context
+from runner.loop.sensors import make_encoders
 from runner.metrics import evaluate
 from runner.simulation import simulate
 from runner.store import open_run

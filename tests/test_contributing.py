@@ -362,7 +362,8 @@ def test_a_wrong_value_for_ones_own_part_is_told_as_for_ours(workshop):
 
 def test_ones_own_kinds_are_named_where_a_kind_is_unknown(workshop):
     with pytest.raises(
-        ConfigError, match=r"did you mean jacobian_transpose\?.*jacobian_transpose, joint_pd, joint_pid, macro_mini, op"
+        ConfigError,
+        match=r"did you mean jacobian_transpose\?.*jacobian_transpose, joint_pd, joint_pid, macro_mini, motor_pd, op",
     ):
         runner.run("controller.kind=jacobian_transposed", config_dirs=[workshop])
 

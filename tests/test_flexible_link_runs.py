@@ -124,6 +124,21 @@ def test_a_run_ends_where_links_bend_too_far(simulated):
     assert 0.0 < failure.time < 0.2
 
 
+def test_a_sensor_of_the_tip_sees_what_links_bend(simulated):
+    """The sag stays where encoders alone are read; of one that is seen the springs of the law leave their share."""
+    rest = ("trajectory=goal", "trajectory.goal=[0,1,1]", "plant.damping_ratio=0.2", "duration=5")
+    arm = (*MACRO, *rest, *stiff(3000))
+
+    def error(natural_frequency, by):
+        keys = (f"controller.natural_frequency={natural_frequency}", f"endpoint_sensor.read_by={by}")
+        return np.abs(simulated(*arm, *keys).error[-1]).max()
+
+    sag = 2.0 * 9.81 / (2.0 * 3000)  # m: link 3 leans by the slope of the end of link 2
+    assert error(6, "[]") > sag
+    assert error(6, "[macro]") < 0.15 * sag
+    assert error(3, "[macro]") / error(6, "[macro]") == pytest.approx(4.0, rel=0.05)
+
+
 def test_runs_on_other_plants_know_nothing_of_it():
     assert "links" not in simulated_part(compose(["robot=macro", "plant=rk4"]).resolved)["plant"]
 

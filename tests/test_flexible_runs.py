@@ -89,7 +89,8 @@ def test_the_names_of_rigid_runs_know_nothing_of_flexible_joints():
         ((f"{KEY}.stiffness=1e6",), "Hz at home; allowed: up to 0.0003"),
         ((f"{KEY}.encoders=motr",), "did you mean motor?"),
         (("robot.rotor_inertia=0.1",), "robot.rotor_inertia: 0.1 turns with the links"),
-        (("plant.friction.coulomb=1",), "plant.friction acts on the links"),
+        ((f"{KEY}.braked={{mini: 0}}",), f"{KEY}.braked: no such stage: 'mini'"),
+        (("environment=wall",), "a wall is met by arms with rigid joints"),
         (("joint_torque_sensor=ideal",), "joint_torque_sensor.noise=null"),
         (("robot.payload.schedule=[{at: 1.0, mass: 0.5}]",), "robot.payload.schedule=[]"),
     ],
@@ -108,3 +109,52 @@ def test_a_blind_mini_is_no_better_than_the_macro_that_carries_it(simulated):
     macro, tip = (np.linalg.norm(error, axis=1).max() for error in (carried, trace.error))
     assert tip == pytest.approx(macro, rel=0.12)
     assert tip == pytest.approx(8.9e-3, rel=0.12)  # m, of a simulation apart from this one
+
+
+def test_damping_the_springs_lets_encoders_at_the_links_do(simulated):
+    """Spong's composite control; without it, or with springs as slow as the law, the same law is unstable."""
+    by_links = (*MACRO, *MOVE, f"{KEY}.encoders=link", "plant.step=0.0005")
+    damped = f"{KEY}.torsion_damping=0.7"
+    assert simulated(*by_links, f"{KEY}.stiffness=10000").failure is not None
+    assert simulated(*by_links, f"{KEY}.stiffness=1000", damped).failure is not None
+    trace = simulated(*by_links, f"{KEY}.stiffness=10000", damped)
+    assert np.linalg.norm(trace.error[-1]) < 1e-6
+
+
+def test_brakes_hold_the_motors_and_a_push_bends_the_arm(simulated):
+    braked = (*MACRO, "gravity=0", f"{KEY}.braked={{macro: 0}}", f"{KEY}.damping_ratio=0.3", "environment=push",
+              "environment.force=[2.0,0.0,0.0]", "environment.begin=0", "duration=8")  # fmt: skip
+    trace = simulated(*braked)
+    arm = validate(compose([*MACRO]).resolved).arm.model
+    J = arm.tip_jacobian(np.zeros(3))[:3]
+    assert trace.tip[-1] - trace.tip[0] == pytest.approx(J @ J.T @ [2.0, 0.0, 0.0] / 1000.0, abs=2e-5)  # m
+
+
+def test_the_motors_of_tomeis_law_bring_the_links_exactly_to_rest(simulated):
+    def rest(*law):
+        keys = (
+            f"{KEY}.stiffness=1000",
+            f"{KEY}.damping_ratio=0.3",
+            "plant.step=0.001",
+            "controller.natural_frequency=5",
+        )
+        trace = simulated(*MACRO, "trajectory=goal", "trajectory.goal=[0.1,0.9,0.9]", "duration=12", *keys, *law)
+        return np.abs(trace.error[-1]).max()
+
+    by_motors = rest("controller=motor_pd", f"{KEY}.static_deflection=unknown")
+    assert by_motors < 1e-8
+    assert rest("controller=joint_pd") > 1e4 * by_motors  # off by the second order of 1/K
+    believed_stiffer = ("controller=motor_pd", f"{KEY}.static_deflection=unknown", "controller.stiffness=2000")
+    assert rest(*believed_stiffer) > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("overrides", "expected"),
+    [
+        (("plant=rk4", "controller=motor_pd", "controller.stiffness=1000"), "motor_pd turns motors behind springs"),
+        (("plant=rk4_flexible", "controller=motor_pd"), "motor_pd reads theta as it is"),
+        (("plant=rk4_flexible", "controller=motor_pd", "controller.stiffness=[1,2]"), "2 values for 3 joints"),
+    ],
+)
+def test_motor_pd_wants_motors(overrides, expected):
+    assert expected in problems("robot=macro", *overrides)

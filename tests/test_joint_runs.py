@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from runner.assembly import assemble, make_encoders, metric_context
+from runner.assembly import assemble, metric_context
 from runner.execution import run
+from runner.loop.sensors import make_encoders
 from runner.metrics import evaluate
 from runner.simulation import simulate
 

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.execution import run
+from runner.loop.sensors import make_encoders
 from runner.simulation import simulate
 
 ENGINES = ("rk4", "bullet", "mujoco")

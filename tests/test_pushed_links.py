@@ -8,10 +8,10 @@ import pinocchio as pin
 import pytest
 from engines import ASKED
 
-from runner.assembly import make_encoders, make_wrist_sensor
 from runner.errors import ConfigError
 from runner.guard import watch_environment
 from runner.interaction import Interaction
+from runner.loop.sensors import make_encoders, make_wrist_sensor
 from runner.simulation import simulate
 
 NOTHING = np.zeros(6)

@@ -6,8 +6,9 @@ import sys
 import numpy as np
 import pytest
 
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
 from runner.controllers import Loop
+from runner.loop.sensors import make_encoders
 from runner.sensing import EncoderNoise, JointEncoders
 from runner.simulation import ClosedLoop, simulate
 

@@ -27,6 +27,7 @@ _GROUPS = {
     "input_shapers": "input_shaper",
     "notches": "notch",
     "joint_torque_sensors": "joint_torque_sensor",
+    "endpoint_sensors": "endpoint_sensor",
     "noise": "noise",
     "presets": "preset",
     "torque_limits": "torque_limits",

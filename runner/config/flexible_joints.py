@@ -3,9 +3,12 @@
 import numpy as np
 
 from runner.config.run import RunConfig
+from runner.controllers.motor_pd import MotorPdConfig
 from runner.errors import ConfigError
 from runner.plants import Plant
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
+from runner.plants.motion import find_motion
+from runner.plants.plant import innermost
 from runner.plants.rk4 import Rk4Config
 from runner.robots.motors import with_motors
 from runner.robots.robot import Robot
@@ -32,13 +35,14 @@ def believe_motors(config: RunConfig, believed: Robot) -> Robot:
 
 
 def find_motor_side(config: RunConfig, plant: Plant, believed: Robot) -> MotorSide | None:
-    """Return what encoders at the motors of a plant see; None where encoders turn with the links."""
-    if not isinstance(plant, FlexibleJoints) or not isinstance(config.plant, Rk4Config):
+    """Return what drives and encoders know of the motors of a plant; None where joints are rigid."""
+    springs = innermost(plant)
+    if not isinstance(springs, FlexibleJoints) or not isinstance(config.plant, Rk4Config):
         return None
-    joints, flexibility = config.plant.flexible_joints, find_flexibility(config)
-    if joints is None or flexibility is None or joints.encoders == "link":
-        return None
-    return MotorSide(plant, flexibility, believed.model if joints.static_deflection == "known" else None)
+    joints = config.plant.flexible_joints
+    known = joints is not None and joints.static_deflection == "known"
+    at_motors = joints is not None and joints.encoders == "motor"
+    return MotorSide(springs, at_motors, believed.model if known else None)
 
 
 def check_flexible_joints(config: RunConfig) -> None:
@@ -47,7 +51,11 @@ def check_flexible_joints(config: RunConfig) -> None:
     Raises:
         ConfigError: where they do not.
     """
-    flexibility = find_flexibility(config)
+    flexibility, by_motors = find_flexibility(config), isinstance(config.controller, MotorPdConfig)
+    if by_motors and flexibility is None:
+        raise ConfigError(
+            ["controller.kind: motor_pd turns motors behind springs; take plant=rk4_flexible, or controller=joint_pd"]
+        )
     if flexibility is None or not isinstance(config.plant, Rk4Config):
         return
     problems = [f"plant.flexible_joints: {problem}" for problem in _refused(config, config.plant, flexibility)]
@@ -72,14 +80,24 @@ def _refused(config: RunConfig, plant: Rk4Config, flexibility: Flexibility) -> l
         )
     if len(config.arm.stages) > 1 and plant.dynamics == "decoupled":
         problems.append("stages that do not feel each other have rigid joints; take plant.dynamics=coupled")
-    if np.any(plant.friction.viscous) or np.any(plant.friction.coulomb):
-        problems.append("plant.friction acts on the links of rigid joints; take 0 for both")
-    if config.feels:
-        problems.append("a force on the tip would act on the motors; take environment=free and a law that feels none")
+    (moved,) = find_motion(config.arm, plant.model_copy(update={"dynamics": "coupled", "wrist_rotation": "real"})).arms
+    if ((moved.viscous > 0.0) | (moved.coulomb > 0.0))[~flexibility.flexible].any():
+        problems.append(
+            "plant.friction acts on the motors of flexible joints alone; take a list with 0 for the joints that are "
+            "rigid"
+        )
+    if config.environment.kind == "wall":
+        problems.append("a wall is met by arms with rigid joints; take environment=push or environment=free")
     if config.loaded:
         problems.append("the payload cannot change on the way; take robot.payload.schedule=[]")
     if config.joint_torques is not None:
         problems.append("torque sensors are read at rigid joints; take joint_torque_sensor.noise=null")
+    joints = plant.flexible_joints
+    theta = joints is not None and joints.encoders == "motor" and joints.static_deflection == "unknown"
+    if isinstance(config.controller, MotorPdConfig) and not theta:
+        problems.append(
+            "motor_pd reads theta as it is; take plant.flexible_joints.encoders=motor and .static_deflection=unknown"
+        )
     for name, arm, stage in zip(config.robot.arms, config.robot.arms.values(), config.arm.stages, strict=True):
         if arm.rotor_inertia not in (0.0, 0) and flexibility.flexible[stage.joints].any():
             key = f"robot.stages.{name}.rotor_inertia" if len(config.arm.stages) > 1 else "robot.rotor_inertia"

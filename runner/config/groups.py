@@ -25,7 +25,7 @@ from runner.errors import ConfigError, nearest
 from runner.plants import PLANTS, PlantConfig
 from runner.registry import KindConfig, Kinds, StrictModel
 from runner.robots.mismatch import MismatchConfig
-from runner.sensing import ForceTorqueConfig, JointTorqueConfig
+from runner.sensing import EndpointSensorConfig, ForceTorqueConfig, JointTorqueConfig
 from runner.trajectories import TRAJECTORIES
 
 GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
@@ -34,6 +34,7 @@ GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
     "torque_limits": TorqueLimitsConfig,
     "wrist_sensor": ForceTorqueConfig,
     "joint_torque_sensor": JointTorqueConfig,
+    "endpoint_sensor": EndpointSensorConfig,
     "mismatch": MismatchConfig,
     "disturbance_observer": DisturbanceObserverConfig,
     "input_shaper": InputShaperConfig,
@@ -62,6 +63,7 @@ class Groups:
         torque_limits: Config of the torque limits.
         wrist_sensor: Config of the force/torque sensor.
         joint_torque_sensor: Config of the torque sensors in the joints.
+        endpoint_sensor: Config of the sensor of the tip's position.
         mismatch: How what the controllers believe of the robot differs from it.
         disturbance_observer: Config of the observer that control laws carry.
         input_shaper: Config of what shapes the desired motion; None where nothing does.
@@ -83,6 +85,7 @@ class Groups:
     torque_limits: TorqueLimitsConfig | None
     wrist_sensor: ForceTorqueConfig | None
     joint_torque_sensor: JointTorqueConfig | None
+    endpoint_sensor: EndpointSensorConfig | None
     mismatch: MismatchConfig | None
     disturbance_observer: DisturbanceObserverConfig | None
     input_shaper: InputShaperConfig | None
@@ -120,6 +123,7 @@ def read_groups(resolved: Mapping[str, object], problems: Problems) -> Groups:
         torque_limits=reader.read(TorqueLimitsConfig, "torque_limits"),
         wrist_sensor=reader.read(ForceTorqueConfig, "wrist_sensor"),
         joint_torque_sensor=reader.read(JointTorqueConfig, "joint_torque_sensor"),
+        endpoint_sensor=reader.read(EndpointSensorConfig, "endpoint_sensor"),
         mismatch=reader.read(MismatchConfig, "mismatch"),
         disturbance_observer=reader.read(DisturbanceObserverConfig, "disturbance_observer"),
         input_shaper=reader.read(InputShaperConfig, "input_shaper") if "input_shaper" in resolved else None,

@@ -18,7 +18,7 @@ from runner.registry import Commands, KindConfig
 from runner.robots.mismatch import MismatchConfig
 from runner.robots.model import FloatArray, RobotModel
 from runner.robots.robot import Robot
-from runner.sensing import EncoderNoise, ForceTorqueConfig
+from runner.sensing import EncoderNoise, EndpointSensorConfig, ForceTorqueConfig
 from runner.trajectories import Trajectory
 
 
@@ -41,6 +41,7 @@ class RunConfig:
         torque_limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
         wrist_sensor: Config of the force/torque sensor.
         joint_torques: Noise and bias of each joint's torque sensor, shapes (nq,), in N m; None where there are none.
+        endpoint_sensor: Config of the sensor of the tip's position.
         mismatch: How what the controllers believe of the robot differs from it.
         disturbance_observer: Config of the observer that control laws carry.
         notch: Config of the notch in the torques; None where there is none.
@@ -68,6 +69,7 @@ class RunConfig:
     torque_limits: FloatArray
     wrist_sensor: ForceTorqueConfig
     joint_torques: tuple[FloatArray, FloatArray] | None
+    endpoint_sensor: EndpointSensorConfig
     mismatch: MismatchConfig
     disturbance_observer: DisturbanceObserverConfig
     notch: NotchConfig | None
@@ -83,6 +85,11 @@ class RunConfig:
     def with_seed(self, resolved: Mapping[str, object]) -> "RunConfig":
         """Return the same run with the seed of another config, from which it differs in nothing else."""
         return replace(self, settings=self.settings.model_copy(update={"seed": resolved["seed"]}), resolved=resolved)
+
+    @property
+    def compilable(self) -> bool:
+        """Whether compiled code knows all that measures in the run, and what controllers believe."""
+        return not self.plugged and not self.endpoint_sensor.read_by
 
     @property
     def feels(self) -> bool:

@@ -7,6 +7,7 @@ import numpy as np
 
 from runner.config.arms import build_loaded, build_robot
 from runner.config.disturbance_observer import check_observer
+from runner.config.endpoint_sensor import endpoint_ticks
 from runner.config.flexible_joints import check_flexible_joints
 from runner.config.flexible_links import check_flexible_links
 from runner.config.force_reading import check_reading
@@ -91,12 +92,11 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         torque_limits=sure(torque_limits),
         wrist_sensor=sure(groups.wrist_sensor),
         joint_torques=sure(groups.joint_torque_sensor).by_joint(sure(arm)),
-        mismatch=sure(groups.mismatch),
+        mismatch=sure(groups.mismatch), endpoint_sensor=sure(groups.endpoint_sensor),
         disturbance_observer=sure(groups.disturbance_observer), notch=groups.notch,
         timing=Timing(*sure(steps), sure(delay), sure(ticks)),
         parallel=sure(parallel),
-        sweep=sure(groups.sweep),
-        limits=sure(groups.limits),
+        sweep=sure(groups.sweep), limits=sure(groups.limits),
         caveats=sure(groups.caveats), spec=sure(groups.spec),
         plugged=groups.plugged, resolved=resolved,
     ))  # fmt: skip
@@ -133,6 +133,7 @@ def _checked(config: RunConfig) -> RunConfig:
     check_flexible_joints(config)
     check_flexible_links(config)
     check_reading(config)
+    endpoint_ticks(config)
     check_repeats(config)
     check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.feels)
     return config

@@ -15,6 +15,7 @@ CONTROLLERS = Controllers(
         "joint_pd": "runner.controllers.joint_pd",
         "joint_pid": "runner.controllers.joint_pid",
         "macro_mini": "runner.controllers.macro_mini",
+        "motor_pd": "runner.controllers.motor_pd",
         "operational_space": "runner.controllers.operational_space",
         "passivity": "runner.controllers.passivity",
         "sliding_mode": "runner.controllers.sliding_mode",

@@ -8,6 +8,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.config.per_stage import PositivePerStage, by_stage
 from runner.controllers.controller import Controller, FloatArray, Loop
+from runner.controllers.inertial_damping import InertialDamping
 from runner.controllers.stage_law import StageLaw
 from runner.controllers.stage_loops import Aim, CarrierController, HeldController, RiderController
 from runner.errors import ConfigError
@@ -25,7 +26,9 @@ class MacroMiniConfig(StrictModel):
         period: Time between two ticks of each, in s; every other one a multiple of the shortest.
         coupling: one_way, the riding arm makes up for what its carrier misses; two_way, the carrier in turn makes up
             for where the rider stands; independent, the rider keeps its home offset in its own frame, which turns with
-            the carrier; independent_base, it keeps it in the robot's base frame; mini_held, its joints are held.
+            the carrier; independent_base, it keeps it in the robot's base frame; mini_held, its joints are held;
+            inertial_damping, its tip swings against the carrier's vibration, about its home offset.
+        damping_gain: g of inertial damping, in 1/s: the push on the tip per velocity of its base and mass.
         macro_target: minus_home, the carrier goes to x_d - r_0; tip_goal, to x_d itself, so that the rider folds.
         mini_reference_velocity: Whether the rider follows its target's velocity (full) or a series of goals (zero).
         wrist_rotation: Whether controllers know how the carrier turns the rider's base (real) or take it parallel.
@@ -43,7 +46,8 @@ class MacroMiniConfig(StrictModel):
     natural_frequency: PositivePerStage
     damping_ratio: PositivePerStage
     period: PositivePerStage
-    coupling: Literal["one_way", "two_way", "independent", "independent_base", "mini_held"]
+    coupling: Literal["one_way", "two_way", "independent", "independent_base", "mini_held", "inertial_damping"]
+    damping_gain: NonNegativeFloat
     macro_target: Literal["minus_home", "tip_goal"]
     mini_reference_velocity: Literal["zero", "full"]
     wrist_rotation: Literal["real", "parallel"]
@@ -92,6 +96,15 @@ def _controller(config: MacroMiniConfig, robot: Robot, index: int, carrier_perio
         return CarrierController(robot, law, _carrier_offset(config, robot), parallel, config.reach, turn)
     if config.coupling == "mini_held":
         return HeldController(robot, index, law, parallel)
+    if config.coupling == "inertial_damping" and parallel:
+        raise ConfigError(
+            [
+                "controller.wrist_rotation: parallel does not tell how the base turns, which inertial_damping needs; "
+                "take real"
+            ]
+        )
+    if config.coupling == "inertial_damping":
+        return InertialDamping(robot, index, law, config.damping_gain)
     return RiderController(
         robot,
         index,
@@ -110,7 +123,8 @@ def _law(config: MacroMiniConfig, robot: Robot, index: int) -> StageLaw:
     names, model = robot.stage_names, robot.stages[index].model
     if config.payload == "known":
         model = model.with_payload(sum(stage.model.mass for stage in robot.stages[index + 1 :]))
-    feedforward = config.feedforward if index == 0 else config.mini_reference_velocity == "full"
+    swings = config.coupling == "inertial_damping"
+    feedforward = config.feedforward if index == 0 else swings or config.mini_reference_velocity == "full"
     return StageLaw(
         model,
         by_stage("controller.natural_frequency", config.natural_frequency, names)[index],

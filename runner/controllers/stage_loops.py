@@ -110,7 +110,7 @@ class CarrierController(_StageLoop[CarrierNumbers]):
         self, robot: Robot, law: StageLaw, offset: FloatArray | None, parallel: bool, reach: float, turn: float | None
     ) -> None:
         riders = range(1, len(robot.stages))
-        placed = [_base(robot, rider) for rider in riders]
+        placed = [base_at_home(robot, rider) for rider in riders]
         bases = [model for model, _ in placed]
         self._law, self._end = law, robot.stages[0].joints.stop
         self._turns, self._parallel = turn is not None, parallel
@@ -210,15 +210,15 @@ class RiderController(_StageLoop[RiderNumbers]):
         self._follows = aim == "rest"
         self._holds = self._follows and (self._turns or not stretch)
         self._released = _no_posture(self._end - self._first if self._holds else None)
-        at_home, between = _base(robot, stage)[1], robot.stages[1:stage] if parallel else ()
+        at_home, between = base_at_home(robot, stage)[1], robot.stages[1:stage] if parallel else ()
         self._between = [(below.joints.start, below.joints.stop) for below in between]
-        base, _ = _base(robot, stage - len(between))
+        base, _ = base_at_home(robot, stage - len(between))
         numbers = RiderNumbers(
             law=law.numbers,
             offset=_at_rest(at_home.dot(r_0) if aim == "base_offset" else r_0),
             later=later_offset,
             rotation=at_home,
-            between=np.array([_base(robot, index)[1] for index in range(1, 1 + len(between))]).reshape(-1, 3, 3),
+            between=np.array([base_at_home(robot, index)[1] for index in range(1, 1 + len(between))]).reshape(-1, 3, 3),
             gravity=robot.model.gravity,
             reach=reach,
             turn=0.0 if turn is None else turn,
@@ -308,7 +308,7 @@ class HeldController(_StageLoop[HeldNumbers]):
     def __init__(self, robot: Robot, stage: int, law: StageLaw, parallel: bool) -> None:
         self._law, self._parallel = law, parallel
         self._first, self._end = robot.stages[stage].joints.start, robot.stages[stage].joints.stop
-        base, at_home = _base(robot, stage)
+        base, at_home = base_at_home(robot, stage)
         numbers = HeldNumbers(law.numbers, robot.stages[stage].home, at_home, robot.model.gravity)
         super().__init__([law.model, base], law.gravity_compensation, numbers, robot.model.nq)
 
@@ -336,7 +336,7 @@ def rider_moves(maths: Maths, turn: Scalar, time: Scalar) -> Scalar:
     return count - 2.0 * maths.floor(0.5 * count)
 
 
-def _base(robot: Robot, stage: int) -> tuple[RobotModel, FloatArray]:
+def base_at_home(robot: Robot, stage: int) -> tuple[RobotModel, FloatArray]:
     """Return the robot with the base of a riding stage as its tip, and the base's rotation at home, shape (3, 3)."""
     frame = robot.stages[stage].base_frame
     assert frame is not None  # noqa: S101 - it rides

@@ -240,6 +240,7 @@ def _carrying(
         damping_ratio=dict(zip(names, ratios, strict=True)),
         period=dict(zip(names, periods, strict=True)),
         coupling="one_way",
+        damping_gain=0.0,
         macro_target="minus_home",
         mini_reference_velocity="full" if config.feedforward else "zero",
         wrist_rotation="real",

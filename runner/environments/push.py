@@ -1,4 +1,4 @@
-"""A wrench that comes and goes, steady or as a sine."""
+"""A wrench on the tip, or a force on a link, that comes and goes, steady or as a sine."""
 
 import math
 from typing import Annotated, Literal
@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.environments.environment import Environment, FloatArray
+from runner.errors import ConfigError
 from runner.registry import StrictModel
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
@@ -17,8 +18,9 @@ class PushConfig(StrictModel):
 
     Attributes:
         kind: Its name in the registry.
-        force: Force on the tip along the base's axes, in N; the amplitude of a sine.
-        moment: Moment about the tip along the base's axes, in N m; likewise.
+        force: Force along the base's axes, in N; the amplitude of a sine.
+        moment: Moment about the tip along the base's axes, in N m; likewise. 0 where a link is pushed.
+        link: Link whose origin the force acts on; None is the tip.
         begin: When it sets in, in s.
         lasts: How long it lasts, in s; None is for ever.
         frequency: Of the sine, in Hz; 0 is a steady push.
@@ -27,13 +29,14 @@ class PushConfig(StrictModel):
     kind: Literal["push"]
     force: Vector
     moment: Vector
+    link: str | None
     begin: NonNegativeFloat
     lasts: PositiveFloat | None
     frequency: NonNegativeFloat
 
 
 class Push:
-    """The push; see Environment."""
+    """The push on the tip; see Environment."""
 
     def __init__(self, config: PushConfig) -> None:
         self._wrench = np.array([*config.force, *config.moment])
@@ -46,15 +49,49 @@ class Push:
 
     def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
         """Return the wrench on the tip; see Environment.wrench."""
+        return self._wrench * self.share(time)
+
+    def share(self, time: float) -> float:
+        """Return how much of the push acts at a time, in s."""
         since = time - self._begin
         if since < -1e-9 or time > self._end - 1e-9:
-            return np.zeros(6)
-        return self._wrench * (math.sin(self._rate * since) if self._rate else 1.0)
+            return 0.0
+        return math.sin(self._rate * since) if self._rate else 1.0
+
+
+class PushOnLink:
+    """The push on a link; see PushesLinks."""
+
+    def __init__(self, config: PushConfig, link: str) -> None:
+        self._push, self._force = Push(config), np.array(config.force)
+        self.points = {link: (0.0, 0.0, 0.0)}
+        """Where the force acts: a point in the link's frame, in m."""
+
+    def reset(self, tip: FloatArray) -> None:
+        """Do nothing: it depends on the time alone."""
+
+    def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
+        """Return that nothing acts on the tip; see Environment.wrench."""
+        return np.zeros(6)
+
+    def link_forces(self, time: float, positions: FloatArray, velocities: FloatArray) -> FloatArray:
+        """Return the force on the link; see PushesLinks."""
+        return self._push.share(time) * self._force[None]
 
 
 CONFIG = PushConfig
 
 
 def build(config: PushConfig) -> Environment:
-    """Make the push that a config describes."""
-    return Push(config)
+    """Make the push that a config describes.
+
+    Raises:
+        ConfigError: for a moment on a link.
+    """
+    if config.link is None:
+        return Push(config)
+    if any(config.moment):
+        raise ConfigError(
+            [f"environment.moment: {config.moment} acts on the tip alone; take [0, 0, 0] for a push on a link"]
+        )
+    return PushOnLink(config, config.link)

@@ -30,7 +30,8 @@ class ClosedLoop:
         q_start: Joint positions at t = 0, shape (nq,), in rad; the robot starts at rest.
         parallel: Whether riding stages keep the orientation of home, as the plant has it.
         delay: Ticks from a command until it acts.
-        motor_side: What encoders at the motors of flexible joints see; None where encoders turn with the links.
+        motor_side: What drives and encoders know of the motors of flexible joints; None where joints are rigid.
+        believed: The robot as its controllers believe it to be.
         compiled: The closed loop as compiled code, or what its loops ask; None where neither is to be had.
     """
 
@@ -46,6 +47,7 @@ class ClosedLoop:
     q_start: FloatArray
     parallel: bool
     delay: int
+    believed: Robot
     motor_side: MotorSide | None = None
     compiled: Whole | CompiledCommands | None = None
 

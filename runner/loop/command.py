@@ -7,6 +7,7 @@ import numpy as np
 
 from runner.controllers import Controller, Loop, PositionController
 from runner.loop.closed_loop import ClosedLoop
+from runner.loop.endpoint import MeasuredTip
 from runner.loop.recorder import Recorder
 from runner.sensing import Encoders
 from runner.trace import FloatArray
@@ -22,17 +23,21 @@ class Command:
         loop: The control loop; its controller is reset here.
         encoders: Its joint measurement, with a draw for each of its ticks.
         recorder: Holds reference and time, and takes what is asked for.
+        tip: What the loop knows of the tip beside the encoders; None where that is nothing.
 
     Attributes:
         every: Ticks between two of its own.
     """
 
-    def __init__(self, closed: ClosedLoop, loop: Loop, encoders: Encoders, recorder: Recorder) -> None:
+    def __init__(
+        self, closed: ClosedLoop, loop: Loop, encoders: Encoders, recorder: Recorder, tip: MeasuredTip | None = None
+    ) -> None:
         self.every = closed.every(loop)
         self._law = _reset(closed, loop)
-        self._measure = encoders.measure
+        self._measure, self._tip = encoders.measure, tip
         self._times = recorder.times
         self._desired = recorder.joints if loop.follows_joints and recorder.joints is not None else recorder.desired
+        self._motors, self._joints = closed.motor_side, loop.joints
         self._held: FloatArray = recorder.command[loop.joints]  # a view: what is written there is what is asked for
         self._highest: FloatArray = closed.limits[loop.joints]
         self._lowest: FloatArray = -self._highest
@@ -40,7 +45,13 @@ class Command:
 
     def update(self, k: int, q: FloatArray, dq: FloatArray) -> None:
         """Ask the law in tick k, from the true state, shapes (nq,)."""
-        asked = self._law(self._times[k], *self._measure(k // self.every, q, dq), self._desired[k])
+        tick, desired = k // self.every, self._desired[k]
+        q, dq = self._measure(tick, q, dq)
+        if self._tip is not None:
+            desired = self._tip.correct(tick, q, dq, desired)
+        asked = self._law(self._times[k], q, dq, desired)
+        if self._motors is not None:
+            asked = asked + self._motors.damping()[self._joints]
         if self._clipped:
             np.minimum(asked, self._highest, out=asked)
             np.maximum(asked, self._lowest, out=asked)

@@ -5,6 +5,7 @@ from typing import Protocol, cast
 from runner.loop.closed_loop import ClosedLoop
 from runner.loop.recorder import Recorder
 from runner.plants import Plant, PositionPlant
+from runner.plants.load import push
 from runner.trace import FloatArray
 
 
@@ -30,7 +31,7 @@ class TorqueDrive:
     def advance(self, k: int, load: FloatArray | None) -> None:
         """Move the plant; see Drive."""
         acting = self._commands[max(k - self._delay, 0)]
-        self._plant.advance(acting if load is None else acting + load)
+        self._plant.advance(acting) if load is None else push(self._plant, acting, load)
 
 
 class PositionDrive:

@@ -1,12 +1,12 @@
 """Simulated arms: from torques, or joint positions commanded, to true motion."""
 
+from runner.plants.end_points import TellsEndPoints
 from runner.plants.kinds import PlantConfig, Plants
 from runner.plants.plant import (
     ContactPlant,
     Plant,
     PositionPlant,
     TellsContact,
-    TellsEndPoints,
     ToolReactionPlant,
     innermost,
 )

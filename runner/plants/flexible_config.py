@@ -7,11 +7,12 @@ from pydantic import NonNegativeFloat
 
 from runner.config.per_joint import expand
 from runner.config.per_stage import SpringPerStage, by_stage
-from runner.errors import ConfigError
+from runner.errors import ConfigError, nearest
 from runner.plants.flexible_joints import Flexibility
 from runner.plants.plant import FloatArray
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.texts import quoted
 
 
 class FlexibleJointsConfig(StrictModel):
@@ -22,6 +23,10 @@ class FlexibleJointsConfig(StrictModel):
             for a joint that is rigid.
         motor_inertia: Inertia of the motor after its gear, in kg m^2; likewise, None for the same joints.
         damping_ratio: Damping of each joint's spring, of its link alone with the others held at home: 1 is critical.
+        torsion_damping: Ratio of the damping that drives add, of each motor alone against its spring, from encoders at
+            motor and link: the fast part of Spong's composite control. 0 is none.
+        braked: When the brakes of a stage's motors close, in s, by stage; 0 is from the start. They stay open where a
+            stage is not named.
         encoders: Whether the encoders turn with the motors or with the links.
         static_deflection: Whether readings at the motors are corrected for the deflection under the believed weight.
     """
@@ -29,6 +34,8 @@ class FlexibleJointsConfig(StrictModel):
     stiffness: SpringPerStage
     motor_inertia: SpringPerStage
     damping_ratio: NonNegativeFloat
+    torsion_damping: NonNegativeFloat
+    braked: dict[str, NonNegativeFloat]
     encoders: Literal["motor", "link"]
     static_deflection: Literal["known", "unknown"]
 
@@ -57,9 +64,29 @@ class FlexibleJointsConfig(StrictModel):
         if problems:
             raise ConfigError(problems)
         held = np.diag(arm.model.mass_matrix(arm.home))
-        damping = np.zeros(len(springs))
+        damping, fed_back = np.zeros((2, len(springs)))
         damping[flexible] = 2.0 * self.damping_ratio * np.sqrt(springs[flexible] * held[flexible])
-        return Flexibility(springs, np.where(flexible, motors, 0.0), damping)
+        fed_back[flexible] = 2.0 * self.torsion_damping * np.sqrt(springs[flexible] * motors[flexible])
+        motors = np.where(flexible, motors, 0.0)
+        return Flexibility(springs, motors, damping, self._find_braked(arm, flexible), fed_back)
+
+    def _find_braked(self, arm: Robot, flexible: np.ndarray) -> FloatArray:
+        """Return when joints are braked, shape (nq,), in s."""
+        braked, stages, key = np.full(len(flexible), np.inf), arm.stage_names, "plant.flexible_joints.braked"
+        problems = []
+        for name, time in self.braked.items():
+            if name not in stages:
+                problems.append(
+                    f"{key}: no such stage: {quoted(name)}{nearest(name, stages)}; stages: {', '.join(stages)}"
+                )
+                continue
+            joints = arm.stages[stages.index(name)].joints
+            if not flexible[joints].all():
+                problems.append(f"{key}: {name} has rigid joints, whose motors are links; give each of them a spring")
+            braked[joints] = time
+        if problems:
+            raise ConfigError(problems)
+        return braked
 
 
 def _expand(name: str, value: SpringPerStage, arm: Robot) -> FloatArray:

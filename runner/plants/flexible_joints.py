@@ -17,11 +17,16 @@ class Flexibility:
         stiffness: K of each joint, shape (nq,), in N m/rad; infinite where it is rigid.
         motors: B, inertia of each motor after its gear, shape (nq,), in kg m^2; 0 where the joint is rigid.
         damping: D of each joint, shape (nq,), in N m s/rad; 0 where it is rigid.
+        braked: When the brake of each motor closes, shape (nq,), in s; infinite where it stays open.
+        fed_back: K_f of each joint, shape (nq,), in N m s/rad: what its drive asks of the motor against the rate at
+            which its spring turns.
     """
 
     stiffness: FloatArray
     motors: FloatArray
     damping: FloatArray
+    braked: FloatArray
+    fed_back: FloatArray
 
     @property
     def flexible(self) -> np.ndarray:
@@ -60,7 +65,7 @@ class FlexibleJoints:
         B \ddot\theta + K (\theta - q) + D (\dot\theta - \dot q) = \tau
 
     The model is that of Spong (J. Dyn. Syst. Meas. Control 109, 1987): a motor feels no inertia but its own spin.
-    A rigid joint takes its torque as it is.
+    A rigid joint takes its torque as it is. A brake that closes stops its motor at once, whatever the torque.
 
     Args:
         model: The arm's rigid-body model, of the links alone.
@@ -72,8 +77,9 @@ class FlexibleJoints:
     def __init__(self, model: RobotModel, flexibility: Flexibility, step: float, steps_per_tick: int) -> None:
         self._model = pin.Model(model.pin_model)
         self._data = self._model.createData()
-        self._flexibility, self._on = flexibility, flexibility.flexible
+        self.flexibility, self._on = flexibility, flexibility.flexible
         self._stiffness, self._motors = flexibility.stiffness[self._on], flexibility.motors[self._on]
+        self._ticks, self._free = 0, np.ones(int(self._on.sum()), dtype=bool)
         self._damping = flexibility.damping[self._on]
         self._step, self._steps_per_tick = step, steps_per_tick
         self.q, self.dq = np.zeros(model.nq), np.zeros(model.nq)
@@ -81,12 +87,15 @@ class FlexibleJoints:
         """Motor positions after the gear, shape (nq,), in rad; of a rigid joint its own."""
         self.dtheta: FloatArray = np.zeros(model.nq)
         """Motor velocities after the gear, shape (nq,), in rad/s; likewise."""
+        self.load: FloatArray = np.zeros(model.nq)
+        """What the world adds to the torques of the links in the next tick; see TakesLoad."""
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Put the links into a state, and the motors where their springs carry the links' weight; see Plant."""
         self.q[:], self.dq[:], self.dtheta[:] = q, dq, dq
+        self._ticks, self.load[:] = 0, 0.0
         weight = pin.computeGeneralizedGravity(self._model, self._data, self.q)
-        self.theta[:] = self.q + self._flexibility.deflection(weight)
+        self.theta[:] = self.q + self.flexibility.deflection(weight)
 
     def set_gravity(self, gravity: FloatArray) -> None:
         """Take another gravity vector; see Plant."""
@@ -95,6 +104,7 @@ class FlexibleJoints:
     def advance(self, tau: FloatArray) -> None:
         """Hold the motors' torques for one tick; see Plant."""
         on, nq, h = self._on, len(self.q), self._step
+        self._brake(on)
         x = np.concatenate([self.q, self.theta[on], self.dq, self.dtheta[on]])
         for _ in range(self._steps_per_tick):
             k1 = self._slope(x, tau)
@@ -107,15 +117,27 @@ class FlexibleJoints:
         self.theta[:], self.dtheta[:] = self.q, self.dq
         self.theta[on], self.dtheta[on] = places[nq:], speeds[nq:]
 
+    def _brake(self, on: np.ndarray) -> None:
+        """Stop the motors whose brakes close in the tick that begins."""
+        now, self._ticks = self._ticks * self._steps_per_tick * self._step, self._ticks + 1
+        self._free = now < self.flexibility.braked[on] - 1e-9
+        self.dtheta[on] *= self._free
+
     def _slope(self, x: FloatArray, tau: FloatArray) -> FloatArray:
         """Return the slope of links' and motors' positions, then of their velocities."""
         on, nq, n = self._on, len(self.q), len(x) // 2
         places, speeds = x[:n], x[n:]
         spring = self._stiffness * (places[nq:] - places[:nq][on]) + self._damping * (speeds[nq:] - speeds[:nq][on])
-        acting = tau.copy()
-        acting[on] = spring
+        acting = tau + self.load
+        acting[on] = spring + self.load[on]
         links = pin.aba(self._model, self._data, places[:nq], speeds[:nq], acting)
-        return np.concatenate([speeds, links, (tau[on] - spring) / self._motors])
+        return np.concatenate([speeds, links, self._free * (tau[on] - spring) / self._motors])
+
+    def spring_torque(self) -> FloatArray:
+        """Return what springs and dampers put on the links, shape (nq,), in N m; 0 where a joint is rigid."""
+        torque, on = np.zeros(len(self.q)), self._on
+        torque[on] = self._stiffness * (self.theta - self.q)[on] + self._damping * (self.dtheta - self.dq)[on]
+        return torque
 
     def energy(self) -> float:
         """Return the energy of links, springs and motors, in J."""

@@ -116,6 +116,13 @@ class FlexibleLinks:
         pin.framesForwardKinematics(self._model, self._data, self.places)
         return np.array([self._data.oMf[end].translation for end in self._ends])
 
+    def tip_motion(self) -> FloatArray:
+        """Return position and velocity of the tip, shape (2, 3), in m and m/s; see TellsEndPoints."""
+        model, data, tip = self._model, self._data, self._ends[-1]
+        pin.forwardKinematics(model, data, self.places, self.speeds)
+        place = pin.updateFramePlacement(model, data, tip)
+        return np.array([place.translation, pin.getFrameVelocity(model, data, tip, pin.LOCAL_WORLD_ALIGNED).linear])
+
     def energy(self) -> float:
         """Return the energy of parts, motors and springs, in J."""
         M = np.triu(pin.crba(self._model, self._data, self.places))  # with the motors

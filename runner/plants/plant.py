@@ -101,15 +101,6 @@ class ToolReactionPlant(Protocol):
         ...
 
 
-@runtime_checkable
-class TellsEndPoints(Protocol):
-    """A plant of ours whose stages end elsewhere than its joints tell, as its links bend."""
-
-    def end_points(self) -> FloatArray:
-        """Return the end point of each stage now, shape (stages, 3), in m; see runner.robots.robot.end_points."""
-        ...
-
-
 def innermost(plant: Plant) -> Plant:
     """Return the plant that moves the arm, below servos and friction."""
     while isinstance(plant, PlantAround):

@@ -10,6 +10,7 @@ from runner.plants.decoupled import TorquePlantConfig, assemble_plant
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_joints import FlexibleJoints
 from runner.plants.motion import Motion, find_motion
+from runner.plants.motor_friction import MotorFriction
 from runner.plants.plant import FloatArray, Plant
 from runner.robots.model import RobotModel
 from runner.robots.modes import Mode, find_modes
@@ -96,9 +97,12 @@ CONFIG = Rk4Config
 
 def build(config: Rk4Config, robot: Robot, step: float, steps_per_tick: int) -> Plant:
     """Make the plant that a config describes."""
-    if config.flexible_joints is not None:
-        return FlexibleJoints(robot.model, config.flexible_joints.by_joint(robot), step, steps_per_tick)
     tick = step * steps_per_tick
+    if config.flexible_joints is not None:
+        (arm,) = find_motion(robot, config).arms
+        springs = FlexibleJoints(arm.model, config.flexible_joints.by_joint(robot), step, steps_per_tick)
+        rubs = arm.viscous.any() or arm.coulomb.any()
+        return MotorFriction(springs, arm.viscous, arm.coulomb, tick) if rubs else springs
     return assemble_plant(config, robot, tick, lambda _, model: Rk4(model, step, steps_per_tick))
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pinocchio as pin
 
 from runner.plants.friction import friction_of
+from runner.plants.load import push
 from runner.plants.plant import FloatArray, Plant
 from runner.robots.model import RobotModel
 
@@ -68,7 +69,7 @@ class Touched:
     def advance(self, tau: FloatArray) -> None:
         """Hold the torques for one tick; see Plant."""
         for _ in range(self._steps_per_tick):
-            self._plant.advance(tau + self._touch(self._lead * self._step))
+            push(self._plant, tau, self._touch(self._lead * self._step))
             self._time += self._step
         self._touch(0.0)
 

@@ -28,6 +28,7 @@ _WORDS = {
     "computed_torque": "computed torque",
     "joint_pd": "joint PD",
     "joint_pid": "joint PID",
+    "motor_pd": "motor PD",
     "sliding_mode": "sliding mode",
     "passivity": "passivity-based",
     "with_integral": "computed torque + integral",

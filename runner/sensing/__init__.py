@@ -1,6 +1,7 @@
 """What the controllers are told of the true motion."""
 
 from runner.sensing.encoders import EncoderNoise, JointEncoders, encoder_errors
+from runner.sensing.endpoint import EndpointSensorConfig
 from runner.sensing.force_torque import ForceTorqueConfig, ForceTorqueSensor
 from runner.sensing.joint_torque import JointTorqueConfig, JointTorqueSensor
 from runner.sensing.kinds import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, Encoders, TorqueSensors, WristSensor
@@ -11,6 +12,7 @@ __all__ = [
     "WRIST_SENSORS",
     "EncoderNoise",
     "Encoders",
+    "EndpointSensorConfig",
     "ForceTorqueConfig",
     "ForceTorqueSensor",
     "JointEncoders",

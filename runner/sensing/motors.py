@@ -1,28 +1,43 @@
-"""Encoders that turn with the motors of flexible joints."""
+"""What drives and encoders know of flexible joints: encoders that turn with the motors, and those on both sides."""
 
-from runner.plants.flexible_joints import Flexibility, FlexibleJoints
+from runner.plants.flexible_joints import FlexibleJoints
 from runner.robots.model import FloatArray, RobotModel
 
 
 class MotorSide:
-    r"""What encoders at the motors see of the joints, before their noise.
+    r"""What encoders see of flexible joints, before their noise, and what drives add to the torques of laws.
+
+    Encoders that turn with the motors see
 
     .. math:: \hat q = \theta - K^{-1} G(\theta), \qquad \hat{\dot q} = \dot\theta
 
     At rest q-hat differs from q by K^-1 (G(q) - G(theta)), of second order in 1/K. Without the correction it is theta.
 
+    Drives with encoders on both sides, exact ones, add the fast part of composite control (Spong, J. Dyn. Syst. Meas.
+    Control 109, 1987), at the ticks of each control loop:
+
+    .. math:: \tau = \tau_{law} - K_f (\dot\theta - \dot q)
+
+    It takes down the vibration of the springs, which a law for the rigid arm by encoders at the links would excite.
+
     Args:
-        plant: The plant whose motors turn.
-        flexibility: Its springs.
+        plant: The plant with the springs.
+        at_motors: Whether the encoders that laws read turn with the motors, else with the links.
         weight: The arm as it is believed, whose weight bends the joints; None for readings without correction.
     """
 
-    def __init__(self, plant: FlexibleJoints, flexibility: Flexibility, weight: RobotModel | None) -> None:
-        self._plant, self._flexibility, self._weight = plant, flexibility, weight
+    def __init__(self, plant: FlexibleJoints, at_motors: bool, weight: RobotModel | None) -> None:
+        self._plant, self._at_motors, self._weight = plant, at_motors, weight
 
     def read(self) -> tuple[FloatArray, FloatArray]:
-        """Return positions and velocities of the joints as the motors tell them, shapes (nq,), in rad and rad/s."""
-        theta, dtheta = self._plant.theta, self._plant.dtheta
+        """Return positions and velocities of the joints as encoders tell them, shapes (nq,), in rad and rad/s."""
+        plant = self._plant
+        if not self._at_motors:
+            return plant.q, plant.dq
         if self._weight is None:
-            return theta, dtheta
-        return theta - self._flexibility.deflection(self._weight.gravity_torque(theta)), dtheta
+            return plant.theta, plant.dtheta
+        return plant.theta - plant.flexibility.deflection(self._weight.gravity_torque(plant.theta)), plant.dtheta
+
+    def damping(self) -> FloatArray:
+        """Return what drives add to the torques that laws ask for, shape (nq,), in N m."""
+        return self._plant.flexibility.fed_back * (self._plant.dq - self._plant.dtheta)

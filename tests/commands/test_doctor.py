@@ -98,7 +98,8 @@ def test_controllers_lead_strangers(simulated_stranger, name, controller):
 
 @pytest.fixture(scope="module")
 def simulated_stranger():
-    from runner.assembly import assemble, make_encoders
+    from runner.assembly import assemble
+    from runner.loop.sensors import make_encoders
     from runner.simulation import simulate
 
     def make(name, *overrides):

@@ -24,6 +24,7 @@ CASES = [
     ("combined", "whole_body"),
     *((robot, "computed_torque") for robot in ("macro", "xarm7", "mixed", "planar")),
     *((robot, "joint_pd") for robot in ("macro", "xarm7")),
+    ("macro", "motor_pd"),
     *((robot, "adaptive") for robot in ("meca500", "mixed")),
     *((robot, law) for robot in ("macro", "xarm7") for law in ("adaptive", "joint_pid", "passivity", "sliding_mode")),
 ]
@@ -31,6 +32,8 @@ CASES = [
 
 def configured(robot, controller, *overrides):
     chosen = f"controller={controller}", "trajectory=goal", *overrides
+    if controller == "motor_pd":
+        chosen = (*chosen, "plant=rk4_flexible", "plant.flexible_joints.static_deflection=unknown")
     if robot in strangers.STRANGERS:
         return strangers.config(robot, *chosen)
     return validate(compose([f"robot={robot}", *chosen]).resolved)

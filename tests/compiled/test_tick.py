@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
 from runner.compiled import compile
 from runner.compiled.closed_loop import CompiledCommands, Whole, run_all
 from runner.config.compose import compose
 from runner.config.validation import validate
+from runner.loop.sensors import make_encoders
 from runner.simulation import simulate
 
 NOISY = "noise=thesis", "torque_limits=thesis"

@@ -6,11 +6,12 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
 from runner.compiled import compile
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.errors import ConfigError
+from runner.loop.sensors import make_encoders
 from runner.plants.rk4 import Rk4
 from runner.simulation import simulate
 from runner.store import open_run

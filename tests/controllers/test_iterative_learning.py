@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 import strangers
 
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
 from runner.controllers.iterative_learning import IterativeLearning, IterativeLearningConfig
 from runner.errors import ConfigError
 from runner.execution import run
+from runner.loop.sensors import make_encoders
 from runner.robots.model import RobotModel
 from runner.simulation import simulate
 

@@ -5,13 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
 from runner.compiled.closed_loop import Whole
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.controllers.maths import FLOATS
 from runner.controllers.notch import Notch, NotchedController
 from runner.errors import ConfigError
+from runner.loop.sensors import make_encoders
 from runner.simulation import simulate
 from runner.store import simulated_part
 

@@ -8,6 +8,7 @@ from runner.environments import ENVIRONMENTS
 from runner.environments.hand import HandConfig
 from runner.environments.push import PushConfig
 from runner.environments.wall import WallConfig
+from runner.errors import ConfigError
 
 TIP, REST = np.array([0.3, 0.1, 0.2]), np.zeros(3)
 
@@ -19,7 +20,14 @@ def make(config):
 
 
 def push(**changes):
-    values = {"force": [1.0, 0.0, -2.0], "moment": [0.0, 0.1, 0.0], "begin": 0.5, "lasts": None, "frequency": 0.0}
+    values = {
+        "force": [1.0, 0.0, -2.0],
+        "moment": [0.0, 0.1, 0.0],
+        "begin": 0.5,
+        "link": None,
+        "lasts": None,
+        "frequency": 0.0,
+    }
     return make(PushConfig(kind="push", **(values | changes)))
 
 
@@ -41,6 +49,19 @@ def test_a_sine_starts_from_zero_with_its_frequency():
     times = 0.5 + np.linspace(0.0, 1.0, 50)
     forces = [sine.wrench(time, TIP, REST)[2] for time in times]
     np.testing.assert_allclose(forces, -2.0 * np.sin(2.0 * np.pi * 2.0 * (times - 0.5)), atol=1e-12)
+
+
+def test_a_push_on_a_link_leaves_the_tip_alone():
+    beside = push(link="link2", moment=[0.0, 0.0, 0.0], lasts=0.2)
+    assert list(beside.points) == ["link2"]
+    np.testing.assert_array_equal(beside.link_forces(0.6, TIP[None], REST[None]), [[1.0, 0.0, -2.0]])
+    np.testing.assert_array_equal(beside.link_forces(0.8, TIP[None], REST[None]), np.zeros((1, 3)))
+    assert not beside.wrench(0.6, TIP, REST).any()
+
+
+def test_a_moment_acts_on_the_tip_alone():
+    with pytest.raises(ConfigError, match="a push on a link"):
+        push(link="link2")
 
 
 def wall(**changes):

@@ -4,10 +4,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
 from runner.controllers import Loop
 from runner.errors import ConfigError, SimulationError
 from runner.guard import WatchedController, watch_loops
+from runner.loop.sensors import make_encoders
 from runner.simulation import simulate
 
 
@@ -98,7 +99,7 @@ def test_what_it_feels_and_tells_is_watched_too():
     law = WatchedController(Feels(None), 3)
     with pytest.raises(SimulationError, match=r"read-only \(test_controller.py, line \d+, in feel\)"):
         law.feel(np.ones(6))
-    assert law.notices() == ["ZeroDivisionError: division by zero (test_controller.py, line 94, in notices)"]
+    assert law.notices() == ["ZeroDivisionError: division by zero (test_controller.py, line 95, in notices)"]
     law._controller.felt = np.zeros(3)
     with pytest.raises(SimulationError, match=r"Feels.feel .* gave an array of shape \(3,\)"):
         _ = law.felt

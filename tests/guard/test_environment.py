@@ -4,9 +4,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.assembly import make_encoders, make_wrist_sensor
 from runner.guard import WatchedEnvironment
 from runner.interaction import Interaction
+from runner.loop.sensors import make_encoders, make_wrist_sensor
 from runner.simulation import simulate
 
 

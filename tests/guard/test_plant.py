@@ -4,8 +4,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.assembly import make_encoders
 from runner.guard import watch_plant
+from runner.loop.sensors import make_encoders
 from runner.simulation import simulate
 
 

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 import strangers
 
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
+from runner.loop.sensors import make_encoders
 from runner.simulation import simulate
 
 CLOSED = {

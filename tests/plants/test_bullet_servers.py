@@ -18,7 +18,8 @@ from runner.plants.bullet_servers import SERVERS, PhysicsServers  # noqa: E402
 RUN = """
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
+from runner.loop.sensors import make_encoders
 from runner.simulation import simulate
 config = validate(compose(["robot=macro", "noise=thesis", "torque_limits=thesis", "duration=0.5"]).resolved)
 loop = assemble(config)

@@ -18,9 +18,14 @@ def macro():
     return RobotModel(read_urdf(find_urdf("macro.urdf"), {}), "tip")
 
 
+def springs(stiffness, motors, damping):
+    zero = np.zeros(len(stiffness))
+    return Flexibility(stiffness, motors, damping, zero + np.inf, zero)
+
+
 def made(model, stiffness, motor, step, damping=0.0, steps=1):
     full = np.ones(model.nq)
-    return FlexibleJoints(model, Flexibility(stiffness * full, motor * full, damping * full), step, steps)
+    return FlexibleJoints(model, springs(stiffness * full, motor * full, damping * full), step, steps)
 
 
 def linearised(move, rest, width=1e-6):
@@ -117,9 +122,7 @@ def test_motor_encoders_bear_gains_until_the_motor_alone_is_too_light_for_the_pe
     model, step, omega = macro().with_payload(0.2), 1e-2, 30.0  # the Mini's mass
 
     def radius(motor):
-        plant = FlexibleJoints(
-            model, Flexibility(*(np.full(3, value) for value in (300.0, motor, 0.0))), step / 10.0, 10
-        )
+        plant = FlexibleJoints(model, springs(*(np.full(3, value) for value in (300.0, motor, 0.0))), step / 10.0, 10)
         G = model.gravity_torque(HOME)
         plant.reset(HOME, np.zeros(3))
         rest, M = plant.theta.copy(), model.mass_matrix(HOME) + motor * np.eye(3)
@@ -138,13 +141,13 @@ def test_motor_encoders_bear_gains_until_the_motor_alone_is_too_light_for_the_pe
 
 def test_the_largest_rate_is_that_of_two_masses_on_a_spring():
     stiffness, links, motor, damping = 1000.0, 3.0, 2.0, 0.4
-    rate = Flexibility(*np.array([[stiffness], [motor], [damping]])).largest_rate(np.array([[links]]))
+    rate = springs(*np.array([[stiffness], [motor], [damping]])).largest_rate(np.array([[links]]))
     assert rate == pytest.approx(np.sqrt(stiffness * (1.0 / links + 1.0 / motor)), rel=1e-9)
 
 
 def test_rigid_joints_move_as_those_of_a_rigid_arm():
     model, tau = macro(), np.array([3.0, 30.0, 8.0])
-    rigid = FlexibleJoints(model, Flexibility(np.full(3, np.inf), np.zeros(3), np.zeros(3)), 2.5e-4, 1200)
+    rigid = FlexibleJoints(model, springs(np.full(3, np.inf), np.zeros(3), np.zeros(3)), 2.5e-4, 1200)
     rigid.reset(HOME, np.zeros(3))
     rigid.advance(tau)
 

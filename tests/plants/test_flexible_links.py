@@ -82,6 +82,18 @@ def test_links_that_are_too_soft_for_their_weight_are_told():
         plant.reset(np.array([0.0, np.pi / 2, 0.3]), np.zeros(3))
 
 
+def test_the_velocity_of_the_tip_is_how_it_moves():
+    plant = made(macro(), 300.0, 0.2, 2, 2.0, 1e-5)
+    plant.reset(POSTURE, np.array([0.3, -0.2, 0.5]))
+    plant.speeds[plant._springs] = 0.1
+    tips = []
+    for _ in range(3):
+        tips.append(plant.tip_motion())
+        plant.advance(np.zeros(3))
+    assert (tips[2][0] - tips[0][0]) / 2e-5 == pytest.approx(tips[1][1], rel=1e-4)
+    assert plant.tip_motion()[0] == pytest.approx(plant.end_points()[-1], abs=1e-15)
+
+
 @pytest.mark.parametrize(("mass", "parts"), [(0.0, 1), (0.3, 2)])
 def test_with_held_motors_it_rings_as_its_modes_say(mass, parts):
     """Eigenvalues of the step, differentiated, against e^(s h) of the modes, damping included."""

@@ -4,8 +4,9 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
 from runner.execution import run
+from runner.loop.sensors import make_encoders
 from runner.robots.mismatch import MismatchConfig, believe
 from runner.simulation import simulate
 

@@ -5,9 +5,10 @@ import pinocchio as pin
 import pytest
 import yaml
 
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
 from runner.config.compose import compose
 from runner.config.validation import validate
+from runner.loop.sensors import make_encoders
 from runner.paths import conf_dir
 from runner.plants.rk4 import Rk4
 from runner.robots import RobotModel, find_urdf, read_urdf

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from runner.assembly import make_encoders
+from runner.loop.sensors import make_encoders
 from runner.sensing import EncoderNoise, JointEncoders
 
 PERIOD = 0.01

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.loop.joint_torques import make_joint_torque_sensor
+from runner.loop.sensors import make_encoders
 from runner.sensing import JointTorqueSensor
 from runner.simulation import simulate
 

@@ -80,7 +80,7 @@ SOME = {
 @pytest.mark.parametrize(
     ("work", "runs", "calibrations"),
     [
-        ("thesis", 380, 0),
+        ("thesis", 446, 0),
         ("xarm7", 119, 0),
         ("meca500", 244, 36),
         ("engines", 309, 0),

@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 
 from runner import provenance, store
-from runner.assembly import assemble, make_encoders
+from runner.assembly import assemble
 from runner.config.compose import compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.errors import StoreError
 from runner.loop.closed_loop import ClosedLoop
+from runner.loop.sensors import make_encoders
 from runner.plants import Plant
 from runner.plants.rk4 import Rk4
 from runner.robots.model import RobotModel

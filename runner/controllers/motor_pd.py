@@ -1,0 +1,99 @@
+"""Proportional and derivative control of the motors of flexible joints, with gravity where they are to go."""
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from runner.config.per_joint import PositivePerJoint, expand
+from runner.controllers.controller import FloatArray
+from runner.controllers.joint_law import JointLaw, JointLawConfig, joint_law_builder
+from runner.controllers.joint_law import start_posture as start_posture
+from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
+from runner.controllers.maths import Array, Scalar
+from runner.controllers.sampled_stability import VelocityGain
+from runner.controllers.torque_law import Arm
+from runner.robots.model import RobotModel
+
+
+class MotorPdConfig(JointLawConfig):
+    """Config of PD control of motors behind springs.
+
+    Attributes:
+        kind: Its name in the registry.
+        natural_frequency: omega_n of every joint that no other moves and no spring bends, and of the motion that leads
+            the tip, in rad/s.
+        stiffness: K of the springs as it is believed, in N m/rad; one for all joints or a list with one for each.
+    """
+
+    kind: Literal["motor_pd"]
+    stiffness: PositivePerJoint
+
+
+class MotorPdNumbers(NamedTuple):
+    """The numbers of PD control of motors.
+
+    Attributes:
+        motion: Of the joint motion that is followed.
+        k_p: omega_n^2, in 1/s^2.
+        k_v: 2 xi omega_n, in 1/s.
+        inertia: Diagonal of M + B at home, shape (nq,), in kg m^2.
+        compliance: K^-1 of each joint, shape (nq,), in rad/(N m).
+    """
+
+    motion: JointMotionNumbers
+    k_p: Scalar
+    k_v: Scalar
+    inertia: Array
+    compliance: Array
+
+
+class MotorPd(JointLaw[MotorPdNumbers]):
+    r"""PD control of motors with gravity (Tomei, IEEE Transactions on Automatic Control 36(10), 1991).
+
+    .. math:: \tau = D (\omega_n^2 (\theta_d - \theta) + 2 \xi \omega_n (\dot q_d - \dot\theta)) + G(q_d), \qquad
+        \theta_d = q_d + K^{-1} G(q_d)
+
+    with D = diag(M + B) at home. At rest the links are where they are to be, exactly, if K and G are as believed, and
+    stay there wherever the arm comes from if K is above what G changes by per angle. It reads theta, no more: the
+    encoders turn with the motors, and their readings are not corrected.
+
+    Args:
+        model: The arm.
+        config: The law's numbers.
+        rest: Home: posture of the null space and of D, shape (nq,), in rad.
+        joints: Whether the desired motion is one of the joints; see JointMotion.
+
+    Raises:
+        ConfigError: if the arm has fewer joints than the task has dimensions, or a list another length.
+    """
+
+    def __init__(self, model: RobotModel, config: MotorPdConfig, rest: FloatArray, joints: bool = False) -> None:
+        motion = JointMotion(model, config, rest, joints)
+        stiffness = expand("controller.stiffness", config.stiffness, model.joint_names)
+        numbers = MotorPdNumbers(
+            motion=motion.numbers,
+            k_p=config.natural_frequency**2,
+            k_v=2.0 * config.damping_ratio * config.natural_frequency,
+            inertia=model.mass_matrix(rest).diagonal().copy(),
+            compliance=1.0 / np.array(stiffness),
+        )
+        super().__init__(model, motion, config.gravity_compensation, numbers)
+
+    @property
+    def velocity_gain(self) -> VelocityGain:
+        """K_v; see HasVelocityGain."""
+        return VelocityGain(self.numbers.k_v, 0.0, True)
+
+    def command(
+        self, arm: Arm, numbers: MotorPdNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
+    ) -> tuple[Array, Array]:
+        """Return the torques of the law above; see JointLaw."""
+        rest = np.zeros(len(q))
+        weight = arm.inverse_dynamics(desired.q, rest, rest)
+        off = desired.q + numbers.compliance * weight - q
+        return numbers.inertia * (numbers.k_p * off + numbers.k_v * (desired.dq - dq)) + weight, memory
+
+
+CONFIG = MotorPdConfig
+FOLLOWS_JOINTS = True
+build = joint_law_builder(MotorPd)

@@ -1,0 +1,200 @@
+"""What the chapter on a flexible Macro works out: modes, limits of stability, and damping from what rings down."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.reporting.document import FloatArray, Series
+from runner.reporting.figures import columns, joint_columns, model_of
+from runner.reporting.prose.patterns import found
+from runner.reporting.run_values import clock
+from runner.store import Run
+
+_MACRO = 3  # its joints
+_STIFFNESSES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0)  # N m/rad
+_KICK = 0.3  # s, after which the push of a run that rings is over
+_PEAKS = 2
+_HEARD = 0.02  # of the largest peak, below which peaks tell nothing of one mode
+_SETTLED = 2e-3  # m
+
+
+def modes(runs: Mapping[str, Run], run: str, law: float) -> list[Series]:
+    """Return the Macro's modes at home in Hz against the stiffness of its joints, and a law's frequency in rad/s."""
+    stiffness = np.array(_STIFFNESSES)
+    rates = [np.sqrt(stiffness / mass) / (2.0 * np.pi) for mass in np.linalg.eigvalsh(_mass(runs[run]))[::-1]]
+    lines = [Series(f"mode {mode}", stiffness, rate, "line", color=mode) for mode, rate in enumerate(rates, 1)]
+    return [*lines, Series("law", stiffness, np.full(len(stiffness), law / (2.0 * np.pi)), "dotted", color=0)]
+
+
+def lowest_mode(run: Run) -> float:
+    """Return the frequency of the Macro's lowest mode at home, with what rides on it held, in Hz."""
+    stiffness = float(run.config["plant"]["flexible_joints"]["stiffness"]["macro"])
+    return float(np.sqrt(stiffness / np.linalg.eigvalsh(_mass(run))[-1]) / (2.0 * np.pi))
+
+
+def grows(run: Run) -> bool:
+    """Tell whether what moves at the end moves faster than half-way, as it does where a law is unstable."""
+    if run.status == "failed":
+        return True
+    speed = np.abs(joint_columns(run.trace, "dq")).max(axis=1)
+    tenth = max(1, len(speed) // 10)
+    return bool(speed[-tenth:].max() > speed[5 * tenth : 6 * tenth].max())
+
+
+def motors_bear(runs: Mapping[str, Run], run: str) -> Callable[[float], float]:
+    """Return the natural frequency in rad/s up to which the sampled law is stable by motors of an inertia in kg m^2."""
+    heaviest, period = float(np.linalg.eigvalsh(_mass(runs[run]))[-1]), float(runs[run].config["controller"]["period"])
+    return lambda inertia: 1.0 / (period * (1.0 + heaviest / inertia))
+
+
+def links_bear(runs: Mapping[str, Run], run: str) -> Callable[[float], float]:
+    """Return the natural frequency in rad/s that a first joint bears by encoders at links, against its resonance."""
+    joints = runs[run].config["plant"]["flexible_joints"]
+    link, motor = float(_mass(runs[run])[0, 0]), float(joints["motor_inertia"][0])
+    share = float(joints["damping_ratio"]) * float(np.sqrt((link + motor) / motor))
+    return lambda resonance: share * resonance
+
+
+def tried(runs: Mapping[str, Run], pattern: str, name: str, unstable: bool, color: int) -> list[Series]:
+    """Return natural frequencies tried, in rad/s, against the other level of their pattern, where they grow or not."""
+    chosen = [one for one in found(runs, pattern) if grows(one.run) == unstable]
+    place = np.array([float(next(iter(one.levels.values()))) for one in chosen])
+    omega = np.array([float(one.run.config["controller"]["natural_frequency"]) for one in chosen])
+    return [Series(name, place, omega, "points", color=color)]
+
+
+def count_runs(run: Run) -> bool:
+    """Tell that a run is there."""
+    return True
+
+
+def macro_off(run: Run) -> FloatArray:
+    """Return how far the Macro's end point is from where it is to be, at each row, in m."""
+    return np.asarray(np.linalg.norm(columns(run.trace, "macro_error"), axis=1))
+
+
+def tip_off(run: Run) -> FloatArray:
+    """Return how far the tip is from where it is to be, at each row, in m."""
+    return np.asarray(np.linalg.norm(columns(run.trace, "error"), axis=1))
+
+
+def most(of: Callable[[Run], FloatArray], after: bool) -> Callable[[Run], float]:
+    """Return the largest distance while the desired motion lasts, or after it, in m; NaN of a run that ends before."""
+
+    def worst(run: Run) -> float:
+        moving = clock(run) <= float(run.config["trajectory"]["duration"]) + 1e-9
+        return float(np.max(of(run)[~moving if after else moving], initial=np.nan if moving.all() and after else 0.0))
+
+    return worst
+
+
+def largest_tip(run: Run) -> float:
+    """Return the largest distance of the tip from where it is to be, in m."""
+    return float(tip_off(run).max())
+
+
+def macro_at_rest(run: Run) -> float:
+    """Return how far the Macro's end point is from where it is to be at the end, in m."""
+    return float(macro_off(run)[-1])
+
+
+def at_rest(run: Run) -> float:
+    """Return how far the tip is from where it is to be at the end, in m."""
+    return float(tip_off(run)[-1])
+
+
+def acceleration_over_square(run: Run) -> float:
+    """Return the largest desired acceleration over the square of the last stage's natural frequency, in m."""
+    asked = float(np.linalg.norm(columns(run.trace, "desired_acceleration"), axis=1).max())
+    return asked / float(run.config["controller"]["natural_frequency"]["mini"]) ** 2
+
+
+def displaced(run: Run) -> FloatArray:
+    """Return how far the Macro's end point is from where it began, at each row, in m."""
+    point = columns(run.trace, "macro_tip")
+    return np.asarray(np.linalg.norm(point - point[0], axis=1))
+
+
+def stroke(run: Run) -> float:
+    """Return how far the tip went from its place at the Macro's end point, at most, in m."""
+    apart = columns(run.trace, "tip") - columns(run.trace, "macro_tip")
+    return float(np.linalg.norm(apart - apart[0], axis=1).max())
+
+
+def rings_until(run: Run) -> float:
+    """Return when the Macro's end point is last 2 mm away from where it began, in s; NaN where it rings on."""
+    t, away = clock(run), displaced(run) > _SETTLED
+    last = np.flatnonzero(away)
+    return float("nan") if away[t > 0.9 * t[-1]].any() or not len(last) else float(t[last[-1]])
+
+
+def damping_ratio(run: Run, bare: Run) -> float:
+    """Return the damping ratio of the first mode of the bare Macro as its peaks rise or fall; NaN of fewer than two."""
+    phi, t, q = _shape(bare), clock(run), joint_columns(run.trace, "q")[:, :_MACRO]
+    y = (q - q[0]) @ _mass(bare) @ phi
+    peaks = 1 + np.flatnonzero((y[1:-1] > y[:-2]) & (y[1:-1] >= y[2:]))
+    peaks = peaks[t[peaks] > _KICK]
+    if len(peaks) < _PEAKS:
+        return float("nan")
+    period = float(np.diff(t[peaks]).mean())
+    heard = peaks[y[peaks] > _HEARD * y[peaks].max()]
+    return float(-np.polyfit(t[heard], np.log(y[heard]), 1)[0] * period / (2.0 * np.pi))
+
+
+def closed_damping(run: Run, bare: Run) -> float:
+    """Return what closed forms say of it: of goals without velocities, or of inertial damping; else 0."""
+    law = run.config["controller"]
+    if law["coupling"] == "inertial_damping":
+        return damping_by_gain(run, bare)(float(law["damping_gain"]))
+    if law["mini_reference_velocity"] == "zero":
+        omega, share = _first_mode(run, bare)
+        return -share * omega / float(law["natural_frequency"]["mini"])
+    return 0.0
+
+
+def damping_line(runs: Mapping[str, Run], run: str, bare: str) -> Callable[[float], float]:
+    """Return the closed form of inertial damping against its gain in 1/s, with the other numbers of a run."""
+    return damping_by_gain(runs[run], runs[bare])
+
+
+def damping_points(runs: Mapping[str, Run], pattern: str, bare: str, name: str, color: int) -> list[Series]:
+    """Return the damping ratios of runs against their gains in 1/s, as points."""
+    rung = [one.run for one in found(runs, pattern)]
+    gains = np.array([float(run.config["controller"]["damping_gain"]) for run in rung])
+    return [Series(name, gains, np.array([damping_ratio(run, runs[bare]) for run in rung]), "points", color=color)]
+
+
+def damping_by_gain(run: Run, bare: Run) -> Callable[[float], float]:
+    """Return the damping ratio of the first mode that inertial damping adds, against its gain in 1/s."""
+    omega, share = _first_mode(run, bare)
+    soft = float(run.config["controller"]["natural_frequency"]["mini"])
+    return lambda gain: share * (gain + 2.0 * soft) / (2.0 * omega)
+
+
+def _first_mode(run: Run, bare: Run) -> tuple[float, float]:
+    r"""Return the first mode's frequency in rad/s, and the Mini's mass along it over the modal mass at its base, m/m_1.
+
+    An acceleration a asked of the Mini's tip loads the Macro's joints with -M_Mm J_m^-1 a, where M_Mm is the part of
+    the mass matrix that couples Macro and Mini. Along the mode phi, whose base moves by J_M phi,
+
+    .. math:: m / m_1 = \phi^T M_{Mm} J_m^{-1} J_M \phi / (\phi^T M \phi)
+    """
+    phi, M, model, q = _shape(bare), _mass(bare), model_of(run), joint_columns(run.trace, "q")[0]
+    whole, moves = model.tip_jacobian(q)[:3], model_of(bare).tip_jacobian(np.zeros(_MACRO))[:3] @ phi
+    couples = model.mass_matrix(q)[:_MACRO, _MACRO:]
+    stiffness = float(run.config["plant"]["flexible_joints"]["stiffness"]["macro"])
+    weight = float(phi @ M @ phi)
+    light = float(phi @ couples @ np.linalg.solve(whole[:, _MACRO:], moves))
+    return float(np.sqrt(stiffness * (phi @ phi) / weight)), light / weight
+
+
+def _shape(bare: Run) -> FloatArray:
+    """Return the joints' part in the first mode of the bare Macro at home, all stiffnesses equal, shape (3,)."""
+    return np.asarray(np.linalg.eigh(_mass(bare))[1][:, -1])
+
+
+def _mass(run: Run) -> NDArray[np.float64]:
+    """Return the mass matrix of the Macro's joints at home, with what rides on it held, shape (3, 3)."""
+    model = model_of(run)
+    return model.mass_matrix(np.zeros(model.nq))[:_MACRO, :_MACRO]
