@@ -139,6 +139,17 @@ def test_a_sensor_of_the_tip_sees_what_links_bend(simulated):
     assert error(3, "[macro]") / error(6, "[macro]") == pytest.approx(4.0, rel=0.05)
 
 
+def test_a_mini_that_sees_the_tip_errs_by_the_desired_acceleration_whatever_bends_below_it(simulated):
+    """|e| = 5.774 |D|/t_f^2 / omega_n^2, as on flexible joints; the sag of the start is gone after 0.1 s."""
+    trace = simulated(
+        *("robot=combined", "plant=rk4_flexible_links", "noise=none", "torque_limits=none", *stiff(3000)),
+        *("trajectory=quintic", "trajectory.duration=1", "trajectory.goal=[0.4,0.8,0.7]", "duration=1"),
+        *("plant.motor_inertia={macro: 2, mini: null}", "plant.step=0.0005", "endpoint_sensor.read_by=[mini]"),
+    )
+    error = np.linalg.norm(trace.error[trace.t > 0.1], axis=1).max()
+    assert error == pytest.approx(5.774 * np.linalg.norm([0.4, -0.3, -0.4]) / 300.0**2, rel=0.05)
+
+
 def test_runs_on_other_plants_know_nothing_of_it():
     assert "links" not in simulated_part(compose(["robot=macro", "plant=rk4"]).resolved)["plant"]
 
