@@ -21,6 +21,7 @@ from runner.calibration.procedures import CALIBRATIONS
 from runner.cli import COMMANDS
 from runner.config.calibration import CalibrationSettings
 from runner.config.caveats import CaveatsConfig
+from runner.config.input_shaper import InputShaperConfig
 from runner.config.meanings import meanings, nested_model
 from runner.config.noise import NoiseConfig
 from runner.config.options import group_options
@@ -33,6 +34,7 @@ from runner.config.torque_limits import TorqueLimitsConfig
 from runner.config.units import WRITTEN
 from runner.controllers import CONTROLLERS
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
+from runner.controllers.notch_config import NotchConfig
 from runner.environments import ENVIRONMENTS
 from runner.metrics.summary import families
 from runner.paths import conf_dir
@@ -83,6 +85,8 @@ _PLAIN: Mapping[str, tuple[type[StrictModel], str]] = {
     "joint_torque_sensor": (JointTorqueConfig, "none"),
     "endpoint_sensor": (EndpointSensorConfig, "none"),
     "disturbance_observer": (DisturbanceObserverConfig, "none"),
+    "input_shaper": (InputShaperConfig, "zv"),
+    "notch": (NotchConfig, "torques"),
     "preset": (PresetConfig, "sound"),
 }
 

@@ -7,14 +7,16 @@ import numpy as np
 
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.compiled.compile import compile_commands, compile_whole, describe_whole, find_commands
-from runner.config.flexible_joints import believe_motors, find_flexibility, find_motor_side
+from runner.config.flexible_joints import believe_motors, find_motor_side
+from runner.config.flexible_links import believe_links, is_flexible
 from runner.config.run import RunConfig
+from runner.config.start import start_posture
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.controllers.disturbance_observer import observed
 from runner.controllers.kinds import FollowsWithinReach
+from runner.controllers.notch import notched
 from runner.environments import ENVIRONMENTS
 from runner.environments.wall import Wall
-from runner.errors import ConfigError
 from runner.feasibility import check_path
 from runner.interaction import Interaction
 from runner.loop.closed_loop import ClosedLoop
@@ -24,9 +26,8 @@ from runner.plants.kinds import HasServo
 from runner.plants.payload_changes import PayloadChanges
 from runner.plants.servo import JointServo
 from runner.plants.touched import Touched
-from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.mismatch import believe
-from runner.robots.robot import Robot, end_points
+from runner.robots.robot import Robot
 from runner.trace import FloatArray
 from runner.trajectories.joint_motion import TipOfJoints
 from runner.walls import put_up, touches_by_tip
@@ -105,7 +106,7 @@ def describe_loop(config: RunConfig, repetition: int = 0) -> Whole | None:
         config: The checked config.
         repetition: Number of the repetition, of which the beliefs follow.
     """
-    if config.commands != "torque" or config.feels or not config.compilable or find_flexibility(config) is not None:
+    if config.commands != "torque" or config.feels or not config.compilable or is_flexible(config):
         return None
     if config.timing.delay is None:
         return None
@@ -121,7 +122,7 @@ def _find_start(config: RunConfig) -> FloatArray:
     if isinstance(path, TipOfJoints):
         q_start = path.q_start
     else:
-        q_start = _start_posture(config.controller, arm, path.start, config.parallel)
+        q_start = start_posture(config.controller, arm, path.start, config.parallel)
     if CONTROLLERS.follows_paths(config.controller.kind):
         check_path(config.controller, arm, path, q_start, config.robot.settling_band)
     return q_start
@@ -132,44 +133,24 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
     generator = np.random.default_rng([config.settings.seed, repetition, _BELIEFS])
     payload = np.array(config.robot.payload.position)
     believed = believe(config.arm, config.mismatch, payload, generator, config.plugged.get("mismatch"))
-    believed = believe_motors(config, believed)
+    believed = believe_links(config, believe_motors(config, believed))
     loops = config.loops
     if believed is not config.arm:
         loops = CONTROLLERS.build_for(config.controller, believed, isinstance(config.path, TipOfJoints))
     loops = CONTROLLERS.tell_limits(config.controller, loops, config.torque_limits)
+    if config.notch is not None:
+        loops = notched(loops, config.notch.by_joint(config.arm), config.notch.width)
     return believed, observed(config.disturbance_observer, believed, loops, config.torque_limits, config.timing)
 
 
 def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledCommands | None:
     """Return the closed loop as compiled code, or what its loops ask; None where neither can be had."""
-    if config.commands != "torque" or not config.compilable or find_flexibility(config) is not None:
+    if config.commands != "torque" or not config.compilable or is_flexible(config):
         return None
     commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
     motion = None if config.feels or config.loaded else PLANTS.motion(config.plant, config.arm)
     whole = None if motion is None else compile_whole(commands, motion, config.timing)
     return compile_commands(commands) if whole is None else whole
-
-
-def _start_posture(controller: ControllerConfig, arm: Robot, start: FloatArray, parallel: bool) -> FloatArray:
-    """Return joint positions that bring the tip to a start, as the controller wants it.
-
-    Where it has no wish, the first stage moves and riding ones stay at home.
-    """
-    try:
-        wanted = CONTROLLERS.start_posture(controller, arm, start)
-    except np.linalg.LinAlgError as error:
-        raise ConfigError([f"trajectory.start: {error}"]) from error
-    if wanted is not None:
-        return np.array(wanted, dtype=np.float64)
-    home = end_points(arm, arm.home[None], parallel)[:, 0]
-    if np.array_equal(start, home[-1]):
-        return arm.home
-    if len(arm.stages) == 1 or not parallel:
-        return solve_tip_position(arm.model, start, arm.home)
-    first = arm.stages[0]
-    return np.concatenate(
-        [solve_tip_position(first.model, start - (home[-1] - home[0]), first.home), arm.home[first.joints.stop :]]
-    )
 
 
 def _make_plant(

@@ -24,6 +24,8 @@ _GROUPS = {
     "wrist_sensors": "wrist_sensor",
     "mismatch": "mismatch",
     "disturbance_observers": "disturbance_observer",
+    "input_shapers": "input_shaper",
+    "notches": "notch",
     "joint_torque_sensors": "joint_torque_sensor",
     "endpoint_sensors": "endpoint_sensor",
     "noise": "noise",

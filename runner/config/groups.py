@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import cast
 
 from runner.config.caveats import CaveatsConfig
+from runner.config.input_shaper import InputShaperConfig
 from runner.config.limits import LimitsConfig
 from runner.config.noise import NoiseConfig
 from runner.config.parsing import group_of, parse, parse_kind, parse_robot
@@ -18,6 +19,7 @@ from runner.config.sweep import SweepConfig
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS, ControllerConfig
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
+from runner.controllers.notch_config import NotchConfig
 from runner.environments import ENVIRONMENTS
 from runner.errors import ConfigError, nearest
 from runner.plants import PLANTS, PlantConfig
@@ -35,6 +37,8 @@ GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
     "endpoint_sensor": EndpointSensorConfig,
     "mismatch": MismatchConfig,
     "disturbance_observer": DisturbanceObserverConfig,
+    "input_shaper": InputShaperConfig,
+    "notch": NotchConfig,
     "robot": OneArmConfig,
     "preset": PresetConfig,
     "sweep": SweepConfig,
@@ -62,6 +66,8 @@ class Groups:
         endpoint_sensor: Config of the sensor of the tip's position.
         mismatch: How what the controllers believe of the robot differs from it.
         disturbance_observer: Config of the observer that control laws carry.
+        input_shaper: Config of what shapes the desired motion; None where nothing does.
+        notch: Config of the notch in the torques; None where there is none.
         robot: Config of the robot.
         sweep: How a sweep that the run is part of is run.
         limits: What a command may cost.
@@ -82,6 +88,8 @@ class Groups:
     endpoint_sensor: EndpointSensorConfig | None
     mismatch: MismatchConfig | None
     disturbance_observer: DisturbanceObserverConfig | None
+    input_shaper: InputShaperConfig | None
+    notch: NotchConfig | None
     robot: RobotConfig | None
     sweep: SweepConfig | None
     limits: LimitsConfig | None
@@ -118,6 +126,8 @@ def read_groups(resolved: Mapping[str, object], problems: Problems) -> Groups:
         endpoint_sensor=reader.read(EndpointSensorConfig, "endpoint_sensor"),
         mismatch=reader.read(MismatchConfig, "mismatch"),
         disturbance_observer=reader.read(DisturbanceObserverConfig, "disturbance_observer"),
+        input_shaper=reader.read(InputShaperConfig, "input_shaper") if "input_shaper" in resolved else None,
+        notch=reader.read(NotchConfig, "notch") if "notch" in resolved else None,
         robot=problems.recall(parse_robot, problems.attempt(group_of, "robot", resolved)),
         sweep=reader.read(SweepConfig, "sweep"),
         limits=reader.read(LimitsConfig, "limits"),

@@ -52,24 +52,28 @@ def _torque(value: Any) -> float | list[float]:
         raise ValueError("must be a number above 0, or a list of such numbers with one for each joint") from None
 
 
-def _spring(value: Any) -> float | list[float | None] | None:
-    try:
-        if isinstance(value, list):
-            return [None if item is None else _number(item, zero_allowed=False) for item in value]
-        return None if value is None else _number(value, zero_allowed=False)
-    except ValueError:
-        raise ValueError(
-            "must be a number above 0, null for rigid joints, or a list of these with one for each joint"
-        ) from None
+def _optional(null: str) -> BeforeValidator:
+    def check(value: Any) -> float | list[float | None] | None:
+        try:
+            if isinstance(value, list):
+                return [None if item is None else _number(item, zero_allowed=False) for item in value]
+            return None if value is None else _number(value, zero_allowed=False)
+        except ValueError:
+            raise ValueError(
+                f"must be a number above 0, null for {null}, or a list of these with one for each joint"
+            ) from None
+
+    return _per_stage(check)
 
 
 FinitePerStage = Annotated[float | dict[str, float], _per_stage(_finite)]
 PositivePerStage = Annotated[float | dict[str, float], _per_stage(lambda value: _number(value, zero_allowed=False))]
 NonNegativePerStage = Annotated[float | dict[str, float], _per_stage(lambda value: _number(value, zero_allowed=True))]
 TorquePerStage = Annotated[float | list[float] | dict[str, float | list[float]], _per_stage(_torque)]
-SpringPerStage = Annotated[
-    float | list[float | None] | dict[str, float | list[float | None] | None] | None, _per_stage(_spring)
-]
+OptionalPerStage = float | list[float | None] | dict[str, float | list[float | None] | None] | None
+SpringPerStage = Annotated[OptionalPerStage, _optional("rigid joints")]
+MotorPerStage = Annotated[OptionalPerStage, _optional("a joint whose motor has none")]
+NotchPerStage = Annotated[OptionalPerStage, _optional("joints without a notch")]
 
 
 def by_stage(key: str, value: T | Mapping[str, T], stages: Sequence[str]) -> list[T]:

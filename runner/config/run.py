@@ -12,6 +12,7 @@ from runner.config.sweep import SweepConfig
 from runner.config.timing import Timing
 from runner.controllers import ControllerConfig, Loop
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
+from runner.controllers.notch_config import NotchConfig
 from runner.plants import PLANTS, PlantConfig
 from runner.registry import Commands, KindConfig
 from runner.robots.mismatch import MismatchConfig
@@ -43,6 +44,7 @@ class RunConfig:
         endpoint_sensor: Config of the sensor of the tip's position.
         mismatch: How what the controllers believe of the robot differs from it.
         disturbance_observer: Config of the observer that control laws carry.
+        notch: Config of the notch in the torques; None where there is none.
         timing: The times of a run.
         parallel: Whether riding stages keep the orientation of home, in the plant's truth.
         sweep: How a sweep that the run is part of is run.
@@ -70,6 +72,7 @@ class RunConfig:
     endpoint_sensor: EndpointSensorConfig
     mismatch: MismatchConfig
     disturbance_observer: DisturbanceObserverConfig
+    notch: NotchConfig | None
     timing: Timing
     parallel: bool
     sweep: SweepConfig

@@ -10,20 +10,24 @@ from runner.config.computation import check_computation, computation_of, count_l
 from runner.config.disturbance_observer import check_observer
 from runner.config.endpoint_sensor import endpoint_ticks
 from runner.config.flexible_joints import check_flexible_joints
+from runner.config.flexible_links import check_flexible_links
 from runner.config.force_reading import check_reading
-from runner.config.groups import read_groups
+from runner.config.groups import Groups, read_groups
+from runner.config.input_shaper import shape
 from runner.config.limits import check_memory
 from runner.config.memory import Memory
 from runner.config.noise import NoiseConfig
+from runner.config.notch import check_notch
 from runner.config.plugged import exact_encoders
 from runner.config.problems import Problems, sure
 from runner.config.reach import check_path, check_points
 from runner.config.repeats import check_repeats
 from runner.config.robot import RobotConfig
 from runner.config.run import RunConfig
+from runner.config.start import start_posture
 from runner.config.timing import Timing, count_steps, count_ticks
 from runner.config.torque_limits import TorqueLimitsConfig
-from runner.controllers import CONTROLLERS, ControllerConfig
+from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.errors import ConfigError
 from runner.plants import PLANTS, PlantConfig
 from runner.plants.kinds import HasServo, TurnsBases
@@ -69,6 +73,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     parallel = problems.recall(_is_parallel, arm, groups.plant)
     path = build_path(_build_path, arm, groups.trajectory, parallel)
     loops = build_loops(CONTROLLERS.build_for, groups.controller, arm, isinstance(path, TipOfJoints))
+    path = problems.attempt(_shape, groups, arm, path, loops)
     build_path(check_path, arm, path)
     ticks = problems.attempt(count_ticks, groups.settings, steps, path)
     late = problems.recall(count_late, groups.plant, loops)
@@ -89,15 +94,26 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         wrist_sensor=sure(groups.wrist_sensor),
         joint_torques=sure(groups.joint_torque_sensor).by_joint(sure(arm)),
         mismatch=sure(groups.mismatch), endpoint_sensor=sure(groups.endpoint_sensor),
-        disturbance_observer=sure(groups.disturbance_observer),
+        disturbance_observer=sure(groups.disturbance_observer), notch=groups.notch,
         timing=Timing(*sure(steps), sure(late), computation_of(sure(groups.plant)).is_even, sure(ticks)),
         parallel=sure(parallel),
-        sweep=sure(groups.sweep),
-        limits=sure(groups.limits),
-        caveats=sure(groups.caveats),
-        spec=sure(groups.spec),
+        sweep=sure(groups.sweep), limits=sure(groups.limits),
+        caveats=sure(groups.caveats), spec=sure(groups.spec),
         plugged=groups.plugged, resolved=resolved,
     ))  # fmt: skip
+
+
+def _shape(groups: Groups, arm: Robot, path: Trajectory, loops: tuple[Loop, ...]) -> Trajectory:
+    """Return the desired motion as an input shaper leaves it, if any; it starts where the motion itself does."""
+    if groups.input_shaper is None:
+        return path
+    controller, plant = sure(groups.controller), sure(groups.plant)
+    q = (
+        path.q_start
+        if isinstance(path, TipOfJoints)
+        else start_posture(controller, arm, path.start, _is_parallel(arm, plant))
+    )
+    return shape(groups.input_shaper, plant, arm, path, q, loops)
 
 
 def _check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
@@ -115,7 +131,9 @@ def _checked(config: RunConfig) -> RunConfig:
     _check_schedule(config)
     check_computation(config)
     check_observer(config)
+    check_notch(config)
     check_flexible_joints(config)
+    check_flexible_links(config)
     check_reading(config)
     endpoint_ticks(config)
     check_repeats(config)

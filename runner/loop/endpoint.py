@@ -7,7 +7,7 @@ import numpy as np
 from runner.config.endpoint_sensor import endpoint_ticks
 from runner.config.run import RunConfig
 from runner.loop.closed_loop import ClosedLoop
-from runner.plants import Plant, PositionPlant
+from runner.plants import Plant, PositionPlant, TellsEndPoints, innermost
 from runner.robots.model import FloatArray, RobotModel
 from runner.sensing.endpoint import EndpointSensor
 
@@ -28,6 +28,8 @@ class MeasuredTip:
         self, sensor: EndpointSensor, plant: Plant | PositionPlant, true: RobotModel, believed: RobotModel
     ) -> None:
         self._sensor, self._plant, self._true, self._believed = sensor, plant, true, believed
+        moved = innermost(plant)
+        self._bent = moved if isinstance(moved, TellsEndPoints) else None
 
     def correct(self, tick: int, q: FloatArray, dq: FloatArray, desired: FloatArray) -> FloatArray:
         """Return the motion that the law is to ask of the tip as the encoders tell it.
@@ -39,7 +41,8 @@ class MeasuredTip:
             desired: Desired motion of the tip, shape (3, 3): position, velocity, acceleration.
         """
         if self._sensor.due(tick):
-            true = _moves(self._true, self._plant.q, self._plant.dq)
+            straight, bent = self._plant, self._bent
+            true = _moves(self._true, straight.q, straight.dq) if bent is None else bent.tip_motion()
             self._sensor.measure(tick, true, _moves(self._believed, q, dq))
         corrected = desired.copy()
         corrected[:2] -= self._sensor.correction(tick)

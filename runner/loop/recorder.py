@@ -10,6 +10,7 @@ from runner.loop.acting import Acting
 from runner.loop.closed_loop import ClosedLoop
 from runner.loop.contact import Contact
 from runner.loop.failures import find_divergence
+from runner.plants import TellsEndPoints, innermost
 from runner.robots.robot import end_points
 from runner.trace import Failure, FloatArray, Trace
 
@@ -51,6 +52,10 @@ class Recorder:
         self.q, self.dq, self.commands, self.torques = (np.zeros((rows, nq)) for _ in range(4))
         self.q[0] = closed.q_start
         self.end_points: FloatArray | None = None
+        moved = innermost(closed.plant)
+        self._bends = moved if isinstance(moved, TellsEndPoints) else None
+        if self._bends is not None:
+            self.end_points = np.zeros((len(closed.robot.stages), rows, 3))
         self._checked = 0
         self.clock = np.zeros(rows, dtype=np.int64)
         self.asked: NDArray[np.int64] | None = None
@@ -62,6 +67,8 @@ class Recorder:
         self.clock[k] = self.now()
         self.q[k] = q = self._plant.q
         self.dq[k] = dq = self._plant.dq
+        if self._bends is not None and self.end_points is not None:
+            self.end_points[:, k] = self._bends.end_points()
         return q, dq
 
     def keep_command(self, k: int) -> None:

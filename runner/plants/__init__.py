@@ -1,9 +1,19 @@
 """Simulated arms: from torques, or joint positions commanded, to true motion."""
 
+from runner.plants.end_points import TellsEndPoints
 from runner.plants.kinds import PlantConfig, Plants
-from runner.plants.plant import ContactPlant, Plant, PositionPlant, TellsContact, ToolReactionPlant, innermost
+from runner.plants.plant import (
+    ContactPlant,
+    Plant,
+    PositionPlant,
+    TellsContact,
+    ToolReactionPlant,
+    innermost,
+)
 
-PLANTS = Plants({name: f"runner.plants.{name}" for name in ("bullet", "kinematic", "mujoco", "rk4")})
+PLANTS = Plants(
+    {name: f"runner.plants.{name}" for name in ("bullet", "kinematic", "mujoco", "rk4", "rk4_flexible_links")}
+)
 
 __all__ = [
     "PLANTS",
@@ -12,6 +22,7 @@ __all__ = [
     "PlantConfig",
     "PositionPlant",
     "TellsContact",
+    "TellsEndPoints",
     "ToolReactionPlant",
     "innermost",
 ]

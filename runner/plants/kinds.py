@@ -9,9 +9,10 @@ from runner.errors import ConfigError
 from runner.guard import watch_plant
 from runner.plants.computation import ComputationConfig
 from runner.plants.motion import Motion
-from runner.plants.plant import Plant
+from runner.plants.plant import FloatArray, Plant
 from runner.plants.servo import ServoConfig
 from runner.registry import KindConfig, Registry
+from runner.robots.modes import Mode
 from runner.robots.robot import Robot
 
 
@@ -71,6 +72,15 @@ class MovesByRungeKutta(Protocol):
 
 
 @runtime_checkable
+class Rings(Protocol):
+    """A module whose plants may be flexible, and tells how they ring."""
+
+    def modes(self, config: PlantConfig, robot: Robot, q: FloatArray) -> list[Mode]:
+        """Return the modes of a robot about a posture with its motors held, by frequency; see find_modes."""
+        ...
+
+
+@runtime_checkable
 class StandsIn(Protocol):
     """A config of plants that may stand in for another kind, which is missing; None where nothing is missing."""
 
@@ -122,6 +132,11 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
         """
         module = self.module(config.kind)
         return module.motion(config, robot) if isinstance(module, MovesByRungeKutta) else None
+
+    def modes(self, config: PlantConfig, robot: Robot, q: FloatArray) -> list[Mode]:
+        """Return how a plant rings about a posture with its motors held, where a kind of ours may ring; see Rings."""
+        module = self.module(config.kind)
+        return module.modes(config, robot, q) if self.is_ours(config.kind) and isinstance(module, Rings) else []
 
     def moves_exactly(self, config: PlantConfig) -> bool:
         """Tell whether a step moves positions exactly under a held force; see MovesExactly."""

@@ -13,6 +13,7 @@ from runner.plants.motion import Motion, find_motion
 from runner.plants.motor_friction import MotorFriction
 from runner.plants.plant import FloatArray, Plant
 from runner.robots.model import RobotModel
+from runner.robots.modes import Mode, find_modes
 from runner.robots.robot import Robot
 
 
@@ -108,6 +109,16 @@ def build(config: Rk4Config, robot: Robot, step: float, steps_per_tick: int) -> 
 def motion(config: Rk4Config, robot: Robot) -> Motion | None:
     """Return what the plant moves; None for flexible joints, which are not compiled; see MovesByRungeKutta."""
     return None if config.flexible_joints is not None else find_motion(robot, config)
+
+
+def modes(config: Rk4Config, robot: Robot, q: FloatArray) -> list[Mode]:
+    """Return how flexible joints ring with their motors held; see Rings."""
+    if config.flexible_joints is None:
+        return []
+    flexibility = config.flexible_joints.by_joint(robot)
+    on = flexibility.flexible
+    M = robot.model.mass_matrix(q)[np.ix_(on, on)]
+    return find_modes(M, np.diag(flexibility.damping[on]), np.diag(flexibility.stiffness[on]))
 
 
 def moves_exactly(config: Rk4Config) -> bool:

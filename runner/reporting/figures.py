@@ -72,8 +72,8 @@ def torque_and_error(run: Run, caption: str, number: str = "", until: float | No
 
 
 def desired_motion(run: Run, caption: str, number: str = "", axes: tuple[str, ...] = AXES) -> Curves:
-    """Return desired position, velocity and acceleration of the tip over the motion's time."""
-    trace = until_time(run, run.config["trajectory"]["duration"])
+    """Return desired position, velocity and acceleration of the tip over the motion's time, of a shaped one all."""
+    trace = until_time(run, None if "input_shaper" in run.config else run.config["trajectory"]["duration"])
     t = trace["t"].to_numpy()
     panels = [
         Panel(

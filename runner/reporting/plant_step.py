@@ -26,6 +26,10 @@ def describe_plant(run: Run, metrics: Sequence[str] = ()) -> str:
     flexible = run.config["plant"].get("flexible_joints")
     if flexible is not None:
         head += f" Joints are flexible, with encoders at the {flexible['encoders']}s."
+    links = run.config["plant"].get("links")
+    if kind == "rk4_flexible_links" and links is not None:
+        bent = ", ".join(name for name, beam in links.items() if beam is not None)
+        head += f" Links bend ({bent}); pictures show the arm with straight ones, and the tip where it is."
     if kind not in COMPARED:
         return head
     return f"{head} {_worth(run, metrics or key_names(run))}"

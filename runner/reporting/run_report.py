@@ -133,6 +133,8 @@ def _subtitle(run: Run) -> str:
     named = f"torque limits {_spaced(chosen['torque_limits'])}" if "torque_limits" in chosen else "torque limits"
     limits = "no torque limits" if run.config["torque_limits"]["max"] is None else named
     texts = [f"noise {_spaced(chosen['noise'])}"] if "noise" in chosen else []
+    texts += [f"input shaper {run.config['input_shaper']['kind'].upper()}"] if "input_shaper" in run.config else []
+    texts += ["a notch in the torques"] if "notch" in run.config else []
     texts += [f"experiment {chosen['experiment']}"] if "experiment" in chosen else []
     return ", ".join([limits, *texts])
 

@@ -5,7 +5,12 @@ import re
 PRESET = {"as_reported": "as the thesis ran it", "sound": "with its full equations"}
 """The presets of the works, in the order of their columns."""
 
-PLANT = {"bullet": "PyBullet", "mujoco": "MuJoCo", "rk4": "Runge-Kutta"}
+PLANT = {
+    "bullet": "PyBullet",
+    "mujoco": "MuJoCo",
+    "rk4": "Runge-Kutta",
+    "rk4_flexible_links": "Runge-Kutta with bending links",
+}
 
 _WORDS = {
     **PRESET,

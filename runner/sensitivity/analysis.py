@@ -11,6 +11,7 @@ from runner.batch import Batcher, Together, Wanted
 from runner.compiled.directed import Setting, tangents
 from runner.compiled.engine import evaluator
 from runner.config.flexible_joints import find_flexibility
+from runner.config.flexible_links import is_flexible
 from runner.config.run import RunConfig
 from runner.errors import ConfigError, RunnerError
 from runner.metrics import measure, of_run
@@ -101,7 +102,7 @@ def analyse(
 
 def by_runge_kutta(config: RunConfig, validated: Validated) -> RunConfig:
     """Return the config of a run with the Runge-Kutta plant in the place of another one that takes torques."""
-    if config.plant.kind == "rk4" or PLANTS.commands(config.plant.kind) != "torque":
+    if config.plant.kind == "rk4" or is_flexible(config) or PLANTS.commands(config.plant.kind) != "torque":
         return config
     plant: Any = config.resolved["plant"]
     kept = {key: value for key, value in plant.items() if key in Rk4Config.model_fields}
@@ -145,6 +146,8 @@ def _why_not(config: RunConfig) -> str:
         return f"controller {config.controller.kind} commands joint positions; only laws that give torques are compiled"
     if find_flexibility(config) is not None:
         return "plant.flexible_joints: runs of arms with flexible joints are not compiled; take plant=rk4"
+    if is_flexible(config):
+        return "plant.links: runs of arms whose links bend are not compiled; take plant=rk4"
     if config.feels:
         return f"environment {config.environment.kind}: runs in which the tip feels something are not compiled whole"
     if config.plugged:

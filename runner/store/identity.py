@@ -24,7 +24,14 @@ _PHYSICS = (
     "simulation.py", "trace.py", "trajectories", "walls.py",
 )  # fmt: skip
 
-_ENGINES = {"bullet": ("pybullet",), "mujoco": ("mujoco",), "kinematic": (), "rk4": (), "none": ()}  # of our plants
+_ENGINES = {
+    "bullet": ("pybullet",),
+    "mujoco": ("mujoco",),
+    "kinematic": (),
+    "rk4": (),
+    "rk4_flexible_links": (),
+    "none": (),
+}  # of our plants
 
 
 _MEMORY = Memory(4096)  # what the groups of configs give: texts, and the kinds that they name

@@ -57,6 +57,10 @@ def test_a_metric_without_derivative_is_not_approximated(cli, run, name, why):
         (("robot=macro", "noise.resolution=1e-3"), "noise.resolution rounds the measured positions"),
         (("robot=macro", "environment=push"), "environment push: runs in which the tip feels something"),
         (("robot=macro", "plant=rk4_flexible"), "plant.flexible_joints: runs of arms with flexible joints"),
+        (
+            ("robot=macro", "plant=rk4_flexible_links", "trajectory=quintic"),
+            "plant.links: runs of arms whose links bend",
+        ),
     ],
 )
 def test_runs_without_derivatives_are_refused_with_the_reason(cli, overrides, why):

@@ -29,8 +29,11 @@ NEEDS = {  # what an option does not run without
     "controller=xarm7_as_printed": ("robot=xarm7", "controller.inverse=right"),
     "environment=wall": ("robot=meca500",),
     "experiment=xarm7/as_printed": ("controller.inverse=right",),
+    "input_shaper=zv": ("robot=macro", "plant=rk4_flexible"),
+    "input_shaper=zvd": ("robot=macro", "plant=rk4_flexible"),
     "plant=kinematic": ("robot=xarm7",),
     "plant=rk4_flexible": ("robot=macro",),
+    "plant=rk4_flexible_links": ("robot=macro", "trajectory=quintic"),
     "trajectory=from_file": (f"trajectory.file={SWING}",),
 }
 

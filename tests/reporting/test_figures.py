@@ -64,6 +64,14 @@ def test_desired_motion_ends_with_the_motion_and_keeps_the_colour_of_its_axis(st
     assert speed == pytest.approx(1.875 * 1.7571, rel=1e-4)
 
 
+def test_a_shaped_motion_is_shown_to_its_end(tmp_path):
+    shaper = ("input_shaper=zv", "input_shaper.frequency=2.5", "duration=1.3")
+    shaped = run(*OVERRIDES, ASKED, *shaper, f"outputs={tmp_path}")
+    speed = desired_motion(shaped, "caption").panels[1].series[0]
+    assert speed.x[-1] == pytest.approx(1.3)
+    assert abs(speed.y[np.searchsorted(speed.x, 1.1)]) > 0.01  # later than trajectory.duration
+
+
 def test_a_playback_thins_the_frames_but_not_the_path(stored):
     shown = playback(stored, "caption", frames=30)
     assert len(shown.times) == 30

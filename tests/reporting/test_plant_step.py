@@ -81,3 +81,12 @@ def test_flexible_joints_are_told_with_the_side_of_their_encoders(outputs, side)
     soft = ("robot=macro", "plant=rk4_flexible", f"plant.flexible_joints.encoders={side}", "duration=0.05")
     expected = f"Runge-Kutta is the plant, in steps of 10 ms. Joints are flexible, with encoders at the {side}s."
     assert describe_plant(run(*soft, outputs)) == expected
+
+
+def test_links_that_bend_are_told_and_that_pictures_show_them_straight(outputs):
+    soft = ("robot=macro", "plant=rk4_flexible_links", "plant.links.link2=null", "trajectory=quintic", "duration=0.05")
+    expected = (
+        "Runge-Kutta with bending links is the plant, in steps of 1 ms. Links bend (link3); pictures show the arm with "
+        "straight ones, and the tip where it is."
+    )
+    assert describe_plant(run(*soft, outputs)) == expected

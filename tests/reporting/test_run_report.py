@@ -64,6 +64,12 @@ def test_a_finished_run_is_told_whole(finished):
     assert rows["run"] == finished.hash
 
 
+def test_a_shaper_and_a_notch_stand_below_the_title(outputs):
+    shaped = ("input_shaper=zvd", "input_shaper.frequency=3", "notch=torques", "duration=0.2", ASKED, outputs)
+    document = run_document([run("robot=macro", "trajectory=quintic", *shaped)])
+    assert document.subtitle == "no torque limits, noise none, input shaper ZVD, a notch in the torques"
+
+
 def test_steps_of_a_plant_stand_together_and_seeds_in_a_row_are_a_range(finished):
     def with_seed(seed, step):
         config, record = finished.config, {**finished.provenance, "seed": seed, "plant_step": step}

@@ -1,0 +1,115 @@
+"""Config of the input shaper, and the desired motion that it shapes."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+
+from runner.controllers import Loop
+from runner.errors import ConfigError
+from runner.plants import PLANTS, PlantConfig
+from runner.registry import StrictModel
+from runner.robots.modes import Mode
+from runner.robots.robot import Robot
+from runner.trajectories import Trajectory
+from runner.trajectories.impulses import in_turn, zero_vibration
+from runner.trajectories.joint_motion import TipOfJoints
+from runner.trajectories.shaped import Shaped, ShapedJoints
+from runner.trajectories.trajectory import FloatArray
+
+_KEY = "input_shaper.frequency"
+_MODE = re.compile(r"mode_([1-9]\d?)")
+_MOST = 4  # modes that one shaper leaves at rest: three impulses each
+
+
+def _frequency(value: Any) -> Any:
+    wanted = value if isinstance(value, list) else [value]
+    number = [isinstance(each, int | float) and not isinstance(each, bool) and each > 0.0 for each in wanted]
+    named = [isinstance(each, str) and _MODE.fullmatch(each) is not None for each in wanted]
+    if not 1 <= len(wanted) <= _MOST or not all(map(max, number, named)):
+        raise ValueError(f"must be a number above 0, the name of a mode such as mode_1, or a list of up to {_MOST}")
+    return value
+
+
+class InputShaperConfig(StrictModel):
+    """Config of an input shaper, after Singer and Seering (J. Dyn. Syst. Meas. Control 112, 1990).
+
+    Attributes:
+        kind: zv, two impulses half a period apart; zvd, three in one period.
+        frequency: Undamped frequency of the mode that is to be at rest after the motion, in Hz; mode_1, mode_2, ... of
+            the flexible plant where the arm starts, with its motors held; or a list of these.
+        damping_ratio: Damping ratio of those modes; None is the plant's own, and 0 for a frequency in Hz.
+    """
+
+    kind: Literal["zv", "zvd"]
+    frequency: Annotated[float | str | list[float | str], BeforeValidator(_frequency)]
+    damping_ratio: Annotated[float, Field(ge=0.0, lt=1.0)] | None
+
+    def find(self, modes: Sequence[Mode]) -> list[Mode]:
+        """Return the modes that are to be at rest after the motion.
+
+        Args:
+            modes: Those of the plant.
+
+        Raises:
+            ConfigError: for one that is not there.
+        """
+        wanted = self.frequency if isinstance(self.frequency, list) else [self.frequency]
+        found = [_find(each, modes) for each in wanted]
+        given = self.damping_ratio
+        return found if given is None else [mode._replace(damping_ratio=given) for mode in found]
+
+
+def shape(
+    config: InputShaperConfig,
+    plant: PlantConfig,
+    arm: Robot,
+    path: Trajectory,
+    q_start: FloatArray,
+    loops: Sequence[Loop],
+) -> Trajectory:
+    """Return a desired motion convolved with the impulses of a shaper.
+
+    Args:
+        config: The shaper.
+        plant: Config of the plant, of which modes are asked by name.
+        arm: The true arm.
+        path: The motion of the tip; where it follows from one of the joints, this is shaped.
+        q_start: Where the arm starts, shape (nq,), in rad.
+        loops: The control loops.
+
+    Raises:
+        ConfigError: for a motion that goes on for ever, a mode that is not there, or one that the slowest loop cannot
+            see.
+    """
+    if path.goal is None:
+        raise ConfigError(["input_shaper: the trajectory goes on for ever; take one that comes to rest, or none"])
+    found, slowest = config.find(PLANTS.modes(plant, arm, q_start)), max(loop.period for loop in loops)
+    unseen = [
+        f"{_KEY}: {mode.frequency:.4g} Hz found; a loop of {slowest:g} s sees motions below {0.5 / slowest:.4g} Hz"
+        for mode in found
+        if mode.frequency >= 0.5 / slowest
+    ]
+    if unseen:
+        raise ConfigError(unseen)
+    impulses = in_turn([zero_vibration(config.kind, *mode) for mode in found])
+    if isinstance(path, TipOfJoints):
+        return replace(path, joints=ShapedJoints(path.joints, impulses))
+    return Shaped(path, impulses)
+
+
+def _find(wanted: float | str, modes: Sequence[Mode]) -> Mode:
+    """Return the mode that a value names; of a frequency in Hz one without damping."""
+    if not isinstance(wanted, str):
+        return Mode(wanted, 0.0)
+    number = int(wanted.removeprefix("mode_"))
+    if number <= len(modes):
+        return modes[number - 1]
+    if not modes:
+        raise ConfigError(
+            [f"{_KEY}: {wanted} is a mode of a flexible plant, and this one is rigid; take plant=rk4_flexible, or Hz"]
+        )
+    told = ", ".join(f"mode_{i} ({mode.frequency:.4g} Hz)" for i, mode in enumerate(modes, start=1))
+    raise ConfigError([f"{_KEY}: {wanted} found; the plant has {told}, with its motors held where the arm starts"])

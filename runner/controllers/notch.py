@@ -1,0 +1,164 @@
+"""A notch in the torques of any torque law, so that it does not push at a frequency at which its arm rings."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+from scipy.signal import iirnotch
+
+from runner.controllers.controller import Controller, FloatArray, Loop
+from runner.controllers.maths import FLOATS, Array, Maths, Scalar
+from runner.controllers.torque_law import Arm, TorqueLaw, structure_of
+from runner.guard import WatchedController
+
+
+class NotchNumbers(NamedTuple):
+    """The numbers of a notch.
+
+    Attributes:
+        period: Time between two ticks, in s.
+        b: Coefficients of the torques asked for now, a tick and two ticks ago, shape (3, n).
+        a: Of the torques that passed a tick and two ticks ago, shape (2, n).
+    """
+
+    period: Scalar
+    b: Array
+    a: Array
+
+
+class Notch:
+    r"""A second-order notch for each of some torques, by the bilinear transform, exact at its own frequency.
+
+    .. math:: H(s) = \frac{s^2 + \omega^2}{s^2 + \Delta s + \omega^2}, \qquad
+        y_k = b_0 u_k + b_1 u_{k-1} + b_2 u_{k-2} - a_1 y_{k-1} - a_2 y_{k-2}
+
+    Before the first tick its torques were those of the first, so that what holds the arm's weight passes at once.
+
+    Args:
+        frequency: omega / (2 pi) of each, shape (n,), in Hz, below half the rate; infinite for none.
+        width: Delta / (2 pi), in Hz.
+        period: Time between two ticks of the law, in s.
+    """
+
+    def __init__(self, frequency: FloatArray, width: float, period: float) -> None:
+        through = (np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0]))
+        each = [iirnotch(f, f / width, 1.0 / period) if np.isfinite(f) else through for f in frequency]
+        b, a = (np.array(side).T for side in zip(*each, strict=True))
+        self.numbers = NotchNumbers(period, b, a[1:])
+
+    def structure(self) -> dict[str, Any]:
+        """Return what decides how it goes, beside its numbers; see TorqueLaw.structure."""
+        return structure_of(self)
+
+    @property
+    def remembers(self) -> int:
+        """How many numbers it keeps from tick to tick."""
+        return 2 * len(self.numbers.b[0])
+
+    def filter(
+        self, maths: Maths, numbers: NotchNumbers, time: Scalar, torque: Array, memory: Array
+    ) -> tuple[Array, Array]:
+        """Return what passes of some torques, shape (n,), in N m, and what the notch keeps."""
+        (b0, b1, b2), (a1, a2), n = numbers.b, numbers.a, len(torque)
+        late = (b2 - a2) * torque
+        rest = np.concatenate([(b1 - a1) * torque + late, late])
+        memory = maths.choose(maths.less(time, 0.5 * numbers.period), lambda: rest, lambda: memory)
+        passed = b0 * torque + memory[:n]
+        return passed, np.concatenate([b1 * torque - a1 * passed + memory[n:], b2 * torque - a2 * passed])
+
+
+class NotchedNumbers(NamedTuple):
+    """The numbers of a law with a notch.
+
+    Attributes:
+        law: The law's.
+        notch: The notch's.
+    """
+
+    law: Any
+    notch: NotchNumbers
+
+
+class NotchedLaw(TorqueLaw[NotchedNumbers]):
+    """A torque law whose torques pass a notch; compiled where the law can be.
+
+    Args:
+        law: The law.
+        notch: The notch.
+    """
+
+    def __init__(self, law: TorqueLaw[Any], notch: Notch) -> None:
+        super().__init__(law.models, law.gravity_compensation, NotchedNumbers(law.numbers, notch.numbers), law.measured)
+        self._law, self._notch = law, notch
+
+    def start(self, q: FloatArray) -> FloatArray:
+        """Return what law and notch keep at the first tick; see TorqueLaw."""
+        return np.concatenate([self._law.start(q), np.zeros(self._notch.remembers)])
+
+    def evaluate(
+        self,
+        arms: Sequence[Arm],
+        numbers: NotchedNumbers,
+        time: Scalar,
+        q: Array,
+        dq: Array,
+        reference: Array,
+        memory: Array,
+    ) -> tuple[Array, Array]:
+        """Return what passes of the law's torques, and what both keep; see TorqueLaw."""
+        own = len(memory) - self._notch.remembers
+        torque, kept = self._law.evaluate(arms, numbers.law, time, q, dq, reference, memory[:own])
+        passed, seen = self._notch.filter(arms[0].maths, numbers.notch, time, torque, memory[own:])
+        return passed, np.concatenate([kept, seen])
+
+
+class NotchedController:
+    """A controller of any kind whose torques pass a notch; see Controller.
+
+    Args:
+        controller: The controller.
+        notch: The notch.
+    """
+
+    def __init__(self, controller: Controller, notch: Notch) -> None:
+        self._controller, self._notch = controller, notch
+        self._memory = np.zeros(notch.remembers)
+
+    def reset(self) -> None:
+        """Forget what an earlier run left; the notch starts anew at time 0."""
+        self._controller.reset()
+
+    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
+        """Return what passes of the controller's torques; see Controller."""
+        torque = self._controller.torque(time, q, dq, reference)
+        passed, self._memory = self._notch.filter(FLOATS, self._notch.numbers, time, torque, self._memory)
+        return passed
+
+
+def notched(loops: tuple[Loop, ...], frequency: FloatArray, width: float) -> tuple[Loop, ...]:
+    """Return control loops whose torques pass a notch.
+
+    Args:
+        loops: Loops that command torques.
+        frequency: Of each joint of the robot, shape (nq,), in Hz; infinite for none.
+        width: In Hz.
+    """
+    return tuple(
+        replace(
+            loop,
+            controller=_with_notch(
+                cast(Controller, loop.controller), Notch(frequency[loop.joints], width, loop.period)
+            ),
+        )
+        for loop in loops
+    )
+
+
+def _with_notch(controller: Controller, notch: Notch) -> Controller:
+    """Return a controller with a notch, one of the user's watched as before."""
+    if isinstance(controller, TorqueLaw):
+        return NotchedLaw(controller, notch)
+    if isinstance(controller, WatchedController) and isinstance(controller.watched, TorqueLaw):
+        return WatchedController(NotchedLaw(controller.watched, notch), len(notch.numbers.b[0]))
+    return NotchedController(controller, notch)

@@ -1,0 +1,157 @@
+"""The plant of an arm whose links bend: its config, its modes, and how it is made."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field, NonNegativeFloat, PositiveFloat
+from scipy.linalg import eigh
+
+from runner.config.by_joint import by_joint
+from runner.config.per_stage import MotorPerStage
+from runner.errors import ConfigError, nearest
+from runner.plants.computation import ComputationConfig
+from runner.plants.flexible_links import FlexibleLinks
+from runner.plants.plant import FloatArray, Plant
+from runner.registry import StrictModel
+from runner.robots.beams import Beam, moving_links, span
+from runner.robots.chain import Chain, cut
+from runner.robots.modes import Mode, find_modes, largest_rate
+from runner.robots.robot import Robot
+
+_MOST_PARTS = 32
+_LIGHTEST = 1e-10  # smallest inertia of a bend over the largest
+
+
+class BeamConfig(StrictModel):
+    """Config of a link that bends.
+
+    Attributes:
+        EI: Bending stiffness, in N m^2.
+        mass: Mass along it, evenly spread, beside what the robot's file gives of the link, in kg.
+    """
+
+    EI: PositiveFloat
+    mass: NonNegativeFloat
+
+
+class Rk4FlexibleLinksConfig(StrictModel):
+    """Config of a plant whose links bend.
+
+    Attributes:
+        kind: Its name in the registry.
+        step: Integration step, in s; None is the fastest controller period.
+        links: The links that bend, by name; None for one that is rigid.
+        parts: Springs along each of them; above 1 for links with mass alone.
+        motor_inertia: Inertia of each joint's motor after its gear, in kg m^2. One for all joints or a list with one
+            for each, by stage where the robot has several; None for a joint whose motor has none.
+        damping_ratio: Of each mode, with the motors held at home.
+        computation: What a computer does to the controllers' torques: how late they act, and which are missed.
+    """
+
+    kind: Literal["rk4_flexible_links"]
+    step: PositiveFloat | None
+    links: dict[str, BeamConfig | None]
+    parts: Annotated[int, Field(ge=1, le=_MOST_PARTS)]
+    motor_inertia: MotorPerStage
+    damping_ratio: NonNegativeFloat
+    computation: ComputationConfig
+
+    def beams(self, robot: Robot) -> dict[str, Beam]:
+        """Return the links of a robot that bend.
+
+        Raises:
+            ConfigError: for a link that is not there or has no length, none that bends, and several parts without mass.
+        """
+        known, problems = moving_links(robot.model), []
+        beams = {name: Beam(each.EI, each.mass) for name, each in self.links.items() if each is not None}
+        for name, beam in beams.items():
+            if name not in known:
+                problems.append(f"plant.links.{name}: no such link{nearest(name, known)}; links: {', '.join(known)}")
+            elif not np.any(span(robot.model, known[name], robot.flange)):
+                problems.append(f"plant.links.{name}: the link has no length between its joints, and cannot bend")
+            elif self.parts > 1 and beam.mass == 0.0:
+                problems.append(
+                    f"plant.links.{name}.mass: 0 found with plant.parts={self.parts}; parts between springs move by "
+                    "their mass, so above 0, or plant.parts=1"
+                )
+        if not beams:
+            problems.append("plant.links: null for every link; take plant=rk4 for rigid ones")
+        if problems:
+            raise ConfigError(problems)
+        return beams
+
+    def motors(self, robot: Robot) -> FloatArray:
+        """Return B of a robot's joints, shape (nq,), in kg m^2.
+
+        Raises:
+            ConfigError: for values that do not fit its stages and joints.
+        """
+        given = by_joint("plant.motor_inertia", self.motor_inertia, robot)
+        return np.where(np.isfinite(given), given, 0.0)
+
+    def chain(self, robot: Robot) -> Chain:
+        """Return the parts of a robot; see cut.
+
+        Raises:
+            ConfigError: see beams; and for parts that have next to no inertia of their own.
+        """
+        chain = cut(robot.model, robot.flange, self.beams(robot), self.parts)
+        M = chain.mass_matrix(robot.home)[np.ix_(chain.springs, chain.springs)]
+        least, *_, most = np.linalg.eigvalsh(M)
+        if least < _LIGHTEST * most:
+            raise ConfigError(
+                [
+                    "plant.links: parts between springs have next to no inertia, and no step follows them; take more "
+                    "mass along the links, or plant.parts=1"
+                ]
+            )
+        return chain
+
+    def damping(self, robot: Robot) -> FloatArray:
+        r"""Return the dampers among the springs, shape (k, k), in N m s/rad, by the modes with the motors held at home.
+
+        .. math:: D = M \Phi \, \mathrm{diag}(2 \zeta \omega) \, \Phi^T M, \qquad
+            K \Phi = M \Phi \omega^2, \quad \Phi^T M \Phi = 1
+        """
+        chain = self.chain(robot)
+        M = chain.mass_matrix(robot.home)[np.ix_(chain.springs, chain.springs)]
+        squares, modes = eigh(np.diag(chain.stiffness), M)
+        across = M @ modes
+        damping: FloatArray = across * (2.0 * self.damping_ratio * np.sqrt(squares)) @ across.T
+        return damping
+
+    def largest_rate(self, robot: Robot) -> float:
+        """Return the largest magnitude of an eigenvalue of a robot at home, without gravity, in 1/s; motors turn."""
+        chain = self.chain(robot)
+        M, (K, D) = chain.mass_matrix(robot.home), np.zeros((2, chain.pin_model.nv, chain.pin_model.nv))
+        M[chain.motors, chain.motors] += self.motors(robot)
+        K[chain.springs, chain.springs] = chain.stiffness
+        D[np.ix_(chain.springs, chain.springs)] = self.damping(robot)
+        return largest_rate(M, D, K)
+
+
+CONFIG = Rk4FlexibleLinksConfig
+
+
+def build(config: Rk4FlexibleLinksConfig, robot: Robot, step: float, steps_per_tick: int) -> Plant:
+    """Make the plant that a config describes."""
+    ends = [*(str(stage.base_frame) for stage in robot.stages[1:]), robot.model.tip_name]
+    chain, motors, damping = config.chain(robot), config.motors(robot), config.damping(robot)
+    return FlexibleLinks(chain, motors, damping, step, steps_per_tick, ends)
+
+
+def modes(config: Rk4FlexibleLinksConfig, robot: Robot, q: FloatArray) -> list[Mode]:
+    """Return how the links ring with the motors held; see Rings."""
+    chain = config.chain(robot)
+    M = chain.mass_matrix(q)[np.ix_(chain.springs, chain.springs)]
+    return find_modes(M, config.damping(robot), np.diag(chain.stiffness))
+
+
+def moves_exactly(config: Rk4FlexibleLinksConfig) -> bool:
+    """Tell that the scheme is of fourth order; see MovesExactly."""
+    return True
+
+
+def default_step(tick: float, stages: int) -> float:
+    """Return the step taken when the config names none, in s: the fastest controller period itself."""
+    return tick

@@ -1,0 +1,66 @@
+"""Natural vibrations of an arm about a posture."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.robots.model import FloatArray
+
+
+class Mode(NamedTuple):
+    """A natural vibration.
+
+    Attributes:
+        frequency: Undamped, in Hz.
+        damping_ratio: From 0 to below 1.
+    """
+
+    frequency: float
+    damping_ratio: float
+
+    def amplitude(self, times: FloatArray, signal: FloatArray, after: float) -> float:
+        """Return how much of this vibration is in a signal, at a time from which on the mode rings freely.
+
+        It is fitted from there to the signal's end, with a constant beside it.
+
+        Args:
+            times: Ascending, shape (T,), in s.
+            signal: Shape (T,).
+            after: That time, in s.
+        """
+        on, omega = times >= after - 1e-9, 2.0 * np.pi * self.frequency
+        since = times[on] - after
+        phase = omega * np.sqrt(1.0 - self.damping_ratio**2) * since
+        fall = np.exp(-self.damping_ratio * omega * since)
+        waves = np.stack([fall * np.cos(phase), fall * np.sin(phase), np.ones_like(since)], axis=1)
+        return float(np.hypot(*np.linalg.lstsq(waves, signal[on], rcond=None)[0][:2]))
+
+
+def find_modes(M: FloatArray, D: FloatArray, K: FloatArray) -> list[Mode]:
+    r"""Return the vibrations of a system by frequency; what creeps back without ringing is none.
+
+    .. math:: M \ddot x + D \dot x + K x = 0, \qquad s = -\zeta \omega \pm j \omega \sqrt{1 - \zeta^2}
+
+    Args:
+        M: Inertia, shape (n, n), positive definite.
+        D: Damping, likewise.
+        K: Stiffness, likewise.
+    """
+    roots = _roots(M, D, K)
+    rates = np.abs(roots)
+    ringing = roots.imag > 1e-9 * rates.max()
+    return sorted(
+        Mode(rate / (2.0 * np.pi), -root.real / rate) for rate, root in zip(rates[ringing], roots[ringing], strict=True)
+    )
+
+
+def largest_rate(M: FloatArray, D: FloatArray, K: FloatArray) -> float:
+    """Return the largest magnitude of s of such a system, in 1/s; K and D may be singular."""
+    return float(np.abs(_roots(M, D, K)).max())
+
+
+def _roots(M: FloatArray, D: FloatArray, K: FloatArray) -> NDArray[np.complex128]:
+    n = len(M)
+    slopes = np.linalg.solve(M, np.hstack([-K, -D]))
+    return np.asarray(np.linalg.eigvals(np.vstack([np.eye(n, 2 * n, n), slopes])), dtype=np.complex128)

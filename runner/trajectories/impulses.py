@@ -1,0 +1,75 @@
+"""Sequences of impulses that leave a mode at rest, and the vibration that they leave in another."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from math import prod
+from typing import Literal
+
+import numpy as np
+
+from runner.trajectories.trajectory import FloatArray
+
+ShaperKind = Literal["zv", "zvd"]
+
+
+@dataclass(frozen=True)
+class Impulses:
+    """A sequence of impulses, to be convolved with a motion.
+
+    Attributes:
+        times: When each comes, ascending from 0, shape (N,), in s.
+        shares: What share of the motion each carries, shape (N,); their sum is 1.
+    """
+
+    times: FloatArray
+    shares: FloatArray
+
+    @property
+    def delay(self) -> float:
+        """Time by which the motion ends later, in s."""
+        return float(self.times[-1])
+
+    def residual(self, frequency: float, damping_ratio: float = 0.0) -> float:
+        r"""Return the vibration of a mode when a shaped motion ends, over that when the motion itself does.
+
+        With omega = 2 pi f and omega_d = omega sqrt(1 - zeta^2), Singer and Seering (1990):
+
+        .. math:: V = e^{-\zeta \omega t_N} \left| \sum_i A_i e^{\zeta \omega t_i} e^{j \omega_d t_i} \right|
+
+        Undamped, it is |cos(pi/2 f/f_0)| for ZV made for f_0, and its square for ZVD.
+
+        Args:
+            frequency: f of the mode, undamped, in Hz.
+            damping_ratio: zeta of the mode, below 1.
+        """
+        rate = 2.0 * np.pi * frequency * (damping_ratio + 1j * np.sqrt(1.0 - damping_ratio**2))
+        return float(np.abs(self.shares @ np.exp(rate * self.times - rate.real * self.delay)))
+
+
+def zero_vibration(kind: ShaperKind, frequency: float, damping_ratio: float) -> Impulses:
+    r"""Return the impulses after which a mode is at rest (Singer and Seering 1990).
+
+    .. math:: A_i = \frac{1}{1 + k}, \frac{k}{1 + k}, \qquad A_i = \frac{1}{(1 + k)^2}, \frac{2 k}{(1 + k)^2},
+        \frac{k^2}{(1 + k)^2}, \qquad k = e^{-\zeta \pi / \sqrt{1 - \zeta^2}}
+
+    half a damped period apart: ZV, and ZVD, whose vibration has no slope over frequency and damping either.
+
+    Args:
+        kind: Which of them.
+        frequency: Frequency of the mode, undamped, in Hz.
+        damping_ratio: Its damping ratio, below 1.
+    """
+    root = np.sqrt(1.0 - damping_ratio**2)
+    half, k = 0.5 / (frequency * root), np.exp(-damping_ratio * np.pi / root)
+    once = Impulses(np.array([0.0, half]), np.array([1.0, k]) / (1.0 + k))
+    if kind == "zv":
+        return once
+    return Impulses(half * np.arange(3), np.array([1.0, 2.0 * k, k**2]) / (1.0 + k) ** 2)
+
+
+def in_turn(sequences: Sequence[Impulses]) -> Impulses:
+    """Return sequences convolved with each other: each mode that one of them leaves at rest stays so."""
+    pairs = [list(zip(each.times, each.shares, strict=True)) for each in sequences]
+    both = sorted((sum(t for t, _ in each), prod(share for _, share in each)) for each in product(*pairs))
+    return Impulses(*np.array(both).T)
