@@ -6,10 +6,11 @@ from runner.config.run import RunConfig
 from runner.controllers.motor_pd import MotorPdConfig
 from runner.errors import ConfigError
 from runner.plants import Plant
+from runner.plants.decoupled import TorquePlantConfig
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
+from runner.plants.kinds import MayBend
 from runner.plants.motion import find_motion
 from runner.plants.plant import innermost
-from runner.plants.rk4 import Rk4Config
 from runner.robots.motors import with_motors
 from runner.robots.robot import Robot
 from runner.sensing.motors import MotorSide
@@ -23,9 +24,8 @@ def find_flexibility(config: RunConfig) -> Flexibility | None:
     Raises:
         ConfigError: see FlexibleJointsConfig.by_joint.
     """
-    if not isinstance(config.plant, Rk4Config) or config.plant.flexible_joints is None:
-        return None
-    return config.plant.flexible_joints.by_joint(config.arm)
+    joints = config.plant.flexible_joints if isinstance(config.plant, MayBend) else None
+    return None if joints is None else joints.by_joint(config.arm)
 
 
 def believe_motors(config: RunConfig, believed: Robot) -> Robot:
@@ -37,9 +37,9 @@ def believe_motors(config: RunConfig, believed: Robot) -> Robot:
 def find_motor_side(config: RunConfig, plant: Plant, believed: Robot) -> MotorSide | None:
     """Return what drives and encoders know of the motors of a plant; None where joints are rigid."""
     springs = innermost(plant)
-    if not isinstance(springs, FlexibleJoints) or not isinstance(config.plant, Rk4Config):
+    joints = config.plant.flexible_joints if isinstance(config.plant, MayBend) else None
+    if not isinstance(springs, FlexibleJoints):
         return None
-    joints = config.plant.flexible_joints
     known = joints is not None and joints.static_deflection == "known"
     at_motors = joints is not None and joints.encoders == "motor"
     return MotorSide(springs, at_motors, believed.model if known else None)
@@ -56,7 +56,7 @@ def check_flexible_joints(config: RunConfig) -> None:
         raise ConfigError(
             ["controller.kind: motor_pd turns motors behind springs; take plant=rk4_flexible, or controller=joint_pd"]
         )
-    if flexibility is None or not isinstance(config.plant, Rk4Config):
+    if flexibility is None or not isinstance(config.plant, TorquePlantConfig):
         return
     problems = [f"plant.flexible_joints: {problem}" for problem in _refused(config, config.plant, flexibility)]
     rate, step = flexibility.largest_rate(config.arm.model.mass_matrix(config.arm.home)), config.timing.step
@@ -70,7 +70,7 @@ def check_flexible_joints(config: RunConfig) -> None:
         raise ConfigError(problems)
 
 
-def _refused(config: RunConfig, plant: Rk4Config, flexibility: Flexibility) -> list[str]:
+def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibility) -> list[str]:
     """Return what of a config takes its joints for rigid."""
     problems = []
     if config.commands != "torque":
@@ -92,7 +92,7 @@ def _refused(config: RunConfig, plant: Rk4Config, flexibility: Flexibility) -> l
         problems.append("the payload cannot change on the way; take robot.payload.schedule=[]")
     if config.joint_torques is not None:
         problems.append("torque sensors are read at rigid joints; take joint_torque_sensor.noise=null")
-    joints = plant.flexible_joints
+    joints = plant.flexible_joints if isinstance(plant, MayBend) else None
     theta = joints is not None and joints.encoders == "motor" and joints.static_deflection == "unknown"
     if isinstance(config.controller, MotorPdConfig) and not theta:
         problems.append(

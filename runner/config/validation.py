@@ -24,6 +24,7 @@ from runner.config.reach import check_path, check_points
 from runner.config.repeats import check_repeats
 from runner.config.robot import RobotConfig
 from runner.config.run import RunConfig
+from runner.config.schedule import check_schedule
 from runner.config.start import start_posture
 from runner.config.timing import Timing, count_steps, count_ticks
 from runner.config.torque_limits import TorqueLimitsConfig
@@ -128,7 +129,7 @@ def _check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
 
 def _checked(config: RunConfig) -> RunConfig:
     """Return a config after the checks of what only the whole of it tells."""
-    _check_schedule(config)
+    check_schedule(config)
     check_computation(config)
     check_observer(config)
     check_notch(config)
@@ -139,23 +140,6 @@ def _checked(config: RunConfig) -> RunConfig:
     check_repeats(config)
     check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.feels)
     return config
-
-
-def _check_schedule(config: RunConfig) -> None:
-    """Check that a payload that changes on the way meets a plant that can take it up."""
-    if not config.loaded:
-        return
-    key = "robot.payload.schedule: the payload cannot change on the way"
-    if PLANTS.commands(config.plant.kind) == "position":
-        fit = " or plant=".join(kind for kind in PLANTS.names() if PLANTS.commands(kind) == "torque")
-        raise ConfigError([f"{key} of plant={config.plant.kind}, whose joints no mass moves; take plant={fit}, or []"])
-    if config.feels:
-        raise ConfigError(
-            [
-                f"{key} where the tip touches something or its sensor is read, which would have to tell the payload "
-                "from the touch; take environment=free and a controller that feels nothing, or []"
-            ]
-        )
 
 
 def _check_commands(plant: PlantConfig, controller: ControllerConfig) -> None:

@@ -9,6 +9,8 @@ import pinocchio as pin
 from runner.engine_output import quiet_stderr
 from runner.plants.bullet_servers import SERVERS
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
+from runner.plants.flexible_around import flexible_around
+from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.plant import FloatArray, Plant
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
@@ -28,9 +30,11 @@ class BulletConfig(TorquePlantConfig):
     Attributes:
         kind: Its name in the registry.
         step: Integration step, in s; None is a tenth of the fastest controller period, a quarter with several stages.
+        flexible_joints: Springs between motors and links; None is an arm with rigid joints.
     """
 
     kind: Literal["bullet"]
+    flexible_joints: FlexibleJointsConfig | None = None
 
 
 class Bullet:
@@ -187,6 +191,9 @@ CONFIG = BulletConfig
 
 def build(config: BulletConfig, robot: Robot, step: float, steps_per_tick: int) -> Plant:
     """Make the plant that a config describes."""
+    if config.flexible_joints is not None:
+        parts = config.flexible_joints, config.friction, robot, step, steps_per_tick
+        return flexible_around(*parts, lambda: Bullet(robot.urdf, robot.model, step, 1))
     tick = step * steps_per_tick
     return assemble_plant(config, robot, tick, lambda urdf, model: Bullet(urdf, model, step, steps_per_tick))
 

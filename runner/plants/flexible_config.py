@@ -5,8 +5,8 @@ from typing import Literal
 import numpy as np
 from pydantic import NonNegativeFloat
 
-from runner.config.per_joint import expand
-from runner.config.per_stage import SpringPerStage, by_stage
+from runner.config.by_joint import by_joint
+from runner.config.per_stage import SpringPerStage
 from runner.errors import ConfigError, nearest
 from runner.plants.flexible_joints import Flexibility
 from runner.plants.plant import FloatArray
@@ -46,8 +46,8 @@ class FlexibleJointsConfig(StrictModel):
             ConfigError: for values that do not fit the robot's stages and joints, no spring at all, one without motor
                 or a motor without spring, or a spring in a joint that slides.
         """
-        springs = _expand("stiffness", self.stiffness, arm)
-        motors = _expand("motor_inertia", self.motor_inertia, arm)
+        springs = by_joint("plant.flexible_joints.stiffness", self.stiffness, arm)
+        motors = by_joint("plant.flexible_joints.motor_inertia", self.motor_inertia, arm)
         key, names = "plant.flexible_joints", arm.model.joint_names
         flexible = np.isfinite(springs)
         problems = []
@@ -87,13 +87,3 @@ class FlexibleJointsConfig(StrictModel):
         if problems:
             raise ConfigError(problems)
         return braked
-
-
-def _expand(name: str, value: SpringPerStage, arm: Robot) -> FloatArray:
-    """Return a key's value of each joint of a robot, shape (nq,); infinite for null."""
-    key, several = f"plant.flexible_joints.{name}", len(arm.stages) > 1
-    values: list[float | None] = []
-    for stage, given in zip(arm.stages, by_stage(key, value, arm.stage_names), strict=True):
-        at = f"{key}.{stage.name}" if several else key
-        values += expand(at, given, stage.model.joint_names)  # type: ignore[arg-type]
-    return np.array([np.inf if each is None else each for each in values])

@@ -8,6 +8,7 @@ from runner import engines
 from runner.errors import ConfigError
 from runner.guard import watch_plant
 from runner.plants.computation import ComputationConfig
+from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.motion import Motion
 from runner.plants.plant import FloatArray, Plant
 from runner.plants.servo import ServoConfig
@@ -37,6 +38,13 @@ class ComputesLate(Protocol):
     """A config of plants with what a computer does to a controller's commands; without, they act at once."""
 
     computation: ComputationConfig
+
+
+@runtime_checkable
+class MayBend(Protocol):
+    """A config of plants whose joints may have springs between motors and links; None where they are rigid."""
+
+    flexible_joints: FlexibleJointsConfig | None
 
 
 @runtime_checkable

@@ -13,6 +13,7 @@ from runner.robots.robot import Robot
 
 if TYPE_CHECKING:
     from runner.plants.decoupled import TorquePlantConfig
+    from runner.plants.friction import FrictionConfig
 
 
 @dataclass(frozen=True)
@@ -61,9 +62,7 @@ def find_motion(robot: Robot, config: "TorquePlantConfig") -> Motion:
         ConfigError: for coupled dynamics with a base that does not turn, which no rigid body can do, or a list of
             another length than the robot has joints.
     """
-    names = robot.model.joint_names
-    viscous = np.array(expand("plant.friction.viscous", config.friction.viscous, names))
-    coulomb = np.array(expand("plant.friction.coulomb", config.friction.coulomb, names))
+    viscous, coulomb = friction_by_joint(robot, config.friction)
     parallel = config.wrist_rotation == "parallel"
     if len(robot.stages) == 1 or config.dynamics == "coupled":
         if parallel and len(robot.stages) > 1:
@@ -80,3 +79,17 @@ def find_motion(robot: Robot, config: "TorquePlantConfig") -> Motion:
             for stage in robot.stages
         ]
     return Motion(robot, tuple(arms), parallel)
+
+
+def friction_by_joint(robot: Robot, friction: "FrictionConfig") -> tuple[FloatArray, FloatArray]:
+    """Return viscous and dry friction of each joint of a robot, shapes (nq,), in N m s/rad and N m.
+
+    Raises:
+        ConfigError: for a list of another length than the robot has joints.
+    """
+    names = robot.model.joint_names
+    viscous, coulomb = (
+        np.array(expand(f"plant.friction.{key}", value, names))
+        for key, value in (("viscous", friction.viscous), ("coulomb", friction.coulomb))
+    )
+    return viscous, coulomb

@@ -9,6 +9,8 @@ from pydantic import Field
 
 from runner.errors import ConfigError
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
+from runner.plants.flexible_around import flexible_around
+from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.mujoco_model import FORCE, MOMENT, WALL, compiled, read_spec
 from runner.plants.plant import FloatArray, Plant
 from runner.robots.model import RobotModel
@@ -39,12 +41,14 @@ class MujocoConfig(TorquePlantConfig):
             default_plant says; None where this one was asked for.
         least_inertia: MuJoCo takes no moving link without mass and inertia: one with less mass, or less of a principal
             moment, gets this, in kg and kg m^2.
+        flexible_joints: Springs between motors and links; None is an arm with rigid joints.
     """
 
     kind: Literal["mujoco"]
     integrator: Integrator
     in_place_of: Literal["bullet"] | None
     least_inertia: float = Field(ge=1e-12, le=1e-3)
+    flexible_joints: FlexibleJointsConfig | None = None
 
 
 class Mujoco:
@@ -164,6 +168,9 @@ CONFIG = MujocoConfig
 def build(config: MujocoConfig, robot: Robot, step: float, steps_per_tick: int) -> Plant:
     """Make the plant that a config describes."""
     tick, chosen = step * steps_per_tick, (config.integrator, config.least_inertia)
+    if config.flexible_joints is not None:
+        parts = config.flexible_joints, config.friction, robot, step, steps_per_tick
+        return flexible_around(*parts, lambda: Mujoco(robot.urdf, robot.model, step, 1, *chosen))
     return assemble_plant(config, robot, tick, lambda urdf, model: Mujoco(urdf, model, step, steps_per_tick, *chosen))
 
 

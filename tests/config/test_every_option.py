@@ -32,6 +32,8 @@ NEEDS = {  # what an option does not run without
     "input_shaper=zv": ("robot=macro", "plant=rk4_flexible"),
     "input_shaper=zvd": ("robot=macro", "plant=rk4_flexible"),
     "plant=kinematic": ("robot=xarm7",),
+    "plant=bullet_flexible": ("robot=macro",),
+    "plant=mujoco_flexible": ("robot=macro",),
     "plant=rk4_flexible": ("robot=macro",),
     "plant=rk4_flexible_links": ("robot=macro", "trajectory=quintic"),
     "trajectory=from_file": (f"trajectory.file={SWING}",),

@@ -1,0 +1,26 @@
+"""Whether a run can have a payload that changes on the way."""
+
+from runner.config.run import RunConfig
+from runner.errors import ConfigError
+from runner.plants import PLANTS
+
+
+def check_schedule(config: RunConfig) -> None:
+    """Check that a payload that changes on the way meets a plant that can take it up.
+
+    Raises:
+        ConfigError: where it does not.
+    """
+    if not config.loaded:
+        return
+    key = "robot.payload.schedule: the payload cannot change on the way"
+    if PLANTS.commands(config.plant.kind) == "position":
+        fit = " or plant=".join(kind for kind in PLANTS.names() if PLANTS.commands(kind) == "torque")
+        raise ConfigError([f"{key} of plant={config.plant.kind}, whose joints no mass moves; take plant={fit}, or []"])
+    if config.feels:
+        raise ConfigError(
+            [
+                f"{key} where the tip touches something or its sensor is read, which would have to tell the payload "
+                "from the touch; take environment=free and a controller that feels nothing, or []"
+            ]
+        )
