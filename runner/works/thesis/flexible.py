@@ -1,6 +1,7 @@
 """What the chapter on a flexible Macro works out: modes, limits of stability, and damping from what rings down."""
 
 from collections.abc import Callable, Mapping
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +10,10 @@ from runner.reporting.document import FloatArray, Series
 from runner.reporting.figures import columns, joint_columns, model_of
 from runner.reporting.prose.patterns import found
 from runner.reporting.run_values import clock
+from runner.robots.cantilever import frequency_errors
+from runner.robots.modes import Mode
 from runner.store import Run
+from runner.trajectories.impulses import zero_vibration
 
 _MACRO = 3  # its joints
 _STIFFNESSES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0)  # N m/rad
@@ -17,6 +21,9 @@ _KICK = 0.3  # s, after which the push of a run that rings is over
 _PEAKS = 2
 _HEARD = 0.02  # of the largest peak, below which peaks tell nothing of one mode
 _SETTLED = 2e-3  # m
+_STILL = 1e-9  # m/s, of a desired motion that has ended
+_REST = 0.3  # s at the end of a run, over which the place is taken where the tip rests
+_PARTS = (1, 2, 3, 4, 8, 16)
 
 
 def modes(runs: Mapping[str, Run], run: str, law: float) -> list[Series]:
@@ -170,6 +177,60 @@ def damping_by_gain(run: Run, bare: Run) -> Callable[[float], float]:
     omega, share = _first_mode(run, bare)
     soft = float(run.config["controller"]["natural_frequency"]["mini"])
     return lambda gain: share * (gain + 2.0 * soft) / (2.0 * omega)
+
+
+def left_of_vibration(run: Run, unshaped: Run) -> float:
+    """Return how much joint 1 rings after a shaped move, over what it does after the same unshaped."""
+    return _rings(run) / _rings(unshaped)
+
+
+def shaped_points(runs: Mapping[str, Run], pattern: str, unshaped: str, name: str, color: int) -> list[Series]:
+    """Return what runs leave of the vibration, as points against the share of the frequency that their shapers have."""
+    rung = found(runs, pattern)
+    shares = np.array([float(one.levels["share"]) for one in rung])
+    left = np.array([left_of_vibration(one.run, runs[unshaped]) for one in rung])
+    return [Series(name, shares, left, "points", color=color)]
+
+
+def shaped_line(kind: Literal["zv", "zvd"]) -> Callable[[float], float]:
+    """Return the closed form of it, without damping, against that share."""
+    return lambda share: zero_vibration(kind, share, 0.0).residual(1.0)
+
+
+def off_the_line(runs: Mapping[str, Run], pattern: str, unshaped: str, kind: Literal["zv", "zvd"]) -> float:
+    """Return by how much what runs leave of the vibration differs from the closed form, at most."""
+    (points,) = shaped_points(runs, pattern, unshaped, "", 0)
+    exact = np.array([shaped_line(kind)(float(share)) for share in points.x])
+    return float(np.abs(points.y - exact).max())
+
+
+def rings_after(run: Run) -> float:
+    """Return how far the tip is from where it rests, at most, once its desired motion has ended, in m."""
+    error, t = columns(run.trace, "error"), clock(run)
+    moving = np.flatnonzero(np.abs(columns(run.trace, "desired_velocity")).max(axis=1) > _STILL)[-1]
+    away = error[moving + 1 :] - error[t > t[-1] - _REST].mean(axis=0)
+    return float(np.linalg.norm(away, axis=1).max())
+
+
+def beam_errors(tip_ratio: float, mode: int, name: str, color: int) -> list[Series]:
+    """Return by how much chains of so many springs ring faster than the beam they stand for, as points."""
+    parts = np.array(_PARTS)
+    errors = np.array([frequency_errors(tip_ratio, int(n), mode)[mode - 1] for n in parts if n >= mode])
+    return [Series(name, parts[parts >= mode].astype(float), errors, "points_line", color=color)]
+
+
+def order_of_chains(tip_ratio: float) -> float:
+    """Return the order in 1/n by which a chain's first mode goes to that of its beam, from 8 to 16 springs."""
+    few, many = (frequency_errors(tip_ratio, n, 1)[0] for n in (8, 16))
+    return float(np.log2(few / many))
+
+
+def _rings(run: Run) -> float:
+    """Return the amplitude of joint 1's vibration once its desired motion has ended, in rad."""
+    stiffness = float(run.config["plant"]["flexible_joints"]["stiffness"])
+    mode, t = Mode(float(np.sqrt(stiffness / _mass(run)[0, 0]) / (2.0 * np.pi)), 0.0), clock(run)
+    moving = np.flatnonzero(np.abs(columns(run.trace, "desired_velocity")).max(axis=1) > _STILL)[-1]
+    return mode.amplitude(t, joint_columns(run.trace, "q")[:, 0], float(t[moving + 1]))
 
 
 def _first_mode(run: Run, bare: Run) -> tuple[float, float]:
