@@ -81,7 +81,7 @@ def test_the_checklist_finds_its_places_and_names_what_is_missing(runs: dict[str
     assert checklist is not None
     section = checklist.section([Section("Elsewhere"), Section("Here", sections=(Section("Below", (figure,)),))])
     rows = {row[0]: row for block in section.blocks if isinstance(block, Table) for row in block.rows}
-    assert len(rows) == 38
+    assert len(rows) == 42
     assert rows["Figure 5.8"][2:] == ["reproduced", "§2.1"]
     assert rows["Figure 5.9"][2] == "missing"
     assert rows["Figure 1.1"][2].startswith("of others")

@@ -205,10 +205,11 @@ def off_the_line(runs: Mapping[str, Run], pattern: str, unshaped: str, kind: Lit
 
 
 def rings_after(run: Run) -> float:
-    """Return how far the tip is from where it rests, at most, once its desired motion has ended, in m."""
-    error, t = columns(run.trace, "error"), clock(run)
-    moving = np.flatnonzero(np.abs(columns(run.trace, "desired_velocity")).max(axis=1) > _STILL)[-1]
-    away = error[moving + 1 :] - error[t > t[-1] - _REST].mean(axis=0)
+    """Return how far the tip is from where it rests, at most, once its desired motion has ended, in m; NaN before."""
+    error, t, ended = columns(run.trace, "error"), clock(run), _first_at_rest(run)
+    if ended is None:
+        return float("nan")
+    away = error[ended:] - error[t > t[-1] - _REST].mean(axis=0)
     return float(np.linalg.norm(away, axis=1).max())
 
 
@@ -226,11 +227,17 @@ def order_of_chains(tip_ratio: float) -> float:
 
 
 def _rings(run: Run) -> float:
-    """Return the amplitude of joint 1's vibration once its desired motion has ended, in rad."""
+    """Return the amplitude of joint 1's vibration once its desired motion has ended, in rad; NaN before."""
     stiffness = float(run.config["plant"]["flexible_joints"]["stiffness"])
     mode, t = Mode(float(np.sqrt(stiffness / _mass(run)[0, 0]) / (2.0 * np.pi)), 0.0), clock(run)
-    moving = np.flatnonzero(np.abs(columns(run.trace, "desired_velocity")).max(axis=1) > _STILL)[-1]
-    return mode.amplitude(t, joint_columns(run.trace, "q")[:, 0], float(t[moving + 1]))
+    ended = _first_at_rest(run)
+    return float("nan") if ended is None else mode.amplitude(t, joint_columns(run.trace, "q")[:, 0], float(t[ended]))
+
+
+def _first_at_rest(run: Run) -> int | None:
+    """Return the first row after the desired motion; None of a run that ends before."""
+    moving = np.flatnonzero(np.abs(columns(run.trace, "desired_velocity")).max(axis=1) > _STILL)
+    return int(moving[-1]) + 1 if len(moving) and moving[-1] + 1 < len(run.trace) else None
 
 
 def _first_mode(run: Run, bare: Run) -> tuple[float, float]:
