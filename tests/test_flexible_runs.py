@@ -84,11 +84,12 @@ def test_the_names_of_rigid_runs_know_nothing_of_flexible_joints():
         ((f"{KEY}.damping_ratio=-0.1",), f"{KEY}.damping_ratio: must be 0 or more"),
         ((f"{KEY}.stiffness=[1,2]",), "2 values for 3 joints (q1, q2, q3)"),
         ((f"{KEY}.stiffness=null",), "null for every joint"),
-        ((f"{KEY}.motor_inertia=null",), "q1 has a spring and no motor"),
+        ((f"{KEY}.motor_inertia=null",), "null takes robot.rotor_inertia, which is 0 for q1"),
+        ((f"{KEY}.motor_inertia=[null,2,2]",), "q1 has a spring and no motor"),
         ((f"{KEY}.stiffness=[null,1,1]",), "q1 has a motor and no spring"),
         ((f"{KEY}.stiffness=1e6",), "Hz at home; allowed: up to 0.0003"),
         ((f"{KEY}.encoders=motr",), "did you mean motor?"),
-        (("robot.rotor_inertia=0.1",), "robot.rotor_inertia: 0.1 turns with the links"),
+        (("robot.rotor_inertia=0.1",), "take 0 for it, or motor_inertia=null to have the motors turn with it"),
         ((f"{KEY}.braked={{mini: 0}}",), f"{KEY}.braked: no such stage: 'mini'"),
         (("environment=wall",), "a wall is met by arms with rigid joints"),
         (("joint_torque_sensor=ideal",), "joint_torque_sensor.noise=null"),
@@ -161,3 +162,22 @@ def test_the_motors_of_tomeis_law_bring_the_links_exactly_to_rest(simulated):
 )
 def test_motor_pd_wants_motors(overrides, expected):
     assert expected in problems("robot=macro", *overrides)
+
+
+def test_without_a_motor_inertia_the_rotors_are_the_motors(simulated):
+    move = (*MACRO, *MOVE, "plant.step=0.001")
+    named = simulated(*move, f"{KEY}.motor_inertia=[2,1.5,1]")
+    rotors = simulated(*move, f"{KEY}.motor_inertia=null", "robot.rotor_inertia=[2,1.5,1]")
+    np.testing.assert_array_equal(named.q, rotors.q)
+    np.testing.assert_array_equal(named.tau, rotors.tau)
+
+
+def test_rotors_of_rigid_joints_stay_on_their_links():
+    both = ("robot=combined", "plant=rk4_flexible", f"{KEY}.stiffness={{macro: 1000, mini: null}}",
+            f"{KEY}.motor_inertia=null", "robot.stages.macro.rotor_inertia=2",
+            "robot.stages.mini.rotor_inertia=1e-4")  # fmt: skip
+    config = validate(compose([*both]).resolved)
+    flexibility = config.plant.flexible_joints.by_joint(config.arm)
+    assert flexibility.motors.tolist() == [2.0] * 3 + [0.0] * 3
+    plain = validate(compose(["robot=combined", "robot.stages.mini.rotor_inertia=1e-4"]).resolved)
+    np.testing.assert_array_equal(config.arm.model.mass_matrix(np.zeros(6)), plain.arm.model.mass_matrix(np.zeros(6)))

@@ -40,7 +40,7 @@ def build_robot(
         ConfigError: for a file that cannot be found or built, a frame or link that does not exist, a posture of the
             wrong length or beyond the joints' limits, or names that clash between stages.
     """
-    paths = [_find(key, arm, config_dirs) for key, arm in _by_key(config)]
+    paths = [find_arm(key, arm, config_dirs) for key, arm in keyed_arms(config)]
     files = [
         file
         for path, arm in zip(paths, config.arms.values(), strict=True)
@@ -74,7 +74,7 @@ def _build(config: RobotConfig, gravity: float, paths: Sequence[Path], sensor: F
     several = len(config.arms) > 1
     stages: list[Stage] = []
     whole, prefix, tip, first = "", "", "", 0
-    for path, name, (key, arm) in zip(paths, config.arms, _by_key(config), strict=True):
+    for path, name, (key, arm) in zip(paths, config.arms, keyed_arms(config), strict=True):
         outermost = len(stages) + 1 == len(config.arms)
         payloads = _payloads(config, arm.tip, sensor) if outermost else []
         with _told_of(arm):
@@ -103,13 +103,13 @@ def _build(config: RobotConfig, gravity: float, paths: Sequence[Path], sensor: F
     return Robot(whole, whole_model, tuple(stages), flange, left_out)
 
 
-def _by_key(config: RobotConfig) -> list[tuple[str, ArmConfig]]:
+def keyed_arms(config: RobotConfig) -> list[tuple[str, ArmConfig]]:
     """Return the arms of a robot, each with the key of its group."""
     several = len(config.arms) > 1
     return [(f"robot.stages.{name}" if several else "robot", arm) for name, arm in config.arms.items()]
 
 
-def _find(key: str, arm: ArmConfig, config_dirs: Sequence[Path]) -> Path:
+def find_arm(key: str, arm: ArmConfig, config_dirs: Sequence[Path]) -> Path:
     """Return the file of an arm, which is of the format that its key says."""
     if (arm.urdf is None) == (arm.mjcf is None):
         found = "neither" if arm.urdf is None else f"both, '{arm.urdf}' and '{arm.mjcf}'"

@@ -99,10 +99,11 @@ def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibili
             "motor_pd reads theta as it is; take plant.flexible_joints.encoders=motor and .static_deflection=unknown"
         )
     for name, arm, stage in zip(config.robot.arms, config.robot.arms.values(), config.arm.stages, strict=True):
-        if arm.rotor_inertia not in (0.0, 0) and flexibility.flexible[stage.joints].any():
+        on, rotors = flexibility.flexible[stage.joints], arm.rotor_inertia
+        if on.any() and (isinstance(rotors, str) or np.broadcast_to(rotors, len(on))[on].any()):
             key = f"robot.stages.{name}.rotor_inertia" if len(config.arm.stages) > 1 else "robot.rotor_inertia"
             problems.append(
                 f"{key}: {arm.rotor_inertia} turns with the links, beside motor_inertia with which the motors turn; "
-                "take 0 for one arm to have its motors once"
+                "take 0 for it, or motor_inertia=null to have the motors turn with it"
             )
     return problems

@@ -1,6 +1,7 @@
 """Checking a composed config: every problem is found before one message lists them all."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,13 +19,13 @@ from runner.config.limits import check_memory
 from runner.config.memory import Memory
 from runner.config.noise import NoiseConfig
 from runner.config.notch import check_notch
+from runner.config.payload import check_payload, check_schedule
 from runner.config.plugged import exact_encoders
 from runner.config.problems import Problems, sure
 from runner.config.reach import check_path, check_points
 from runner.config.repeats import check_repeats
-from runner.config.robot import RobotConfig
+from runner.config.rotors import with_rotors_at_motors
 from runner.config.run import RunConfig
-from runner.config.schedule import check_schedule
 from runner.config.start import start_posture
 from runner.config.timing import Timing, count_steps, count_ticks
 from runner.config.torque_limits import TorqueLimitsConfig
@@ -33,7 +34,6 @@ from runner.errors import ConfigError
 from runner.plants import PLANTS, PlantConfig
 from runner.plants.kinds import HasServo, TurnsBases
 from runner.registry import KindConfig
-from runner.robots.mismatch import MismatchConfig
 from runner.robots.model import STANDARD_GRAVITY
 from runner.robots.robot import Robot, end_points
 from runner.trajectories import TRAJECTORIES, Trajectory
@@ -56,8 +56,8 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         ConfigError: with every problem found: dotted key, value found, values allowed, nearest valid name.
     """
     problems = Problems(_MEMORY)
-    groups = read_groups(resolved, problems)
-    problems.recall(_check_payload, groups.robot, groups.mismatch)
+    groups = _with_motors(read_groups(resolved, problems), problems, config_dirs)
+    problems.recall(check_payload, groups.robot, groups.mismatch)
     gravity = STANDARD_GRAVITY if groups.settings is None else groups.settings.gravity
     made_of = (groups.robot, gravity, config_dirs, *([] if groups.wrist_sensor is None else [groups.wrist_sensor]))
     arm = problems.recall(build_robot, *made_of)
@@ -117,14 +117,10 @@ def _shape(groups: Groups, arm: Robot, path: Trajectory, loops: tuple[Loop, ...]
     return shape(groups.input_shaper, plant, arm, path, q, loops)
 
 
-def _check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
-    if mismatch.payload < -robot.payload.mass:
-        raise ConfigError(
-            [
-                f"mismatch.payload: {mismatch.payload:g} kg is less than nothing of the true payload, "
-                f"robot.payload.mass with {robot.payload.mass:g} kg; allowed: {-robot.payload.mass:g} or more"
-            ]
-        )
+def _with_motors(groups: Groups, problems: Problems, config_dirs: Sequence[Path]) -> Groups:
+    """Return groups with the robot's rotors at the motors of flexible joints, where those turn with rotors."""
+    made = problems.recall(with_rotors_at_motors, groups.robot, groups.plant, config_dirs)
+    return groups if made is None else replace(groups, robot=made[0], plant=made[1])
 
 
 def _checked(config: RunConfig) -> RunConfig:

@@ -21,7 +21,8 @@ class FlexibleJointsConfig(StrictModel):
     Attributes:
         stiffness: Stiffness between motor and link, in N m/rad. One for all joints or a list with one for each; None
             for a joint that is rigid.
-        motor_inertia: Inertia of the motor after its gear, in kg m^2; likewise, None for the same joints.
+        motor_inertia: Inertia of the motor after its gear, in kg m^2; likewise, None for the same joints. None alone is
+            the robot's rotor_inertia, which then turns with the motors.
         damping_ratio: Damping of each joint's spring, of its link alone with the others held at home: 1 is critical.
         torsion_damping: Ratio of the damping that drives add, of each motor alone against its spring, from encoders at
             motor and link: the fast part of Spong's composite control. 0 is none.

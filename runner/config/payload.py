@@ -1,8 +1,25 @@
-"""Whether a run can have a payload that changes on the way."""
+"""Whether controllers can believe in a payload, and a run can have one that changes on the way."""
 
+from runner.config.robot import RobotConfig
 from runner.config.run import RunConfig
 from runner.errors import ConfigError
 from runner.plants import PLANTS
+from runner.robots.mismatch import MismatchConfig
+
+
+def check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
+    """Check that controllers believe in no payload below nothing.
+
+    Raises:
+        ConfigError: where they do.
+    """
+    if mismatch.payload < -robot.payload.mass:
+        raise ConfigError(
+            [
+                f"mismatch.payload: {mismatch.payload:g} kg is less than nothing of the true payload, "
+                f"robot.payload.mass with {robot.payload.mass:g} kg; allowed: {-robot.payload.mass:g} or more"
+            ]
+        )
 
 
 def check_schedule(config: RunConfig) -> None:
