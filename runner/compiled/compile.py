@@ -7,7 +7,7 @@ from typing import Any
 
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.compiled.commands import Commands, LoopCode
-from runner.compiled.engine import evaluator
+from runner.compiled.engine import MOST_JOINTS, evaluator
 from runner.compiled.motion import CompiledStep
 from runner.compiled.structure import CannotCompileError
 from runner.config.timing import Timing
@@ -18,9 +18,6 @@ from runner.plants.motion import Motion
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
-
-MOST_JOINTS = 12
-"""Above this the code grows as the cube of the joints, and Pinocchio is as quick."""
 
 
 def find_commands(

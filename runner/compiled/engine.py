@@ -9,6 +9,9 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 NAME = "llvmlite"
+MOST_JOINTS = 12
+"""Above this the code of an arm grows as the cube of the joints, and Pinocchio is as quick."""
+
 Function = Callable[[ctypes.c_void_p], None]
 
 

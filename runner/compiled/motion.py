@@ -101,7 +101,7 @@ def expressed_motion(motion: Motion, numbers: MotionScalars, at: Places, torques
             bases.append(_put(SCRATCH, first, product(transpose(whole[1]), numbers.gravity)))
             constants = constants._replace(gravity=gravity)
         joint, count = arm.joints.start, arm.model.nq
-        mover = _Mover(ArmAlgebra(constants), joint, nq, count, at)
+        mover = Mover(ArmAlgebra(constants), joint, nq, count, at)
         acting: Vector = torques[joint : joint + count]
         if arm.viscous.any() or arm.coulomb.any():
             acting = mover.brake(acting, own.viscous, own.coulomb, numbers.tick, arms)
@@ -109,7 +109,7 @@ def expressed_motion(motion: Motion, numbers: MotionScalars, at: Places, torques
     return [*bases, *arms]
 
 
-class _Mover:
+class Mover:
     """Moves one arm.
 
     Args:
@@ -138,7 +138,7 @@ class _Mover:
         first, scratch = self._at.take(SCRATCH, 4 * n)
         q_i, v_i, one, two = (scratch[part * n : (part + 1) * n] for part in range(4))
         ahead, weight_one, weight_two = places(TABLE, 0, 3)
-        a_i = self._acceleration(q_i, v_i, acting)
+        a_i = self.acceleration(q_i, v_i, acting)
         stage = [
             *add(q, scale(ahead * h, v_i)),
             *add(v, scale(ahead * h, a_i)),
@@ -152,7 +152,8 @@ class _Mover:
         end = Block([(STATE, place_ + index, value) for place_, values in ends for index, value in enumerate(values)])
         parts.append(Repeat([begin, stages, end], "steps"))
 
-    def _acceleration(self, q: Vector, v: Vector, tau: Vector) -> Vector:
+    def acceleration(self, q: Vector, v: Vector, tau: Vector) -> Vector:
+        """Return the joints' accelerations under torques, shapes (n,)."""
         bias = self._algebra.inverse_dynamics(q, v, [0.0] * len(q))
         return Factors(self._algebra.mass_matrix(q)).solve(subtract(tau, bias))
 
@@ -239,14 +240,14 @@ class CompiledStep:
 
         def express() -> Expressed:
             at, parts = Places(), list[Part]()
-            gravity, h, constants = _step_scalars(model, self._step, at.number)
+            gravity, h, constants = step_scalars(model, self._step, at.number)
             at.take(STATE, 2 * n)
             algebra = ArmAlgebra(constants._replace(gravity=gravity))
-            _Mover(algebra, 0, n, n, at).move(at.take(ROWS, n)[1], h, parts)
+            Mover(algebra, 0, n, n, at).move(at.take(ROWS, n)[1], h, parts)
             return Expressed([], parts, at.widths, [])
 
         values = Values()
-        _step_scalars(model, self._step, values.number)
+        step_scalars(model, self._step, values.number)
         frame = program(f"step {arm_pattern(model)}", f"the motion of {n} joints", express, 1).frame(1, last=-1)
         frame.pars[:, 0] = values.values
         return frame
@@ -264,6 +265,7 @@ class CompiledStep:
         q[:], v[:] = state[:n], state[n:]
 
 
-def _step_scalars(model: RobotModel, step: float, number: Callable[[float], Any]) -> tuple[Vector, Value, ArmConstants]:
+def step_scalars(model: RobotModel, step: float, number: Callable[[float], Any]) -> tuple[Vector, Value, ArmConstants]:
+    """Return the numbers of an arm's steps as `number` makes them: gravity, which comes first, step, and bodies."""
     gravity = [number(value) for value in model.gravity.tolist()]
     return gravity, number(step), constants_of(model, number, [0.0] * 3)

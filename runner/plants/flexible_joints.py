@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from runner.compiled.flexible import compile_flexible
 from runner.plants.plant import FloatArray
 from runner.robots.model import RobotModel
 
@@ -59,13 +60,14 @@ class Flexibility:
 
 
 class FlexibleJoints:
-    r"""An arm with flexible joints, by the classical Runge-Kutta scheme on Pinocchio's forward dynamics.
+    r"""An arm with flexible joints, by the classical Runge-Kutta scheme.
 
     .. math:: M(q) \ddot q + h(q, \dot q) = K (\theta - q) + D (\dot\theta - \dot q), \qquad
         B \ddot\theta + K (\theta - q) + D (\dot\theta - \dot q) = \tau
 
     The model is that of Spong (J. Dyn. Syst. Meas. Control 109, 1987): a motor feels no inertia but its own spin.
     A rigid joint takes its torque as it is. A brake that closes stops its motor at once, whatever the torque.
+    Accelerations are compiled code's where that is to be had, else those of Pinocchio's articulated-body algorithm.
 
     Args:
         model: The arm's rigid-body model, of the links alone.
@@ -82,6 +84,8 @@ class FlexibleJoints:
         self._ticks, self._free = 0, np.ones(int(self._on.sum()), dtype=bool)
         self._damping = flexibility.damping[self._on]
         self._step, self._steps_per_tick = step, steps_per_tick
+        numbers = flexibility.stiffness, flexibility.damping, flexibility.motors
+        self._compiled = compile_flexible(model, self._on, *numbers, step)
         self.q, self.dq = np.zeros(model.nq), np.zeros(model.nq)
         self.theta: FloatArray = np.zeros(model.nq)
         """Motor positions after the gear, shape (nq,), in rad; of a rigid joint its own."""
@@ -100,22 +104,33 @@ class FlexibleJoints:
     def set_gravity(self, gravity: FloatArray) -> None:
         """Take another gravity vector; see Plant."""
         self._model.gravity.linear = gravity
+        if self._compiled is not None:
+            self._compiled.set_gravity(gravity)
 
     def advance(self, tau: FloatArray) -> None:
         """Hold the motors' torques for one tick; see Plant."""
-        on, nq, h = self._on, len(self.q), self._step
+        on, nq = self._on, len(self.q)
         self._brake(on)
         x = np.concatenate([self.q, self.theta[on], self.dq, self.dtheta[on]])
+        if self._compiled is not None:
+            x = self._compiled.advance(x, tau, self.load, self._free, self._steps_per_tick)
+        else:
+            x = self._moved(x, tau)
+        places, speeds = x[: len(x) // 2], x[len(x) // 2 :]
+        self.q[:], self.dq[:] = places[:nq], speeds[:nq]
+        self.theta[:], self.dtheta[:] = self.q, self.dq
+        self.theta[on], self.dtheta[on] = places[nq:], speeds[nq:]
+
+    def _moved(self, x: FloatArray, tau: FloatArray) -> FloatArray:
+        """Return positions and velocities after a tick, by Pinocchio."""
+        h = self._step
         for _ in range(self._steps_per_tick):
             k1 = self._slope(x, tau)
             k2 = self._slope(x + 0.5 * h * k1, tau)
             k3 = self._slope(x + 0.5 * h * k2, tau)
             k4 = self._slope(x + h * k3, tau)
             x = x + (h / 6.0) * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-        places, speeds = x[: len(x) // 2], x[len(x) // 2 :]
-        self.q[:], self.dq[:] = places[:nq], speeds[:nq]
-        self.theta[:], self.dtheta[:] = self.q, self.dq
-        self.theta[on], self.dtheta[on] = places[nq:], speeds[nq:]
+        return x
 
     def _brake(self, on: np.ndarray) -> None:
         """Stop the motors whose brakes close in the tick that begins."""

@@ -1,0 +1,140 @@
+"""The steps of an arm with flexible joints as compiled code: the classical Runge-Kutta scheme on links and motors."""
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from runner.compiled.algebra import ArmAlgebra
+from runner.compiled.arm import known
+from runner.compiled.code import ROWS, STATE, Part
+from runner.compiled.engine import MOST_JOINTS, evaluator
+from runner.compiled.motion import Mover, step_scalars
+from runner.compiled.places import Places
+from runner.compiled.program import Expressed, FloatArray, Frame, program
+from runner.compiled.structure import Values, any_number, arm_pattern
+from runner.compiled.vectors import Vector
+from runner.robots.model import RobotModel
+
+
+class Springs(NamedTuple):
+    """The numbers of springs and motors, of the flexible joints alone.
+
+    Attributes:
+        stiffness: K, shape (m,), in N m/rad.
+        damping: D, shape (m,), in N m s/rad.
+        motors: B, shape (m,), in kg m^2.
+    """
+
+    stiffness: Vector
+    damping: Vector
+    motors: Vector
+
+
+class _FlexibleMover(Mover):
+    """Moves links and motors: positions are those of n links and then of m motors; see FlexibleJoints.
+
+    Args:
+        algebra: The links.
+        on: The flexible joints, m of n.
+        links: n.
+        springs: Their numbers.
+        given: Torques of the motors, those of the world on the links, shapes (n,), and 0 for each motor that a brake
+            holds, else 1, shape (m,).
+        at: Gives places.
+    """
+
+    def __init__(
+        self, algebra: ArmAlgebra, on: Sequence[int], links: int, springs: Springs, given: Vector, at: Places
+    ) -> None:
+        super().__init__(algebra, 0, links + len(on), links + len(on), at)
+        self._links, self._on, self._springs = links, on, springs
+        self._load, self._free = given[links : 2 * links], given[2 * links :]
+
+    def acceleration(self, q: Vector, v: Vector, tau: Vector) -> Vector:
+        """Return the accelerations of links and motors under torques of the motors, shape (n,); see Mover."""
+        n, acting, motors = self._links, list(tau), []
+        for index, (joint, K, D, B) in enumerate(zip(self._on, *self._springs, strict=True)):
+            spring = K * (q[n + index] - q[joint]) + D * (v[n + index] - v[joint])
+            motors.append(self._free[index] * (tau[joint] - spring) / B)
+            acting[joint] = spring
+        pushed = [torque + load for torque, load in zip(acting, self._load, strict=True)]
+        return [*super().acceleration(q[:n], v[:n], pushed), *motors]
+
+
+class CompiledFlexibleStep:
+    """The steps of one arm with flexible joints, without friction, as compiled code.
+
+    Args:
+        model: The arm, of the links alone.
+        flexible: Which joints have springs, shape (n,).
+        stiffness: K, damping: D, motors: B of each joint, shapes (n,).
+        step: Integration step, in s.
+    """
+
+    def __init__(
+        self,
+        model: RobotModel,
+        flexible: FloatArray,
+        stiffness: FloatArray,
+        damping: FloatArray,
+        motors: FloatArray,
+        step: float,
+    ) -> None:
+        self._model, self._step, self._on = model.copy(), step, np.flatnonzero(flexible).tolist()
+        self._springs = stiffness[flexible], damping[flexible], motors[flexible]
+
+    @cached_property
+    def _frame(self) -> Frame:
+        """The code with its arrays, compiled when the first step is taken."""
+        model, n, on = self._model, self._model.nq, self._on
+
+        def scalars(number: Callable[[float], Any]) -> tuple[Any, Springs]:
+            return step_scalars(model, self._step, number), Springs(*(known(own, number) for own in self._springs))
+
+        def express() -> Expressed:
+            at, parts = Places(), list[Part]()
+            (gravity, h, constants), springs = scalars(at.number)
+            at.take(STATE, 2 * (n + len(on)))
+            given = at.take(ROWS, 2 * n + len(on))[1]
+            algebra = ArmAlgebra(constants._replace(gravity=gravity))
+            _FlexibleMover(algebra, on, n, springs, given, at).move(given[:n], h, parts)
+            return Expressed([], parts, at.widths, [])
+
+        values = Values()
+        scalars(values.number)
+        pattern = f"flexible step {arm_pattern(model)} {on} {[known(own, any_number) for own in self._springs]!r}"
+        frame = program(pattern, f"the motion of {n} joints with springs", express, 1).frame(1, last=-1)
+        frame.pars[:, 0] = values.values
+        return frame
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector in the base frame, shape (3,), in m/s^2."""
+        self._frame.pars[:3, 0] = gravity
+
+    def advance(self, state: FloatArray, tau: FloatArray, load: FloatArray, free: FloatArray, steps: int) -> FloatArray:
+        """Return the state after some steps under held torques.
+
+        Args:
+            state: Positions of links and of flexible joints' motors, then their velocities, shape (2 (n + m),).
+            tau: Torques of the motors, shape (n,), in N m; of rigid joints on their links.
+            load: Torques of the world on the links, shape (n,), in N m.
+            free: Which of the flexible joints' motors no brake holds, shape (m,).
+            steps: How many.
+        """
+        frame = self._frame
+        frame.state[:, 0], frame.rows[0, :, 0] = state, np.concatenate([tau, load, free])
+        frame.steps[0] = steps
+        frame.call()
+        after: FloatArray = frame.state[:, 0].copy()
+        return after
+
+
+def compile_flexible(
+    model: RobotModel, flexible: FloatArray, stiffness: FloatArray, damping: FloatArray, motors: FloatArray, step: float
+) -> CompiledFlexibleStep | None:
+    """Return a compiled step of an arm with flexible joints; None where there is none; see CompiledFlexibleStep."""
+    if not evaluator() or model.nq > MOST_JOINTS:
+        return None
+    return CompiledFlexibleStep(model, flexible, stiffness, damping, motors, step)
