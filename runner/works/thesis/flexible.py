@@ -14,11 +14,13 @@ from runner.robots.cantilever import frequency_errors
 from runner.robots.modes import Mode
 from runner.store import Run
 from runner.trajectories.impulses import zero_vibration
+from runner.works.thesis.flexible_map import stable_and_not
 
 _MACRO = 3  # its joints
 _STIFFNESSES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0)  # N m/rad
 _KICK = 0.3  # s, after which the push of a run that rings is over
 _PEAKS = 2
+_GRID = 13  # points of a map
 _HEARD = 0.02  # of the largest peak, below which peaks tell nothing of one mode
 _SETTLED = 2e-3  # m
 _STILL = 1e-9  # m/s, of a desired motion that has ended
@@ -61,6 +63,28 @@ def links_bear(runs: Mapping[str, Run], run: str) -> Callable[[float], float]:
     link, motor = float(_mass(runs[run])[0, 0]), float(joints["motor_inertia"][0])
     share = float(joints["damping_ratio"]) * float(np.sqrt((link + motor) / motor))
     return lambda resonance: share * resonance
+
+
+def map_of_motors(runs: Mapping[str, Run], run: str) -> list[Series]:
+    """Return where the law of a run is stable by encoders at the motors, over their inertia in kg m^2."""
+    inertias, frequencies = np.geomspace(0.4, 10.0, _GRID), np.geomspace(8.0, 100.0, _GRID)
+    return stable_and_not(
+        runs[run], inertias, frequencies, lambda B: {"plant.flexible_joints.motor_inertia": B, "gravity": 0.0}
+    )
+
+
+def map_of_links(runs: Mapping[str, Run], run: str) -> list[Series]:
+    """Return where the law of a run is stable by encoders at the links, over the resonance of joint 1 in rad/s."""
+    resonances, frequencies = np.geomspace(12.0, 120.0, _GRID), np.geomspace(0.5, 12.0, _GRID)
+    motor = float(runs[run].config["plant"]["flexible_joints"]["motor_inertia"][0])
+    link = float(_mass(runs[run])[0, 0])
+    both = link * motor / (link + motor)
+    return stable_and_not(
+        runs[run],
+        resonances,
+        frequencies,
+        lambda resonance: {"plant.flexible_joints.stiffness": [both * resonance**2, None, None]},
+    )
 
 
 def tried(runs: Mapping[str, Run], pattern: str, name: str, unstable: bool, color: int) -> list[Series]:
