@@ -145,6 +145,16 @@ def test_the_largest_rate_is_that_of_two_masses_on_a_spring():
     assert rate == pytest.approx(np.sqrt(stiffness * (1.0 / links + 1.0 / motor)), rel=1e-9)
 
 
+def test_a_stretched_arm_has_a_faster_mode_than_at_home():
+    model = macro().with_payload(0.2)
+    stretched = np.array([0.0, 0.0, -np.pi / 2.0])
+    assert np.linalg.norm(model.tip_position(stretched)) == pytest.approx(2.0)
+    damping = 0.04 * np.sqrt(1000.0 * np.diag(model.mass_matrix(HOME)))
+    arm = springs(np.full(3, 1000.0), np.full(3, 2.0), damping)
+    ratio = arm.largest_rate(model.mass_matrix(stretched)) / arm.largest_rate(model.mass_matrix(HOME))
+    assert ratio == pytest.approx(1.76, abs=0.01)
+
+
 def test_rigid_joints_move_as_those_of_a_rigid_arm():
     model, tau = macro(), np.array([3.0, 30.0, 8.0])
     rigid = FlexibleJoints(model, springs(np.full(3, np.inf), np.zeros(3), np.zeros(3)), 2.5e-4, 1200)
