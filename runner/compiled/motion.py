@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from runner.compiled.algebra import ArmAlgebra, Factors
 from runner.compiled.arm import ArmConstants, constants_of, known
@@ -12,9 +12,11 @@ from runner.compiled.places import Places
 from runner.compiled.program import Expressed, FloatArray, Frame, program
 from runner.compiled.structure import Values, any_number, arm_pattern
 from runner.compiled.vectors import Matrix, Vector, add, product, scale, subtract, transpose
-from runner.plants.motion import Motion
 from runner.robots.model import RobotModel
 from runner.robots.robot import StageBase
+
+if TYPE_CHECKING:  # plants with springs are moved by what stands here
+    from runner.plants.motion import Motion
 
 _PIVOTS, _ROUNDING = 100, 1e-12  # as in runner/plants/friction.py
 
@@ -51,7 +53,7 @@ class MotionScalars(NamedTuple):
     arms: tuple[ArmScalars, ...]
 
 
-def motion_scalars(motion: Motion, step: float, tick: float, number: Callable[[float], Any]) -> MotionScalars:
+def motion_scalars(motion: "Motion", step: float, tick: float, number: Callable[[float], Any]) -> MotionScalars:
     """Return the numbers of a motion as scalars.
 
     Args:
@@ -75,12 +77,12 @@ def motion_scalars(motion: Motion, step: float, tick: float, number: Callable[[f
     return MotionScalars(number(step), number(tick), gravity, tuple(arms))
 
 
-def motion_pattern(motion: Motion) -> str:
+def motion_pattern(motion: "Motion") -> str:
     """Return a text that is the same for two motions whose code is the same."""
     return repr((motion_scalars(motion, 0.5, 0.5, any_number), [arm.joints for arm in motion.arms]))
 
 
-def expressed_motion(motion: Motion, numbers: MotionScalars, at: Places, torques: Sequence[Value]) -> list[Part]:
+def expressed_motion(motion: "Motion", numbers: MotionScalars, at: Places, torques: Sequence[Value]) -> list[Part]:
     """Return what leads from the state of one tick to that of the next.
 
     Args:
