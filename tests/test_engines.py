@@ -104,7 +104,9 @@ def test_a_sweep_over_bullet_says_so_before_anything_starts(cli):
 
 @pytest.mark.usefixtures("_missing")
 def test_a_hint_names_no_plant_that_is_missing():
-    with pytest.raises(ConfigError, match="take plant=mujoco or plant=rk4 or plant=rk4_flexible_links, or a controller"):
+    with pytest.raises(
+        ConfigError, match="take plant=mujoco or plant=rk4 or plant=rk4_flexible_links, or a controller"
+    ):
         validate(compose(["plant=kinematic"]).resolved)
 
 

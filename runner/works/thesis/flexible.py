@@ -21,6 +21,7 @@ _STIFFNESSES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0)  # N m/rad
 _KICK = 0.3  # s, after which the push of a run that rings is over
 _PEAKS = 2
 _GRID = 13  # points of a map
+_MAP_STEP = 2.5e-3  # s, of the plant
 _HEARD = 0.02  # of the largest peak, below which peaks tell nothing of one mode
 _SETTLED = 2e-3  # m
 _STILL = 1e-9  # m/s, of a desired motion that has ended
@@ -69,7 +70,10 @@ def map_of_motors(runs: Mapping[str, Run], run: str) -> list[Series]:
     """Return where the law of a run is stable by encoders at the motors, over their inertia in kg m^2."""
     inertias, frequencies = np.geomspace(0.4, 10.0, _GRID), np.geomspace(8.0, 100.0, _GRID)
     return stable_and_not(
-        runs[run], inertias, frequencies, lambda B: {"plant.flexible_joints.motor_inertia": B, "gravity": 0.0}
+        runs[run],
+        inertias,
+        frequencies,
+        lambda B: {"plant.flexible_joints.motor_inertia": B, "gravity": 0.0, "plant.step": _MAP_STEP},
     )
 
 
@@ -83,7 +87,10 @@ def map_of_links(runs: Mapping[str, Run], run: str) -> list[Series]:
         runs[run],
         resonances,
         frequencies,
-        lambda resonance: {"plant.flexible_joints.stiffness": [both * resonance**2, None, None]},
+        lambda resonance: {
+            "plant.flexible_joints.stiffness": [both * resonance**2, None, None],
+            "plant.step": _MAP_STEP,
+        },
     )
 
 
