@@ -80,7 +80,7 @@ SOME = {
 @pytest.mark.parametrize(
     ("work", "runs", "calibrations"),
     [
-        ("thesis", 591, 0),
+        ("thesis", 593, 0),
         ("xarm7", 119, 0),
         ("meca500", 244, 36),
         ("engines", 309, 0),
