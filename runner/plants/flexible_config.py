@@ -11,6 +11,7 @@ from runner.errors import ConfigError, nearest
 from runner.plants.flexible_joints import Flexibility
 from runner.plants.plant import FloatArray
 from runner.registry import StrictModel
+from runner.robots.modes import Mode, find_modes
 from runner.robots.robot import Robot
 from runner.texts import quoted
 
@@ -70,6 +71,13 @@ class FlexibleJointsConfig(StrictModel):
         fed_back[flexible] = 2.0 * self.torsion_damping * np.sqrt(springs[flexible] * motors[flexible])
         motors = np.where(flexible, motors, 0.0)
         return Flexibility(springs, motors, damping, self._find_braked(arm, flexible), fed_back)
+
+    def modes(self, arm: Robot, q: FloatArray) -> list[Mode]:
+        """Return how a robot's joints ring about a posture with their motors held, by frequency; see Rings."""
+        flexibility = self.by_joint(arm)
+        on = flexibility.flexible
+        M = arm.model.mass_matrix(q)[np.ix_(on, on)]
+        return find_modes(M, np.diag(flexibility.damping[on]), np.diag(flexibility.stiffness[on]))
 
     def _find_braked(self, arm: Robot, flexible: np.ndarray) -> FloatArray:
         """Return when joints are braked, shape (nq,), in s."""

@@ -14,6 +14,7 @@ from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.mujoco_model import FORCE, MOMENT, WALL, compiled, read_spec
 from runner.plants.plant import FloatArray, Plant
 from runner.robots.model import RobotModel
+from runner.robots.modes import Mode
 from runner.robots.robot import Robot
 from runner.robots.tool_link import TOOL_MOUNT
 
@@ -172,6 +173,11 @@ def build(config: MujocoConfig, robot: Robot, step: float, steps_per_tick: int) 
         parts = config.flexible_joints, config.friction, robot, step, steps_per_tick
         return flexible_around(*parts, lambda: Mujoco(robot.urdf, robot.model, step, 1, *chosen))
     return assemble_plant(config, robot, tick, lambda urdf, model: Mujoco(urdf, model, step, steps_per_tick, *chosen))
+
+
+def modes(config: MujocoConfig, robot: Robot, q: FloatArray) -> list[Mode]:
+    """Return how flexible joints ring with their motors held; see Rings."""
+    return [] if config.flexible_joints is None else config.flexible_joints.modes(robot, q)
 
 
 def moves_exactly(config: MujocoConfig) -> bool:

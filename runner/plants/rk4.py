@@ -13,7 +13,7 @@ from runner.plants.motion import Motion, find_motion
 from runner.plants.motor_friction import MotorFriction
 from runner.plants.plant import FloatArray, Plant
 from runner.robots.model import RobotModel
-from runner.robots.modes import Mode, find_modes
+from runner.robots.modes import Mode
 from runner.robots.robot import Robot
 
 
@@ -113,12 +113,7 @@ def motion(config: Rk4Config, robot: Robot) -> Motion | None:
 
 def modes(config: Rk4Config, robot: Robot, q: FloatArray) -> list[Mode]:
     """Return how flexible joints ring with their motors held; see Rings."""
-    if config.flexible_joints is None:
-        return []
-    flexibility = config.flexible_joints.by_joint(robot)
-    on = flexibility.flexible
-    M = robot.model.mass_matrix(q)[np.ix_(on, on)]
-    return find_modes(M, np.diag(flexibility.damping[on]), np.diag(flexibility.stiffness[on]))
+    return [] if config.flexible_joints is None else config.flexible_joints.modes(robot, q)
 
 
 def moves_exactly(config: Rk4Config) -> bool:

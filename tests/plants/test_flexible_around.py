@@ -77,6 +77,16 @@ def test_a_mode_gains_and_loses_damping_as_on_runge_kutta(simulated, law, expect
     assert -slope * period / (2.0 * np.pi) == pytest.approx(expected, rel=0.4)
 
 
+def test_a_shaper_finds_the_modes(simulated, engine):
+    """A shaper for each mode leaves less than half of the vibration."""
+    left = []
+    for shaper in ((), ("input_shaper=zv", "input_shaper.frequency=[mode_1,mode_2,mode_3]")):
+        trace = simulated(*MACRO, *MOVE, "duration=2", engine, "plant.step=0.001", *shaper)
+        resting = np.abs(trace.desired[:, 1]).max(axis=1) < 1e-9
+        left.append(np.ptp(trace.error[resting & (trace.t > 0.95)], axis=0).max())
+    assert left[1] < 0.5 * left[0]
+
+
 def test_what_the_engine_holds_is_released(closed_loop):
     closed = closed_loop(*MACRO, "plant=bullet_flexible", "trajectory=goal")
     assert isinstance(innermost(closed.plant), FlexibleAround)
