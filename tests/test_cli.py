@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 import yaml
-from engines import ASKED
-from printed import without_caveats, without_results
+from support.engines import ASKED
+from support.printed import without_caveats, without_results
 
 from runner import job
 from runner.cli import COMMANDS, GUIDE, HELP

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from printed import without_caveats, without_results
+from support.printed import without_caveats, without_results
 
 from runner.assembly import assemble, metric_context
 from runner.loop.sensors import make_encoders

@@ -1,10 +1,10 @@
 """Configs of tests are those that Hydra alone composes."""
 
-import composing
 import pytest
 import yaml
 from omegaconf import OmegaConf
 from omegaconf._utils import get_yaml_loader
+from support import composing
 
 from runner.config.compose import compose
 from runner.errors import ConfigError

@@ -4,7 +4,7 @@ import subprocess
 import sys
 from types import SimpleNamespace
 
-import cost
+from fixtures import cost
 
 
 class Terminal:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from pages import ROOT, follow, is_shown, steps
+from support.pages import ROOT, follow, is_shown, steps
 
 DOCS = ROOT / "docs"
 FAILED, BAD_INPUT = 1, 2

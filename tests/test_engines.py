@@ -3,7 +3,7 @@
 import platform
 
 import pytest
-from printed import without_results
+from support.printed import without_results
 
 from runner import engines
 from runner.config.compose import compose

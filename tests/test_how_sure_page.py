@@ -3,8 +3,8 @@
 import re
 
 import pytest
-from pages import ROOT, follow, is_shown, steps
-from share_coverage import coverage
+from support.pages import ROOT, follow, is_shown, steps
+from support.share_coverage import coverage
 
 from runner.statistics.share import count_share
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pinocchio as pin
 import pytest
-import strangers
+from support import strangers
 
 from runner.assembly import assemble, metric_context
 from runner.controllers.macro_mini import later_home_offset

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from printed import without_caveats, without_results
+from support.printed import without_caveats, without_results
 
 import runner
 

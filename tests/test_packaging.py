@@ -7,7 +7,7 @@ import tarfile
 import zipfile
 from pathlib import Path
 
-from printed import without_caveats, without_results
+from support.printed import without_caveats, without_results
 
 from runner.references import shipped_references
 from runner.references.shipped import reference_path

@@ -7,7 +7,7 @@ import sys
 from contextlib import redirect_stderr, redirect_stdout
 
 import pytest
-from printed import without_caveats, without_results
+from support.printed import without_caveats, without_results
 
 from runner import plugins
 from runner.cli import dispatch

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pinocchio as pin
 import pytest
-from engines import ASKED
+from support.engines import ASKED
 
 from runner.errors import ConfigError
 from runner.guard import watch_environment

@@ -4,7 +4,7 @@ import doctest
 import re
 
 import pytest
-from pages import ROOT, follow, is_shown, steps
+from support.pages import ROOT, follow, is_shown, steps
 
 PAGE = ROOT / "README.md"
 TEXT = PAGE.read_text(encoding="utf-8")

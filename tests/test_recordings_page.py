@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from pages import ROOT, follow, steps
+from support.pages import ROOT, follow, steps
 
 from runner.config.units import WRITTEN
 

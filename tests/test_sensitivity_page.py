@@ -1,7 +1,7 @@
 """docs/sensitivity.md, followed command by command in one shell."""
 
 import pytest
-from pages import ROOT, follow, steps
+from support.pages import ROOT, follow, steps
 
 
 @pytest.mark.slow

@@ -1,7 +1,7 @@
 """docs/tutorial.md, followed command by command in one shell."""
 
 import pytest
-from pages import ROOT, follow, steps
+from support.pages import ROOT, follow, steps
 
 INSTALL = 3  # commands that install and choose a folder; the test stands in for them
 FINDINGS = 1  # exit code of `runner doctor` where there is something to mend

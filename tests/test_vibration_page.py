@@ -1,6 +1,6 @@
 """docs/vibration.md, followed command by command in one shell."""
 
-from pages import ROOT, follow, steps
+from support.pages import ROOT, follow, steps
 
 
 def test_every_command_of_the_page_runs(tmp_path):

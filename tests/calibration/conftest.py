@@ -2,7 +2,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from turns import rotation
+from support.turns import rotation
 
 from runner.calibration import joint_deviation
 from runner.robots import RobotModel, find_urdf, read_urdf

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from turns import rotation
+from support.turns import rotation
 
 from runner.calibration import REST, GravityCalibration, Motion, Tool, WrenchCompensation, identify_gravity
 

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
-from turns import rotation
+from support.turns import rotation
 
 from runner.calibration import REST, Tool, choose_orientations, consistency, identify_gravity, pose_covariances
 from runner.calibration.gravity import PARAMETERS

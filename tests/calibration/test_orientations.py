@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from turns import rotation
+from support.turns import rotation
 
 from runner.calibration import choose_orientations
 from runner.calibration.orientations import (

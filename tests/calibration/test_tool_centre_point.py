@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from turns import rotation
+from support.turns import rotation
 
 from runner.calibration import consistency, identify_tool_centre_point, pose_covariances
 from runner.calibration.tool_centre_point import MIN_SINGULAR_VALUE

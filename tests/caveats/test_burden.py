@@ -1,5 +1,5 @@
 import pytest
-from caveat_runs import found
+from support.caveat_runs import found
 
 
 @pytest.mark.parametrize(

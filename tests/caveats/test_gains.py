@@ -1,7 +1,7 @@
 """The rule on gains that the control period does not bear."""
 
 import pytest
-from caveat_runs import found
+from support.caveat_runs import found
 
 LINE = ("robot=xarm7", "trajectory=joint_quintic", "trajectory.goal_posture=[0.4,-0.3,0.3,0.4,-0.3,0.3,0.4]",
         "controller.period=0.001", "controller.natural_frequency=30")  # fmt: skip

@@ -1,6 +1,6 @@
 import pytest
-from caveat_runs import found, signals
-from engines import ASKED
+from support.caveat_runs import found, signals
+from support.engines import ASKED
 
 from runner.caveats import Watch, setting_of
 

@@ -1,8 +1,8 @@
 from textwrap import dedent
 
 import pytest
-from caveat_runs import found
-from mjcf_arms import CHAIN, written
+from support.caveat_runs import found
+from support.mjcf_arms import CHAIN, written
 
 from runner.config.compose import compose
 from runner.config.validation import validate

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from caveat_runs import found, signals
+from support.caveat_runs import found, signals
 
 ROWS = np.linspace(0.0, 1.0, 101)[:, None]
 PATH = ROWS * [0.4, 0.0, 0.0]  # m

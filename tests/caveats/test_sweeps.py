@@ -2,7 +2,7 @@
 
 import pandas as pd
 import pytest
-from engines import ASKED
+from support.engines import ASKED
 
 from runner.reporting import outline
 from runner.reporting.document import Notice, RunList, Table

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from caveat_runs import found, signals
+from support.caveat_runs import found, signals
 
 LIMITS = np.array([10.0, 10.0, 10.0])
 

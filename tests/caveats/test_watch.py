@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from caveat_runs import signals, stacked
-from engines import ASKED
+from support.caveat_runs import signals, stacked
+from support.engines import ASKED
 
 from runner.caveats import Signals, Watch, changes_since, look_together, registry, setting_of, signals_of
 from runner.caveats.today import our_thresholds

@@ -1,7 +1,7 @@
 import json
 
 import pytest
-from engines import ASKED
+from support.engines import ASKED
 
 from runner.store.stored import write_job
 

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-import strangers
+from support import strangers
 
 import runner
 

@@ -1,4 +1,4 @@
-from engines import ASKED
+from support.engines import ASKED
 
 from runner.reporting.key_metrics import key_metrics
 from runner.reporting.run_report import run_document

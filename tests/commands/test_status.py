@@ -1,7 +1,7 @@
 import shutil
 
 import pytest
-from printed import without_caveats
+from support.printed import without_caveats
 
 from runner.store import open_runs
 from runner.store.seal import sealed_json

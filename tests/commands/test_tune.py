@@ -3,7 +3,7 @@ import re
 import shlex
 
 import pytest
-from engines import ASKED
+from support.engines import ASKED
 
 SHORT = ("robot=macro", "trajectory=quintic", "duration=0.05", "hydra.sweeper.workers=0")
 RANGE = "controller.natural_frequency=tag(log,interval(5,80))"

@@ -1,6 +1,6 @@
 from dataclasses import replace
 
-from sample_sides import LAWS, side
+from support.sample_sides import LAWS, side
 
 from runner.comparison.beyond import ABSENT, Value, beyond
 from runner.comparison.cells import match

@@ -1,7 +1,7 @@
 from dataclasses import replace
 
 import pytest
-from sample_sides import LAWS, side
+from support.sample_sides import LAWS, side
 
 from runner.comparison.cells import label_text, match
 from runner.errors import RunnerError

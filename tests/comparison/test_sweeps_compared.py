@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from sample_sides import LAWS, side
+from support.sample_sides import LAWS, side
 
 from runner.comparison.sweeps import by_cell, compare_sweeps
 from runner.errors import RunnerError

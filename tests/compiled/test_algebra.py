@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pinocchio as pin
 import pytest
-import strangers
-from strangers import X, Y, Z
+from support import strangers
+from support.strangers import X, Y, Z
 
 from runner.compiled.algebra import ArmAlgebra, Factors
 from runner.compiled.arm import constants_of

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-import strangers
+from support import strangers
 
 from runner.compiled import compile
 from runner.config.compose import compose

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-import strangers
+from support import strangers
 
 from runner.compiled import compile, program
 from runner.compiled.closed_loop import CompiledCommands

@@ -1,7 +1,7 @@
 from collections.abc import Iterator
 
-import composing
 import pytest
+from support import composing
 
 _NOT_ABOUT_COMPOSING = ("test_every_option.py", "test_meanings.py", "test_options.py", "test_validation.py")
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from printed import without_caveats, without_results
+from support.printed import without_caveats, without_results
 
 from runner.config.compose import compose
 from runner.config.options import group_options, groups

@@ -2,7 +2,7 @@ import copy
 import math
 
 import pytest
-import strangers
+from support import strangers
 
 from runner.config.compose import compose
 from runner.config.in_si import as_numbers, put_in_si, with_numbers

@@ -1,6 +1,6 @@
 import pytest
 import yaml
-from mjcf_arms import CHAIN, written
+from support.mjcf_arms import CHAIN, written
 
 import runner
 from runner.config.compose import compose

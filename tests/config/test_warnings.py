@@ -1,8 +1,8 @@
 """What can be run though it is unusual, said with the run."""
 
 import pytest
-import strangers
-from strangers import Y, Z
+from support import strangers
+from support.strangers import Y, Z
 
 ARM = strangers.chain("arm", [("revolute", Z), ("revolute", Y), ("revolute", Y)], tip=(0.1, 0.0, 0.25))
 YAML = """# @package _global_

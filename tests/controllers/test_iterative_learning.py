@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import strangers
+from support import strangers
 
 from runner.assembly import assemble
 from runner.controllers.iterative_learning import IterativeLearning, IterativeLearningConfig

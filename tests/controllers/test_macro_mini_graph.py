@@ -2,7 +2,7 @@ import itertools
 
 import numpy as np
 import pytest
-from graph_layout import check_structure, check_texts, check_ways
+from support.graph_layout import check_structure, check_texts, check_ways
 
 from runner.config.compose import compose
 from runner.config.validation import validate

@@ -3,8 +3,8 @@
 import numpy as np
 import pinocchio as pin
 import pytest
-import strangers
-from strangers import X, Y, Z
+from support import strangers
+from support.strangers import X, Y, Z
 
 from runner.config.compose import compose
 from runner.config.validation import validate

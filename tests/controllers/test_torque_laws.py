@@ -6,8 +6,8 @@ import itertools
 import numpy as np
 import pinocchio as pin
 import pytest
-import strangers
 from scipy.optimize import minimize
+from support import strangers
 
 from runner.config.compose import compose
 from runner.config.validation import validate

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-import strangers
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from support import strangers
 
 from runner.config.compose import compose
 from runner.config.validation import validate

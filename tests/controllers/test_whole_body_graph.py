@@ -2,7 +2,7 @@ import itertools
 
 import numpy as np
 import pytest
-from graph_layout import check_structure, check_texts, check_ways
+from support.graph_layout import check_structure, check_texts, check_ways
 
 from runner.controllers.whole_body import WholeBody, WholeBodyConfig
 from runner.controllers.whole_body_graph import whole_body_graph

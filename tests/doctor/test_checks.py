@@ -2,8 +2,8 @@ import re
 
 import numpy as np
 import pytest
-import strangers
-from strangers import X, Y, Z
+from support import strangers
+from support.strangers import X, Y, Z
 
 from runner.doctor.examination import examine
 from runner.doctor.finding import Finding, exit_code

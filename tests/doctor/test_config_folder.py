@@ -1,7 +1,7 @@
 import pytest
-import strangers
 import yaml
-from strangers import Y, Z
+from support import strangers
+from support.strangers import Y, Z
 
 from runner.config.compose import compose
 from runner.config.validation import validate

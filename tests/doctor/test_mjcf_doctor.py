@@ -1,6 +1,6 @@
 import pytest
 import yaml
-from mjcf_arms import CHAIN, disagreement, written
+from support.mjcf_arms import CHAIN, disagreement, written
 
 from runner.config.compose import compose
 from runner.config.validation import validate

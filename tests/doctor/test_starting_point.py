@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-import strangers
+from support import strangers
 
 from runner.doctor.postures import smallest_singular_values
 from runner.robots.inverse_kinematics import solve_tip_position

@@ -4,7 +4,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from sample_document import HOSTILE, SVG, curves, document, maps, playback
+from support.sample_document import HOSTILE, SVG, curves, document, maps, playback
 
 from runner.drawing.sheet import column
 from runner.errors import RunnerError

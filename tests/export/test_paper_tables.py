@@ -3,7 +3,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from paper_sweep import by_hand
+from support.paper_sweep import by_hand
 
 from runner.errors import RunnerError
 from runner.export.columns import Unit

@@ -2,7 +2,7 @@ import csv
 import io
 
 import numpy as np
-from sample_document import SVG, playback
+from support.sample_document import SVG, playback
 
 from runner.export.points import as_csv
 from runner.paths import templates_dir

@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 import pyarrow.parquet as pq
 import pytest
-from paper_sweep import by_hand
+from support.paper_sweep import by_hand
 
 from runner.export.tidy import as_csv, as_parquet, of_one, selection
 from runner.sweeps.measurements import Axis, Measurements

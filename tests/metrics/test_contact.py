@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from one_run import of_one
+from support.one_run import of_one
 
 from runner.metrics import MetricContext, contact
 from runner.metrics.contact import UNITS

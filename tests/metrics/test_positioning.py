@@ -2,7 +2,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from one_run import of_one
+from support.one_run import of_one
 
 from runner.metrics import MetricContext, positioning
 from runner.metrics.positioning import UNITS

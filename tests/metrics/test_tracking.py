@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from one_run import of_one
+from support.one_run import of_one
 
 from runner.metrics import MetricContext, tracking
 from runner.trajectories.circle import Circle

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-import strangers
+from support import strangers
 
 from runner.assembly import assemble
 from runner.loop.sensors import make_encoders

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-import strangers
+from support import strangers
 
 from runner.errors import ConfigError
 from runner.robots import RobotModel, find_urdf, read_urdf

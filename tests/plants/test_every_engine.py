@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from engines import ENGINES, FIRST_ORDER, FOURTH_ORDER
 from scipy.integrate import solve_ivp
+from support.engines import ENGINES, FIRST_ORDER, FOURTH_ORDER
 
 from runner.robots import RobotModel
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from engines import ENGINES
 from hypothesis import given
 from hypothesis import strategies as st
+from support.engines import ENGINES
 
 from runner.plants.friction import Frictional, stopping_torques, with_friction
 from runner.plants.rk4 import Rk4

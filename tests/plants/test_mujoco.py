@@ -2,7 +2,7 @@ import re
 
 import numpy as np
 import pytest
-import strangers
+from support import strangers
 
 from runner.errors import ConfigError
 from runner.plants import ContactPlant, ToolReactionPlant

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from resting_arm import RestingArm
+from support.resting_arm import RestingArm
 
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
 from runner.robots import RobotModel, find_urdf, read_urdf

@@ -3,7 +3,7 @@ import json
 
 import numpy as np
 import pytest
-from sample_document import HOSTILE, curves
+from support.sample_document import HOSTILE, curves
 
 from runner.reporting.curves import neutral, plotly_spec
 from runner.reporting.document import Curves, Panel, Series

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from engines import ASKED
+from support.engines import ASKED
 
 from runner.execution import run
 from runner.reporting.figures import (

@@ -1,5 +1,5 @@
 import pytest
-from sample_document import document
+from support.sample_document import document
 
 from runner.reporting import formulas
 from runner.reporting.document import Document, Formula, Section, Text

@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 from typing import get_args
 
 import pytest
-from sample_document import HOSTILE, curves, document, playback
+from support.sample_document import HOSTILE, curves, document, playback
 
 from runner.reporting import html, outline
 from runner.reporting.claim import Claim, ClaimResult

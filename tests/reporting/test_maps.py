@@ -4,7 +4,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from sample_document import HOSTILE, maps
+from support.sample_document import HOSTILE, maps
 
 from runner.drawing import map_stills
 from runner.drawing.map_scale import scale_marks, value_range

@@ -1,5 +1,5 @@
 import numpy as np
-from sample_document import document
+from support.sample_document import document
 
 from runner.reporting import outline
 from runner.reporting.document import Document, Formula, Section, Table, Text

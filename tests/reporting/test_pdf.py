@@ -2,7 +2,7 @@ from dataclasses import replace
 from typing import get_args
 
 import pytest
-from sample_document import HOSTILE, document
+from support.sample_document import HOSTILE, document
 
 from runner.reporting import pdf
 from runner.reporting.document import Block, Document, Section, Table

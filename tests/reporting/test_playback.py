@@ -5,7 +5,7 @@ import threading
 import numpy as np
 import pytest
 import zstandard
-from sample_document import playback
+from support.sample_document import playback
 
 from runner.reporting.document import Body
 from runner.reporting.playback import FRAME_RATE, FRAMES, frames, record

@@ -1,5 +1,5 @@
 import pytest
-from sample_document import document
+from support.sample_document import document
 
 from runner.errors import RunnerError
 from runner.reporting import render

@@ -1,7 +1,7 @@
 """What commands say of their stages is what they planned."""
 
 import pytest
-from sample_document import document
+from support.sample_document import document
 
 from runner import progress
 from runner.audit.audit import audit_all

@@ -3,7 +3,7 @@ import json
 
 import numpy as np
 import pytest
-from sample_document import HOSTILE, run_list
+from support.sample_document import HOSTILE, run_list
 
 from runner.reporting.markup import spans
 from runner.reporting.run_list import ON_PAPER, run_list_spec, table_header, table_rows

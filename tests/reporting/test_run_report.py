@@ -1,7 +1,7 @@
 from types import SimpleNamespace
 
 import pytest
-from engines import ASKED
+from support.engines import ASKED
 
 from runner.execution import run
 from runner.quantities import quantity

@@ -3,7 +3,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from sample_document import HOSTILE, curves
+from support.sample_document import HOSTILE, curves
 
 from runner.drawing import stills
 from runner.reporting.curves import plotly_spec

@@ -1,4 +1,4 @@
-from sample_document import equations
+from support.sample_document import equations
 
 from runner.reporting.claim import Claim, ClaimResult
 from runner.reporting.document import Document, Section, Verdicts

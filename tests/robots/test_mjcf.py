@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mjcf_arms import CHAIN, disagreement, own_model, written
+from support.mjcf_arms import CHAIN, disagreement, own_model, written
 
 from runner.errors import ConfigError
 from runner.robots.description import read_urdf

@@ -1,5 +1,5 @@
 import pytest
-from mjcf_arms import CHAIN, written
+from support.mjcf_arms import CHAIN, written
 
 from runner.errors import ConfigError
 from runner.robots.description import read_urdf

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
-import strangers
 from hypothesis import given
 from hypothesis import strategies as st
+from support import strangers
 
 from runner.errors import ConfigError
 from runner.robots import RobotModel, find_urdf, read_urdf

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
-import strangers
-from strangers import X, Y, Z
+from support import strangers
+from support.strangers import X, Y, Z
 
 from runner.robots import RobotModel
 from runner.robots.inverse_kinematics import solve_tip_pose, solve_tip_position

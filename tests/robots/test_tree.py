@@ -1,5 +1,5 @@
 import pytest
-import strangers
+from support import strangers
 
 from runner.errors import ConfigError
 from runner.robots import read_urdf

@@ -1,8 +1,8 @@
 """What no arm has, refused by a run and by the doctor in the same words."""
 
 import pytest
-import strangers
-from strangers import Y, Z
+from support import strangers
+from support.strangers import Y, Z
 
 from runner.commands.doctor import main as doctor
 from runner.errors import ConfigError

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from scipy.stats import binom
-from share_coverage import coverage
+from support.share_coverage import coverage
 
 from runner.statistics.share import count_share, needed, share_ends
 

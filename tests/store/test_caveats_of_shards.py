@@ -4,7 +4,7 @@ import json
 
 import pyarrow
 import pyarrow.parquet
-from engines import ASKED
+from support.engines import ASKED
 
 from runner.execution import run
 from runner.store import Finished, open_run

@@ -3,7 +3,7 @@ import json
 from importlib.metadata import EntryPoint
 
 import pytest
-from engines import ASKED
+from support.engines import ASKED
 
 from runner.config.compose import compose
 from runner.paths import package_dir

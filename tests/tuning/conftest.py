@@ -2,7 +2,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from short_runs import DAMPING, FREQUENCY, SHORT
+from support.short_runs import DAMPING, FREQUENCY, SHORT
 
 from runner.tuning.objective import Objective
 from runner.tuning.run import tune

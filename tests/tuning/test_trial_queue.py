@@ -1,7 +1,7 @@
 """What the queue does when workers die; the engine's own tests kill them."""
 
 import pytest
-from short_runs import SHORT
+from support.short_runs import SHORT
 
 from runner import store
 from runner.sweeps.loading import Loader

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from short_runs import DAMPING, FREQUENCY, SHORT
+from support.short_runs import DAMPING, FREQUENCY, SHORT
 
 from runner import store
 from runner.errors import ConfigError, RunnerError, StoreError

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.stats import spearmanr
-from study_sections import texts, unfinished_texts, whatever_has_failed
-from work_plans import chapter, chapter_files, conditions_that_never_fail
+from support.study_sections import texts, unfinished_texts, whatever_has_failed
+from support.work_plans import chapter, chapter_files, conditions_that_never_fail
 
 from runner.commands.reproduce import _chosen, _Way
 from runner.errors import RunnerError

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from study_sections import unfinished_texts, whatever_has_failed
-from thin_plans import make_runs
-from work_plans import chapter, chapter_files, conditions_that_never_fail, engines_stand_ins
+from support.study_sections import unfinished_texts, whatever_has_failed
+from support.thin_plans import make_runs
+from support.work_plans import chapter, chapter_files, conditions_that_never_fail, engines_stand_ins
 
 pytest.importorskip("pybullet", reason="PyBullet is not installed")
 

@@ -1,7 +1,7 @@
 """Numbers in the words of findings come from runs, or are levels of an axis."""
 
 import pytest
-from finding_words import typed_in_module
+from support.finding_words import typed_in_module
 
 from runner.paths import package_dir
 from runner.reporting.prose.typed import levels_in, typed_numbers

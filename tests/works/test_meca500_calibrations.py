@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from engines import DEFAULT_PLANT
 from scipy.spatial.transform import Rotation
-from study_sections import blocks, unfinished_texts
-from thin_plans import make_calibrations, make_runs
-from work_plans import chapter, meca500_calibrations
+from support.engines import DEFAULT_PLANT
+from support.study_sections import blocks, unfinished_texts
+from support.thin_plans import make_calibrations, make_runs
+from support.work_plans import chapter, meca500_calibrations
 
 from runner.calibration import REST, GravityCalibration, Tool, WrenchCompensation
 from runner.calibration.tool_centre_point import identify_tool_centre_point

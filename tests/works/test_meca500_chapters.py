@@ -1,8 +1,8 @@
 """The Meca500 report's chapters in Markdown: no condition of a finding is such that nothing can refute it."""
 
 import pytest
-from thin_plans import make_calibrations, make_runs, stand_ins
-from work_plans import chapter_files, conditions_that_never_fail, meca500_calibrations, meca500_jobs
+from support.thin_plans import make_calibrations, make_runs, stand_ins
+from support.work_plans import chapter_files, conditions_that_never_fail, meca500_calibrations, meca500_jobs
 
 
 @pytest.fixture(scope="module")

@@ -3,9 +3,9 @@
 import re
 
 import pytest
-from engines import DEFAULT_PLANT
-from thin_plans import make_calibrations, make_runs, stand_ins
-from work_plans import meca500_calibrations, meca500_jobs
+from support.engines import DEFAULT_PLANT
+from support.thin_plans import make_calibrations, make_runs, stand_ins
+from support.work_plans import meca500_calibrations, meca500_jobs
 
 from runner.reporting import outline
 from runner.reporting.document import Curves, Notice, Playback, Table, Text

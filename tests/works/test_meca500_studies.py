@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from thin_plans import make_runs
+from support.thin_plans import make_runs
 
 from runner.controllers.admittance_stability import stiffest_wall
 from runner.works.meca500.admittance_response import sampled_frequency_response

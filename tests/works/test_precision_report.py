@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.special import ellipk
-from study_sections import texts, unfinished_texts, whatever_has_failed
-from thin_plans import make_runs
-from work_plans import chapter, chapter_files, conditions_that_never_fail, cut
+from support.study_sections import texts, unfinished_texts, whatever_has_failed
+from support.thin_plans import make_runs
+from support.work_plans import chapter, chapter_files, conditions_that_never_fail, cut
 
 from runner.commands.reproduce import _chosen, _Way
 from runner.config.compose import compose

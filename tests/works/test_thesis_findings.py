@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from study_sections import every_run
-from thin_plans import make_runs, stand_ins
-from work_plans import chapter, thesis_moments
+from support.study_sections import every_run
+from support.thin_plans import make_runs, stand_ins
+from support.work_plans import chapter, thesis_moments
 
 from runner.reporting.document import Document, Section
 from runner.reporting.findings import findings

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from thin_plans import make_runs, stand_ins
-from work_plans import conditions_that_never_fail, thesis_moments
+from support.thin_plans import make_runs, stand_ins
+from support.work_plans import conditions_that_never_fail, thesis_moments
 
 from runner.store import Run
 from runner.works.thesis import figures, folding

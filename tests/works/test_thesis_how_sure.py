@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy import stats
-from study_sections import every_run, texts, unfinished_texts
-from thin_plans import make_runs, stand_ins
-from work_plans import chapter, thesis_moments
+from support.study_sections import every_run, texts, unfinished_texts
+from support.thin_plans import make_runs, stand_ins
+from support.work_plans import chapter, thesis_moments
 
 from runner.claims import load_claims
 from runner.execution import run

@@ -4,8 +4,8 @@ import re
 from collections import Counter
 
 import pytest
-from thin_plans import make_runs, stand_ins
-from work_plans import chapter_files, conditions_that_never_fail, thesis_jobs, thesis_moments
+from support.thin_plans import make_runs, stand_ins
+from support.work_plans import chapter_files, conditions_that_never_fail, thesis_jobs, thesis_moments
 
 from runner.reporting import outline
 from runner.reporting.document import Curves, Picture, Table, Text, Verdicts

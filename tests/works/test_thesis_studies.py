@@ -5,9 +5,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
-from study_sections import every_run, texts, unfinished_texts, whatever_has_failed
-from thin_plans import make_runs, stand_ins
-from work_plans import chapter, thesis_moments
+from support.study_sections import every_run, texts, unfinished_texts, whatever_has_failed
+from support.thin_plans import make_runs, stand_ins
+from support.work_plans import chapter, thesis_moments
 
 from runner import store
 from runner.reporting import formulas

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import pytest
-from thin_plans import make_runs, stand_ins
-from work_plans import chapter_files, conditions_that_never_fail, xarm7_moments, xarm7_studies
+from support.thin_plans import make_runs, stand_ins
+from support.work_plans import chapter_files, conditions_that_never_fail, xarm7_moments, xarm7_studies
 
 from runner.reporting.findings import findings
 from runner.store import Run

@@ -4,9 +4,9 @@ import re
 
 import numpy as np
 import pytest
-from engines import DEFAULT_PLANT
-from thin_plans import make_runs
-from work_plans import xarm7_studies
+from support.engines import DEFAULT_PLANT
+from support.thin_plans import make_runs
+from support.work_plans import xarm7_studies
 
 from runner.engines import has_pybullet
 from runner.reporting import outline

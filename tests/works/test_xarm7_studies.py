@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from study_sections import every_run, texts, unfinished_texts, whatever_has_failed
-from thin_plans import make_runs, stand_ins
-from work_plans import chapter, chapter_files, xarm7_moments, xarm7_studies
+from support.study_sections import every_run, texts, unfinished_texts, whatever_has_failed
+from support.thin_plans import make_runs, stand_ins
+from support.work_plans import chapter, chapter_files, xarm7_moments, xarm7_studies
 
 from runner.execution import run
 from runner.reporting import formulas

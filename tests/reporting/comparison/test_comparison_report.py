@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from sample_sides import LAWS, side
+from support.sample_sides import LAWS, side
 
 from runner.reporting.comparison.report import comparison_document
 from runner.reporting.document import Code, Curves, Notice, Table, Text

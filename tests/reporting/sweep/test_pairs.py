@@ -1,7 +1,7 @@
 from dataclasses import replace
 
 import numpy as np
-from sample_sweep import measurements, noisy, two_axes
+from support.sample_sweep import measurements, noisy, two_axes
 
 from runner.reporting.document import Table
 from runner.reporting.sweep import extremes, pairs

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from sample_sweep import measurements, noisy, two_axes
+from support.sample_sweep import measurements, noisy, two_axes
 
 from runner.reporting.document import Curves, Maps, Notice, Table, Text
 from runner.reporting.sweep import axes, distributions, effects, failures, maps

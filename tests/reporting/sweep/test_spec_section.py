@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sample_sweep import measurements, two_axes
+from support.sample_sweep import measurements, two_axes
 
 from runner.config.spec import Bound
 from runner.reporting.document import Curves, Maps, Table, Text

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from sample_sweep import measurements, noisy, two_axes
+from support.sample_sweep import measurements, noisy, two_axes
 
 from runner.errors import RunnerError
 from runner.reporting.sweep.subject import choose, spans_decades

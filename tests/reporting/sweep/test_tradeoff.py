@@ -1,7 +1,7 @@
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
-from sample_sweep import noisy, two_axes
+from support.sample_sweep import noisy, two_axes
 
 from runner.reporting.sweep.tradeoff import front, pair, section
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from sample_sweep import measurements
+from support.sample_sweep import measurements
 
 from runner.drawing.thinning import POINTS
 from runner.reporting.document import Curves, Table, Text

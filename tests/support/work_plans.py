@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Mapping
 
-from thin_plans import Overrides
+from support.thin_plans import Overrides
 
 from runner.reporting.document import Section
 from runner.reporting.job import Job

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 _FOLDER = re.compile(r"\b(runs|sweeps|reports|tunings|calibrations)/[0-9a-f]{24}\b")
 
 

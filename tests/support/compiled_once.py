@@ -5,7 +5,7 @@ import shutil
 import sys
 from pathlib import Path
 
-_PLACE = Path(__file__).resolve().parents[1] / ".pytest_cache" / "bytecode"
+_PLACE = Path(__file__).resolve().parents[2] / ".pytest_cache" / "bytecode"
 
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix = str(_PLACE)  # for processes to come, and for this one
