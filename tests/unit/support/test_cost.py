@@ -1,10 +1,16 @@
-"""What the tests cost is told before pytest's closing line."""
+"""Costs of tests: what the summary prints and what fails a session, against costs made by hand."""
 
+import os
 import subprocess
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 
+import pytest
 from fixtures import cost
+from fixtures.cost import Cost
+
+TESTS = Path(__file__).resolve().parents[2]
 
 
 class Terminal:
@@ -21,34 +27,88 @@ class Terminal:
         self.lines.append(text)
 
 
-def report(name, wall, cpu):
-    return SimpleNamespace(nodeid=name, user_properties=[("cost", (wall, cpu))])
+def report(name, cpu, shared=0.0):
+    return SimpleNamespace(nodeid=name, user_properties=[("cost", (0.5, cpu, shared, 1.0))])
 
 
-def test_the_ten_slowest_are_told_and_the_total_last():
-    terminal = Terminal([report(f"test {number}", float(number), 0.5) for number in range(25)])
-    cost.pytest_terminal_summary(terminal)
-    assert terminal.lines[0] == "== slowest 10 tests =="
-    assert terminal.lines[1] == "  24.00 s, CPU    0.50 s  test 24"
-    assert [line.rpartition("  ")[2] for line in terminal.lines[1:-1]] == [
-        f"test {number}" for number in range(24, 14, -1)
-    ]
+@pytest.fixture
+def config():
+    return SimpleNamespace(stash=pytest.Stash())
+
+
+def test_the_ten_dearest_are_printed_and_the_total_last(config):
+    terminal = Terminal([report(f"tests/unit/store/test_a.py::test {number}", float(number)) for number in range(25)])
+    cost.pytest_terminal_summary(terminal, config)
+    assert terminal.lines[0] == "== dearest 10 tests =="
+    assert terminal.lines[1] == "   0.50 s, CPU   24.00 s  tests/unit/store/test_a.py::test 24"
+    assert [line.rpartition(" ")[2] for line in terminal.lines[1:11]] == [str(number) for number in range(24, 14, -1)]
     assert terminal.lines[-1].startswith("CPU time of all processes: ")
 
 
-def test_without_tests_nothing_is_told():
+def test_cpu_time_is_printed_by_folder(config):
+    nodes = ("tests/unit/store/test_a.py::t[a/b]", "tests/config/test_b.py::t", "tests/test_c.py::t")
+    terminal = Terminal([report(node, 2.0, shared=1.0) for node in nodes] + [report(nodes[1], 3.0)])
+    cost.pytest_terminal_summary(terminal, config)
+    assert terminal.lines[-2] == "CPU time in s: config 5, unit/store 2, tests 2, session fixtures 3"
+
+
+def test_without_tests_nothing_is_printed(config):
     terminal = Terminal([])
-    cost.pytest_terminal_summary(terminal)
+    cost.pytest_terminal_summary(terminal, config)
     assert terminal.lines == []
+
+
+@pytest.mark.parametrize(("cpu", "dear"), [(7.9, False), (8.0, False), (8.1, True)])
+def test_a_test_is_too_dear_above_four_times_what_it_states(cpu, dear):
+    lines = cost.too_dear([Cost("a", 0.0, cpu, 100.0, 4.0)], yardstick=0.5)
+    assert lines == (["a: 16.2 yardsticks, more than 4 times the stated 4"] if dear else [])
 
 
 def test_processes_that_ended_count():
     script = "import time; sum(range(3_000_000)); print(time.process_time())"
     before = cost.cpu_time()
-    told = subprocess.run([sys.executable, "-S", "-c", script], capture_output=True, text=True, check=True).stdout
-    assert cost.cpu_time() - before > 0.9 * float(told)
+    stated = subprocess.run([sys.executable, "-S", "-c", script], capture_output=True, text=True, check=True).stdout
+    assert cost.cpu_time() - before > 0.9 * float(stated)
 
 
 def test_a_test_of_this_session_has_its_cost(request):
-    assert request.config.pluginmanager.has_plugin("cost")
-    assert request.node.nodeid in cost._began
+    assert request.config.pluginmanager.has_plugin("fixtures.cost")
+
+
+DEAR = """\
+import time
+import pytest
+
+@pytest.fixture(scope="session")
+def dear():
+    began = time.process_time()
+    total = 0
+    for number in range(100_000_000):
+        total += number
+        if time.process_time() - began > 0.2:
+            return
+
+def test_that_asks_for_a_dear_fixture(dear):
+    pass
+
+@pytest.mark.costs({states})
+def test_that_is_dear():
+    began = time.process_time()
+    total = 0
+    for number in range(100_000_000):
+        total += number
+        if time.process_time() - began > 0.2:
+            return
+"""
+
+
+@pytest.mark.parametrize(("states", "code"), [(0.2, 1), (2.0, 0)])
+def test_a_session_fails_if_a_test_is_too_dear(tmp_path, states, code):
+    """The yardstick takes 0.1 s here, and the test 0.2 s, as does a fixture of the session, which is not counted."""
+    (tmp_path / "conftest.py").write_text("from fixtures import cost\n\ncost.measure_yardstick = lambda: 0.1\n")
+    (tmp_path / "test_dear.py").write_text(DEAR.format(states=states))
+    command = [sys.executable, "-m", "pytest", "-p", "fixtures.cost", "-p", "no:xdist", "--enforce-costs"]
+    given = {**os.environ, "PYTHONPATH": str(TESTS), "PYTEST_ADDOPTS": ""}
+    ended = subprocess.run(command, cwd=tmp_path, env=given, capture_output=True, text=True, check=False)
+    assert ended.returncode == code, ended.stdout
+    assert ("more than 4 times the stated 0.2" in ended.stdout) == (code == 1)
