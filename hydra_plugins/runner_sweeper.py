@@ -21,8 +21,7 @@ class RunnerSweeper(Sweeper):
     """
 
     def __init__(self, workers: int, address: str | None, params: Mapping[str, Any] | None) -> None:
-        self._workers, self._address = workers, address
-        self._params = [f"{key}={value}" for key, value in (params or {}).items()]
+        self._sweeper = {"workers": workers, "address": address, "params": params}
 
     def setup(self, *, hydra_context: HydraContext, task_function: TaskFunction, config: DictConfig) -> None:
         """Take what Hydra knows; see its Sweeper."""
@@ -34,18 +33,13 @@ class RunnerSweeper(Sweeper):
         self._task.sweep(lambda: self._make(arguments))
 
     def _make(self, arguments: list[str]) -> Any:
-        from runner.sweeps.grid import Grid
-        from runner.sweeps.run import Engine, run_sweep
+        from runner.sweeps.typed import sweep_typed
 
         self.hydra = self._loader
         sources = self._config.hydra.runtime.config_sources
         self.config_dirs = tuple(Path(each.path).resolve() for each in sources if each.provider == "command-line")
         command = shlex.join(["runner", *(argument.removeprefix("++") for argument in sys.argv[1:])])
-        plan = Grid([*self._params, *arguments], self)
-        if len(plan) == 1:
-            text = "nothing is swept, and a single run is made: no key has several values, as seed=0,1 has"
-            print(f"runner: {text}", file=sys.stderr)
-        return run_sweep(plan, Engine(self._workers, self._address), command)
+        return sweep_typed(arguments, self._sweeper, self, command)
 
     def load(self, options: Sequence[str]) -> DictConfig:
         """Compose a config from overrides of options, as Hydra does for one job; see ConfigSource."""

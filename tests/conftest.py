@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import settings
-from support import compiled_once, composing
+from support import compiled_once
 
 from runner.quiet import quiet_environment
 
 quiet_environment()
-composing.begin()
 
 from runner.engines import has_pybullet  # noqa: E402 - after the environment
 

@@ -12,8 +12,6 @@ from runner.errors import ConfigError
 from runner.provenance import command
 from runner.sweeps.grid import plan_sweep
 
-pytestmark = pytest.mark.usefixtures("plain_hydra")
-
 
 @pytest.fixture(params=[True, False], ids=["with PyBullet", "without"])
 def installed(request, monkeypatch):

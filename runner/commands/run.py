@@ -1,6 +1,11 @@
-"""`runner OVERRIDES` and `runner -m OVERRIDES`: Hydra composes, we check, run and store."""
+"""`runner OVERRIDES` and `runner -m OVERRIDES`: Hydra composes, we check, run and store.
+
+Lines of overrides alone are composed here, once; Hydra's own command, which composes twice, takes those with its flags
+or keys.
+"""
 
 import itertools
+import shlex
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -8,16 +13,19 @@ from typing import TYPE_CHECKING, Any
 
 import hydra
 from hydra.core.hydra_config import HydraConfig
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
 from runner.commands.ending import tell_run, tell_sweep
 from runner.config.compose import from_hydra
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.hydra_config import hydra_config
 from runner.config.no_code import code_refused
 from runner.config.overrides import force
 from runner.paths import conf_dir
 from runner.quiet import quiet_environment
-from runner.recall.runs import keep_run, line_key
+from runner.recall.runs import keep_run, line_key, plain_line
 
 if TYPE_CHECKING:
     from runner.store import Run
@@ -30,10 +38,13 @@ _WITHOUT_OURS = (
 )  # fmt: skip
 
 
-class _Task:
-    """What Hydra calls, and what came of it; Hydra hands nothing back.
+_MANY = {"-m", "--multirun"}
 
-    An error is kept for `main` to raise: in here Hydra would print its own text.
+
+class _Task:
+    """Makes the run or the sweep of a command line, for Hydra or without it, and holds what came of it.
+
+    An error that is raised within Hydra is kept for `main` to raise: Hydra would print its own text.
     """
 
     def __init__(self, arguments: Sequence[str]) -> None:
@@ -45,22 +56,33 @@ class _Task:
         self.thresholds: Any = None
 
     def __call__(self, config: DictConfig) -> None:
-        """Make one run."""
-        from runner.execution import find_or_make  # after the config has composed: bad input is answered at once
-
-        hydra_config = HydraConfig.get()
+        """Make one run; Hydra calls this."""
+        node = HydraConfig.get()
         # Unresolved, as an override may hold an interpolation of the config's keys.
-        typed: Any = OmegaConf.to_container(hydra_config.overrides.task, resolve=False)
-        overrides = tuple(override.removeprefix("++") for override in typed)
-        own = [Path(source.path) for source in hydra_config.runtime.config_sources if source.provider == "command-line"]
+        overrides: Any = OmegaConf.to_container(node.overrides.task, resolve=False)
+        own = [Path(each.path) for each in node.runtime.config_sources if each.provider == "command-line"]
         try:
-            composed = from_hydra(config, hydra_config.runtime.choices, overrides, own)
-            self.thresholds = composed.resolved.get("caveats")
-            self.run, self.made = find_or_make(composed)
-            sources = [source.provider for source in hydra_config.runtime.config_sources]
-            keep_run(self._key, self._arguments, composed, self.run, sources)
+            self.make(config, node, overrides, own)
         except Exception as error:
             self.error = error
+
+    def make(self, config: DictConfig, node: Any, overrides: Sequence[str], own: Sequence[Path]) -> None:
+        """Make one run.
+
+        Args:
+            config: The config as Hydra composed it.
+            node: Hydra's own node of it.
+            overrides: The overrides as `force` leaves them.
+            own: Config folders of the user.
+        """
+        from runner.execution import find_or_make  # after the config has composed: bad input is answered at once
+
+        sources = [each.provider for each in node.runtime.config_sources]
+        typed = [override.removeprefix("++") for override in overrides]
+        composed = from_hydra(config, node.runtime.choices, typed, own)
+        self.thresholds = composed.resolved.get("caveats")
+        self.run, self.made = find_or_make(composed)
+        keep_run(self._key, self._arguments, composed, self.run, sources)
 
     def sweep(self, make: Callable[[], "Ended"]) -> None:
         """Make a sweep; our sweeper calls this."""
@@ -74,13 +96,9 @@ def main(arguments: Sequence[str]) -> int:
     """Make the run or the sweep of a command line; print the folder made as the last line."""
     quiet_environment()
     task = _Task(arguments)
-    installing = bool({"-sc", "--shell-completion"} & set(arguments))
-    helping = "--hydra-help" in arguments
-    sys.argv = ["runner", *(arguments if installing else force(arguments)), *(_WITHOUT_OURS if helping else ())]
     try:
-        # The absolute path works from a console script and from a wheel, where a relative one does not.
-        with code_refused():
-            hydra.main(version_base="1.3", config_path=str(conf_dir()), config_name="config")(task)()
+        if not _take(task, arguments):
+            _let_hydra_take(task, arguments)
     except COMPOSITION_ERRORS as error:
         raise explain(error, _config_dirs(arguments)) from None
     if task.error is not None:
@@ -90,6 +108,41 @@ def main(arguments: Sequence[str]) -> int:
     if task.run is None:
         return 0  # --cfg, --hydra-help and the like
     return tell_run(task.run, task.made, task.thresholds)
+
+
+def _take(task: _Task, arguments: Sequence[str]) -> bool:
+    """Make the run or the sweep of a line of overrides alone; return False if Hydra must take it."""
+    many = any(word in _MANY for word in arguments)
+    of_sweeper = [word for word in arguments if many and word.startswith("hydra.sweeper.")]
+    line = plain_line([word for word in arguments if word not in _MANY and word not in of_sweeper])
+    if line is None or len(line[1]) > 1 or not all(folder.is_dir() for folder in line[1]):
+        return False
+    overrides, own = force(line[0]), [folder.absolute() for folder in line[1]]
+    if many:
+        from runner.sweeps.loading import Loader
+        from runner.sweeps.typed import sweep_typed
+
+        loader = Loader(own)
+        sweeper = loader.sweeper([*overrides, *of_sweeper])
+        command = shlex.join(["runner", *arguments])
+        task.ended = sweep_typed(overrides, sweeper, loader, command)
+        return True
+    if any(each.is_sweep_override() for each in OverridesParser.create().parse_overrides(overrides)):
+        return False
+    config = hydra_config(overrides, own)
+    if config.hydra.mode == RunMode.MULTIRUN:  # a file asks for a sweep
+        return False
+    task.make(config, config.hydra, overrides, own)
+    return True
+
+
+def _let_hydra_take(task: _Task, arguments: Sequence[str]) -> None:
+    installing = bool({"-sc", "--shell-completion"} & set(arguments))
+    helping = "--hydra-help" in arguments
+    sys.argv = ["runner", *(arguments if installing else force(arguments)), *(_WITHOUT_OURS if helping else ())]
+    # The absolute path works from a console script and from a wheel, where a relative one does not.
+    with code_refused():
+        hydra.main(version_base="1.3", config_path=str(conf_dir()), config_name="config")(task)()
 
 
 def _config_dirs(arguments: Sequence[str]) -> list[Path]:

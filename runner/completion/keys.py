@@ -43,19 +43,16 @@ def _values(line: Line, root: str) -> Mapping[str, str | None]:
 
 
 def _compose(line: Line, overrides: Sequence[str], root: str) -> Iterator[tuple[str, str | None]]:
-    from hydra import compose, initialize_config_dir
     from omegaconf import OmegaConf
     from omegaconf.errors import OmegaConfBaseException
 
-    from runner.config.no_code import code_refused
+    from runner.config.hydra_config import hydra_config
     from runner.config.overrides import force
-    from runner.paths import conf_dir
 
-    own = ",".join(f"file://{folder.resolve()}" for folder in line.config_dirs)
-    search = [f"hydra.searchpath=[{own}]"] if own else []
-    with code_refused(), initialize_config_dir(str(conf_dir()), version_base="1.3", job_name="runner"):
-        config = compose(root, [*force(overrides), *search])
-    for key, value in _leaves(OmegaConf.to_container(config, resolve=False), ""):
+    config = hydra_config(force(overrides), line.config_dirs, root)
+    ours: Any = OmegaConf.to_container(config, resolve=False)
+    del ours["hydra"]
+    for key, value in _leaves(ours, ""):
         try:
             yield key, _typed(OmegaConf.select(config, key) if "${" in str(value) else value)
         except OmegaConfBaseException:  # it refers to what is not chosen yet

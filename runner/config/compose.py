@@ -5,19 +5,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 
-from hydra import compose as hydra_compose
-from hydra import initialize_config_dir
 from omegaconf import DictConfig, OmegaConf
 
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.data_files import take_data_file
+from runner.config.hydra_config import hydra_config
 from runner.config.in_si import put_in_si
-from runner.config.no_code import code_refused
 from runner.config.overrides import force
 from runner.config.robot_defaults import complete_stage_arms
 from runner.config.stage_defaults import complete_stages
 from runner.errors import ConfigError
-from runner.paths import conf_dir
 from runner.texts import quoted
 
 
@@ -51,12 +48,8 @@ def compose(overrides: Sequence[str], config_dirs: Sequence[Path] = (), root: st
     Raises:
         ConfigError: for an option or key that does not exist, a value that cannot be parsed, a file that is no YAML.
     """
-    search = [f"hydra.searchpath=[{','.join(f'file://{folder.resolve()}' for folder in config_dirs)}]"]
     try:
-        with code_refused(), initialize_config_dir(str(conf_dir()), version_base="1.3", job_name="runner"):
-            config = hydra_compose(
-                root, [*force(overrides), *(search if config_dirs else [])], return_hydra_config=True
-            )
+        config = hydra_config(force(overrides), config_dirs, root)
         return from_hydra(config, config.hydra.runtime.choices, overrides, config_dirs, root)
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None

@@ -31,8 +31,10 @@ _NAMED_BY_CONFIGS = ("hydra.searchpath", "main", "command-line")  # others are H
 
 
 @contextlib.contextmanager
-def code_refused() -> Iterator[None]:
+def code_refused() -> Iterator[set[Path]]:
     """Let Hydra go on only with configs that name no code, whichever file, package or override they come from.
+
+    Yields a set that takes the config files that are read.
 
     In a config folder that is a work's, experiments are found under its name; see work_folder. The one function that a
     file calls, conf/plant/default.yaml, is ours.
@@ -41,7 +43,8 @@ def code_refused() -> Iterator[None]:
     OmegaConf.register_new_resolver("default_plant", lambda: f"/plant/{default_plant()}", replace=True)
     files = SourcesRegistry.instance().resolve("file")
     load, search = ConfigLoaderImpl.load_configuration, ConfigRepository.initialize_sources
-    read, is_config, is_group = files.load_config, files.is_config, files.is_group
+    load_file, is_config, is_group = files.load_config, files.is_config, files.is_group
+    read: set[Path] = set()
 
     def checked_load(self: ConfigLoaderImpl, *args: Any, **options: Any) -> DictConfig:
         try:
@@ -49,9 +52,7 @@ def code_refused() -> Iterator[None]:
         except (TypeError, KeyError, IndexError, AttributeError, AssertionError, RecursionError) as error:
             found = f"{type(error).__name__} {error}".strip()
             raise ConfigError([f"Hydra cannot compose the config: {found}; look at what is unusual in it"]) from error
-        plain: Any = OmegaConf.to_container(config, resolve=False)
-        check_references(plain)
-        refuse_code(config)
+        check_composed(config)
         return config
 
     def checked_search(self: ConfigRepository, config_search_path: ConfigSearchPath) -> None:
@@ -60,8 +61,10 @@ def code_refused() -> Iterator[None]:
 
     def checked_read(self: ConfigSource, config_path: str) -> ConfigResult:
         place = place_in(Path(self.path), config_path)
-        check_file(Path(self.path) / self._normalize_file_name(place))
-        return read(self, place)
+        path = Path(self.path) / self._normalize_file_name(place)
+        read.add(path.resolve())
+        check_file(path)
+        return load_file(self, place)
 
     with (
         _replaced(ConfigLoaderImpl, checked_load, "load_configuration"),
@@ -72,7 +75,7 @@ def code_refused() -> Iterator[None]:
         ),
         _replaced(files, lambda self, config_path: is_group(self, place_in(Path(self.path), config_path)), "is_group"),
     ):
-        yield
+        yield read
 
 
 @contextlib.contextmanager
@@ -83,6 +86,17 @@ def _replaced(owner: type, function: Callable[..., Any], name: str) -> Iterator[
         yield
     finally:
         setattr(owner, name, before)
+
+
+def check_composed(config: DictConfig) -> None:
+    """Check a config that Hydra composed, before any reference in it is resolved.
+
+    Raises:
+        ConfigError: for a key that refers to itself or stands for too much, and for what names code; see refuse_code.
+    """
+    plain: Any = OmegaConf.to_container(config, resolve=False)
+    check_references(plain)
+    refuse_code(config)
 
 
 def refuse_modules(search_path: ConfigSearchPath) -> None:

@@ -1,6 +1,6 @@
 """Giving each stage of a robot what its file leaves out; conf/robot_defaults.yaml gives it to a robot of one arm."""
 
-from functools import cache
+from functools import lru_cache
 from typing import Any
 
 import yaml
@@ -22,16 +22,16 @@ def complete_stage_arms(config: DictConfig) -> None:
     robot: Any = OmegaConf.to_container(group, resolve=False) if isinstance(group, DictConfig) else None
     if not isinstance(robot, dict) or not isinstance(robot.get("stages"), dict):
         return
-    for key, value in _arm_defaults().items():
+    defaults = _arm_defaults((conf_dir() / "robot_defaults.yaml").read_text())
+    for key, value in defaults.items():
         if robot.get(key) == value:
-            del robot[key]
-        for stage in robot["stages"].values():
-            if isinstance(stage, dict):
-                stage.setdefault(key, value)
-    config["robot"] = robot
+            del group[key]
+        for name, stage in robot["stages"].items():
+            if isinstance(stage, dict) and key not in stage:
+                group["stages"][name][key] = value
 
 
-@cache
-def _arm_defaults() -> dict[str, Any]:
-    defaults = yaml.safe_load((conf_dir() / "robot_defaults.yaml").read_text())["robot"]
+@lru_cache(maxsize=1)
+def _arm_defaults(text: str) -> dict[str, Any]:
+    defaults = yaml.safe_load(text)["robot"]
     return {key: value for key, value in defaults.items() if key in ArmConfig.model_fields}

@@ -25,7 +25,7 @@ def complete_stages(config: DictConfig, choices: Mapping[str, str], config_dirs:
     for group, option in choices.items():
         for key, reference in _references(group, option, config_dirs):
             node = config.get(group)
-            if not isinstance(node, DictConfig) or key not in node or OmegaConf.is_interpolation(node, key):
+            if not isinstance(node, DictConfig) or OmegaConf.is_interpolation(node, key) or key not in node:
                 continue
             given, default = node[key], OmegaConf.select(config, reference)
             if isinstance(given, DictConfig) and isinstance(default, DictConfig):

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from runner.store import Run
 
 _CONFIG_DIR = ("--config-dir", "-cd")
-_READ = {"hydra", "main", "command-line", "schema"}  # Hydra's names of where configs come from that the key holds
+# Hydra's names of where configs come from that the key holds; the last is how we name it the user's config folders.
+_READ = {"hydra", "main", "command-line", "schema", "hydra.searchpath in command-line"}
 
 
 def find_again(arguments: Sequence[str]) -> "tuple[Run, Any] | None":
@@ -67,9 +68,13 @@ def line_key(arguments: Sequence[str]) -> str | None:
     It is None for a line with plug-ins, whose source is not read, or with flags or keys of Hydra's, which may make it
     another thing than a run.
     """
-    if in_use():
-        return None
-    config_dirs, words = [], iter(arguments)
+    line = None if in_use() else plain_line(arguments)
+    return None if line is None else basis(arguments, line[1])
+
+
+def plain_line(arguments: Sequence[str]) -> tuple[list[str], list[Path]] | None:
+    """Return the overrides and the config folders of a line; None if it has other flags or keys of Hydra's."""
+    overrides, config_dirs, words = [], [], iter(arguments)
     for word in words:
         if word in _CONFIG_DIR:
             config_dirs.append(Path(next(words, "")))
@@ -77,7 +82,9 @@ def line_key(arguments: Sequence[str]) -> str | None:
             config_dirs.append(Path(word.partition("=")[2]))
         elif word.startswith("-") or "=" not in word or "hydra" in word:
             return None
-    return basis(arguments, config_dirs)
+        else:
+            overrides.append(word)
+    return overrides, config_dirs
 
 
 def _arms(robot: Any) -> Iterator[Mapping[str, Any]]:

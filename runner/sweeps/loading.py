@@ -1,7 +1,6 @@
-"""Hydra's loader, kept for many configs."""
+"""Where the configs of a plan come from."""
 
 from collections.abc import Sequence
-from functools import cache
 from pathlib import Path
 from typing import Protocol
 
@@ -12,6 +11,7 @@ from hydra.types import RunMode
 from omegaconf import DictConfig
 
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.hydra_config import hydra_config
 from runner.config.no_code import code_refused
 from runner.paths import conf_dir
 
@@ -33,7 +33,7 @@ class ConfigSource(Protocol):
 
 
 class Loader:
-    """Composes configs from options of groups; each combination once, as that takes some 40 ms.
+    """Composes configs from options of groups.
 
     Args:
         config_dirs: Config folders of the user's, searched before ours.
@@ -45,20 +45,17 @@ class Loader:
 
     def __init__(self, config_dirs: Sequence[Path] = ()) -> None:
         self.config_dirs = tuple(folder.resolve() for folder in config_dirs)
-        search = f"hydra.searchpath=[{','.join(f'file://{folder}' for folder in self.config_dirs)}]"
-        self._search = (search,) if self.config_dirs else ()
         with code_refused(), initialize_config_dir(str(conf_dir()), version_base="1.3", job_name="runner"):
             self.hydra: ConfigLoader = GlobalHydra.instance().config_loader()
-        self._load = cache(self._compose)
 
     def load(self, options: Sequence[str], root: str = "config") -> DictConfig:
-        """Return a composed config, which must not be changed.
+        """Return a composed config.
 
         Args:
             options: Overrides, as Hydra takes them.
             root: Name of the file in conf/ that the groups hang on.
         """
-        return self._load(root, tuple(options))
+        return hydra_config(options, self.config_dirs, root)
 
     def sweeper(self, overrides: Sequence[str]) -> DictConfig:
         """Return the config of the sweeper, as `runner -m OVERRIDES` takes it; what is swept is left aside for that.
@@ -67,11 +64,7 @@ class Loader:
             ConfigError: for an option or key that does not exist.
         """
         try:
-            config: DictConfig = self._compose("config", tuple(overrides), RunMode.MULTIRUN).hydra.sweeper
+            config: DictConfig = hydra_config(overrides, self.config_dirs, mode=RunMode.MULTIRUN).hydra.sweeper
         except COMPOSITION_ERRORS as error:
             raise explain(error, self.config_dirs) from None
         return config
-
-    def _compose(self, root: str, options: tuple[str, ...], mode: RunMode = RunMode.RUN) -> DictConfig:
-        with code_refused():
-            return self.hydra.load_configuration(root, [*self._search, *options], mode)

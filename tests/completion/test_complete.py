@@ -146,7 +146,7 @@ def test_keys_are_those_of_the_typed_choice():
 
 def test_keys_are_composed_once_for_a_line(monkeypatch):
     first = words("robot=mini controller.")
-    monkeypatch.setattr("hydra.compose", None)
+    monkeypatch.setattr("runner.config.hydra_config.hydra_config", None)
     assert words("robot=mini controller.") == first
     with pytest.raises(TypeError):
         words("robot=macro controller.")

@@ -17,9 +17,26 @@ ITEMS = {
 }
 
 
+class CountingLoader(Loader):
+    """Notes what it loads."""
+
+    def __init__(self):
+        super().__init__()
+        self.loaded = []
+
+    def load(self, options, root="config"):
+        self.loaded.append(options)
+        return super().load(options, root)
+
+
 @pytest.fixture
-def listed(tmp_path):
-    return Listed(ITEMS, ["sweep.trace=all", f"outputs={tmp_path}"], Loader())
+def loader():
+    return CountingLoader()
+
+
+@pytest.fixture
+def listed(tmp_path, loader):
+    return Listed(ITEMS, ["sweep.trace=all", f"outputs={tmp_path}"], loader)
 
 
 def test_each_is_composed_as_alone(listed, tmp_path):
@@ -31,13 +48,10 @@ def test_each_is_composed_as_alone(listed, tmp_path):
         assert (ours.overrides, ours.root) == (item.overrides, item.root)
 
 
-def test_those_that_choose_the_same_options_are_composed_together(listed, monkeypatch):
-    loaded = []
-    compose_options = listed._loader._compose
-    listed._loader._load = lambda root, options: loaded.append(options) or compose_options(root, options)
+def test_those_that_choose_the_same_options_are_composed_together(listed, loader):
     for cell in range(len(listed)):
         listed.composed(cell)
-    assert len(loaded) == 5
+    assert len(loader.loaded) == 5
 
 
 def test_runs_and_calibrations_are_checked_and_weighed(listed, tmp_path):

@@ -8,8 +8,6 @@ from runner.config.compose import compose
 from runner.errors import ConfigError
 from runner.sweeps.grid import plan_sweep
 
-pytestmark = pytest.mark.usefixtures("plain_hydra")
-
 INDEPENDENT = [
     ("robot=macro,mini", "noise.position=1e-4,1e-3", "controller.period=0.01,0.02"),
     ("experiment=thesis/figure_3_5,thesis/figure_3_9", "noise.position=0,1e-3,2e-3"),

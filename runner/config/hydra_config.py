@@ -1,0 +1,139 @@
+"""Configs as Hydra composes them; what the chosen options give is composed once for the files as they are.
+
+Options decide which files make up a config, and Hydra takes some 100 ms for them. Overrides of values are put into a
+copy, in some 1 ms. Everything else, and every line that fails, is left to Hydra as a whole.
+"""
+
+import os
+import pickle
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+from itertools import islice
+from pathlib import Path
+
+from hydra import initialize_config_dir
+from hydra.core.global_hydra import GlobalHydra
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.override_parser.types import Override
+from hydra.types import RunMode
+from omegaconf import DictConfig, OmegaConf
+
+from runner.config.no_code import check_composed, code_refused
+from runner.config.options import groups
+from runner.engines import default_plant
+from runner.errors import ConfigError
+from runner.paths import conf_dir
+
+_KEPT = 128  # combinations of options
+_MOST = 1000  # files and folders in the config folders; where there are more, Hydra composes each time
+
+Files = tuple[tuple[str, int, int], ...]  # path, time of change in ns, size
+
+
+def hydra_config(
+    overrides: Sequence[str], config_dirs: Sequence[Path] = (), root: str = "config", mode: RunMode = RunMode.RUN
+) -> DictConfig:
+    """Return the config that Hydra composes, with its own node; the caller may change it.
+
+    Args:
+        overrides: Hydra overrides, as `force` leaves them.
+        config_dirs: Config folders of the user.
+        root: Name of the file in conf/ that the groups hang on.
+        mode: MULTIRUN leaves out what is swept.
+
+    Raises:
+        ConfigError: for a config that names code, or refers to itself.
+        Exception: one of COMPOSITION_ERRORS, as Hydra raises it for what it cannot compose.
+    """
+    folders = tuple(folder.resolve() for folder in config_dirs)
+    found = _with_values(overrides, folders, root, mode)
+    return _compose(overrides, folders, root, mode)[0] if found is None else found
+
+
+def _with_values(
+    overrides: Sequence[str], config_dirs: tuple[Path, ...], root: str, mode: RunMode
+) -> DictConfig | None:
+    """Return the kept config of the options with the values of the others; None for a line that Hydra must take."""
+    parsed = OverridesParser.create().parse_overrides(list(overrides))
+    if mode == RunMode.MULTIRUN:
+        parsed = [each for each in parsed if not each.is_sweep_override() or each.is_hydra_override()]
+    known = groups(config_dirs)
+    options = [each for each in parsed if _chooses_option(each, known)]
+    values = [each for each in parsed if not _chooses_option(each, known)]
+    files = _files(conf_dir(), *config_dirs)
+    if files is None or any(each.is_sweep_override() for each in parsed) or not all(map(_is_put, values)):
+        return None
+    lines = tuple(str(each.input_line) for each in options)
+    try:
+        kept = _of_options(lines, config_dirs, root, mode, files, default_plant())
+    except ConfigError:
+        return None  # a value may mend it
+    if kept is None:
+        return None
+    config: DictConfig = pickle.loads(kept)  # noqa: S301 - made below
+    try:
+        for each in values:
+            OmegaConf.update(config, each.key_or_group, each.value(), merge=True, force_add=each.is_force_add())
+        check_composed(config)
+    except Exception:
+        return None  # Hydra says why
+    return config
+
+
+def _chooses_option(override: Override, known: Sequence[str]) -> bool:
+    """Tell if an override chooses or removes an option of a group; a mapping in its place holds values."""
+    key = override.key_or_group
+    is_group = key in known or "/" in key or override.package is not None
+    return is_group and not isinstance(override.value(), dict)
+
+
+def _is_put(override: Override) -> bool:
+    """Tell if all that an override does is to put a value at its key."""
+    key = override.key_or_group
+    ours = key.partition(".")[0] != "hydra" or key.startswith("hydra.sweeper.")
+    sets = override.is_force_add() or not (override.is_add() or override.is_delete())
+    return ours and sets
+
+
+@lru_cache(maxsize=_KEPT)
+def _of_options(
+    options: tuple[str, ...], config_dirs: tuple[Path, ...], root: str, mode: RunMode, *_: object
+) -> bytes | None:
+    """Return the config of some options, pickled; None where it comes from files beside the config folders.
+
+    The last arguments are what else it follows from: the files as they are, and the plant that `default` stands for.
+    """
+    config, read = _compose(options, config_dirs, root, mode)
+    inside = all(any(path.is_relative_to(folder) for folder in (conf_dir(), *config_dirs)) for path in read)
+    return pickle.dumps(config) if inside else None
+
+
+def _compose(
+    overrides: Sequence[str], config_dirs: Sequence[Path], root: str, mode: RunMode
+) -> tuple[DictConfig, set[Path]]:
+    """Return what Hydra composes, and the files that it read."""
+    search = [f"hydra.searchpath=[{','.join(f'file://{folder}' for folder in config_dirs)}]"]
+    lines = [*overrides, *(search if config_dirs else [])]
+    with code_refused() as read, initialize_config_dir(str(conf_dir()), version_base="1.3", job_name="runner"):
+        loader = GlobalHydra.instance().config_loader()
+        return loader.load_configuration(root, lines, mode, from_shell=False), read
+
+
+def _files(*folders: Path) -> Files | None:
+    """Return what is in some folders; None where that is too much to look at, or is not there."""
+    try:
+        found = tuple(islice((each for folder in folders for each in _below(folder)), _MOST + 1))
+    except OSError:
+        return None
+    return found if len(found) <= _MOST else None
+
+
+def _below(folder: Path | str) -> Iterator[tuple[str, int, int]]:
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.is_dir():
+                yield entry.path, 0, 0
+                yield from _below(entry.path)
+            else:
+                status = entry.stat()
+                yield entry.path, status.st_mtime_ns, status.st_size
