@@ -8,6 +8,7 @@ import itertools
 import shlex
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,7 +39,7 @@ _WITHOUT_OURS = (
 )  # fmt: skip
 
 
-_MANY = {"-m", "--multirun"}
+_MANY, _OF_SWEEPER = ("-m", "--multirun"), "hydra.sweeper."
 
 
 class _Task:
@@ -84,6 +85,21 @@ class _Task:
         self.run, self.made = find_or_make(composed)
         keep_run(self._key, self._arguments, composed, self.run, sources)
 
+    def make_sweep(self, overrides: Sequence[str], own: Sequence[Path]) -> None:
+        """Make a sweep.
+
+        Args:
+            overrides: The overrides as `force` leaves them, those of hydra.sweeper among them.
+            own: Config folders of the user.
+        """
+        from runner.sweeps.loading import Loader
+        from runner.sweeps.typed import sweep_typed
+
+        loader = Loader(own)
+        sweeper = loader.sweeper(overrides)
+        ours = [each for each in overrides if not each.startswith(_OF_SWEEPER)]
+        self.ended = sweep_typed(ours, sweeper, loader, shlex.join(["runner", *self._arguments]))
+
     def sweep(self, make: Callable[[], "Ended"]) -> None:
         """Make a sweep; our sweeper calls this."""
         try:
@@ -97,10 +113,13 @@ def main(arguments: Sequence[str]) -> int:
     quiet_environment()
     task = _Task(arguments)
     try:
-        if not _take(task, arguments):
+        make = _composed(task, arguments)
+        if make is None:
             _let_hydra_take(task, arguments)
     except COMPOSITION_ERRORS as error:
         raise explain(error, _config_dirs(arguments)) from None
+    if make is not None:
+        make()
     if task.error is not None:
         raise task.error
     if task.ended is not None:
@@ -110,30 +129,22 @@ def main(arguments: Sequence[str]) -> int:
     return tell_run(task.run, task.made, task.thresholds)
 
 
-def _take(task: _Task, arguments: Sequence[str]) -> bool:
-    """Make the run or the sweep of a line of overrides alone; return False if Hydra must take it."""
+def _composed(task: _Task, arguments: Sequence[str]) -> Callable[[], None] | None:
+    """Compose a line of overrides alone; return what makes its run or its sweep, None if Hydra must take the line."""
     many = any(word in _MANY for word in arguments)
-    of_sweeper = [word for word in arguments if many and word.startswith("hydra.sweeper.")]
-    line = plain_line([word for word in arguments if word not in _MANY and word not in of_sweeper])
+    of_sweeper = [word for word in arguments if many and word.startswith(_OF_SWEEPER)]
+    line = plain_line([word for word in arguments if word not in (*_MANY, *of_sweeper)])
     if line is None or len(line[1]) > 1 or not all(folder.is_dir() for folder in line[1]):
-        return False
-    overrides, own = force(line[0]), [folder.absolute() for folder in line[1]]
+        return None
+    overrides, own = force([*line[0], *of_sweeper]), [folder.absolute() for folder in line[1]]
     if many:
-        from runner.sweeps.loading import Loader
-        from runner.sweeps.typed import sweep_typed
-
-        loader = Loader(own)
-        sweeper = loader.sweeper([*overrides, *of_sweeper])
-        command = shlex.join(["runner", *arguments])
-        task.ended = sweep_typed(overrides, sweeper, loader, command)
-        return True
+        return partial(task.make_sweep, overrides, own)
     if any(each.is_sweep_override() for each in OverridesParser.create().parse_overrides(overrides)):
-        return False
+        return None
     config = hydra_config(overrides, own)
     if config.hydra.mode == RunMode.MULTIRUN:  # a file asks for a sweep
-        return False
-    task.make(config, config.hydra, overrides, own)
-    return True
+        return None
+    return partial(task.make, config, config.hydra, overrides, own)
 
 
 def _let_hydra_take(task: _Task, arguments: Sequence[str]) -> None:
