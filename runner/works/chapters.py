@@ -23,7 +23,7 @@ from runner.reporting.job import Made
 from runner.reporting.measured import Measured
 from runner.reporting.outline import numbered
 from runner.reporting.prose import blocks, plots, read_chapter, signals, tables
-from runner.reporting.prose.reader import read_with_conditions
+from runner.reporting.prose.reader import Reading
 from runner.reporting.work_report import parts
 from runner.store import Calibration, Run
 from runner.works.about import About, Part
@@ -40,7 +40,7 @@ Concluded = Callable[[str], tuple[list[Finding], Mapping[str, Any]]]
 
 
 class Chapters:
-    """The chapters of a work, made from its stored runs and calibrations.
+    """The chapters of a work, made from its stored runs and calibrations; each file is read once.
 
     Args:
         folder: The work's folder.
@@ -65,6 +65,7 @@ class Chapters:
         self._folder, self._about, self._code, self._grids = folder, about, code, grids
         self._command = shlex.join(["runner", "reproduce", command])
         self._runs, self._calibrations = runs, calibrations
+        self._readings: dict[str, Reading] = {}
 
     def sections(self) -> list[Section]:
         """Return all chapters; one that needs what was not made says so in its place."""
@@ -73,9 +74,24 @@ class Chapters:
 
     def concluded(self, name: str) -> tuple[list[Finding], Mapping[str, Any]]:
         """Return the findings of a chapter in Markdown, and the values to which it gives a name, by that."""
-        section, values, _ = read_with_conditions(f"{name}.md", self._text(f"{name}.md"), self.names(name))
-        everything = [block for each in numbered([section]) for block in each.section.blocks]
-        return [block for block in everything if isinstance(block, Finding)], values.named
+        made = self.reading(name)
+        everything = [block for each in numbered([made.section]) for block in each.section.blocks]
+        return [block for block in everything if isinstance(block, Finding)], made.values.named
+
+    def reading(self, stem: str) -> Reading:
+        """Return what the file of a chapter in Markdown makes.
+
+        Args:
+            stem: Name of the file without its ending.
+
+        Raises:
+            ProseError: if it cannot be read.
+            MissingError: if it needs what was not made.
+        """
+        if stem not in self._readings:
+            file = f"{stem}.md"
+            self._readings[stem] = read_chapter(f"{self._folder.name}/{file}", self._text(file), self.names(stem))
+        return self._readings[stem]
 
     def names(self, stem: str) -> dict[str, Any]:
         """Return what a chapter in Markdown may call and read, by name.
@@ -138,7 +154,7 @@ class Chapters:
             return Section(chapter.title, sections=self._each(chapter.sections))
         stem, _, suffix = chapter.rpartition(".")
         if suffix == "md":
-            return read_chapter(f"{self._folder.name}/{chapter}", self._text(chapter), self.names(stem))
+            return self.reading(stem).section
         make = self._code.functions(stem).get(_SECTION)
         if make is None:
             raise RunnerError(f"{self._folder / chapter}: must have a function {_SECTION}(runs)")

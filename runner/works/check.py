@@ -12,6 +12,7 @@ from runner.reporting.job import LeftOutError, MissingError
 from runner.reporting.prose.trying import never_failing
 from runner.reporting.prose.typed import levels_in, typed_numbers
 from runner.store import Calibration, Run
+from runner.works.chapters import Chapters
 from runner.works.names import FILE as ABOUT
 from runner.works.work import Work
 
@@ -26,10 +27,10 @@ def problems(work: Work, runs: Mapping[str, Run], calibrations: Mapping[str, Cal
         runs: Its stored runs by name.
         calibrations: Its stored calibrations by name.
     """
-    levels = levels_in([*runs, *calibrations])
+    levels, chapters = levels_in([*runs, *calibrations]), work.chapters(runs, calibrations)
     faults = 0
     for file in work.about.files():
-        for line in _of_chapter(work, file, runs, calibrations, levels):
+        for line in _of_chapter(work, file, chapters, levels):
             faults += 1
             yield line
     yield from (f"{work.name}: {name}: expected caveats: no run of it is named so" for name in _unused(work, runs))
@@ -38,7 +39,7 @@ def problems(work: Work, runs: Mapping[str, Run], calibrations: Mapping[str, Cal
     if cover is not None and cover.run not in {**runs, **work.dropped()}:
         yield f"{work.folder.name}/{ABOUT}: cover: no run '{cover.run}'{nearest(cover.run, list(runs))}"
     if not faults:
-        document = work.document(runs, calibrations)
+        document = work.document(runs, calibrations, chapters)
         yield from fallen(document)
         yield from formulas_at(work, document)
 
@@ -52,15 +53,13 @@ def formulas_at(work: Work, document: Document) -> Iterator[str]:
         yield f"{work.folder.name}/{file}:{line}: {formula}: no formula in Typst's notation"
 
 
-def _of_chapter(
-    work: Work, file: str, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration], levels: set[str]
-) -> Iterator[str]:
+def _of_chapter(work: Work, file: str, chapters: Chapters, levels: set[str]) -> Iterator[str]:
     path = work.folder / file
     if path.suffix != ".md":
         return
     text, name = path.read_text(encoding="utf-8"), f"{work.folder.name}/{file}"
     try:
-        yield from never_failing(name, text, work.chapters(runs, calibrations).names(path.stem))
+        yield from never_failing(name, chapters.reading(path.stem))
     except LeftOutError:
         return
     except MissingError as error:

@@ -148,13 +148,21 @@ class Work:
         if function is not None:
             function(outputs)
 
-    def document(self, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -> Document:
-        """Return its report from its stored runs and calibrations, by name."""
+    def document(
+        self, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration], chapters: Chapters | None = None
+    ) -> Document:
+        """Return its report.
+
+        Args:
+            runs: Its stored runs by name.
+            calibrations: Its stored calibrations by name.
+            chapters: What makes its chapters from these, if some have been read.
+        """
         made = work_document(
             title=self.about.title,
             subtitle=self.about.source,
             abstract=self.about.abstract,
-            chapters=self.chapters(runs, calibrations).sections(),
+            chapters=(chapters or self.chapters(runs, calibrations)).sections(),
             runs=runs,
             calibrations=calibrations,
             expected=self.expected,

@@ -103,5 +103,4 @@ def conditions_that_never_fail(
 ) -> list[str]:
     """Return the conditions of a chapter in Markdown that hold whatever is changed."""
     made: Work = load_work(work)
-    text = (made.folder / file).read_text(encoding="utf-8")
-    return never_failing(file, text, made.chapters(runs, calibrations).names(file.removesuffix(".md")))
+    return never_failing(file, made.chapters(runs, calibrations).reading(file.removesuffix(".md")))

@@ -6,7 +6,7 @@ another expression.
 
 import re
 import traceback
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import jinja2
@@ -53,6 +53,7 @@ class Values:
         self._set: list[str] = []
         self.found: list[tuple[Any, int]] = []
         self._lines = [1]
+        self._compiled: dict[str, Callable[..., Any]] = {}  # by expression
         self._environment = _Sandbox(undefined=jinja2.StrictUndefined, autoescape=False)
         self._environment.filters = {}
         self._environment.tests = {}
@@ -127,12 +128,9 @@ class Values:
         """
         source = " ".join(expression.split())
         try:
-            tree = self._environment.parse("{{ " + source + " }}")
-            for node in tree.find_all((*_BRANCHES, nodes.Filter, nodes.Test)):
-                raise ProseError(self._file, line, f"{source}: {_refused(node)}")
-            value = self._environment.compile_expression(source, undefined_to_none=False)(
-                **self._names | dict(instead or {})
-            )
+            if source not in self._compiled:
+                self._compiled[source] = self._compile(source, line)
+            value = self._compiled[source](**self._names | dict(instead or {}))
             if isinstance(value, jinja2.Undefined):
                 str(value)  # raises, and says what is not there
             return value
@@ -149,6 +147,13 @@ class Values:
         except Exception as error:
             told = traceback.format_exception_only(error)[-1].strip()
             raise ProseError(self._file, line, f"{source}: {told}") from error
+
+    def _compile(self, source: str, line: int) -> Callable[..., Any]:
+        """Return a function of the names that gives the value of an expression."""
+        tree = self._environment.parse("{{ " + source + " }}")
+        for node in tree.find_all((*_BRANCHES, nodes.Filter, nodes.Test)):
+            raise ProseError(self._file, line, f"{source}: {_refused(node)}")
+        return self._environment.compile_expression(source, undefined_to_none=False)
 
 
 def _refused(node: nodes.Node) -> str:

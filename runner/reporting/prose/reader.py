@@ -32,6 +32,21 @@ class Stated:
     line: int
 
 
+@dataclass(frozen=True)
+class Reading:
+    """What a chapter's file makes.
+
+    Attributes:
+        section: Its section.
+        values: The values of its expressions.
+        stated: The conditions of its findings as they stand.
+    """
+
+    section: Section
+    values: Values
+    stated: list[Stated]
+
+
 @dataclass
 class _Container:
     """A box that is being read: where it begins in the file and among the lines read, title, lines, conditions."""
@@ -43,8 +58,8 @@ class _Container:
     conditions: list[Stated] = field(default_factory=list)
 
 
-def read_chapter(file: str, text: str, names: Mapping[str, Any]) -> Section:
-    """Return the section that a chapter's file makes.
+def read_chapter(file: str, text: str, names: Mapping[str, Any]) -> Reading:
+    """Return what a chapter's file makes.
 
     Its first line is its title, `# Title`; `## Title` begins a section of it. `{{ CALL }}` in a paragraph of its own is
     a block, a list of blocks or a section, anywhere else a value in the sentence; `{% set name = EXPRESSION %}` at the
@@ -63,17 +78,12 @@ def read_chapter(file: str, text: str, names: Mapping[str, Any]) -> Section:
     Raises:
         ProseError: if it cannot be read; names the line, and what to write.
     """
-    return read_with_conditions(file, text, names)[0]
-
-
-def read_with_conditions(file: str, text: str, names: Mapping[str, Any]) -> tuple[Section, Values, list[Stated]]:
-    """Return the section that a chapter's file makes, its values, and the conditions of its findings as they stand."""
     values = Values(file, names)
     stated: list[Stated] = []
     pieces = list(_pieces(file, values.put_away(text), values, stated))
     if not pieces or not isinstance(pieces[0], Heading) or pieces[0].level != 1:
         raise ProseError(file, 1, "begins without a title; write `# Title` in the first line")
-    return _section(file, pieces), values, stated
+    return Reading(_section(file, pieces), values, stated)
 
 
 def _pieces(file: str, text: str, values: Values, stated: list[Stated]) -> Iterator[Piece]:

@@ -6,7 +6,7 @@ from typing import Any
 
 from runner.reporting.measured import Measured
 from runner.reporting.prose.expressions import Values
-from runner.reporting.prose.reader import Stated, conditions_of, read_with_conditions
+from runner.reporting.prose.reader import Reading, Stated, conditions_of
 
 _CHANGES: tuple[Callable[[float], float | None], ...] = (
     lambda value: 1000.0 * value,
@@ -16,21 +16,21 @@ _CHANGES: tuple[Callable[[float], float | None], ...] = (
 )
 
 
-def never_failing(file: str, text: str, names: Mapping[str, Any]) -> list[str]:
+def never_failing(file: str, reading: Reading) -> list[str]:
     """Return the conditions of a chapter that hold whichever of its named values is changed, with file and line.
 
     Each value that a `{% set %}` of the chapter names is made a thousand times as large and small, and larger and
     smaller by a thousand, one at a time.
 
-    Raises:
-        ProseError: if the chapter cannot be read.
+    Args:
+        file: Name of the chapter's file, for messages.
+        reading: What its file makes.
     """
-    _, values, stated = read_with_conditions(file, text, names)
     return [
         f"{file}:{each.line}: holds: {each.expression}: no change of a named value makes it fail; name what it is "
         "about by {% set NAME = EXPRESSION %}, or leave it out"
-        for each in stated
-        if not _may_fail(file, each, values)
+        for each in reading.stated
+        if not _may_fail(file, each, reading.values)
     ]
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from runner.errors import RunnerError
 from runner.reporting.measured import Measured
-from runner.reporting.prose import trying
+from runner.reporting.prose import read_chapter, trying
 from runner.reporting.prose.blocks import config, count, each
 from runner.reporting.prose.plots import over, panel
 from runner.reporting.prose.signals import moved, part, scaled, setting
@@ -70,4 +70,4 @@ def test_each_value_of_a_group_is_changed_in_turn():
     group = {"a": Measured("a", 1.0), "b": [Measured("b", 2.0)]}
     box = "::: finding A\nSo.\nholds: group.a < group.b[0]\nholds: 1 < given().a * 2\n:::\n"
     text = f"# T\n\n{{% set group = given() %}}\n\n{box}"
-    assert len(trying.never_failing("a.md", text, {"given": lambda: group})) == 1
+    assert len(trying.never_failing("a.md", read_chapter("a.md", text, {"given": lambda: group}))) == 1

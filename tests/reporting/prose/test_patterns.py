@@ -7,6 +7,7 @@ import pytest
 
 from runner.errors import RunnerError
 from runner.reporting.measured import Measured
+from runner.reporting.prose import read_chapter
 from runner.reporting.prose.blocks import each, named
 from runner.reporting.prose.patterns import found
 from runner.reporting.prose.plots import line
@@ -63,4 +64,4 @@ def test_a_signal_is_drawn_over_another_one():
 def test_values_in_a_group_are_changed_too():
     names = {"values": lambda: {"error": named("error", 1.0, "m")}}
     chapter = "# T\n\n{% set own = values() %}\n\n::: finding A\nB.\nholds: own.error < 2\n:::\n"
-    assert never_failing("chapter.md", chapter, names) == []
+    assert never_failing("chapter.md", read_chapter("chapter.md", chapter, names)) == []

@@ -20,7 +20,7 @@ NAMES = {
 
 
 def read(text, names=NAMES):
-    return read_chapter("chapter.md", f"# Title\n\n{text}\n", names)
+    return read_chapter("chapter.md", f"# Title\n\n{text}\n", names).section
 
 
 def test_paragraphs_lists_and_sections_become_blocks():

@@ -3,7 +3,7 @@
 import pytest
 
 from runner.reporting.measured import Measured
-from runner.reporting.prose import ProseError
+from runner.reporting.prose import ProseError, read_chapter
 from runner.reporting.prose.trying import never_failing
 from runner.reporting.prose.typed import typed_numbers
 
@@ -25,20 +25,24 @@ holds: CONDITION
 """
 
 
+def told_of(condition):
+    return never_failing("one.md", read_chapter("one.md", CHAPTER.replace("CONDITION", condition), NAMES))
+
+
 @pytest.mark.parametrize("condition", ["a > 1", "a < 1e2", "a.near(2, 0.1)", "less(b, 3)", "a < 2 * b[1]"])
 def test_a_condition_that_some_change_refutes_is_good(condition):
-    assert never_failing("one.md", CHAPTER.replace("CONDITION", condition), NAMES) == []
+    assert told_of(condition) == []
 
 
 @pytest.mark.parametrize("condition", ["a > -1e9", "number(2.0) > 1", "less(b, 1e9)", "less([b[0], number(1.0)], 3)"])
 def test_a_condition_that_nothing_refutes_is_told(condition):
-    (told,) = never_failing("one.md", CHAPTER.replace("CONDITION", condition), NAMES)
+    (told,) = told_of(condition)
     assert told.startswith(f"one.md:8: holds: {condition}: no change of a named value makes it fail")
 
 
 def test_a_list_of_conditions_is_one_each_and_an_empty_one_none():
     with pytest.raises(ProseError, match=r"one.md:8: holds: \[\]: gives list, no condition"):
-        never_failing("one.md", CHAPTER.replace("CONDITION", "[]"), NAMES)
+        told_of("[]")
 
 
 def test_numbers_typed_in_a_finding_are_told():
