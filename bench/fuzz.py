@@ -27,7 +27,8 @@ def configs(options: argparse.Namespace) -> bool:
             print(fuzz_configs.attempt(given, Path(name)))
         return True
     ended = dict(_in_processes(options.seed, options.cases))
-    bad = {number: end.faults for number, end in ended.items() if end.faults}
+    judged = {number: end.faults + fuzz_configs.judge_costs(end) for number, end in ended.items()}
+    bad = {number: faults for number, faults in judged.items() if faults}
     refused = sum(end.refused for end in ended.values())
     slowest = max((end.seconds for end in ended.values()), default=0.0)
     print(
@@ -98,7 +99,7 @@ def _in_processes(seed: int, count: int) -> Iterator[tuple[int, fuzz_configs.End
             start = number + 1
         worker.join()
         if worker.exitcode:
-            yield start, fuzz_configs.Ended(False, [f"crash: exit code {worker.exitcode}"], 0.0)
+            yield start, fuzz_configs.Ended(False, [f"crash: exit code {worker.exitcode}"])
             start += 1
 
 

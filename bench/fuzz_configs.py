@@ -1,4 +1,7 @@
-"""Configs from a grammar, composed, checked and run for some ticks: each is taken or refused in words, and soon."""
+"""Configs from a grammar, composed, checked and run for some ticks: each is taken or refused in words, and soon.
+
+Messages are judged by `attempt`, what a case costs by `judge_costs`: that depends on the machine.
+"""
 
 import json
 import resource
@@ -26,7 +29,7 @@ from runner.store.writing import make_record
 CPU = 5.0  # s, over what a sound case takes
 MEMORY = 500  # MB, likewise
 REFUSAL = 10_000  # characters
-_HANGS = 30  # s of CPU time
+_HANGS = 300  # s of CPU time, which only ends what would not end
 _TICKS = 3
 _LONG = 20_000  # ticks: the path of a run that is meant to be longer takes as long to check
 BASES = (
@@ -63,11 +66,13 @@ class Ended:
         refused: Whether it was refused; else it was taken.
         faults: What is wrong with how it ended.
         seconds: CPU time.
+        megabytes: Memory that it took beside what the process had held before.
     """
 
     refused: bool
     faults: list[str]
-    seconds: float
+    seconds: float = 0.0
+    megabytes: float = 0.0
 
 
 class _HangError(BaseException):
@@ -108,11 +113,13 @@ def attempt(given: Case, folder: Path) -> Ended:
         if isinstance(error, KeyboardInterrupt):
             raise
         faults = [f"traceback: {type(error).__name__}: {str(error)[:200]}"]
-    seconds = time.process_time() - start
-    faults += [f"{seconds:.1f} s of CPU time"] if seconds > CPU else []
-    grown = _megabytes() - size
-    faults += [f"{grown:.0f} MB of memory"] if grown > MEMORY else []
-    return Ended(refused, faults, seconds)
+    return Ended(refused, faults, time.process_time() - start, _megabytes() - size)
+
+
+def judge_costs(ended: Ended) -> list[str]:
+    """Return what is wrong with what a case took."""
+    faults = [f"{ended.seconds:.1f} s of CPU time"] if ended.seconds > CPU else []
+    return faults + ([f"{ended.megabytes:.0f} MB of memory"] if ended.megabytes > MEMORY else [])
 
 
 def judge(text: str) -> list[str]:

@@ -4,6 +4,7 @@ Hydra would make whatever some of its own keys name, and import the modules that
 """
 
 import contextlib
+import pickle
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from runner.config.bounded_yaml import CONFIG, YamlError, check_yaml
 from runner.config.interpolation import check_references, refuse_functions
+from runner.config.memory import Memory
 from runner.config.work_folder import place_in
 from runner.engines import default_plant
 from runner.errors import ConfigError
@@ -27,6 +29,7 @@ from runner.texts import quoted
 _NO_LOGGING = {"version": 1, "root": None, "disable_existing_loggers": False}
 _SWEEPER = {"_target_": "hydra_plugins.runner_sweeper.RunnerSweeper", "_recursive_": False}
 _SWEEPER_KEYS = ("workers", "address", "params")
+_READ = Memory(512)  # files as Hydra parses them, pickled
 _NAMED_BY_CONFIGS = ("hydra.searchpath", "main", "command-line")  # others are Hydra's own and installed plug-ins'
 
 
@@ -59,12 +62,20 @@ def code_refused() -> Iterator[set[Path]]:
         refuse_modules(config_search_path)
         search(self, config_search_path)
 
+    def load_sound(self: ConfigSource, path: Path, place: str) -> bytes:
+        check_file(path)
+        return pickle.dumps(load_file(self, place))
+
     def checked_read(self: ConfigSource, config_path: str) -> ConfigResult:
         place = place_in(Path(self.path), config_path)
         path = Path(self.path) / self._normalize_file_name(place)
         read.add(path.resolve())
-        check_file(path)
-        return load_file(self, place)
+        if not path.is_file():
+            return load_file(self, place)  # raises
+        status = path.stat()
+        key = (self.provider, self.path, place, status.st_mtime_ns, status.st_size)
+        result: ConfigResult = pickle.loads(_READ.known(key, lambda: load_sound(self, path, place)))  # noqa: S301
+        return result
 
     with (
         _replaced(ConfigLoaderImpl, checked_load, "load_configuration"),

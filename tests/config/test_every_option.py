@@ -5,9 +5,7 @@ from pathlib import Path
 import pytest
 from support.printed import without_caveats, without_results
 
-from runner.config.compose import compose
 from runner.config.options import group_options, groups
-from runner.config.validation import validate
 from runner.execution import run
 
 SWING = Path(__file__).parents[2] / "examples" / "swing.csv"
@@ -38,11 +36,6 @@ NEEDS = {  # what an option does not run without
     "plant=rk4_flexible_links": ("robot=macro", "trajectory=quintic"),
     "trajectory=from_file": (f"trajectory.file={SWING}",),
 }
-
-
-@pytest.mark.parametrize("option", OPTIONS)
-def test_it_composes(option):
-    validate(compose([*NEEDS.get(option, ()), option]).resolved)
 
 
 @pytest.mark.parametrize("option", OPTIONS)
