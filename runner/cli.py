@@ -194,12 +194,14 @@ def _choose(arguments: Sequence[str]) -> int:
 def _run(arguments: Sequence[str]) -> int:
     """Make a run or a sweep, or tell again of the run that the same line gave before."""
     from runner.quiet import quiet_environment
-    from runner.recall.runs import find_again
+    from runner.recall.runs import find_again, line_key
 
     quiet_environment()
-    found = find_again(arguments)
+    key = line_key(arguments)
+    found = find_again(key)
     if found is None:
-        return _command("run", arguments)
+        code: int = importlib.import_module("runner.commands.run").main(arguments, key)
+        return code
     from runner.commands.ending import tell_run
 
     run, thresholds = found

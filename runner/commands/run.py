@@ -14,19 +14,18 @@ from typing import TYPE_CHECKING, Any
 
 import hydra
 from hydra.core.hydra_config import HydraConfig
-from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
 from runner.commands.ending import tell_run, tell_sweep
 from runner.config.compose import from_hydra
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.hydra_config import hydra_config
+from runner.config.hydra_config import hydra_config, parse
 from runner.config.no_code import code_refused
 from runner.config.overrides import force
 from runner.paths import conf_dir
 from runner.quiet import quiet_environment
-from runner.recall.runs import keep_run, line_key, plain_line
+from runner.recall.runs import keep_run, plain_line
 
 if TYPE_CHECKING:
     from runner.store import Run
@@ -48,8 +47,8 @@ class _Task:
     An error that is raised within Hydra is kept for `main` to raise: Hydra would print its own text.
     """
 
-    def __init__(self, arguments: Sequence[str]) -> None:
-        self._arguments, self._key = arguments, line_key(arguments)
+    def __init__(self, arguments: Sequence[str], key: str | None) -> None:
+        self._arguments, self._key = arguments, key
         self.run: Run | None = None
         self.made = False
         self.ended: Ended | None = None
@@ -108,10 +107,15 @@ class _Task:
             self.error = error
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Make the run or the sweep of a command line; print the folder made as the last line."""
+def main(arguments: Sequence[str], key: str | None) -> int:
+    """Make the run or the sweep of a command line; print the folder made as the last line.
+
+    Args:
+        arguments: What is typed.
+        key: The key that the run is kept under, worked out before it is composed; see line_key.
+    """
     quiet_environment()
-    task = _Task(arguments)
+    task = _Task(arguments, key)
     try:
         make = _composed(task, arguments)
         if make is None:
@@ -139,7 +143,7 @@ def _composed(task: _Task, arguments: Sequence[str]) -> Callable[[], None] | Non
     overrides, own = force([*line[0], *of_sweeper]), [folder.absolute() for folder in line[1]]
     if many:
         return partial(task.make_sweep, overrides, own)
-    if any(each.is_sweep_override() for each in OverridesParser.create().parse_overrides(overrides)):
+    if any(each.is_sweep_override() for each in parse(overrides)):
         return None
     config = hydra_config(overrides, own)
     if config.hydra.mode == RunMode.MULTIRUN:  # a file asks for a sweep

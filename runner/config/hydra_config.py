@@ -50,11 +50,25 @@ def hydra_config(
     return _compose(overrides, folders, root, mode)[0] if found is None else found
 
 
+def parse(overrides: Sequence[str]) -> list[Override]:
+    """Return overrides as Hydra reads them; they must not be changed.
+
+    Raises:
+        OverrideParseException: for what is no override.
+    """
+    return [_parse(text) for text in overrides]
+
+
+@lru_cache(maxsize=8 * _KEPT)
+def _parse(text: str) -> Override:
+    return OverridesParser.create().parse_overrides([text])[0]
+
+
 def _with_values(
     overrides: Sequence[str], config_dirs: tuple[Path, ...], root: str, mode: RunMode
 ) -> DictConfig | None:
     """Return the kept config of the options with the values of the others; None for a line that Hydra must take."""
-    parsed = OverridesParser.create().parse_overrides(list(overrides))
+    parsed = parse(overrides)
     if mode == RunMode.MULTIRUN:
         parsed = [each for each in parsed if not each.is_sweep_override() or each.is_hydra_override()]
     known = groups(config_dirs)

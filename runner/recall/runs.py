@@ -19,13 +19,12 @@ _CONFIG_DIR = ("--config-dir", "-cd")
 _READ = {"hydra", "main", "command-line", "schema", "hydra.searchpath in command-line"}
 
 
-def find_again(arguments: Sequence[str]) -> "tuple[Run, Any] | None":
+def find_again(key: str | None) -> "tuple[Run, Any] | None":
     """Return the stored run that a command line gave before, with its thresholds of caveats; None where it must run.
 
     Args:
-        arguments: What is typed.
+        key: The key of the line; see line_key.
     """
-    key = line_key(arguments)
     answer = None if key is None else recall(key)
     if not (isinstance(answer, dict) and answer.keys() == {"run", "outputs", "thresholds", "spec"}):
         return None

@@ -1,5 +1,6 @@
 """Every option that there is composes and runs, with what it does not run without."""
 
+from itertools import zip_longest
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,15 @@ from runner.config.options import group_options, groups
 from runner.execution import run
 
 SWING = Path(__file__).parents[2] / "examples" / "swing.csv"
-OPTIONS = [f"{group}={name}" for group in groups() if group != "calibration" for name in group_options(group)]
+
+
+def options_of(group):
+    return [f"{group}={name}" for name in group_options(group)]
+
+
+OPTIONS = [option for group in groups() if group != "calibration" for option in options_of(group)]
+BESIDE = ("noise", "torque_limits", "mismatch", "wrist_sensor", "joint_torque_sensor", "endpoint_sensor",
+          "disturbance_observer", "notch", "preset", "spec")  # fmt: skip
 NEEDS = {  # what an option does not run without
     "controller=admittance": ("robot=meca500",),
     "controller=hybrid_force": ("robot=mini",),
@@ -38,9 +47,16 @@ NEEDS = {  # what an option does not run without
 }
 
 
-@pytest.mark.parametrize("option", OPTIONS)
-def test_it_runs(tmp_path, option):
-    made = run(*NEEDS.get(option, ()), option, "duration=0.05", "repetitions=1", f"outputs={tmp_path}")
+def lines():
+    """Return lines that choose each option once, with what it needs; options beside the loop share a line."""
+    beside = [options_of(group) for group in BESIDE]
+    yield from (tuple(filter(None, each)) for each in zip_longest(*beside))
+    yield from ((*NEEDS.get(each, ()), each) for each in OPTIONS if each.partition("=")[0] not in BESIDE)
+
+
+@pytest.mark.parametrize("line", list(lines()), ids=" ".join)
+def test_it_composes_and_runs(tmp_path, line):
+    made = run(*line, "duration=0.05", "repetitions=1", f"outputs={tmp_path}")
     assert (made.status, made.provenance["warnings"]) == ("ok", [])
 
 

@@ -40,7 +40,7 @@ def composed(monkeypatch):
     from runner.commands import run
 
     count, main = [], run.main
-    monkeypatch.setattr(run, "main", lambda arguments: count.append(1) or main(arguments))
+    monkeypatch.setattr(run, "main", lambda *given: count.append(1) or main(*given))
     return count
 
 
