@@ -7,6 +7,7 @@ from bench import fuzz_configs, fuzz_lines
 SEED, CASES = 12, 100
 
 
+@pytest.mark.costs(5)
 def test_every_config_is_taken_or_refused_in_words(tmp_path):
     faults, refused, kinds = {}, 0, set()
     for number in range(CASES):

@@ -90,6 +90,7 @@ def line():
     return st.lists(st.one_of(choice, value, value, gone), max_size=4)
 
 
+@pytest.mark.costs(3)
 @settings(max_examples=15)
 @given(line())
 def test_random_lines_give_what_hydra_gives(overrides):
@@ -207,6 +208,7 @@ def test_default_stands_for_the_plant_that_is_installed(monkeypatch):
         assert compose(["robot=macro"]) == plain(["robot=macro"])
 
 
+@pytest.mark.costs(2)
 @pytest.mark.parametrize("mode", [(), ("-m", "hydra.sweeper.workers=0")])
 def test_a_command_line_makes_what_hydras_own_command_makes(cli, mode):
     ours = cli(*mode, *SHORT, "++seed=3", "noise={position: 1e-3}")
