@@ -14,7 +14,7 @@ import runner
 from bench.make_docs_pictures import PICTURES
 
 pytest.importorskip("mkdocs")
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 LOADED = {"script": "src", "link": "href", "img": "src", "iframe": "src", "source": "src", "object": "data"}
 ELSEWHERE = re.compile(r"(https?:)?//")
 

@@ -1,45 +1,29 @@
-"""The worked example outside the package, from a temporary folder, with the wheel instead of the checkout."""
+"""An arm, a controller and a trajectory from outside the package, used with the wheel, against their own bands."""
 
-import os
 import shlex
-import shutil
-import subprocess
-import sys
-import zipfile
-from pathlib import Path
 
 import pytest
-import yaml
+from support.pages import ROOT
 from support.printed import without_caveats, without_results
 
 import runner
 
-EXAMPLE = Path(__file__).resolve().parents[1] / "examples" / "own_robot"
+EXAMPLE = ROOT / "examples" / "own_robot"
 PARTS = ("--plugin", "controller=gravity_pd.py", "--plugin", "trajectory=helix.py", "--config-dir", ".")
 
 
 @pytest.fixture(scope="module")
-def place(wheel, tmp_path_factory):
-    """A copy of the example, and an environment in which `runner` is the wheel's."""
+def place(installed, tmp_path_factory):
+    """The example as the wheel copies it, and the environment of the wheel."""
     top = tmp_path_factory.mktemp("own")
-    zipfile.ZipFile(wheel).extractall(top / "site")
-    shutil.copytree(EXAMPLE, top / "mine", ignore=shutil.ignore_patterns("__pycache__", "outputs"))
-    (top / "bin").mkdir()
-    command = top / "bin" / "runner"
-    command.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} -m runner "$@"\n')
-    command.chmod(0o755)
-    path = f"{top / 'bin'}{os.pathsep}{os.environ['PATH']}"
-    return top / "mine", {**os.environ, "PYTHONPATH": str(top / "site"), "PATH": path}
+    copied = installed.call(top, "runner", "example", "examples")
+    assert copied.returncode == 0, copied.stderr
+    return top / "examples" / "own_robot", installed
 
 
 def call(place, *command):
-    folder, environment = place
-    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
-
-
-def test_the_wheel_is_what_runs(place):
-    ending = call(place, sys.executable, "-c", "import runner; print(runner.__file__)")
-    assert Path(ending.stdout.strip()).is_relative_to(place[0].parent / "site")
+    folder, installed = place
+    return installed.call(folder, *command)
 
 
 def test_the_check_is_good_and_its_run_as_stored_by_the_users_parts(place):
@@ -55,20 +39,8 @@ def test_the_check_is_good_and_its_run_as_stored_by_the_users_parts(place):
     assert again.stdout == f"outputs/runs/{folder.name}\n"  # the command that it names finds it
 
 
-def test_the_check_falls_short_of_another_reference(place):
-    reference = yaml.safe_load((EXAMPLE / "reference.yaml").read_text())
-    reference["metrics"]["max_tracking_error"] = {"max": 1e-5, "reason": "a wish"}
-    (place[0] / "wish.yaml").write_text(yaml.safe_dump(reference))
-    folder = call(place, "runner", *PARTS, "experiment=lamp_helix").stdout.strip()
-    ending = call(place, "runner", "check", folder, "--reference", "wish.yaml")
-    assert ending.returncode == 1
-    assert "1 of 4 metrics fall short" in ending.stdout
-
-
-@pytest.fixture(scope="module")
-def sweep(place):
-    """A sweep over two values, one of which the controller's author did not think of."""
-    return call(
+def test_a_sweep_tells_stiff_from_soft(place):
+    sweep = call(
         place,
         "runner",
         "-m",
@@ -78,26 +50,11 @@ def sweep(place):
         "controller.natural_frequency=20,60",
         "hydra.sweeper.workers=0",
     )
-
-
-def test_a_sweep_tells_stiff_from_soft(place, sweep):
     assert sweep.returncode == 0, sweep.stderr
-    runs = [runner.open_run(folder) for folder in (place[0] / "outputs" / "runs").iterdir()]
-    errors = {
-        run.config["controller"]["natural_frequency"]: run.metrics["max_tracking_error"].median
-        for run in runs
-        if run.config["repetitions"] == 1
-    }
+    runs = runner.open_sweep(place[0] / sweep.stdout.splitlines()[-1]).runs()
+    errors = {run.config["controller"]["natural_frequency"]: run.metrics["max_tracking_error"].median for run in runs}
     # Without feedforward of the acceleration a PD law lags as 1 / omega_n^2; the noise is a hundredth of it.
     assert errors[20.0] / errors[60.0] == pytest.approx(9.0, rel=0.1)
-
-
-def test_a_report_with_the_motion_is_made_of_the_sweep(place, sweep):
-    ending = call(place, "runner", "report", sweep.stdout.splitlines()[-1], "--html")
-    assert (ending.returncode, without_caveats(without_results(ending.stderr))) == (0, "")
-    page = (place[0] / ending.stdout.splitlines()[-1] / "report.html").read_text()
-    assert "lamp" in page
-    assert page.count('<figure class="playback"') == 2
 
 
 @pytest.mark.parametrize(

@@ -1,27 +1,26 @@
 """The wheel carries all that a run needs, and works away from the checkout."""
 
-import os
 import subprocess
 import sys
 import tarfile
 import zipfile
-from pathlib import Path
 
+from support.pages import ROOT
 from support.printed import without_caveats, without_results
 
 from runner.references import shipped_references
 from runner.references.shipped import reference_path
 
-ROOT = Path(__file__).resolve().parents[1]
 SCRIPT = """\
 import sys
 from pathlib import Path
 import runner
 from runner.cli import dispatch
 from runner.paths import conf_dir, robots_dir, templates_dir
-site = Path(sys.argv[1])
+site = Path(sys.prefix)
 for folder in (Path(runner.__file__).parent, conf_dir(), robots_dir(), templates_dir()):
     assert folder.is_relative_to(site), folder
+assert (Path(runner.__file__).parent / "py.typed").is_file()
 assert (templates_dir() / "report.html.j2").is_file()
 assert dispatch(["list", "references"]) == 0
 assert dispatch(["list", "claims"]) == 0
@@ -49,17 +48,9 @@ def test_the_source_distribution_holds_docs_examples_and_what_builds_the_site(tm
     assert not [name for name in names if name.startswith(("outputs", "build/", ".venv"))]
 
 
-def test_the_wheel_runs_away_from_the_checkout(wheel, tmp_path):
-    zipfile.ZipFile(wheel).extractall(tmp_path / "site")
-    (tmp_path / "work").mkdir()
-    ending = subprocess.run(
-        [sys.executable, "-c", SCRIPT, str(tmp_path / "site")],
-        cwd=tmp_path / "work",
-        env={**os.environ, "PYTHONPATH": str(tmp_path / "site")},
-        capture_output=True,
-        text=True,
-    )
+def test_the_wheel_runs_away_from_the_checkout(installed, tmp_path):
+    ending = installed.call(tmp_path, "python", "-c", SCRIPT)
     assert (ending.returncode, without_caveats(without_results(ending.stderr))) == (0, "")
-    folder = tmp_path / "work" / ending.stdout.splitlines()[-1]
+    folder = tmp_path / ending.stdout.splitlines()[-1]
     assert (folder / "metrics.json").is_file()
-    assert [entry.name for entry in (tmp_path / "work").iterdir()] == ["outputs"]
+    assert [entry.name for entry in tmp_path.iterdir()] == ["outputs"]

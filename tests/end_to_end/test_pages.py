@@ -1,56 +1,61 @@
-"""README.md is followed line by line, and its pictures, links and snippets are looked up."""
+"""The README and the pages of docs/ against what a reader gets: commands, Python, links and pictures."""
 
 import doctest
 import re
 
 import pytest
-from support.pages import ROOT, follow, is_shown, steps
+from support.pages import ROOT, complaints, follow, pages, steps
 
-PAGE = ROOT / "README.md"
-TEXT = PAGE.read_text(encoding="utf-8")
-EXAMPLE = {"EXAMPLE": str(ROOT / "examples" / "own_robot")}
-BAD_INPUT = 2
-LONG = ["Two controllers on your own arm", "The published works"]
+README = ROOT / "README.md"
+FOLLOWED = [page for page in pages() if steps(page)]
+TYPED = [*pages(), *(page for page in sorted(ROOT.glob("*.md")) if page != README)]
 
 
-def follow_section(section, folder):
-    ended = follow(steps(PAGE, section), folder, EXAMPLE)
-    assert ended
-    for one in ended:
-        assert one.code == (BAD_INPUT if "problem" in "".join(one.step.shown) else 0), one
-        assert is_shown(one), one
-    return ended
+@pytest.fixture(scope="session")
+def first_lines(tmp_path_factory):
+    """A folder in which somebody typed the first lines of the README, and how they ended."""
+    folder = tmp_path_factory.mktemp("reader")
+    return folder, follow(steps(README, until="Five lines"), folder)
 
 
-def test_five_lines_run_and_print_what_the_page_shows(tmp_path):
-    ended = follow_section("Five lines", tmp_path)
-    report = ended[4].printed.splitlines()[-1]
-    assert {path.name for path in (tmp_path / report).iterdir()} == {"report.html", "report.pdf"}
+def test_the_first_lines_of_the_readme_print_what_it_shows(first_lines):
+    _, ended = first_lines
+    assert len(ended) > 5
+    assert complaints(ended) == []
 
 
+def test_the_last_of_the_five_lines_writes_a_report(first_lines):
+    folder, ended = first_lines
+    (report,) = [one.printed.splitlines()[-1] for one in ended if one.step.command == "runner report latest"]
+    assert {path.name for path in (folder / "checkout" / report).iterdir()} == {"report.html", "report.pdf"}
+
+
+# Pages take minutes, as each command starts a process; `make test-pages` follows them, which .ci/run does, too.
 @pytest.mark.slow
-@pytest.mark.parametrize("section", LONG)
-def test_long_sections(section, tmp_path):
-    follow_section(section, tmp_path)
+@pytest.mark.bullet  # the default plant, whose numbers they show
+@pytest.mark.parametrize("page", FOLLOWED, ids=lambda page: page.stem)
+def test_every_command_of_a_page_does_what_it_shows(page, tmp_path):
+    assert complaints(follow(steps(page), tmp_path)) == []
 
 
-def test_no_command_stands_outside_these_sections():
-    followed = [step for section in ("Install", "Five lines", *LONG) for step in steps(PAGE, section)]
-    assert followed == steps(PAGE)
-
-
-def test_snippets_of_python(tmp_path, monkeypatch):
+def test_snippets_of_python_give_what_the_readme_shows(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    example = doctest.DocTestParser().get_doctest(TEXT, {}, "README.md", None, 0)
+    example = doctest.DocTestParser().get_doctest(README.read_text(encoding="utf-8"), {}, "README.md", None, 0)
     assert example.examples
     outcome = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE).run(example)
     assert outcome.failed == 0
 
 
-def test_links_and_pictures_are_there():
-    for target in re.findall(r"\]\(([^)#]+)", TEXT):
-        assert (ROOT / target).exists(), target
+def test_links_and_pictures_lead_to_files():
+    targets = {
+        (page, target)
+        for page in TYPED
+        for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8"))
+    }
+    assert len(targets) > 200
+    assert [f"{page.name}: {target}" for page, target in targets if not (page.parent / target).exists()] == []
 
 
-def test_no_name_of_a_stored_folder_is_printed():
-    assert not re.search(r"\b[0-9a-f]{24}\b", TEXT)
+def test_no_page_shows_the_name_of_a_stored_folder():
+    named = [f"{page.name}: {name}" for page in pages() for name in re.findall(r"\b[0-9a-f]{24}\b", page.read_text())]
+    assert named == []  # it follows from the source, and is another one tomorrow

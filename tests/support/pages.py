@@ -1,16 +1,27 @@
-"""Pages of the documentation, followed command by command in one shell, as a reader does."""
+"""Pages of the documentation, followed command by command in one shell, as a reader does.
+
+A block that is indented by four spaces and begins with `$ ` holds commands, and below each what it prints: lines in
+order, of which some may be left out; a line that ends in three dots is the start of one. A command ends with 0, or with
+2 where the page shows problems in a config, or with what the page shows if the next command is `echo $?`. Commands that
+only show what they do, because they take minutes or need files of a reader's own, stand between fences.
+"""
 
 import os
 import re
-import shlex
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
+from support.patience import PATIENCE
+
 ROOT = Path(__file__).resolve().parents[2]
+BAD_INPUT = 2
 _FOLDER = re.compile(r"\b(runs|sweeps|reports|tunings|calibrations)/[0-9a-f]{24}\b")
+_ENDS_OF_DOCUMENT = re.compile(r"<<'(\w+)'")
+_CODE_OF_THE_LAST = "echo $?"
 
 
 @dataclass(frozen=True)
@@ -30,53 +41,89 @@ class Ended:
     code: int
 
 
-def steps(page: Path, section: str = "") -> list[Step]:
-    """Return the commands of a page, or of one section of it."""
+def pages() -> list[Path]:
+    """Return the README and the pages of docs/."""
+    return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def steps(page: Path, until: str = "") -> list[Step]:
+    """Return the commands of a page, or of its beginning up to the end of a section."""
     text = page.read_text(encoding="utf-8")
-    if section:
-        (text,) = re.findall(rf"^## {re.escape(section)}\n(.*?)(?=^## |\Z)", text, re.M | re.S)
+    if until:
+        text = re.split(rf"(?<=^## {re.escape(until)}\n)(.*?)^## ", text, maxsplit=1, flags=re.M | re.S)
+        text = "".join(text[:2])
     found: list[tuple[str, list[str]]] = []
     in_shell = False
     for line in text.splitlines():
         code = line.removeprefix("    ")
-        in_shell = code != line and (in_shell or code.startswith("$ "))
-        if in_shell and code.startswith("$ "):
+        typing = in_shell and _goes_on(found[-1][0])
+        if not (typing or line.strip()):
+            continue  # an empty line ends no block
+        in_shell = typing or (code != line and (in_shell or code.startswith("$ ")))
+        if typing:
+            found[-1] = (f"{found[-1][0]}\n{code}", [])
+        elif in_shell and code.startswith("$ "):
             found.append((code.removeprefix("$ "), []))
         elif in_shell:
             found[-1][1].append(code)
     return [Step(command, tuple(lines)) for command, lines in found]
 
 
-def follow(some: Sequence[Step], folder: Path, environment: Mapping[str, str]) -> list[Ended]:
-    """Type some commands in one shell, `runner` and `python` being those of the tests; go on whatever they end with."""
-    binaries, printed = folder / ".bin", folder / ".printed"
-    binaries.mkdir()
-    printed.mkdir()
-    for name, words in (("python", ""), ("runner", "-m runner")):
-        (binaries / name).write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} {words} "$@"\n')
-        (binaries / name).chmod(0o755)
+def _goes_on(command: str) -> bool:
+    """Tell whether the shell waits for more of a command: after a backslash, or for the end of a document."""
+    end = _ENDS_OF_DOCUMENT.search(command)
+    return command.endswith("\\") if end is None else command.splitlines()[-1] != end[1]
+
+
+def follow(some: Sequence[Step], folder: Path) -> list[Ended]:
+    """Type commands in one shell that has HOME and PATH; go on whatever they end with.
+
+    Args:
+        some: The commands.
+        folder: An empty folder. The shell begins in a checkout within it, which has the examples, and nothing to install.
+    """
+    checkout, home, printed = (folder / name for name in ("checkout", "home", "printed"))
+    for made in (checkout, home, printed):
+        made.mkdir()
+    (checkout / "Makefile").write_text("install:\n")
+    (checkout / "examples").symlink_to(ROOT / "examples")
     lines = [
-        f"{{ {step.command}\n}} > .printed/{number} 2>&1 < /dev/null; echo $? > .printed/{number}.code"
+        f"{{ {step.command}\n}} > {printed}/{number} 2>&1 < /dev/null\n"
+        f"code=$?; echo $code > {printed}/{number}.code; (exit $code)"
         for number, step in enumerate(some)
     ]
-    path = f"{binaries}{os.pathsep}{os.environ['PATH']}"
-    given = {**os.environ, "PYTHONPATH": str(ROOT), **environment, "PATH": path}
-    subprocess.run(["/bin/sh", "-c", "\n".join(lines)], cwd=folder, env=given, check=True)
+    given = {"HOME": str(home), "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.defpath}"}
+    subprocess.run(["/bin/sh", "-c", "\n".join(lines)], cwd=checkout, env=given, timeout=PATIENCE * len(some))
     return [
         Ended(step, (printed / str(number)).read_text(), int((printed / f"{number}.code").read_text()))
         for number, step in enumerate(some)
     ]
 
 
+def complaints(followed: Sequence[Ended]) -> list[str]:
+    """Return what a page shows otherwise than it is: a line that is not printed, or another exit code."""
+    found = []
+    for one, following in pairwise([*followed, None]):
+        refused = any(re.search(r"\d problems? in the config", line) for line in one.step.shown)
+        expected = BAD_INPUT if refused else 0
+        if one.code != expected and (following is None or following.step.command != _CODE_OF_THE_LAST):
+            found.append(f"$ {one.step.command}\nends with {one.code} instead of {expected}:\n{one.printed}")
+        found += [
+            f"$ {one.step.command}\ndoes not print, in its place,\n{line}\nbut\n{one.printed}"
+            for line in first_missing(one.step.shown, one.printed)
+        ]
+    return found
+
+
+def first_missing(shown: Sequence[str], text: str) -> list[str]:
+    """Return the first shown line that a text does not have after those before it; none if it has all."""
+    printed = iter(without_names(text).splitlines())
+    return next(([line] for line in shown if not any(_is(line, other) for other in printed)), [])
+
+
 def without_names(text: str) -> str:
     """Return a text in which the names of stored folders, which follow from the source, are three dots."""
     return _FOLDER.sub(r"\1/...", text)
-
-
-def is_shown(ended: Ended) -> bool:
-    """Tell whether a page shows what a command printed: its lines in order; one that ends in three dots is a start."""
-    printed = iter(without_names(ended.printed).splitlines())
-    return all(any(_is(shown, line) for line in printed) for shown in ended.step.shown)
 
 
 def _is(shown: str, line: str) -> bool:

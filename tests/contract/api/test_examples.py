@@ -12,7 +12,7 @@ import pytest
 import runner
 import runner.api
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 MODULES = sorted(f"runner.api.{found.name}" for found in pkgutil.iter_modules(runner.api.__path__))
 
 

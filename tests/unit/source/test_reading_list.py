@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[3]
 _TEXT = (ROOT / "CONTRIBUTING.md").read_text()
 _SECTION = _TEXT.split("### Read these twenty files in this order")[1].split("###")[0]
 FILES = [ROOT / path for path in re.findall(r"^\d+\. `([\w/.]+)`: .{20,}$", _SECTION, re.MULTILINE)]
