@@ -4,17 +4,16 @@ import re
 import subprocess
 import sys
 from html.parser import HTMLParser
-from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 import yaml
+from support.pages import ROOT
 
 import runner
 from bench.make_docs_pictures import PICTURES
 
 pytest.importorskip("mkdocs")
-ROOT = Path(__file__).resolve().parents[2]
 LOADED = {"script": "src", "link": "href", "img": "src", "iframe": "src", "source": "src", "object": "data"}
 ELSEWHERE = re.compile(r"(https?:)?//")
 
@@ -41,7 +40,7 @@ def read(path):
     return page
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def site(tmp_path_factory):
     """The site, strictly built, with a stub of the live report."""
     folder = tmp_path_factory.mktemp("site")
@@ -60,7 +59,7 @@ def site(tmp_path_factory):
     return folder / "built"
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def pages(site):
     """Its pages by path, but for the report."""
     return {path: read(path) for path in site.rglob("*.html") if path.name != "gallery_report.html"}

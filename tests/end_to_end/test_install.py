@@ -4,11 +4,9 @@ import importlib.util
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
-
-ROOT = Path(__file__).resolve().parents[2]
+from support.pages import ROOT
 
 
 @pytest.fixture(scope="module")

@@ -1,13 +1,12 @@
 """The README and the pages of docs/ against what a reader gets: commands, Python, links and pictures."""
 
-import doctest
 import re
 
 import pytest
-from support.pages import ROOT, complaints, follow, pages, steps
+from support.pages import ROOT, complaints, follow, has_python, pages, steps, wrong_snippets
 
 README = ROOT / "README.md"
-FOLLOWED = [page for page in pages() if steps(page)]
+FOLLOWED = [page for page in pages() if steps(page) or has_python(page)]
 TYPED = [*pages(), *(page for page in sorted(ROOT.glob("*.md")) if page != README)]
 
 
@@ -34,16 +33,10 @@ def test_the_last_of_the_five_lines_writes_a_report(first_lines):
 @pytest.mark.slow
 @pytest.mark.bullet  # the default plant, whose numbers they show
 @pytest.mark.parametrize("page", FOLLOWED, ids=lambda page: page.stem)
-def test_every_command_of_a_page_does_what_it_shows(page, tmp_path):
+def test_commands_and_then_python_do_what_a_page_shows(page, tmp_path, monkeypatch):
     assert complaints(follow(steps(page), tmp_path)) == []
-
-
-def test_snippets_of_python_give_what_the_readme_shows(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    example = doctest.DocTestParser().get_doctest(README.read_text(encoding="utf-8"), {}, "README.md", None, 0)
-    assert example.examples
-    outcome = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE).run(example)
-    assert outcome.failed == 0
+    monkeypatch.chdir(tmp_path / "checkout")
+    assert wrong_snippets(page) == []
 
 
 def test_links_and_pictures_lead_to_files():

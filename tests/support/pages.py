@@ -6,10 +6,12 @@ order, of which some may be left out; a line that ends in three dots is the star
 only show what they do, because they take minutes or need files of a reader's own, stand between fences.
 """
 
+import doctest
 import os
 import re
 import subprocess
 import sys
+import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -21,6 +23,7 @@ ROOT = Path(__file__).resolve().parents[2]
 BAD_INPUT = 2
 _FOLDER = re.compile(r"\b(runs|sweeps|reports|tunings|calibrations)/[0-9a-f]{24}\b")
 _ENDS_OF_DOCUMENT = re.compile(r"<<'(\w+)'")
+_PYTHON = re.compile(r"^```python\n(.*?)^```", re.M | re.S)
 _CODE_OF_THE_LAST = "echo $?"
 
 
@@ -80,7 +83,7 @@ def follow(some: Sequence[Step], folder: Path) -> list[Ended]:
 
     Args:
         some: The commands.
-        folder: An empty folder. The shell begins in a checkout within it, which has the examples, and nothing to install.
+        folder: An empty folder. The shell begins in a checkout within it, which has the examples and all installed.
     """
     checkout, home, printed = (folder / name for name in ("checkout", "home", "printed"))
     for made in (checkout, home, printed):
@@ -119,6 +122,31 @@ def first_missing(shown: Sequence[str], text: str) -> list[str]:
     """Return the first shown line that a text does not have after those before it; none if it has all."""
     printed = iter(without_names(text).splitlines())
     return next(([line] for line in shown if not any(_is(line, other) for other in printed)), [])
+
+
+def wrong_snippets(page: Path) -> list[str]:
+    """Return what the Python of a page does otherwise than it shows, run in the working directory.
+
+    Examples behind `>>>` are compared with what they show, blocks between fences of python have to end; each kind is
+    run in order, in one namespace.
+    """
+    text, found = page.read_text(encoding="utf-8"), []
+    flags = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+    example = doctest.DocTestParser().get_doctest(text, {}, page.name, str(page), 0)
+    doctest.DocTestRunner(optionflags=flags, verbose=False).run(example, out=found.append)
+    names: dict[str, object] = {}
+    for block in _PYTHON.findall(text):
+        try:
+            exec(compile(block, page.name, "exec"), names)
+        except Exception:
+            found.append(f"{block}\n{traceback.format_exc()}")
+    return found
+
+
+def has_python(page: Path) -> bool:
+    """Tell whether a page has snippets of Python."""
+    text = page.read_text(encoding="utf-8")
+    return ">>> " in text or _PYTHON.search(text) is not None
 
 
 def without_names(text: str) -> str:

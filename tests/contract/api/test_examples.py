@@ -1,41 +1,31 @@
-"""The examples in docstrings, on the page and in the notebook are run as they stand."""
+"""Examples in docstrings of the public functions and in the notebook, run as they stand."""
 
 import doctest
 import importlib
 import json
 import pkgutil
 import re
-from pathlib import Path
 
 import pytest
+from support.pages import ROOT
 
 import runner
 import runner.api
 
-ROOT = Path(__file__).parents[3]
 MODULES = sorted(f"runner.api.{found.name}" for found in pkgutil.iter_modules(runner.api.__path__))
 
 
-@pytest.mark.parametrize("module", ["runner", *MODULES])
-def test_docstrings(module, tmp_path, monkeypatch):
+@pytest.mark.costs(3)
+def test_docstrings(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    found = importlib.import_module(module)
-    failed, _ = doctest.testmod(found, extraglobs={"runner": runner})
-    assert failed == 0
+    modules = [runner, *map(importlib.import_module, MODULES)]
+    tried = {found.__name__: doctest.testmod(found, extraglobs={"runner": runner}) for found in modules}
+    assert [name for name, outcome in tried.items() if outcome.failed] == []
 
 
 def test_all_that_is_called_has_an_example():
     shown = [getattr(runner, name).__doc__ for name in ("run", "sweep", "tune", "calibrate", "report", "open_run")]
     assert all(">>> " in text for text in [*shown, runner.Run.__doc__, runner.Sweep.__doc__])
-
-
-def test_the_page(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    blocks = re.findall(r"^```python\n(.*?)^```", (ROOT / "docs/python.md").read_text(), re.DOTALL | re.MULTILINE)
-    assert len(blocks) > 3
-    names: dict[str, object] = {}
-    for block in blocks:
-        exec(compile(block, "docs/python.md", "exec"), names)
 
 
 def test_the_notebook(tmp_path, monkeypatch):

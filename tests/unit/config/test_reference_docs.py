@@ -1,3 +1,5 @@
+"""The page of all keys against the models, and types of keys in words."""
+
 from typing import Annotated, Literal
 
 import pytest
@@ -8,6 +10,7 @@ from bench.make_reference_docs import PAGE, reference_text
 from runner.config.per_stage import TorquePerStage
 
 
+@pytest.mark.costs(3)
 @pytest.mark.bullet  # it holds bullet's keys
 def test_the_reference_is_what_the_models_say():
     assert PAGE.read_text() == reference_text(), "stale: run `python -m bench.make_reference_docs`"

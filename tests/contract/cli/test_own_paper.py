@@ -1,4 +1,4 @@
-"""The example of a work in a folder, made by the wheel; and the page of the docs that shows it."""
+"""The work that `runner work new` writes, against the example, the page that shows it, and its own conditions."""
 
 import re
 
@@ -8,13 +8,13 @@ from support.pages import ROOT
 EXAMPLE = ROOT / "examples" / "own_paper"
 
 
-@pytest.mark.costs(5)
-def test_the_work_that_the_wheel_writes_is_the_example_and_stands(installed, tmp_path):
-    assert installed.call(tmp_path, "runner", "work", "new", "mine").returncode == 0
+@pytest.mark.costs(4)
+def test_the_work_that_is_written_is_the_example_and_stands(cli, tmp_path):
+    assert cli("work", "new", "mine").code == 0
     for path in EXAMPLE.iterdir():
         assert (tmp_path / "mine" / path.name).read_bytes() == path.read_bytes()
-    ending = installed.call(tmp_path, "runner", "reproduce", "mine", "--check")
-    assert (ending.returncode, ending.stdout) == (0, "outputs/reports/mine\n"), ending.stderr
+    ending = cli("reproduce", "mine", "--check", "hydra.sweeper.workers=0")
+    assert (ending.code, ending.out) == (0, "outputs/reports/mine\n"), ending.err
     page = (tmp_path / "outputs" / "reports" / "mine" / "report.html").read_text()
     assert "Half the natural frequency more than doubles the settling time" in page
     assert "runner --config-dir mine robot=macro" in page

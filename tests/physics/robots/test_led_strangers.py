@@ -1,0 +1,42 @@
+"""Arms that we do not ship, led by laws of ours: the error against the reach, and two plants against each other."""
+
+import numpy as np
+import pytest
+from support import strangers
+
+CONTROLLERS = ("operational_space", "computed_torque", "differential_inverse_kinematics", "whole_body")
+PAIRS = [
+    pytest.param(controller, name, marks=[pytest.mark.slow] if (row + column) % 4 else [])
+    for row, controller in enumerate(CONTROLLERS)
+    for column, name in enumerate(strangers.STRANGERS)
+]  # `make test` has one law for each arm, and three arms for each law
+
+
+@pytest.mark.parametrize(("controller", "name"), PAIRS)
+def test_controllers_lead_strangers(simulated_stranger, name, controller):
+    trace = simulated_stranger(name, f"controller={controller}")
+    assert trace.failure is None
+    assert np.abs(trace.error).max() < 1e-3 * strangers.examined(name).model.reach
+
+
+@pytest.fixture(scope="module")
+def simulated_stranger():
+    from runner.assembly import assemble
+    from runner.loop.sensors import make_encoders
+    from runner.simulation import simulate
+
+    def make(name, *overrides):
+        config = strangers.config(name, *overrides, "trajectory.duration=1", "duration=0.6")
+        loop = assemble(config)
+        try:
+            return simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0))
+        finally:
+            loop.plant.close()
+
+    return make
+
+
+@pytest.mark.parametrize("name", ["crane", "planar_two", "mixed"])
+def test_the_plants_agree_on_strangers(simulated_stranger, name):
+    default, rk4 = (simulated_stranger(name, f"plant={plant}") for plant in ("default", "rk4"))
+    np.testing.assert_allclose(default.tip, rk4.tip, rtol=0, atol=1e-5 * strangers.examined(name).model.reach)
