@@ -146,8 +146,17 @@ def fetch(root: Path, venv: Path) -> None:
             raise
         run([*pip, "--constraint", pins, "--editable", ".[dev,docs]"], root)
         return
-    uv = [str(venv / "bin" / "uv"), "pip", "install", "--quiet", "--python", python]
+    uv = [str(venv / "bin" / "uv"), "pip", "install", "--quiet", "--system-certs", "--python", python]
+    uv += [] if can_cache() else ["--no-cache"]
     run([*uv, "--constraint", pins, "--build-constraint", pins, "--editable", ".[dev,docs]"], root)
+
+
+def can_cache() -> bool:
+    """Return whether uv can write the folder in which it keeps what it fetched; it is often below the home."""
+    base = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
+    place = Path(os.environ.get("UV_CACHE_DIR") or os.path.join(base, "uv"))  # noqa: PTH118
+    existing = next(path for path in (place, *place.absolute().parents) if path.exists())
+    return os.access(str(existing), os.W_OK)
 
 
 def run(command: list, root: Path) -> None:
