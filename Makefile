@@ -16,11 +16,9 @@ reproduce: install
 test: install
 	$(BIN)/python -m pytest
 
-# The README and the pages of docs/ that are followed command by command in a shell: what takes minutes of them.
+# The README and the pages of docs/, followed command by command in a shell, and the scripts that they show.
 test-pages: install
-	$(BIN)/python -m pytest -m slow tests/test_readme.py tests/test_tutorial.py tests/test_compare_page.py \
-		tests/test_figures_and_tables_docs.py tests/test_how_sure_page.py tests/test_sensitivity_page.py \
-		tests/test_docs_pages.py tests/test_recordings_page.py
+	$(BIN)/python -m pytest -m slow tests/end_to_end/test_pages.py tests/end_to_end/test_scripts_of_pages.py
 
 test-slow: install
 	$(BIN)/python -m pytest -m slow

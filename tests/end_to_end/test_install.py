@@ -68,10 +68,30 @@ def test_uv_and_what_builds_are_pinned(install, checkout, commands):
     install.install(checkout, any_version=True)
     pip, uv = commands
     assert pip[-3:] == ["--constraint", "constraints.txt", "uv"]
+    assert "--system-certs" in uv  # as pip does, where a proxy has a certificate of its own
     assert uv[uv.index("--build-constraint") :][:2] == ["--build-constraint", "constraints.txt"]
     pins = (ROOT / "constraints.txt").read_text()
     assert "\nuv==" in pins
     assert "\nhatchling==" in pins
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "place"),
+    [("HOME", "", ""), ("XDG_CACHE_HOME", "cache", ""), ("UV_CACHE_DIR", "uv", "uv"), ("HOME", "made", "made")],
+    ids=["home", "cache not made yet", "of uv", "home with something in it"],
+)
+def test_uv_keeps_what_it_fetched_if_it_can(install, checkout, commands, tmp_path, monkeypatch, name, value, place):
+    for other in ("UV_CACHE_DIR", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(other, raising=False)
+    (tmp_path / place).mkdir(exist_ok=True)
+    monkeypatch.setenv(name, str(tmp_path / value))
+    for writable in (True, False):
+        asked = []
+        monkeypatch.setattr(install.os, "access", lambda path, mode, a=asked, w=writable: (a.append(path), w)[1])
+        (checkout / "constraints.txt").write_text(f"newer {writable}")
+        install.install(checkout, any_version=True)
+        assert asked == [str(tmp_path / place)]
+        assert ("--no-cache" in commands[-1]) is not writable
 
 
 @pytest.mark.parametrize("fault", ["moved", "gone", "old", "other"])
