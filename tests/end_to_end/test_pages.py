@@ -7,7 +7,7 @@ from support.pages import ROOT, complaints, follow, has_python, pages, steps, wr
 
 README = ROOT / "README.md"
 FOLLOWED = [page for page in pages() if steps(page) or has_python(page)]
-TYPED = [*pages(), *(page for page in sorted(ROOT.glob("*.md")) if page != README)]
+ALL = [*pages(), *(page for page in sorted(ROOT.glob("*.md")) if page != README)]
 
 
 @pytest.fixture(scope="session")
@@ -42,7 +42,7 @@ def test_commands_and_then_python_do_what_a_page_shows(page, tmp_path, monkeypat
 def test_links_and_pictures_lead_to_files():
     targets = {
         (page, target)
-        for page in TYPED
+        for page in ALL
         for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8"))
     }
     assert len(targets) > 200
