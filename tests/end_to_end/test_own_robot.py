@@ -26,6 +26,7 @@ def call(place, *command):
     return installed.call(folder, *command)
 
 
+@pytest.mark.costs(5)
 def test_the_check_is_good_and_its_run_as_stored_by_the_users_parts(place):
     ending = call(place, "./check.sh")
     assert (ending.returncode, without_caveats(without_results(ending.stderr))) == (0, "")
@@ -39,6 +40,7 @@ def test_the_check_is_good_and_its_run_as_stored_by_the_users_parts(place):
     assert again.stdout == f"outputs/runs/{folder.name}\n"  # the command that it names finds it
 
 
+@pytest.mark.costs(3)
 def test_a_sweep_tells_stiff_from_soft(place):
     sweep = call(
         place,

@@ -5,6 +5,7 @@ import sys
 import tarfile
 import zipfile
 
+import pytest
 from support.pages import ROOT
 from support.printed import without_caveats, without_results
 
@@ -48,6 +49,7 @@ def test_the_source_distribution_holds_docs_examples_and_what_builds_the_site(tm
     assert not [name for name in names if name.startswith(("outputs", "build/", ".venv"))]
 
 
+@pytest.mark.costs(2)
 def test_the_wheel_runs_away_from_the_checkout(installed, tmp_path):
     ending = installed.call(tmp_path, "python", "-c", SCRIPT)
     assert (ending.returncode, without_caveats(without_results(ending.stderr))) == (0, "")

@@ -8,7 +8,7 @@ from support.pages import ROOT
 EXAMPLE = ROOT / "examples" / "own_paper"
 
 
-@pytest.mark.costs(4)
+@pytest.mark.costs(2)
 def test_the_work_that_is_written_is_the_example_and_stands(cli, tmp_path):
     assert cli("work", "new", "mine").code == 0
     for path in EXAMPLE.iterdir():
