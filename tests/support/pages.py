@@ -96,7 +96,7 @@ def follow(some: Sequence[Step], folder: Path) -> list[Ended]:
         for number, step in enumerate(some)
     ]
     given = {"HOME": str(home), "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.defpath}"}
-    subprocess.run(["/bin/sh", "-c", "\n".join(lines)], cwd=checkout, env=given, timeout=PATIENCE * len(some))
+    subprocess.run(["/bin/sh", "-c", "\n".join(lines)], cwd=checkout, env=given, timeout=PATIENCE * max(1, len(some)))
     return [
         Ended(step, (printed / str(number)).read_text(), int((printed / f"{number}.code").read_text()))
         for number, step in enumerate(some)
