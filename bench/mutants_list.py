@@ -141,7 +141,7 @@ MUTANTS = [
     ),
     *_of(
         "controllers/stage_loops.py",
-        "controllers/test_stage_loops.py",
+        "physics/controllers/test_stage_loops.py",
         ("later stages' offset added", "way = reference[0] - numbers.later", "way = reference[0] + numbers.later"),
         ("the carrier adds it", "bases[0][0] - numbers.later", "bases[0][0] + numbers.later"),
         ("the last rider's offset for that of all", "target[0] -= R", "target[0] = reference[0] - R"),
@@ -154,25 +154,25 @@ MUTANTS = [
     ),
     *_of(
         "plants/friction.py",
-        "plants/test_friction.py",
+        "physics/plants/test_friction.py",
         ("viscous friction of a joint that dry friction stops", "(speed - yields @ mu) + mu", "speed + mu"),
         ("a contact that friction does not know", "self._contact_torque() - bias", "-bias"),
     ),
     *_of(
         "plants/servo.py",
-        "plants/test_servo.py",
+        "physics/plants/test_servo.py",
         ("a world that does not reach the joints", "self.tau + self.load", "self.tau"),
         ("a world that pulls where it pushes", "self.tau + self.load", "self.tau - self.load"),
         ("a spring at the start of the period", "position - q - h * dq)", "position - q)"),
     ),
     *_of(
         "plants/kinematic.py",
-        "plants/test_kinematic.py",
+        "physics/plants/test_kinematic.py",
         ("a load that helps where it hinders", "ddq) - self.load", "ddq) + self.load"),
     ),
     *_of(
         "plants/rk4.py",
-        "plants/test_rk4.py",
+        "physics/plants/test_rk4.py",
         ("a midpoint's own velocity", "q + half * v2, v3", "q + half * v, v3"),
     ),
     *_of(
