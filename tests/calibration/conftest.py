@@ -2,10 +2,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from support.arms import model_of
 from support.turns import rotation
 
 from runner.calibration import joint_deviation
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots import RobotModel
 from runner.robots.inverse_kinematics import solve_tip_pose
 
 REPEATABILITY = 5e-6  # m, the Meca500's
@@ -15,7 +16,7 @@ HOME = np.array([0.0, 0.1, 0.1, 0.0, 0.8, 0.0])  # rad, flange forwards and down
 
 @pytest.fixture(scope="session")
 def meca500() -> RobotModel:
-    return RobotModel(read_urdf(find_urdf("meca500.urdf"), {}), "flange")
+    return model_of("meca500", "flange")
 
 
 @pytest.fixture(scope="session")

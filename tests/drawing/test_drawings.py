@@ -1,18 +1,17 @@
-import itertools
 import re
 import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
+from support.arms import model_of, urdf_of
 
 from runner.controllers.graph import ControlGraph, Edge, Node
 from runner.controllers.operational_space_graph import operational_space_graph
 from runner.drawing import arm_motion, block_diagram, frame_assignment, top_view, workspace_sphere
 from runner.drawing.arm import _nearest
-from runner.drawing.block_diagram import _box, _route
 from runner.drawing.canvas import Camera, circle
 from runner.drawing.workspace import _best_samples
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots import RobotModel
 from runner.robots.workspace import analyse
 
 START, GOAL = np.array([0.0, 1.0, 1.0]), np.array([0.1679, -0.7571, 0.4255])
@@ -20,7 +19,7 @@ START, GOAL = np.array([0.0, 1.0, 1.0]), np.array([0.1679, -0.7571, 0.4255])
 
 @pytest.fixture(scope="module")
 def macro():
-    return RobotModel(read_urdf(find_urdf("macro.urdf"), {}), "tip")
+    return model_of("macro")
 
 
 @pytest.fixture(scope="module")
@@ -106,47 +105,6 @@ def test_best_samples_are_the_best_of_their_cells(macro):
     assert len(np.unique(np.column_stack([r, z]), axis=0)) == len(r) < 2000
 
 
-@pytest.mark.parametrize("flags", list(itertools.product([False, True], repeat=4)))
-def test_signals_run_along_rows_and_columns_and_pass_no_foreign_block(flags):
-    graph = operational_space_graph(*flags)
-    boxes = {node.name: _box(node) for node in graph.nodes}
-    for edge in graph.edges:
-        route = _route(edge, boxes)
-        steps = np.diff(route, axis=0)
-        assert np.all(np.abs(steps).min(axis=1) < 1e-9)
-        assert np.all(np.abs(steps).max(axis=1) > 0.05)
-        dense = np.concatenate([np.linspace(a, b, 50) for a, b in itertools.pairwise(route)])
-        for name, box in boxes.items():
-            inside = np.all(np.abs(dense - box.centre) < box.half - 1e-9, axis=1)
-            assert not inside.any(), f"{edge.source} to {edge.target} runs through {name}"
-
-
-@pytest.mark.parametrize("flags", list(itertools.product([False, True], repeat=4)))
-def test_signals_of_different_sources_never_cross(flags):
-    graph = operational_space_graph(*flags)
-    boxes = {node.name: _box(node) for node in graph.nodes}
-    for one, other in itertools.combinations(graph.edges, 2):
-        if one.source != other.source and one.target != other.target:
-            assert not _meet(_route(one, boxes), _route(other, boxes)), f"{one} meets {other}"
-
-
-def _meet(one, other):
-    def boxes(route):
-        return [(np.minimum(a, b), np.maximum(a, b)) for a, b in itertools.pairwise(route)]
-
-    return any(
-        np.all(low <= other_high + 1e-9) and np.all(other_low <= high + 1e-9)
-        for (low, high), (other_low, other_high) in itertools.product(boxes(one), boxes(other))
-    )
-
-
-def test_blocks_never_overlap():
-    for flags in itertools.product([False, True], repeat=4):
-        boxes = [_box(node) for node in operational_space_graph(*flags).nodes]
-        for one, other in itertools.combinations(boxes, 2):
-            assert np.any(np.abs(one.centre - other.centre) > one.half + other.half + 0.02)
-
-
 def test_any_graph_can_be_drawn():
     nodes = (Node("a", "source", "$r$", 0, 0), Node("s", "sum", "", 1, 0), Node("b", "block", "Plant\nwith name", 3, 1))
     edges = (
@@ -162,11 +120,11 @@ def test_an_arm_can_be_drawn_without_paths(macro):
 
 
 def test_frames_of_the_mini_count_from_three():
-    mini = RobotModel(read_urdf(find_urdf("mini.urdf"), {}), "tip")
+    mini = model_of("mini")
     assert frame_assignment(mini, first=3, last="6") != frame_assignment(mini)
 
 
 def test_a_limited_workspace_shows_its_inner_radius(macro):
-    text = read_urdf(find_urdf("macro.urdf"), {}).replace('lower="-1000" upper="1000"', 'lower="-1" upper="1"')
+    text = urdf_of("macro").replace('lower="-1000" upper="1000"', 'lower="-1" upper="1"')
     workspace = analyse(RobotModel(text, "tip"), 2000, np.random.default_rng(3))
     assert "<svg" in workspace_sphere(workspace)

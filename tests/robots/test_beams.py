@@ -5,9 +5,8 @@ from itertools import islice
 import numpy as np
 import pinocchio as pin
 import pytest
+from support.arms import checked
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.robots.beams import Beam, moving_links, parts_of, span, stiffened
 from runner.robots.cantilever import cantilever_roots
 
@@ -43,14 +42,14 @@ def test_parts_weigh_together_what_the_rod_does(count):
 
 
 def test_links_that_move_are_named_and_measured():
-    arm = validate(compose(["robot=macro"]).resolved).arm
+    arm = checked("robot=macro").arm
     assert moving_links(arm.model) == {"link1": 1, "link2": 2, "link3": 3}
     spans = [span(arm.model, joint, arm.flange).tolist() for joint in (1, 2, 3)]
     assert spans == [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 
 
 def test_a_stiffened_robot_has_the_rods_in_its_whole_and_in_its_stages():
-    arm = validate(compose(["robot=combined"]).resolved).arm
+    arm = checked("robot=combined").arm
     heavy = stiffened(arm, {"link2": Beam(1.0, 0.3), "mini_link3": Beam(1.0, 0.02)})
     assert heavy.model.mass - arm.model.mass == pytest.approx(0.32)
     assert [a.model.mass - b.model.mass for a, b in zip(heavy.stages, arm.stages, strict=True)] == [

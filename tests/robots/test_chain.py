@@ -3,9 +3,8 @@
 import numpy as np
 import pinocchio as pin
 import pytest
+from support.arms import checked
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.robots.beams import Beam, stiffened
 from runner.robots.cantilever import cantilever, cantilever_roots, clamped_arm, frequency_errors
 from runner.robots.chain import cut
@@ -63,7 +62,7 @@ def test_a_link_without_mass_has_one_mode_at_its_end_mass():
 
 
 def test_with_straight_links_a_chain_is_the_rigid_arm():
-    robot = validate(compose(["robot=combined"]).resolved).arm
+    robot = checked("robot=combined").arm
     beams = {"link2": Beam(300.0, 0.3), "link3": Beam(100.0, 0.2)}
     chain, rigid = cut(robot.model, robot.flange, beams, 3), stiffened(robot, beams).model
     q = np.array([0.3, -0.4, 1.1, 0.2, 0.7, -0.5])

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
+from support.arms import checked
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.robots.denavit_hartenberg import denavit_hartenberg, frames
 
 # The thesis' table 5.1 is lost; this is what its appendix was derived with.
@@ -14,7 +13,7 @@ ALPHA = np.radians([90.0, 0.0, 90.0, 90.0, 0.0, 90.0])
 
 @pytest.fixture(scope="module")
 def model():
-    return validate(compose(["robot=combined"]).resolved).arm.model
+    return checked("robot=combined").arm.model
 
 
 def test_table_5_1_is_reproduced(model):

@@ -1,15 +1,16 @@
 import numpy as np
 import pytest
+from support.arms import model_of
 
 from runner.errors import ConfigError
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots import RobotModel
 from runner.robots.denavit_hartenberg import denavit_hartenberg, frames, transform
 
 ZERO_INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
 
 
 def thesis_arm(name: str) -> RobotModel:
-    return RobotModel(read_urdf(find_urdf(f"{name}.urdf"), {}), "tip")
+    return model_of(name)
 
 
 def serial_arm(joints, tip_origin) -> RobotModel:

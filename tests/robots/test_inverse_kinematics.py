@@ -4,18 +4,19 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support.arms import model_of, urdf_of
 
 from runner.errors import ConfigError
-from runner.robots import RobotModel, find_urdf, inverse_kinematics, read_urdf, solve_tip_pose, solve_tip_position
+from runner.robots import RobotModel, inverse_kinematics, solve_tip_pose, solve_tip_position
 from runner.robots.mismatch import MismatchConfig, believe
 from runner.robots.robot import Robot, Stage
 
-MODELS = {name: RobotModel(read_urdf(find_urdf(f"{name}.urdf"), {}), "tip") for name in ("macro", "mini")}
+MODELS = {name: model_of(name) for name in ("macro", "mini")}
 LENGTH = {"macro": 1.0, "mini": 0.1}
 HOME = np.zeros(3)
-XARM7_URDF = read_urdf(find_urdf("xarm7.urdf"), {})
+XARM7_URDF = urdf_of("xarm7")
 XARM7, XARM7_HOME = RobotModel(XARM7_URDF, "flange"), np.array([0.0, 0.75, 0.0, 1.5, 0.0, 0.75, 0.0])
-MECA500 = RobotModel(read_urdf(find_urdf("meca500.urdf"), {}), "flange")
+MECA500 = model_of("meca500", "flange")
 MECA500_HOME = np.array([0.0, 0.5, 0.0, 0.0, 1.0707963267948966, 0.0])
 
 names = st.sampled_from(sorted(MODELS))

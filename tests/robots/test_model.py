@@ -3,11 +3,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from support import strangers
+from support.arms import model_of
 
 from runner.errors import ConfigError
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots import RobotModel
 
-MODELS = {name: RobotModel(read_urdf(find_urdf(f"{name}.urdf"), {}), "tip") for name in ("macro", "mini")}
+MODELS = {name: model_of(name) for name in ("macro", "mini")}
 LENGTH = {"macro": 1.0, "mini": 0.1}
 INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
 LIMITS = '<limit lower="-9" upper="9" effort="7" velocity="9"/>'

@@ -5,9 +5,8 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pinocchio as pin
 import pytest
+from support.arms import checked
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.robots import RobotModel
 from runner.robots.denavit_hartenberg import DenavitHartenbergRow, denavit_hartenberg, frames
@@ -115,7 +114,7 @@ def test_names_that_would_stand_twice_are_refused(mounted, mini_urdf):
 )
 def test_the_first_stage_has_no_mount_and_all_others_have_one(override, problem):
     with pytest.raises(ConfigError) as raised:
-        validate(compose(["robot=combined", override]).resolved)
+        checked("robot=combined", override)
     assert raised.value.problems == (problem,)
 
 

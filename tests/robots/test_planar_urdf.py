@@ -5,9 +5,10 @@ Slotine and Li, Applied Nonlinear Control, 1991, example 9.1 (mass matrix and ve
 
 import numpy as np
 import pytest
+from support.arms import model_of, urdf_of
 
 from runner.execution import run
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots import RobotModel
 
 M1, L1, ME, I1, LC1, IE, LCE, DELTA_E = 1.0, 1.0, 2.0, 0.12, 0.5, 0.25, 0.6, np.radians(30.0)
 A1 = I1 + M1 * LC1**2 + IE + ME * LCE**2 + ME * L1**2
@@ -18,7 +19,7 @@ STATES = np.random.default_rng(22).uniform(-3.0, 3.0, (50, 2, 2))
 
 @pytest.fixture(scope="module")
 def planar():
-    return RobotModel(read_urdf(find_urdf("planar.urdf"), {}), "tip")
+    return model_of("planar")
 
 
 def close(value, expected):
@@ -46,7 +47,7 @@ def test_gravity_is_the_slope_of_the_height_of_both_masses(planar):
 
 
 def test_without_gravity_it_is_the_horizontal_arm_of_the_book():
-    model = RobotModel(read_urdf(find_urdf("planar.urdf"), {}), "tip", gravity=0.0)
+    model = RobotModel(urdf_of("planar"), "tip", gravity=0.0)
     assert all(close(model.gravity_torque(q), 0.0) for q, _ in STATES)
 
 

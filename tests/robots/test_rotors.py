@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 import yaml
+from support.arms import checked
 
 from runner.config.compose import compose
 from runner.config.validation import validate
@@ -90,12 +91,12 @@ def test_bullet_agrees_with_the_model(checked_config, robot, capfd):
 )
 def test_what_is_no_rotor_is_refused(value, problem):
     with pytest.raises(ConfigError, match=rf"robot.rotor_inertia: {problem}"):
-        validate(compose(["robot=xarm7", f"robot.rotor_inertia={value}"]).resolved)
+        checked("robot=xarm7", f"robot.rotor_inertia={value}")
 
 
 def test_an_arm_without_sets_says_so():
     with pytest.raises(ConfigError, match=r"no set 'assumed'; there is no macro.rotors.yaml"):
-        validate(compose(["robot=macro", "robot.rotor_inertia=assumed"]).resolved)
+        checked("robot=macro", "robot.rotor_inertia=assumed")
 
 
 def test_a_set_of_one_s_own(tmp_path, macro_urdf):
@@ -114,6 +115,4 @@ def test_a_set_of_one_s_own(tmp_path, macro_urdf):
 
 def test_a_quantity_with_its_unit_is_a_number():
     resolved = compose(["robot=xarm7", "robot.rotor_inertia='0.1kg m^2'"]).resolved
-    assert (
-        validate(resolved).arm.urdf == validate(compose(["robot=xarm7", "robot.rotor_inertia=0.1"]).resolved).arm.urdf
-    )
+    assert validate(resolved).arm.urdf == checked("robot=xarm7", "robot.rotor_inertia=0.1").arm.urdf

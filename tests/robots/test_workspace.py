@@ -1,14 +1,15 @@
 import numpy as np
 import pytest
+from support.arms import model_of, urdf_of
 
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots import RobotModel
 from runner.robots.workspace import analyse, manipulability
 
 ARMS = [("macro", 1.0), ("mini", 0.1)]
 
 
 def thesis_arm(name: str) -> RobotModel:
-    return RobotModel(read_urdf(find_urdf(f"{name}.urdf"), {}), "tip")
+    return model_of(name)
 
 
 @pytest.mark.parametrize(("name", "L"), ARMS)
@@ -51,7 +52,7 @@ def test_manipulability_is_the_determinant_for_three_joints_and_its_square_for_m
 
 
 def test_joint_limits_bound_the_workspace():
-    text = read_urdf(find_urdf("macro.urdf"), {})
+    text = urdf_of("macro")
     text = text.replace('lower="-1000" upper="1000"', 'lower="-1" upper="1"')
     model = RobotModel(text, "tip")
     found = analyse(model, 2000, np.random.default_rng(5))

@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 from scipy.optimize import minimize
+from support.arms import urdf_of
 
 from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.robots.inertials import Payload
@@ -17,7 +18,7 @@ POSTURE = np.array([0.1, 0.75, 0.2, 1.5, -0.3, 0.75, 0.4])
 
 @pytest.fixture(scope="module")
 def urdf():
-    return read_urdf(find_urdf("xarm7.urdf"), {})
+    return urdf_of("xarm7")
 
 
 @pytest.fixture(scope="module")

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
+from support.arms import checked, last_of_each
 
 from runner.assembly import assemble
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.loop.joint_torques import make_joint_torque_sensor
 from runner.loop.sensors import make_encoders
@@ -19,8 +18,7 @@ LINE = ("robot=macro", "controller=computed_torque", "controller.period=0.002", 
 
 def found(*overrides):
     """r of the observer at the end of a run, and the trace."""
-    own = {text.partition("=")[0]: text for text in (*LINE, *overrides)}
-    config = validate(compose(list(own.values())).resolved)
+    config = checked(*last_of_each(*LINE, *overrides))
     closed = assemble(config)
     try:
         trace = simulate(
@@ -55,9 +53,7 @@ def test_what_the_links_feel_is_found():
     """A payload that the law does not know of weighs on the joints, on top of the friction that is not seen."""
     r, trace = found("plant=rk4", "joint_torque_sensor=ideal", "robot.payload.mass=0.5", "mismatch.payload=-0.5",
                      "duration=5")  # fmt: skip
-    with_load, without = (
-        validate(compose(["robot=macro", "trajectory=goal", f"robot.payload.mass={m}"]).resolved) for m in (0.5, 0.0)
-    )
+    with_load, without = (checked("robot=macro", "trajectory=goal", f"robot.payload.mass={m}") for m in (0.5, 0.0))
     weight = without.arm.model.gravity_torque(trace.q[-1]) - with_load.arm.model.gravity_torque(trace.q[-1])
     np.testing.assert_allclose(r, weight, atol=1e-3 * np.abs(weight).max())
 
@@ -78,7 +74,7 @@ def test_each_loop_reads_the_mean_since_its_last_tick(simulated):
     line = ("robot=combined", "controller=macro_mini", "disturbance_observer.bandwidth={macro: 30, mini: 100}",
             "disturbance_observer.torque=measured", "joint_torque_sensor=ideal", "trajectory=quintic", "plant=rk4",
             "plant.friction.coulomb=0.1", "duration=0.5")  # fmt: skip
-    config = validate(compose(list(line)).resolved)
+    config = checked(*line)
     closed = assemble(config)
     trace = simulate(
         closed, make_encoders(closed, config.noise, 0, 0), None, make_joint_torque_sensor(closed, config, 0)
@@ -99,4 +95,4 @@ REFUSED = {
 @pytest.mark.parametrize("given", REFUSED)
 def test_what_is_refused(given):
     with pytest.raises(ConfigError, match=REFUSED[given].replace("[", r"\[")):
-        validate(compose([*LINE, *given]).resolved)
+        checked(*LINE, *given)

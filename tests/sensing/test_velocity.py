@@ -1,9 +1,8 @@
 import numpy as np
 import pytest
 from scipy.signal import dlsim, dlti
+from support.arms import checked
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.sensing import EncoderNoise, JointEncoders
 from runner.sensing.velocity import gains
@@ -81,6 +80,6 @@ def test_at_rest_it_is_zero_from_the_first_tick_on():
 
 def test_a_bandwidth_must_be_above_zero_and_a_way_one_of_four():
     with pytest.raises(ConfigError, match=r"noise.velocity_bandwidth: must be above 0; found 0"):
-        validate(compose(["noise.velocity_bandwidth=0"]).resolved)
+        checked("noise.velocity_bandwidth=0")
     with pytest.raises(ConfigError, match=r"noise.velocity: found 'lowpass' \(did you mean low_pass\?\); allowed: "):
-        validate(compose(["noise.velocity=lowpass"]).resolved)
+        checked("noise.velocity=lowpass")

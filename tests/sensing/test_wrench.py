@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
+from support.arms import model_of
 
 from runner.errors import ConfigError
-from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.sensing.wrench import cross, cross_matrix, wrench_seen_from, wrench_transform
 
 vectors = st.lists(st.floats(-2.0, 2.0), min_size=3, max_size=3).map(np.array)
@@ -65,7 +65,7 @@ def test_a_force_is_seen_with_the_moment_of_its_lever(point, force, pose):
 
 @pytest.fixture(scope="module")
 def meca500():
-    return RobotModel(read_urdf(find_urdf("meca500.urdf"), {}), "flange")
+    return model_of("meca500", "flange")
 
 
 Q = np.array([0.3, 0.2, -0.4, 0.7, 0.9, -1.1])

@@ -35,7 +35,7 @@ def pairwise(options: Options) -> list[Case]:
                 taken = list(case.items())
                 case[name] = max(
                     options[name],
-                    key=lambda value: sum(frozenset([(name, value), other]) in missing for other in taken),  # noqa: B023
+                    key=lambda value: sum(frozenset([(name, value), other]) in missing for other in taken),
                 )
         cases.append({name: case[name] for name in options})
         for pair in itertools.combinations(case.items(), 2):

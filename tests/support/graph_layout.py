@@ -25,6 +25,15 @@ def check_structure(graph):
     assert all((edge.sign != "") == (kinds[edge.target] == "sum") for edge in graph.edges)
 
 
+def assert_loop_closed(graph, name):
+    """Assert that signals that leave a node come back to it."""
+    reached, frontier = set(), {name}
+    while frontier:
+        frontier = {edge.target for edge in graph.edges if edge.source in frontier} - reached
+        reached |= frontier
+    assert name in reached
+
+
 def check_ways(graph):
     """Signals run along rows and columns, through no foreign block, and cross no signal of another source."""
     boxes = {node.name: _box(node) for node in graph.nodes}

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
+from support.arms import checked
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.robots.robot import end_points
 from runner.trajectories.trajectory import joint_reference
@@ -18,7 +17,7 @@ ROBOTS = {
 
 
 def path_of(*overrides):
-    return validate(compose(overrides).resolved).path
+    return checked(*overrides).path
 
 
 @pytest.fixture(params=[(kind, robot) for kind in KINDS for robot in ROBOTS], ids="-".join)

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
+from support.arms import checked
 
 from runner.assembly import assemble
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers.torque_law import PinocchioArm
 from runner.plants.rk4 import Rk4
 
@@ -14,7 +13,7 @@ UNIFORM = ("controller.scale=uniform", "controller.adaptation=0.5", "controller.
 
 
 def closed_loop(*overrides):
-    closed = assemble(validate(compose([*LINE, *overrides]).resolved))
+    closed = assemble(checked(*LINE, *overrides))
     closed.close()
     return closed
 
@@ -137,7 +136,7 @@ def test_columns_of_friction_take_friction_away(simulated):
     line = ("robot=macro", *LINE, "mismatch.mass=0.8", "plant.friction.viscous=0.2", "plant.friction.coulomb=0.5",
             "controller.period=0.002", "trajectory=joint_sinusoids", "trajectory.duration=14",
             "duration=14")  # fmt: skip
-    path = validate(compose(line).resolved).path
+    path = checked(*line).path
 
     def error(on):
         trace = simulated(*line, f"controller.friction={on}")

@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
+from support.arms import checked
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers.computed_torque import ComputedTorque, ComputedTorqueConfig, build
 from runner.errors import ConfigError
 
 ARMS = {
-    name: validate(compose([f"robot={name}", "controller=computed_torque", "trajectory=goal"]).resolved).arm
+    name: checked(f"robot={name}", "controller=computed_torque", "trajectory=goal").arm
     for name in ("macro", "mini", "xarm7")
 }
 XARM7 = ARMS["xarm7"]
@@ -133,7 +132,7 @@ def test_a_pose_is_too_much_for_three_joints():
 
 
 def test_build_makes_one_loop_that_commands_every_joint():
-    config = validate(compose(["robot=macro", "controller=computed_torque"]).resolved).controller
+    config = checked("robot=macro", "controller=computed_torque").controller
     (loop,) = build(config, ARMS["macro"])
     assert (loop.joints, loop.period) == (slice(0, 3), 0.01)
 

@@ -5,11 +5,10 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
+from support.arms import checked, last_of_each
 
 from runner.assembly import assemble
 from runner.compiled import compile
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.loop.sensors import make_encoders
 from runner.plants.rk4 import Rk4
@@ -19,13 +18,8 @@ from runner.store import open_run
 OBSERVED = ("disturbance_observer=momentum", "disturbance_observer.bandwidth=60")
 
 
-def checked(*overrides):
-    own = {text.partition("=")[0]: text for text in overrides}
-    return validate(compose(list(own.values())).resolved)
-
-
 def assembled(*overrides):
-    closed = assemble(checked(*overrides))
+    closed = assemble(checked(*last_of_each(*overrides)))
     closed.close()
     return closed
 
@@ -116,8 +110,9 @@ LAWS = [
 
 @pytest.mark.parametrize("line", LAWS)
 def test_every_law_carries_it_compiled_as_by_pinocchio(line):
-    config = checked(*OBSERVED, *line, "trajectory=quintic", "plant=rk4", "mismatch.mass=0.9", "duration=0.1",
-                     *(("noise=thesis",) if line[0] != "robot=meca500" else ()))  # fmt: skip
+    noisy = () if line[0] == "robot=meca500" else ("noise=thesis",)
+    wrong = ("plant=rk4", "mismatch.mass=0.9", *noisy)
+    config = checked(*last_of_each(*OBSERVED, *line, "trajectory=quintic", "duration=0.1", *wrong))
     by_pinocchio, compiled = assemble_by_pinocchio(config), assemble(config)
     assert compiled.compiled is not None
     traces = [simulate(closed, make_encoders(closed, config.noise, 0, 0)) for closed in (by_pinocchio, compiled)]
@@ -172,5 +167,5 @@ REFUSED = {
 def test_what_cannot_carry_it_is_refused_with_what_to_take(line):
     overrides = re.findall(r"\S+=(?:\{.*?\}|\S+)", line)
     with pytest.raises(ConfigError) as caught:
-        checked("disturbance_observer.bandwidth=60", *overrides)
+        checked(*last_of_each("disturbance_observer.bandwidth=60", *overrides))
     assert any("disturbance_observer" in problem and REFUSED[line] in problem for problem in caught.value.problems)

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
+from support.arms import checked
 
 from runner.assembly import assemble
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.plants.rk4 import Rk4
 
 # rms of the norm of the joint errors in mrad: of an exact model, of masses 0.8 of the true ones with friction, and with
@@ -68,7 +67,7 @@ def test_what_integrates_has_the_errors_of_the_prototype_whose_dry_friction_is_s
     line = ("robot=macro", "controller=computed_torque", "controller.period=0.002", "controller.natural_frequency=30",
             "trajectory=from_file", f"trajectory.file={path}", more)  # fmt: skip
     for wrong, printed in zip(((), WRONG[:1]), INTEGRATING[more], strict=True):
-        closed = assemble(validate(compose([*line, *wrong]).resolved))
+        closed = assemble(checked(*line, *wrong))
         closed.close()
         law, plant, parts, errors = closed.loops[0].controller, Rk4(closed.robot.model, 0.0005, 1), 4, []
         plant.reset(q_d[0], np.zeros(3))

@@ -2,15 +2,11 @@
 
 import numpy as np
 import pytest
+from support.arms import checked
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers.joint_pd import JointPd, JointPdConfig
 
-ARMS = {
-    name: validate(compose([f"robot={name}", "controller=joint_pd", "trajectory=goal"]).resolved).arm
-    for name in ("macro", "xarm7")
-}
+ARMS = {name: checked(f"robot={name}", "controller=joint_pd", "trajectory=goal").arm for name in ("macro", "xarm7")}
 
 
 def law(name="macro", **changes):
@@ -43,7 +39,7 @@ def test_without_gravity_it_rests_at_the_sag_of_the_closed_form(simulated):
     trace = simulated("robot=macro", "controller=joint_pd", "controller.gravity_compensation=false", "plant=rk4",
                       "trajectory=joint_quintic", "duration=6")  # fmt: skip
     model, home = ARMS["macro"].model, ARMS["macro"].home
-    config = validate(compose(["robot=macro", "controller=joint_pd", "trajectory=joint_quintic"]).resolved)
+    config = checked("robot=macro", "controller=joint_pd", "trajectory=joint_quintic")
     w = config.loops[0].controller.numbers.k_p
     goal, rest = config.path.sample_joints(np.array([6.0]))[0, 0], trace.q[-1]
     sag = model.gravity_torque(rest) / (w * model.mass_matrix(home).diagonal())

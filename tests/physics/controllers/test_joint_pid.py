@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
+from support.arms import checked
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers.joint_pid import JointPid, JointPidConfig
 
-ARM = validate(compose(["robot=xarm7", "controller=joint_pid", "trajectory=goal"]).resolved).arm
+ARM = checked("robot=xarm7", "controller=joint_pid", "trajectory=goal").arm
 LINE = ("robot=macro", "controller=joint_pid", "controller.period=0.001", "plant=rk4")
 
 
@@ -43,7 +42,7 @@ def test_torques_are_those_of_the_equation():
 def test_it_takes_away_the_sag_of_a_wrong_gravity_term(simulated):
     """With 0.8 of the masses believed, joint PD rests at the closed-form sag; the integral leaves nothing of it."""
     motion = ("trajectory=joint_quintic", "mismatch.mass=0.8", "duration=9")
-    config = validate(compose([*LINE, *motion]).resolved)
+    config = checked(*LINE, *motion)
     goal = config.path.sample_joints(np.array([9.0]))[0, 0]
     resting = simulated(*LINE, *motion, "controller=joint_pd")
     w, model = config.controller.natural_frequency, config.arm.model
@@ -73,7 +72,7 @@ def overshoot(trace, goal):
 def test_anti_windup_keeps_a_saturated_step_from_overshooting(simulated):
     step = ("trajectory=joint_quintic", "trajectory.goal_posture=1.2", "trajectory.duration=0.05", "duration=8",
             "controller.natural_frequency=10", "torque_limits.max=[20,60,20]")  # fmt: skip
-    goal = validate(compose([*LINE, *step]).resolved).path.sample_joints(np.array([8.0]))[0, 0]
+    goal = checked(*LINE, *step).path.sample_joints(np.array([8.0]))[0, 0]
     held, wound = (simulated(*LINE, *step, f"controller.anti_windup={on}") for on in ("true", "false"))
     assert np.abs(wound.tau[:100]).max(axis=0) == pytest.approx([20.0, 60.0, 20.0])  # it is at its limits
     assert overshoot(held, goal) < 0.3 * overshoot(wound, goal)

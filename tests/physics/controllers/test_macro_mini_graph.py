@@ -1,11 +1,13 @@
+"""Block diagram of Macro and Mini: couplings and terms by option, and what each controller is told by both."""
+
 import itertools
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from support.graph_layout import check_structure, check_texts, check_ways
+from support.covers import every_case, name_of, pairwise
+from support.graph_layout import assert_loop_closed, check_structure, check_texts, check_ways
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers import CONTROLLERS
 from runner.controllers.macro_mini_graph import macro_mini_graph
 from runner.robots.robot import StageBase
@@ -22,8 +24,8 @@ CHOICES = {
     "schedule": ("both", "turns"),
     "beyond_reach": ("hold", "stretch"),
 }
-EVERY = [dict(zip(CHOICES, values, strict=True)) for values in itertools.product(*CHOICES.values())]
-SOME = [EVERY[index] for index in np.random.default_rng(0).choice(len(EVERY), 60, replace=False)]
+EVERY = every_case(CHOICES)
+SAMPLE = [EVERY[index] for index in np.random.default_rng(0).choice(len(EVERY), 60, replace=False)]
 FIGURES = [
     {**EVERY[0], "coupling": coupling, **more}
     for coupling in CHOICES["coupling"]
@@ -93,11 +95,7 @@ def test_both_loops_are_closed():
     for flags in FIGURES:
         graph = macro_mini_graph(**flags)
         for stage in ("macro", "mini"):
-            reached, frontier = set(), {f"{stage}_arm"}
-            while frontier:
-                frontier = {edge.target for edge in graph.edges if edge.source in frontier} - reached
-                reached |= frontier
-            assert f"{stage}_arm" in reached
+            assert_loop_closed(graph, f"{stage}_arm")
 
 
 class Recorder:
@@ -113,8 +111,8 @@ class Recorder:
 
 
 @pytest.fixture(scope="module")
-def combined():
-    return validate(compose(["robot=combined"]).resolved)
+def riding(checked_config):
+    return checked_config("robot=combined")
 
 
 def told_by_graph(graph, config, time, q, dq, reference):
@@ -151,19 +149,16 @@ def told_by_graph(graph, config, time, q, dq, reference):
     return macro, mini, R.T @ robot.model.gravity
 
 
-@pytest.mark.parametrize("number", range(len(SOME)))
-def test_the_graph_is_what_is_executed(combined, number):
-    flags = SOME[number]
+def assert_told_alike(riding, flags, generator):
     keys = ("coupling", "macro_target", "mini_reference_velocity", "wrist_rotation", "gravity_compensation",
             "feedforward", "schedule", "beyond_reach")  # fmt: skip
-    controller = combined.controller.model_copy(update={key: flags[key] for key in keys})
-    loops = CONTROLLERS.build(controller, combined.arm)
-    config = type("Config", (), {"arm": combined.arm, "controller": controller})
+    controller = riding.controller.model_copy(update={key: flags[key] for key in keys})
+    loops = CONTROLLERS.build(controller, riding.arm)
+    config = SimpleNamespace(arm=riding.arm, controller=controller)
     graph = macro_mini_graph(**flags)
-    generator = np.random.default_rng(number)
     for time, near in itertools.product((0.0, 0.013), (0.05, 0.4)):
         q, dq = generator.uniform(-1.0, 1.0, (2, 6))
-        base = StageBase(combined.arm, 1, flags["wrist_rotation"] == "parallel")
+        base = StageBase(riding.arm, 1, flags["wrist_rotation"] == "parallel")
         base.update(q, dq)
         direction = generator.normal(size=3)
         reference = generator.uniform(-1.0, 1.0, (3, 3))
@@ -175,18 +170,39 @@ def test_the_graph_is_what_is_executed(combined, number):
             loop.controller.reset()
             loop.controller._law = law = Recorder()
             loop.controller.torque(time, q, dq, reference)
-            assert law.told[0] == action
-            np.testing.assert_allclose(law.told[1], what, atol=1e-12)
-        np.testing.assert_allclose(law.gravity, gravity, atol=1e-12)
+            assert law.told[0] == action, flags
+            np.testing.assert_allclose(law.told[1], what, atol=1e-12, err_msg=str(flags))
+        np.testing.assert_allclose(law.gravity, gravity, atol=1e-12, err_msg=str(flags))
 
 
-@pytest.mark.parametrize("flags", [*FIGURES, *SOME])
+def test_the_graph_is_what_is_executed(riding):
+    for number, flags in enumerate([*SAMPLE, *pairwise(CHOICES)]):
+        assert_told_alike(riding, flags, np.random.default_rng(number))
+
+
+@pytest.mark.slow
+def test_every_graph_is_what_is_executed(riding):
+    """All cases, of which each session takes a sample and a pairwise cover."""
+    for number, flags in enumerate(EVERY):
+        assert_told_alike(riding, flags, np.random.default_rng(number))
+
+
+@pytest.mark.parametrize("flags", [*FIGURES, *pairwise(CHOICES)], ids=name_of)
 def test_the_picture_keeps_the_rules(flags):
     graph = macro_mini_graph(**flags)
     check_structure(graph)
     check_ways(graph)
 
 
-@pytest.mark.parametrize("flags", FIGURES)
+@pytest.mark.slow
+def test_every_picture_keeps_the_rules():
+    """All cases, of which each session takes the figures and a pairwise cover."""
+    for flags in EVERY:
+        graph = macro_mini_graph(**flags)
+        check_structure(graph)
+        check_ways(graph)
+
+
+@pytest.mark.parametrize("flags", FIGURES, ids=name_of)
 def test_no_text_of_the_picture_stands_on_a_line(flags):
     check_texts(macro_mini_graph(**flags))

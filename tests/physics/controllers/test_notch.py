@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.arms import checked
 
 from runner.assembly import assemble
 from runner.compiled.closed_loop import Whole
 from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers.maths import FLOATS
 from runner.controllers.notch import Notch, NotchedController
 from runner.errors import ConfigError
@@ -61,7 +61,7 @@ def test_the_torque_of_the_first_tick_passes_at_once_and_each_joint_on_its_own()
 
 
 def test_code_and_any_controller_ask_for_the_same_as_the_law():
-    config = validate(compose([*MOVE, *SLOW_LAW, *NOTCHED]).resolved)
+    config = checked(*MOVE, *SLOW_LAW, *NOTCHED)
     closed = assemble(config)
     closed.close()
     assert isinstance(closed.compiled, Whole)
@@ -103,7 +103,7 @@ def test_stages_have_notches_of_their_own(simulated):
     keys = ("notch.frequency={macro: 6, mini: null}",)
     assert simulated("robot=combined", "plant=rk4", "notch=torques", *keys, "duration=0.05").failure is None
     with pytest.raises(ConfigError, match=r"notch.frequency: needs a value for each stage \(macro, mini\)"):
-        validate(compose(["robot=combined", "notch=torques"]).resolved)
+        checked("robot=combined", "notch=torques")
 
 
 @pytest.mark.parametrize(
@@ -124,5 +124,5 @@ def test_stages_have_notches_of_their_own(simulated):
 )
 def test_what_does_not_fit_is_refused(overrides, expected):
     with pytest.raises(ConfigError) as caught:
-        validate(compose(["robot=macro", "notch=torques", *overrides]).resolved)
+        checked("robot=macro", "notch=torques", *overrides)
     assert expected in str(caught.value)

@@ -3,13 +3,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
+from support.arms import model_of, urdf_of
 
 from runner.controllers.operational_space import OperationalSpace, OperationalSpaceConfig, build
 from runner.errors import ConfigError
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots import RobotModel
 
 REST = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
-MODELS = {name: RobotModel(read_urdf(find_urdf(f"{name}.urdf"), {}), "tip") for name in ("macro", "mini")}
+MODELS = {name: model_of(name) for name in ("macro", "mini")}
 SCALE = {"macro": 1.0, "mini": 0.1}
 STRETCHED, FOLDED, ON_AXIS = [0.3, 0.4, -np.pi / 2], [0.3, 0.4, np.pi / 2], [0.3, 0.4, np.pi / 2 - 0.8]
 
@@ -237,7 +238,7 @@ def test_build_passes_every_value_on(one_stage):
     )
     q, dq, reference = np.array([0.1, 0.2, -1.5]), np.array([0.3, 0.2, 0.1]), np.ones((3, 3))
     expected = law("macro", 20.0, 0.7, gravity=False, feedforward=False, damping=0.2)
-    robot = one_stage(read_urdf(find_urdf("macro.urdf"), {}), MODELS["macro"])
+    robot = one_stage(urdf_of("macro"), MODELS["macro"])
     (loop,) = build(config, robot)
     assert (loop.period, loop.joints) == (0.01, slice(0, 3))
     np.testing.assert_array_equal(ask(loop.controller, q, dq, reference), ask(expected, q, dq, reference))

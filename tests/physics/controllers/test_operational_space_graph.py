@@ -1,18 +1,14 @@
-import itertools
+"""Block diagram of operational space control: signals followed through the graph against the law's torques."""
 
 import numpy as np
 import pytest
+from support.covers import SWITCH, covered, every_case
+from support.graph_layout import assert_loop_closed, check_structure, check_texts, check_ways
 
 from runner.controllers.operational_space import OperationalSpace
 from runner.controllers.operational_space_graph import operational_space_graph
-from runner.robots import RobotModel, find_urdf, read_urdf
 
-FLAGS = list(itertools.product([False, True], repeat=4))
-NAMES = ("gravity_compensation", "feedforward", "torque_limited", "goal")
-
-
-def graph_of(flags):
-    return operational_space_graph(**dict(zip(NAMES, flags, strict=True)))
+OPTIONS = dict.fromkeys(("gravity_compensation", "feedforward", "torque_limited", "goal"), SWITCH)
 
 
 def evaluate(graph, model, q, dq, reference, k_p, k_v, limit):
@@ -44,53 +40,44 @@ def evaluate(graph, model, q, dq, reference, k_p, k_v, limit):
     return value("arm")
 
 
-@pytest.mark.parametrize("flags", FLAGS)
-def test_the_graph_is_the_law_that_is_executed(flags):
-    gravity_compensation, feedforward, torque_limited, goal = flags
-    model = RobotModel(read_urdf(find_urdf("macro.urdf"), {}), "tip")
-    controller = OperationalSpace(model, 30.0, 0.8, gravity_compensation, feedforward, singularity_damping=0.0)
-    generator = np.random.default_rng(0)
-    for _ in range(20):
-        q, dq = generator.uniform(-1.0, 1.0, (2, 3))
-        reference = generator.uniform(-1.0, 1.0, (3, 3))
-        if goal:
-            reference[1:] = 0.0
-        tau = controller.torque(0.0, q, dq, reference)
-        if torque_limited:
-            tau = np.clip(tau, -50.0, 50.0)
-        drawn = evaluate(graph_of(flags), model, q, dq, reference, k_p=900.0, k_v=48.0, limit=50.0)
-        np.testing.assert_allclose(drawn, tau, rtol=1e-8, atol=1e-8 * max(1.0, np.abs(tau).max()))
+def test_the_graph_is_the_law_that_is_executed(macro):
+    for flags in every_case(OPTIONS):
+        controller = OperationalSpace(
+            macro, 30.0, 0.8, flags["gravity_compensation"], flags["feedforward"], singularity_damping=0.0
+        )
+        graph, generator = operational_space_graph(**flags), np.random.default_rng(0)
+        for _ in range(20):
+            q, dq = generator.uniform(-1.0, 1.0, (2, 3))
+            reference = generator.uniform(-1.0, 1.0, (3, 3))
+            if flags["goal"]:
+                reference[1:] = 0.0
+            tau = controller.torque(0.0, q, dq, reference)
+            if flags["torque_limited"]:
+                tau = np.clip(tau, -50.0, 50.0)
+            drawn = evaluate(graph, macro, q, dq, reference, k_p=900.0, k_v=48.0, limit=50.0)
+            np.testing.assert_allclose(
+                drawn, tau, rtol=1e-8, atol=1e-8 * max(1.0, np.abs(tau).max()), err_msg=str(flags)
+            )
 
 
-@pytest.mark.parametrize("flags", FLAGS)
+@pytest.mark.parametrize("flags", covered(OPTIONS))
 def test_what_the_config_leaves_out_is_absent(flags):
-    gravity_compensation, feedforward, torque_limited, goal = flags
-    graph = graph_of(flags)
+    graph = operational_space_graph(**flags)
     names = {node.name for node in graph.nodes}
     labels = [edge.label for edge in graph.edges if edge.source == "reference"]
-    assert ("p" in names) == gravity_compensation
-    assert ("limit" in names) == torque_limited
-    assert len(labels) == (3 if feedforward and not goal else 1)
-    assert any("x_g" in label for label in labels) == goal
+    assert ("p" in names) == flags["gravity_compensation"]
+    assert ("limit" in names) == flags["torque_limited"]
+    assert len(labels) == (3 if flags["feedforward"] and not flags["goal"] else 1)
+    assert any("x_g" in label for label in labels) == flags["goal"]
 
 
-@pytest.mark.parametrize("flags", FLAGS)
-def test_every_edge_joins_two_nodes_and_every_node_takes_part(flags):
-    graph = graph_of(flags)
-    kinds = {node.name: node.kind for node in graph.nodes}
-    assert len(kinds) == len(graph.nodes)
-    assert all(edge.source in kinds and edge.target in kinds for edge in graph.edges)
-    fed = {edge.target for edge in graph.edges}
-    assert {name for name, kind in kinds.items() if kind == "source"} == set(kinds) - fed
-    assert all((edge.sign != "") == (kinds[edge.target] == "sum") for edge in graph.edges)
-    assert set(kinds) == {edge.source for edge in graph.edges} | fed
+@pytest.mark.parametrize("flags", covered(OPTIONS))
+def test_the_picture_keeps_the_rules(flags):
+    graph = operational_space_graph(**flags)
+    check_structure(graph)
+    check_ways(graph)
+    assert_loop_closed(graph, "arm")
 
 
-@pytest.mark.parametrize("flags", FLAGS)
-def test_the_loop_is_closed(flags):
-    graph = graph_of(flags)
-    reached, frontier = set(), {"arm"}
-    while frontier:
-        frontier = {edge.target for edge in graph.edges if edge.source in frontier} - reached
-        reached |= frontier
-    assert "arm" in reached
+def test_its_texts_fit():
+    check_texts(operational_space_graph(True, True, torque_limited=True, goal=False))  # the widest

@@ -2,15 +2,14 @@
 
 import numpy as np
 import pytest
+from support.arms import checked
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers.sampled_stability import velocity_loop
 
 LAWS = ("joint_pd", "joint_pid", "passivity", "sliding_mode", "adaptive", "computed_torque", "operational_space",
         "whole_body")  # fmt: skip
 H = 0.001
-HOMES = {name: validate(compose([f"robot={name}"]).resolved).arm.home.tolist() for name in ("macro", "xarm7")}
+HOMES = {name: checked(f"robot={name}").arm.home.tolist() for name in ("macro", "xarm7")}
 
 
 def configured(robot, law, w, *more):
@@ -18,7 +17,7 @@ def configured(robot, law, w, *more):
             f"controller.null_space_frequency={w}")  # fmt: skip
     fixed = ("controller.gravity_compensation=false", "gravity=0", "trajectory=goal")
     damped = () if law == "adaptive" else ("controller.damping_ratio=1",)
-    return validate(compose([*line, *fixed, *damped, *more]).resolved)
+    return checked(*line, *fixed, *damped, *more)
 
 
 def bound_of(config):
@@ -71,7 +70,7 @@ def test_the_coupling_is_that_of_the_mass_matrix():
 
 
 def test_each_stage_has_its_own_loop():
-    config = validate(compose(["robot=combined"]).resolved)
+    config = checked("robot=combined")
     h_w = [loop.period * loop.controller.velocity_gain.mass / 2.0 for loop in config.loops]
     assert bound_of(config).share == pytest.approx(max(h_w))
 

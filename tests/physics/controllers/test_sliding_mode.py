@@ -3,9 +3,8 @@
 import numpy as np
 import pinocchio as pin
 import pytest
+from support.arms import checked
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.plants.rk4 import Rk4
 
 OMEGA, PHI = 30.0, 0.05
@@ -14,7 +13,7 @@ LINE = ("robot=macro", "controller=sliding_mode", "controller.period=0.001", f"c
 
 
 def configured(*overrides):
-    return validate(compose([*LINE, "trajectory=joint_quintic", *overrides]).resolved)
+    return checked(*LINE, "trajectory=joint_quintic", *overrides)
 
 
 def sliding(trace, config):

@@ -4,17 +4,16 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from support import strangers
+from support.arms import checked
 from support.strangers import X, Y, Z
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers.maths import FLOATS
 from runner.controllers.tip_task import TipTask, held_orientation, task_start
 from runner.controllers.torque_law import PinocchioArm
 from runner.errors import ConfigError
 from runner.robots import RobotModel
 
-ROBOT = validate(compose(["robot=xarm7", "controller=operational_space"]).resolved).arm
+ROBOT = checked("robot=xarm7", "controller=operational_space").arm
 XARM7, HOME = ROBOT.model, ROBOT.home
 
 

@@ -8,9 +8,8 @@ import pinocchio as pin
 import pytest
 from scipy.optimize import minimize
 from support import strangers
+from support.arms import checked
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers.computed_torque import ComputedTorqueConfig
 from runner.controllers.computed_torque import build as build_computed_torque
 from runner.controllers.operational_space import OperationalSpaceConfig
@@ -60,7 +59,7 @@ def arm_of(name):
     if name in strangers.STRANGERS:
         return strangers.config(name).arm
     controller = "whole_body" if name == "combined" else "operational_space"
-    return validate(compose([f"robot={name}", f"controller={controller}", "trajectory=goal"]).resolved).arm
+    return checked(f"robot={name}", f"controller={controller}", "trajectory=goal").arm
 
 
 def scale_of(name):

@@ -5,16 +5,15 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import strangers
+from support.arms import checked, model_of
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers.operational_space import OperationalSpace
 from runner.controllers.whole_body import WholeBody, WholeBodyConfig, build
 from runner.errors import ConfigError
 from runner.plants.rk4 import Rk4
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots import RobotModel
 
-COMBINED = validate(compose(["robot=combined"]).resolved).arm
+COMBINED = checked("robot=combined").arm
 MODEL = COMBINED.model
 REST = np.array([0.1, -0.2, 0.3, -0.4, 0.5, -0.6])
 INERTIAL = '<inertial><mass value="{m}"/><inertia ixx="{m}" ixy="0" ixz="0" iyy="{m}" iyz="0" izz="{m}"/></inertial>'
@@ -145,7 +144,7 @@ def test_without_feedforward_the_desired_derivatives_are_zero(state):
 
 @pytest.mark.parametrize("name", ["macro", "mini"])
 def test_with_three_joints_it_is_operational_space_control(name):
-    model = RobotModel(read_urdf(find_urdf(f"{name}.urdf"), {}), "tip")
+    model = model_of(name)
     scale = 1.0 if name == "macro" else 0.1
     generator, compared = np.random.default_rng(6), 0
     ours = WholeBody(model, config(natural_frequency=30.0 / scale), np.zeros(3))

@@ -1,19 +1,28 @@
-import itertools
+"""Block diagram of whole-body control: signals followed through the graph against the law's torques."""
 
 import numpy as np
 import pytest
+from support.covers import SWITCH, covered, every_case
 from support.graph_layout import check_structure, check_texts, check_ways
 
 from runner.controllers.whole_body import WholeBody, WholeBodyConfig
 from runner.controllers.whole_body_graph import whole_body_graph
 
-FLAGS = list(itertools.product([False, True], repeat=6))
 NAMES = ("gravity_compensation", "feedforward", "torque_limited", "goal", "speed_limited", "posture_task")
+OPTIONS = dict.fromkeys(NAMES, SWITCH)
+OF_ALL_JOINTS = OPTIONS | {"posture_task": (True,)}
 OMEGA, XI, OMEGA_N, SPEED, LIMIT = 30.0, 0.8, 20.0, 0.5, 40.0
+REST = np.array([0.0, 0.0, 0.0, 0.1, -0.2, 0.3])
 
 
-def graph_of(flags):
-    return whole_body_graph(**dict(zip(NAMES, flags, strict=True)))
+def law_of(model, flags, **more):
+    config = WholeBodyConfig(
+        kind="whole_body", natural_frequency=OMEGA, damping_ratio=XI, period=1e-3, singularity_damping=0.0,
+        gravity_compensation=flags["gravity_compensation"], feedforward=flags["feedforward"],
+        null_space_frequency=OMEGA_N if flags["posture_task"] else 0.0,
+        max_tip_speed=SPEED if flags["speed_limited"] else None,
+    )  # fmt: skip
+    return WholeBody(model, config, REST, **more)
 
 
 def evaluate(graph, robot, q, dq, reference, rest):
@@ -61,88 +70,81 @@ def evaluate(graph, robot, q, dq, reference, rest):
     return value("arm")
 
 
-@pytest.mark.parametrize("flags", FLAGS)
-def test_the_graph_is_the_law_that_is_executed(combined, flags):
-    gravity_compensation, feedforward, torque_limited, goal, speed_limited, posture_task = flags
-    config = WholeBodyConfig(
-        kind="whole_body", natural_frequency=OMEGA, damping_ratio=XI, period=1e-3,
-        gravity_compensation=gravity_compensation, feedforward=feedforward,
-        null_space_frequency=OMEGA_N if posture_task else 0.0, max_tip_speed=SPEED if speed_limited else None,
-        singularity_damping=0.0,
-    )  # fmt: skip
-    rest = np.array([0.0, 0.0, 0.0, 0.1, -0.2, 0.3])
-    law = WholeBody(combined.model, config, rest)
-    generator = np.random.default_rng(0)
-    for _ in range(5):
-        q, dq = generator.uniform(-1.0, 1.0, (2, 6))
-        reference = generator.uniform(-1.0, 1.0, (3, 3))
-        if goal:
-            reference[1:] = 0.0
-        tau = law.torque(0.0, q, dq, reference)
-        if torque_limited:
-            tau = np.clip(tau, -LIMIT, LIMIT)
-        drawn = evaluate(graph_of(flags), combined, q, dq, reference, rest)
-        np.testing.assert_allclose(drawn, tau, rtol=1e-7, atol=1e-7 * max(1.0, np.abs(tau).max()))
+def test_the_graph_is_the_law_that_is_executed(combined):
+    for flags in every_case(OPTIONS):
+        law, graph = law_of(combined.model, flags), whole_body_graph(**flags)
+        generator = np.random.default_rng(0)
+        for _ in range(5):
+            q, dq = generator.uniform(-1.0, 1.0, (2, 6))
+            reference = generator.uniform(-1.0, 1.0, (3, 3))
+            if flags["goal"]:
+                reference[1:] = 0.0
+            tau = law.torque(0.0, q, dq, reference)
+            if flags["torque_limited"]:
+                tau = np.clip(tau, -LIMIT, LIMIT)
+            drawn = evaluate(graph, combined, q, dq, reference, REST)
+            atol = 1e-7 * max(1.0, np.abs(tau).max())
+            np.testing.assert_allclose(drawn, tau, rtol=1e-7, atol=atol, err_msg=str(flags))
 
 
-@pytest.mark.parametrize("flags", FLAGS)
+@pytest.mark.parametrize("flags", covered(OPTIONS))
 def test_what_the_config_leaves_out_is_absent(flags):
-    gravity_compensation, feedforward, torque_limited, goal, speed_limited, posture_task = flags
-    graph = graph_of(flags)
+    graph = whole_body_graph(**flags)
     labels = {node.name: node.label for node in graph.nodes}
-    assert ("G(q)" in labels["h"]) == gravity_compensation
-    assert ("limit" in labels) == torque_limited
-    assert ("speed_limit" in labels) == speed_limited
-    assert ({"posture", "K", "k_vn", "N^T"} <= set(labels)) == posture_task
+    assert ("G(q)" in labels["h"]) == flags["gravity_compensation"]
+    assert ("limit" in labels) == flags["torque_limited"]
+    assert ("speed_limit" in labels) == flags["speed_limited"]
+    assert ({"posture", "K", "k_vn", "N^T"} <= set(labels)) == flags["posture_task"]
     given = [edge.label for edge in graph.edges if edge.source == "reference"]
-    assert len(given) == (3 if feedforward and not goal else 1)
-    assert any("x_g" in label for label in given) == goal
+    assert len(given) == (3 if flags["feedforward"] and not flags["goal"] else 1)
+    assert any("x_g" in label for label in given) == flags["goal"]
 
 
-@pytest.mark.parametrize("flags", FLAGS)
+@pytest.mark.parametrize("flags", covered(OPTIONS))
 def test_the_picture_keeps_the_rules(flags):
-    graph = graph_of(flags)
+    graph = whole_body_graph(**flags)
     check_structure(graph)
     check_ways(graph)
 
 
-@pytest.mark.parametrize(
-    "flags",
-    [
-        pytest.param(flags, marks=[] if flags[2] and flags[4] else [pytest.mark.slow])
-        for flags in FLAGS
-        if flags[2] or flags[4]
-    ],  # the wide ones, of which those with both limits are the widest; drawing takes time
-)
+# The wide ones, of which those with both limits are the widest; drawing takes time.
+@pytest.mark.parametrize("flags", covered(OPTIONS | {"torque_limited": (True,), "speed_limited": (True,)}))
 def test_its_texts_fit(flags):
-    check_texts(graph_of(flags))
+    check_texts(whole_body_graph(**flags))
 
 
-@pytest.mark.parametrize("flags", FLAGS[1::2])
-def test_the_posture_of_all_joints_has_its_own_terms(combined, flags):
-    graph = whole_body_graph(**dict(zip(NAMES, flags, strict=True)), all_joints=True)
-    labels = {node.name: node.label for node in graph.nodes}
-    config = WholeBodyConfig(
-        kind="whole_body", natural_frequency=OMEGA, damping_ratio=XI, period=1e-3, gravity_compensation=flags[0],
-        feedforward=flags[1], null_space_frequency=OMEGA_N, max_tip_speed=SPEED if flags[4] else None,
-        singularity_damping=0.0,
-    )  # fmt: skip
-    assert (labels["K"], labels["k_vn"], labels["N^T"]) == ("$k_{p0}$", "$k_{v0}$", r"$M(1 - J^+\!J)$")
-    # What the posture adds to the law is what these three blocks say.
-    rest, generator = np.array([0.0, 0.0, 0.0, 0.1, -0.2, 0.3]), np.random.default_rng(1)
-    q, dq, reference = *generator.uniform(-1.0, 1.0, (2, 6)), generator.uniform(-1.0, 1.0, (3, 3))
-    with_posture, without = (
-        WholeBody(combined.model, config.model_copy(update={"null_space_frequency": frequency}), rest, first_held=0)
-        .torque(0.0, q, dq, reference)
-        .copy()
-        for frequency in (OMEGA_N, 0.0)
-    )
-    J = combined.model.tip_jacobian(q)[:3]
-    projector = combined.model.mass_matrix(q) @ (np.eye(6) - np.linalg.pinv(J) @ J)
-    expected = projector @ (OMEGA_N**2 * (rest - q) - 2.0 * OMEGA_N * dq)
-    scale = np.abs(with_posture).max()
-    np.testing.assert_allclose(with_posture - without, expected, atol=1e-9 * scale)
+@pytest.mark.slow
+def test_texts_of_pictures_with_one_limit_fit():
+    """Narrower than those with both, which each session draws."""
+    for flags in every_case(OPTIONS):
+        if flags["torque_limited"] != flags["speed_limited"]:
+            check_texts(whole_body_graph(**flags))
+
+
+def test_the_posture_of_all_joints_adds_what_its_blocks_say(combined):
+    for flags in every_case(OF_ALL_JOINTS):
+        graph = whole_body_graph(**flags, all_joints=True)
+        labels = {node.name: node.label for node in graph.nodes}
+        assert (labels["K"], labels["k_vn"], labels["N^T"]) == ("$k_{p0}$", "$k_{v0}$", r"$M(1 - J^+\!J)$")
+        generator = np.random.default_rng(1)
+        q, dq, reference = *generator.uniform(-1.0, 1.0, (2, 6)), generator.uniform(-1.0, 1.0, (3, 3))
+        with_posture, without = (
+            law_of(combined.model, flags | {"posture_task": on}, first_held=0).torque(0.0, q, dq, reference).copy()
+            for on in (True, False)
+        )
+        J = combined.model.tip_jacobian(q)[:3]
+        projector = combined.model.mass_matrix(q) @ (np.eye(6) - np.linalg.pinv(J) @ J)
+        expected = projector @ (OMEGA_N**2 * (REST - q) - 2.0 * OMEGA_N * dq)
+        np.testing.assert_allclose(with_posture - without, expected, atol=1e-9 * np.abs(with_posture).max())
+
+
+@pytest.mark.parametrize("flags", covered(OF_ALL_JOINTS))
+def test_the_picture_of_the_posture_of_all_joints_keeps_the_rules(flags):
+    graph = whole_body_graph(**flags, all_joints=True)
     check_structure(graph)
     check_ways(graph)
-    if flags[2] or flags[4]:
-        check_texts(graph)
+
+
+@pytest.mark.parametrize("flags", covered(OF_ALL_JOINTS | {"torque_limited": (True,), "speed_limited": (True,)}))
+def test_texts_of_the_posture_of_all_joints_fit(flags):
+    check_texts(whole_body_graph(**flags, all_joints=True))

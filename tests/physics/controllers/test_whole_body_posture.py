@@ -2,15 +2,14 @@
 
 import numpy as np
 import pytest
+from support.arms import checked
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers.maths import FLOATS
 from runner.controllers.whole_body_posture import HeldJoints, HeldPosture, drawn_to, without_tip_motion
 
-XARM7 = validate(compose(["robot=xarm7", "controller=operational_space"]).resolved).arm
+XARM7 = checked("robot=xarm7", "controller=operational_space").arm
 MODEL, HOME, OMEGA = XARM7.model, XARM7.home, 12.0
-COMBINED = validate(compose(["robot=combined"]).resolved).arm.model
+COMBINED = checked("robot=combined").arm.model
 REST = np.array([0.1, -0.2, 0.3, -0.4, 0.5, -0.6])
 
 

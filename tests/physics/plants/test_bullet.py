@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 from support import strangers
+from support.arms import urdf_of
 
 from runner.errors import ConfigError
 from runner.robots import RobotModel, find_urdf, read_urdf
@@ -55,7 +56,7 @@ def states(plant, torques):
 
 @pytest.mark.parametrize(("name", "L"), [("macro", 1.0), ("mini", 0.1)])
 def test_one_step_is_semi_implicit_euler_on_the_forward_dynamics_of_pinocchio(make, name, L):
-    urdf = read_urdf(find_urdf(f"{name}.urdf"), {})
+    urdf = urdf_of(name)
     model, h = RobotModel(urdf, "tip"), 1e-4
     plant, generator = make(urdf, step=h), np.random.default_rng(0)
     for _ in range(30):
@@ -224,7 +225,7 @@ def test_closed_plants_leave_a_bounded_number_of_servers():
     def servers():
         return sum(pybullet.isConnected(client) for client in range(64))
 
-    urdf = read_urdf(find_urdf("macro.urdf"), {})
+    urdf = urdf_of("macro")
     for mass in range(1, 12):
         changed = urdf.replace('name="macro"', f'name="macro{mass}"')
         Bullet(changed, RobotModel(changed, "tip"), 1e-3, 1).close()

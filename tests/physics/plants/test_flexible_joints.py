@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from support.arms import model_of
 
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots import RobotModel
 from runner.robots.motors import motorised
 
 HOME = np.zeros(3)  # rad, of the thesis
@@ -15,7 +16,7 @@ ONE_JOINT = """<robot name="one"><link name="base"/><link name="arm"><inertial><
 
 
 def macro():
-    return RobotModel(read_urdf(find_urdf("macro.urdf"), {}), "tip")
+    return model_of("macro")
 
 
 def springs(stiffness, motors, damping):

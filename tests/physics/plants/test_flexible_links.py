@@ -4,9 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.arms import checked
 
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.errors import SimulationError
 from runner.plants import PLANTS
 from runner.plants.computation import EXACT
@@ -23,7 +22,7 @@ POSTURE = np.array([0.2, 0.5, 0.6])
 
 
 def macro():
-    arm = validate(compose(["robot=macro"]).resolved).arm  # which other tests share
+    arm = checked("robot=macro").arm  # which other tests share
     return replace(arm, model=arm.model.copy())
 
 

@@ -2,17 +2,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.arms import model_of
 from support.resting_arm import RestingArm
 
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
-from runner.robots import RobotModel, find_urdf, read_urdf
 
 HOME = np.zeros(3)  # rad, of the thesis
 PERIOD, OMEGA = 1e-2, 30.0
 
 
 def loaded_macro():
-    return RobotModel(read_urdf(find_urdf("macro.urdf"), {}), "tip").with_payload(0.2)  # the Mini's mass
+    return model_of("macro").with_payload(0.2)  # the Mini's mass
 
 
 def weight_slope(model, width=1e-5):

@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from support.arms import model_of, urdf_of
 
 from runner.plants.rk4 import Rk4, build, default_step
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots import RobotModel
 
 ARMS = [("macro", 1.0), ("mini", 0.1)]  # name, and by what all lengths, masses and times are scaled
 START = np.array([0.3, 0.5, -0.4]), np.array([1.0, 0.5, -0.5])
@@ -12,7 +13,7 @@ TICK = 0.1
 
 
 def make(name, step, steps_per_tick):
-    urdf = read_urdf(find_urdf(f"{name}.urdf"), {})
+    urdf = urdf_of(name)
     return Rk4(RobotModel(urdf, "tip"), step, steps_per_tick)
 
 
@@ -26,7 +27,7 @@ def final_state(name, scale, steps):
 
 
 def reference_state(name, scale):
-    model = RobotModel(read_urdf(find_urdf(f"{name}.urdf"), {}), "tip")
+    model = model_of(name)
     state = np.concatenate([START[0], START[1] / scale])
     for tau in TORQUES * scale:
 

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from support.arms import checked
 
 from runner import batch
 from runner.assembly import assemble
@@ -20,7 +21,7 @@ SIGNALS = "t", "q", "dq", "tau", "end_points", "desired", "limits", "offsets"
 
 
 def configured(*overrides):
-    return validate(compose([*SCENE, *overrides]).resolved)
+    return checked(*SCENE, *overrides)
 
 
 def together(configs):

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from support.arms import model_of
 
-from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.trajectories.quintic import Quintic
 
 ARMS = [("macro", 1.0), ("mini", 0.1)]  # name, and by what its lengths, masses, times and torques are scaled
@@ -235,4 +235,4 @@ def test_the_ideal_motion_takes_the_limit_at_3_82_s(arms):
 
 @pytest.fixture(scope="module")
 def arms():
-    return {name: RobotModel(read_urdf(find_urdf(f"{name}.urdf"), {}), "tip") for name, _ in ARMS}
+    return {name: model_of(name) for name, _ in ARMS}

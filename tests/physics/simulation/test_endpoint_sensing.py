@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.arms import checked
 
 from runner.assembly import assemble
 from runner.config.compose import compose
@@ -132,7 +133,7 @@ def damping_ratios(frequency, *keys):
 
 def modal_masses():
     """Frequencies of the bare Macro's modes at home in rad/s, what they weigh at its tip and the Mini's along them."""
-    robot = validate(compose([*FLEXIBLE, stiff(1000)]).resolved).arm
+    robot = checked(*FLEXIBLE, stiff(1000)).arm
     macro, mini = robot.stages[0].model, robot.stages[1].model
     M, J = macro.mass_matrix(np.zeros(3)), macro.tip_jacobian(np.zeros(3))[:3]
     squares, modes = np.linalg.eigh(
@@ -188,7 +189,7 @@ def test_inertial_damping_damps_as_its_formula_says(gain):
 )
 def test_what_does_not_fit_is_refused(overrides, expected):
     with pytest.raises(ConfigError) as caught:
-        validate(compose(["robot=combined", *overrides]).resolved)
+        checked("robot=combined", *overrides)
     assert expected in str(caught.value)
 
 

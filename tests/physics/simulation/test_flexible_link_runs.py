@@ -4,10 +4,10 @@ from itertools import islice, pairwise
 
 import numpy as np
 import pytest
+from support.arms import checked
 
 from runner.assembly import assemble
 from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.plants import PLANTS
 from runner.robots.beams import stiffened
@@ -67,7 +67,7 @@ def test_a_link_of_the_macro_with_mass_along_it_is_a_cantilever_of_the_second_or
     errors = []
     for parts in (4, 8, 16):
         keys = ("plant.links.link2=null", "plant.links.link3.mass=0.5", f"plant.parts={parts}", "plant.step=1e-6")
-        config = validate(compose([*MACRO, *keys]).resolved)
+        config = checked(*MACRO, *keys)
         omega = [2.0 * np.pi * mode.frequency for mode in PLANTS.modes(config.plant, config.arm, config.arm.home)]
         exact = np.array(list(islice(cantilever_roots(2.0), 2))) ** 2 * np.sqrt(300.0 / 0.5)
         assert omega[0] == pytest.approx(omega[1], rel=1e-6)
@@ -77,7 +77,7 @@ def test_a_link_of_the_macro_with_mass_along_it_is_a_cantilever_of_the_second_or
 
 
 def test_laws_believe_a_rigid_arm_of_the_same_masses_and_motors():
-    config = validate(compose([*MACRO, "plant.links.link3.mass=0.2"]).resolved)
+    config = checked(*MACRO, "plant.links.link3.mass=0.2")
     closed = assemble(config)
     closed.close()
     (law,) = (loop.controller for loop in closed.loops)
@@ -96,7 +96,7 @@ def test_the_residual_vibration_of_a_bending_link_is_the_closed_form(simulated, 
 
 
 def test_a_mode_of_the_links_rests_by_its_name(simulated):
-    config = validate(compose([*LED, "input_shaper=zv"]).resolved)
+    config = checked(*LED, "input_shaper=zv")
     assert config.path.duration - 0.1 == pytest.approx(0.5 / (F0 * np.sqrt(1 - 0.02**2)), rel=1e-9)
     left = ringing(simulated(*LED, "input_shaper=zv"), config.path.duration)
     assert left < 0.01 * ringing(simulated(*LED), 0.1)
@@ -186,5 +186,5 @@ def test_runs_on_other_plants_know_nothing_of_it():
 )
 def test_what_does_not_fit_is_refused(overrides, expected):
     with pytest.raises(ConfigError) as caught:
-        validate(compose([*MACRO, *overrides]).resolved)
+        checked(*MACRO, *overrides)
     assert expected in str(caught.value)

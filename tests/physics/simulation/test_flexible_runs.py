@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support.arms import checked
 
 from runner.config.compose import compose
 from runner.config.validation import validate
@@ -16,7 +17,7 @@ KEY = "plant.flexible_joints"
 
 def problems(*overrides):
     with pytest.raises(ConfigError) as caught:
-        validate(compose([*overrides]).resolved)
+        checked(*overrides)
     return str(caught.value)
 
 
@@ -126,7 +127,7 @@ def test_brakes_hold_the_motors_and_a_push_bends_the_arm(simulated):
     braked = (*MACRO, "gravity=0", f"{KEY}.braked={{macro: 0}}", f"{KEY}.damping_ratio=0.3", "environment=push",
               "environment.force=[2.0,0.0,0.0]", "environment.begin=0", "duration=8")  # fmt: skip
     trace = simulated(*braked)
-    arm = validate(compose([*MACRO]).resolved).arm.model
+    arm = checked(*MACRO).arm.model
     J = arm.tip_jacobian(np.zeros(3))[:3]
     assert trace.tip[-1] - trace.tip[0] == pytest.approx(J @ J.T @ [2.0, 0.0, 0.0] / 1000.0, abs=2e-5)  # m
 
@@ -176,8 +177,8 @@ def test_rotors_of_rigid_joints_stay_on_their_links():
     both = ("robot=combined", "plant=rk4_flexible", f"{KEY}.stiffness={{macro: 1000, mini: null}}",
             f"{KEY}.motor_inertia=null", "robot.stages.macro.rotor_inertia=2",
             "robot.stages.mini.rotor_inertia=1e-4")  # fmt: skip
-    config = validate(compose([*both]).resolved)
+    config = checked(*both)
     flexibility = config.plant.flexible_joints.by_joint(config.arm)
     assert flexibility.motors.tolist() == [2.0] * 3 + [0.0] * 3
-    plain = validate(compose(["robot=combined", "robot.stages.mini.rotor_inertia=1e-4"]).resolved)
+    plain = checked("robot=combined", "robot.stages.mini.rotor_inertia=1e-4")
     np.testing.assert_array_equal(config.arm.model.mass_matrix(np.zeros(6)), plain.arm.model.mass_matrix(np.zeros(6)))

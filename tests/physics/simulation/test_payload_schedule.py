@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
+from support.arms import checked
 
 from runner.assembly import assemble
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.execution import run
 from runner.loop.sensors import make_encoders
@@ -17,7 +16,7 @@ PICKED_UP = "robot.payload.schedule=[{at: 0.5, mass: 2.0}]"
 
 
 def traced(*overrides):
-    config = validate(compose(overrides).resolved)
+    config = checked(*overrides)
     loop = assemble(config)
     try:
         return config, simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0))
@@ -109,14 +108,14 @@ def test_repetitions_are_run_one_by_one_and_begin_alike(tmp_path):
 )
 def test_what_cannot_be_is_told(overrides, problem):
     with pytest.raises(ConfigError, match=f"robot.payload.{problem}"):
-        validate(compose(overrides).resolved)
+        checked(*overrides)
 
 
 def test_the_rated_payload_is_compared_with_the_largest():
-    config = validate(compose(["robot=xarm7", "plant=rk4", "robot.payload.schedule=[{at: 1, mass: 4}]"]).resolved)
+    config = checked("robot=xarm7", "plant=rk4", "robot.payload.schedule=[{at: 1, mass: 4}]")
     assert config.robot.burden == 4.0
 
 
 def test_a_time_may_have_its_unit():
-    config = validate(compose(["robot=macro", "robot.payload.schedule=[{at: 500ms, mass: 1}]"]).resolved)
+    config = checked("robot=macro", "robot.payload.schedule=[{at: 500ms, mass: 1}]")
     assert config.loaded[0][0] == 0.5

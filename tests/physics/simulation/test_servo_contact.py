@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.arms import checked
 
 from runner.assembly import assemble
 from runner.caveats import Watch, setting_of
@@ -25,7 +26,7 @@ PRESSED = (
 
 
 def made(*overrides):
-    config = validate(compose((*PRESSED, *overrides)).resolved)
+    config = checked(*PRESSED, *overrides)
     closed = assemble(config)
     return config, closed
 
@@ -48,7 +49,7 @@ def ideal(contact, stiffness, period=0.01):
 @pytest.mark.parametrize("stiffness", [1e2, 5e3, 2e4, 4e4])
 def test_stiff_servos_at_short_steps_are_ideal_joints(contact, stiffness):
     def off(spring, tick):
-        config = validate(compose(PRESSED).resolved).plant.servo
+        config = checked(*PRESSED).plant.servo
         law = ServoLaw(
             contact.arm.model, config.model_copy(update={"stiffness": spring, "period": tick}), contact.arm.home
         )

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support.arms import checked
 
 from runner.config.compose import compose
 from runner.config.validation import validate
@@ -64,7 +65,7 @@ def test_on_a_move_of_the_whole_arm_a_shaper_for_each_mode_beats_a_slower_move(s
 
 def test_modes_are_those_of_the_posture_where_the_arm_starts():
     def delay(*keys):
-        config = validate(compose([*FLEXIBLE, *PATH, *keys]).resolved)
+        config = checked(*FLEXIBLE, *PATH, *keys)
         assert config.timing.ticks == np.ceil((config.path.duration + 1.0) / 0.01)
         return config.path.duration - 3.0
 
@@ -116,5 +117,5 @@ def test_the_names_of_runs_without_a_shaper_know_nothing_of_it():
 )
 def test_what_does_not_fit_is_refused(overrides, expected):
     with pytest.raises(ConfigError) as caught:
-        validate(compose([*FLEXIBLE, *PATH, *overrides]).resolved)
+        checked(*FLEXIBLE, *PATH, *overrides)
     assert expected in str(caught.value)

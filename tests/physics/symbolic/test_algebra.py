@@ -6,12 +6,11 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from support import strangers
+from support.arms import checked
 from support.strangers import X, Y, Z
 
 from runner.compiled.algebra import ArmAlgebra, Factors
 from runner.compiled.arm import constants_of
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots import RobotModel
 
@@ -21,7 +20,7 @@ OURS = ("macro", "mini", "combined", "xarm7", "meca500")
 def model_of(name):
     if name in strangers.STRANGERS:
         return strangers.config(name).arm.model
-    return validate(compose([f"robot={name}"]).resolved).arm.model
+    return checked(f"robot={name}").arm.model
 
 
 def algebra_of(model):

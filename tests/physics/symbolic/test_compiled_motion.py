@@ -3,17 +3,16 @@
 import numpy as np
 import pytest
 from support import strangers
+from support.arms import checked
 
 from runner.compiled import compile
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.plants.rk4 import Rk4
 
 
 @pytest.mark.parametrize("name", ["macro", "mini", "combined", "xarm7", "meca500", "panda", "crane", "mixed"])
 def test_whole_motions_are_those_of_pinocchio(name, monkeypatch):
     ours = name not in strangers.STRANGERS
-    arm = validate(compose([f"robot={name}"]).resolved).arm if ours else strangers.config(name).arm
+    arm = checked(f"robot={name}").arm if ours else strangers.config(name).arm
     plant = Rk4(arm.model, 1e-3, 2)
     monkeypatch.setattr(compile, "evaluator", dict)
     reference = Rk4(arm.model, 1e-3, 2)
@@ -31,7 +30,7 @@ def test_whole_motions_are_those_of_pinocchio(name, monkeypatch):
 
 
 def test_a_model_that_changes_later_is_not_seen():
-    model = validate(compose(["robot=macro"]).resolved).arm.model.copy()
+    model = checked("robot=macro").arm.model.copy()
     first, second = Rk4(model, 0.01, 1), Rk4(model.copy(), 0.01, 1)
     model.pin_model.gravity.linear = np.zeros(3)
     for moved in (first, second):

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
+from support.arms import model_of
 
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
-from runner.robots import RobotModel, find_urdf, read_urdf
 
 SPRINGS = {  # K, B, D; a joint without spring is rigid
     "all": ([1000.0, 800.0, 600.0], [2.0, 1.5, 1.0], [5.0, 4.0, 0.0]),
@@ -13,7 +13,7 @@ SPRINGS = {  # K, B, D; a joint without spring is rigid
 
 @pytest.mark.parametrize("case", SPRINGS)
 def test_it_moves_as_by_pinocchio(case):
-    model = RobotModel(read_urdf(find_urdf("macro.urdf"), {}), "tip")
+    model = model_of("macro")
     K, B, D = (np.array(values) for values in SPRINGS[case])
     braked = np.array([0.0, np.inf, 0.012]) if case == "braked" else np.full(3, np.inf)
     plants = [FlexibleJoints(model, Flexibility(K, B, D, braked, np.zeros(3)), 5e-4, 4) for _ in range(2)]

@@ -6,13 +6,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 from support import strangers
+from support.arms import checked
 
 from runner.compiled import compile, program
 from runner.compiled.closed_loop import CompiledCommands
 from runner.compiled.commands import Commands, LoopCode
 from runner.compiled.structure import CannotCompileError, pattern_of
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers import Loop
 from runner.controllers.torque_law import TorqueLaw
 from runner.errors import SimulationError
@@ -36,7 +35,7 @@ def configured(robot, controller, *overrides):
         chosen = (*chosen, "plant=rk4_flexible", "plant.flexible_joints.static_deflection=unknown")
     if robot in strangers.STRANGERS:
         return strangers.config(robot, *chosen)
-    return validate(compose([f"robot={robot}", *chosen]).resolved)
+    return checked(f"robot={robot}", *chosen)
 
 
 def law_of(robot, controller, *overrides):

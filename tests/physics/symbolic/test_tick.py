@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.arms import checked
 
 from runner.assembly import assemble
 from runner.compiled import compile
@@ -51,7 +52,7 @@ RUNS = [
 
 
 def run(*overrides, seed=0):
-    config = validate(compose([*overrides, "plant=rk4", f"seed={seed}"]).resolved)
+    config = checked(*overrides, "plant=rk4", f"seed={seed}")
     closed = assemble(config)
     return closed, simulate(closed, make_encoders(closed, config.noise, seed, 0))
 
@@ -126,7 +127,7 @@ def together(closed, errors):
 
 @pytest.mark.parametrize("overrides", [RUNS[1], RUNS[3], RUNS[12], RUNS[14]], ids=" ".join)
 def test_a_run_has_the_same_bits_alone_and_at_any_place_among_others(overrides):
-    config = validate(compose([*overrides, "plant=rk4", "trajectory=quintic", "duration=0.5"]).resolved)
+    config = checked(*overrides, "plant=rk4", "trajectory=quintic", "duration=0.5")
     closed = assemble(config)
     errors = [[each.errors for each in make_encoders(closed, config.noise, seed, 0)] for seed in range(21)]
     alone = [together(closed, [own]) for own in errors]
@@ -140,7 +141,7 @@ def test_a_run_has_the_same_bits_alone_and_at_any_place_among_others(overrides):
 
 
 def test_runs_on_several_paths_are_computed_together():
-    config = validate(compose(["robot=macro", "controller=operational_space", "plant=rk4", "duration=0.5"]).resolved)
+    config = checked("robot=macro", "controller=operational_space", "plant=rk4", "duration=0.5")
     closed = assemble(config)
     whole, times = closed.compiled, np.arange(closed.ticks + 1) * closed.tick
     paths = closed.trajectory.sample(times) + 0.01 * np.arange(11)[:, None, None, None] * np.array([[1.0], [0], [0]])
@@ -155,7 +156,7 @@ def test_runs_on_several_paths_are_computed_together():
 
 
 def test_a_run_that_diverges_leaves_those_beside_it_alone():
-    config = validate(compose(["robot=macro", "controller=operational_space", "plant=rk4", "duration=1"]).resolved)
+    config = checked("robot=macro", "controller=operational_space", "plant=rk4", "duration=1")
     closed = assemble(config)
     good, wild = [np.zeros((closed.ticks + 1, 3))], [np.full((closed.ticks + 1, 3), 1e200)]
     found = together(closed, [wild, good, wild])
@@ -169,7 +170,7 @@ def test_bullet_gets_its_torques_from_compiled_laws(monkeypatch):
     traces = []
     for library in (compile.evaluator, dict):
         monkeypatch.setattr(compile, "evaluator", library)
-        config = validate(compose(overrides).resolved)
+        config = checked(*overrides)
         closed = assemble(config)
         assert isinstance(closed.compiled, CompiledCommands) == (library is not dict)
         traces.append(simulate(closed, make_encoders(closed, config.noise, 0, 0)))

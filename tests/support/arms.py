@@ -1,0 +1,38 @@
+"""Arms that are shipped and configs of runs, each read once in a process."""
+
+import copy
+import functools
+from collections.abc import Mapping
+from typing import Any
+
+from runner.config.compose import compose
+from runner.config.run import RunConfig
+from runner.config.validation import validate
+from runner.robots import RobotModel, find_urdf, read_urdf
+
+
+@functools.cache
+def urdf_of(name: str) -> str:
+    """Return the text of a shipped URDF."""
+    return read_urdf(find_urdf(f"{name}.urdf"), {})
+
+
+@functools.cache
+def model_of(name: str, tip: str = "tip") -> RobotModel:
+    """Return the model of a shipped URDF, which all tests of a process share."""
+    return RobotModel(urdf_of(name), tip)
+
+
+def checked(*overrides: str) -> RunConfig:
+    """Compose and check the config that overrides choose; a fresh one each time."""
+    return validate(copy.deepcopy(_composed(*overrides)))
+
+
+@functools.cache
+def _composed(*overrides: str) -> Mapping[str, Any]:
+    return compose(overrides).resolved
+
+
+def last_of_each(*overrides: str) -> list[str]:
+    """Return the overrides without those whose key is overridden again later."""
+    return list({text.partition("=")[0]: text for text in overrides}.values())
