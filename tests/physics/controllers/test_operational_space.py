@@ -1,9 +1,19 @@
+"""Operational space control of three joints: its equations, the linear error, singular postures and purity."""
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 from support.arms import model_of, urdf_of
+from support.physics import (
+    assert_agree,
+    assert_linear_design,
+    assert_order,
+    critically_damped,
+    linear_design,
+    torque_of,
+)
 
 from runner.controllers.operational_space import OperationalSpace, OperationalSpaceConfig, build
 from runner.errors import ConfigError
@@ -18,10 +28,6 @@ STRETCHED, FOLDED, ON_AXIS = [0.3, 0.4, -np.pi / 2], [0.3, 0.4, np.pi / 2], [0.3
 def law(name="macro", natural_frequency=None, damping_ratio=1.0, gravity=True, feedforward=True, damping=0.0):
     frequency = 30.0 / SCALE[name] if natural_frequency is None else natural_frequency
     return OperationalSpace(MODELS[name], frequency, damping_ratio, gravity, feedforward, damping)
-
-
-def ask(controller, q, dq, reference, time=0.0):
-    return controller.torque(time, np.array(q), np.array(dq), np.array(reference)).copy()
 
 
 def tip_reference(model, q, error):
@@ -44,13 +50,9 @@ def states(draw, name=None):
     return name, q, dq, reference * np.array([[2.0 * s], [2.0], [10.0 / s]])
 
 
-def agree(actual, expected, tolerance=1e-9):
-    np.testing.assert_allclose(actual, expected, atol=tolerance * max(np.abs(expected).max(), 1e-12), rtol=0.0)
-
-
 @given(states(), st.floats(0.2, 2.0))
 def test_the_law_in_operational_space(state, damping_ratio):
-    name, q, dq, (x_d, xd_d, xdd_d) = state
+    name, q, dq, reference = state
     model, wn = MODELS[name], 25.0 / SCALE[name]
     M, V, G, J = (
         model.mass_matrix(q),
@@ -62,17 +64,16 @@ def test_the_law_in_operational_space(state, damping_ratio):
     Lambda = J_inverse.T @ M @ J_inverse
     mu = J_inverse.T @ V - Lambda @ model.tip_bias_acceleration(q, dq)
     p = J_inverse.T @ G
-    F = xdd_d - 2.0 * damping_ratio * wn * (J @ dq - xd_d) - wn**2 * (model.tip_position(q) - x_d)
+    F = linear_design(reference, model.tip_position(q), J @ dq, wn, damping_ratio)
     controller = law(name, wn, damping_ratio)
-    agree(ask(controller, q, dq, [x_d, xd_d, xdd_d]), J.T @ (Lambda @ F + mu + p))
+    assert_agree(torque_of(controller, q, dq, reference), J.T @ (Lambda @ F + mu + p), 1e-9)
 
 
 @given(states())
 def test_without_gravity_compensation_exactly_the_gravity_term_is_missing(state):
     name, q, dq, reference = state
-    full, bare = ask(law(name), q, dq, reference), ask(law(name, gravity=False), q, dq, reference)
-    difference = MODELS[name].gravity_torque(q)  # J^T p = J^T J^-T G
-    np.testing.assert_allclose(full - bare, difference, atol=1e-12 * max(1.0, np.abs(full).max()))
+    full, bare = torque_of(law(name), q, dq, reference), torque_of(law(name, gravity=False), q, dq, reference)
+    assert_agree(full - bare, MODELS[name].gravity_torque(q), 1e-12, of=[1.0, *full])  # J^T p = J^T J^-T G
 
 
 def test_leaving_out_gravity_leaves_the_model_of_others_alone(macro):
@@ -87,18 +88,20 @@ def test_without_feedforward_the_desired_derivatives_are_zero(state):
     name, q, dq, reference = state
     goal = reference.copy()
     goal[1:] = 0.0
-    np.testing.assert_array_equal(ask(law(name, feedforward=False), q, dq, reference), ask(law(name), q, dq, goal))
+    np.testing.assert_array_equal(
+        torque_of(law(name, feedforward=False), q, dq, reference), torque_of(law(name), q, dq, goal)
+    )
 
 
 @given(states(), st.floats(0.0, 10.0))
 def test_the_same_call_gives_the_same_torques(state, time):
     name, q, dq, reference = state
     controller = law(name, damping=0.3)
-    first = ask(controller, q, dq, reference)
-    ask(controller, q + 0.1, dq - 0.2, reference + 0.3)
-    np.testing.assert_array_equal(ask(controller, q, dq, reference, time), first)
+    first = torque_of(controller, q, dq, reference)
+    torque_of(controller, q + 0.1, dq - 0.2, reference + 0.3)
+    np.testing.assert_array_equal(torque_of(controller, q, dq, reference, time), first)
     controller.reset()
-    np.testing.assert_array_equal(ask(controller, q, dq, reference), first)
+    np.testing.assert_array_equal(torque_of(controller, q, dq, reference), first)
 
 
 def test_inputs_are_only_read():
@@ -111,12 +114,12 @@ def test_inputs_are_only_read():
 @given(states())
 def test_the_closed_loop_is_linear_and_decoupled(state):
     # Eq. (3.34): the tip's acceleration under the law's torques is F* itself, whatever the posture and speed.
-    name, q, dq, (x_d, xd_d, xdd_d) = state
+    name, q, dq, reference = state
     model, wn = MODELS[name], 30.0 / SCALE[name]
-    acceleration = model.forward_dynamics(q, dq, ask(law(name), q, dq, [x_d, xd_d, xdd_d]))
+    ddq = model.forward_dynamics(q, dq, torque_of(law(name), q, dq, reference))
     J = model.tip_jacobian(q)[:3]
-    F = xdd_d - 2.0 * wn * (J @ dq - xd_d) - wn**2 * (model.tip_position(q) - x_d)
-    agree(J @ acceleration + model.tip_bias_acceleration(q, dq), F)
+    found = J @ ddq + model.tip_bias_acceleration(q, dq)
+    assert_linear_design(found, reference, model.tip_position(q), J @ dq, wn, 1.0)
 
 
 @pytest.mark.parametrize(("robot", "scale"), [("macro", 1.0), ("mini", 0.1)])
@@ -133,20 +136,20 @@ def test_a_goal_step_follows_the_critically_damped_closed_form(simulated, robot,
             f"duration={0.3 * scale!r}",
             f"trajectory.goal={goal}".replace(" ", ""),
         )
-        closed_form = np.outer((1.0 + wn * trace.t) * np.exp(-wn * trace.t), step)
+        closed_form = np.outer(critically_damped(trace.t, wn), step)
         return np.abs(trace.error - closed_form).max() / scale
 
     deviations = [deviation(scale * period) for period in (4e-4, 2e-4, 1e-4)]
     assert deviations[2] < 1e-4  # of 0.1
-    assert np.divide(deviations[1:], deviations[:-1]) == pytest.approx([0.5, 0.5], abs=0.02)
+    assert_order(deviations, 1, within=0.055)
 
 
 def test_a_singular_posture_has_no_answer_without_damping():
     q = [0.0, 0.0, np.pi / 2]  # folded, the tip on the base axis, exactly so in floating point
     reference = tip_reference(MODELS["macro"], q, np.array([0.1, 0.2, 0.1]))
     with pytest.raises(np.linalg.LinAlgError, match="singular"):
-        ask(law(), q, np.zeros(3), reference)
-    assert np.isfinite(ask(law(damping=0.3), q, np.zeros(3), reference)).all()
+        torque_of(law(), q, np.zeros(3), reference)
+    assert np.isfinite(torque_of(law(damping=0.3), q, np.zeros(3), reference)).all()
 
 
 @pytest.mark.parametrize("name", ["macro", "mini"])
@@ -157,7 +160,7 @@ def test_torques_beside_a_singular_posture_are_bounded_by_the_damping(name, q):
     reference = tip_reference(MODELS[name], q, error)
     for offset in (0.0, 1e-12, 1e-6, 1e-3):
         posture = np.add(q, [0.0, 0.0, offset])
-        torque = ask(law(name, damping=0.3), posture, np.zeros(3), reference)
+        torque = torque_of(law(name, damping=0.3), posture, np.zeros(3), reference)
         # |ddq| is at most |F*| / (2 lambda), lambda = 0.3 |e| but for the fading; |F*| = wn^2 |e|.
         inertia = np.linalg.norm(MODELS[name].mass_matrix(posture), 2)
         bound = inertia * 900.0 / s**2 / (2.0 * 0.3) * 1.1
@@ -167,7 +170,7 @@ def test_torques_beside_a_singular_posture_are_bounded_by_the_damping(name, q):
 def test_without_damping_torques_beside_a_singular_posture_are_not_bounded():
     reference = tip_reference(MODELS["macro"], STRETCHED, np.array([0.1, -0.1, 0.1]))
     beside = np.add(STRETCHED, [0.0, 0.0, 1e-9])
-    assert np.linalg.norm(ask(law(), beside, np.zeros(3), reference)) > 1e9
+    assert np.linalg.norm(torque_of(law(), beside, np.zeros(3), reference)) > 1e9
 
 
 @given(states())
@@ -177,7 +180,9 @@ def test_damping_has_no_influence_on_a_regular_posture(state):
     smallest = np.linalg.svd(model.tip_jacobian(q)[:3], compute_uv=False)[-1]
     # The law fades damping in by a lower bound of the smallest singular value, at a tenth of the reach.
     q = q if smallest > 0.3 * model.reach else np.zeros(3)
-    np.testing.assert_array_equal(ask(law(name, damping=0.3), q, dq, reference), ask(law(name), q, dq, reference))
+    np.testing.assert_array_equal(
+        torque_of(law(name, damping=0.3), q, dq, reference), torque_of(law(name), q, dq, reference)
+    )
 
 
 @pytest.mark.parametrize("name", ["macro", "mini"])
@@ -187,11 +192,11 @@ def test_damping_has_no_influence_where_the_error_is_zero(name, q):
     dq = np.array([0.4, -0.3, 0.2]) / s
     reference = tip_reference(MODELS[name], posture, np.zeros(3))
     reference[1:] = [[0.1, 0.2, 0.3], np.array([1.0, 2.0, 3.0]) / s]
-    damped, printed = (ask(law(name, damping=damping), posture, dq, reference) for damping in (0.3, 0.0))
-    agree(damped, printed, 1e-8)
+    damped, printed = (torque_of(law(name, damping=damping), posture, dq, reference) for damping in (0.3, 0.0))
+    assert_agree(damped, printed, 1e-8)
     moved = reference.copy()
     moved[0] += 0.05 * s
-    damped, printed = (ask(law(name, damping=damping), posture, dq, moved) for damping in (0.3, 0.0))
+    damped, printed = (torque_of(law(name, damping=damping), posture, dq, moved) for damping in (0.3, 0.0))
     assert np.linalg.norm(damped - printed) > 0.5 * np.linalg.norm(printed)
 
 
@@ -206,10 +211,10 @@ def test_damping_fades_in_without_a_jump(state):
 
     border = brentq(margin, -np.pi / 2, -1.0, xtol=1e-13)
     outside, inside, deep = (
-        ask(law(name, damping=0.3), [q[0], 0.2, border + d], dq, reference) for d in (1e-9, -1e-9, -0.1)
+        torque_of(law(name, damping=0.3), [q[0], 0.2, border + d], dq, reference) for d in (1e-9, -1e-9, -0.1)
     )
-    agree(inside, outside, 1e-6)
-    assert np.abs(deep - ask(law(name), [q[0], 0.2, border - 0.1], dq, reference)).max() > 0.0  # it is inside
+    assert_agree(inside, outside, 1e-6)
+    assert np.abs(deep - torque_of(law(name), [q[0], 0.2, border - 0.1], dq, reference)).max() > 0.0  # it is inside
 
 
 def test_another_number_of_joints_is_refused():
@@ -241,4 +246,4 @@ def test_build_passes_every_value_on(one_stage):
     robot = one_stage(urdf_of("macro"), MODELS["macro"])
     (loop,) = build(config, robot)
     assert (loop.period, loop.joints) == (0.01, slice(0, 3))
-    np.testing.assert_array_equal(ask(loop.controller, q, dq, reference), ask(expected, q, dq, reference))
+    np.testing.assert_array_equal(torque_of(loop.controller, q, dq, reference), torque_of(expected, q, dq, reference))

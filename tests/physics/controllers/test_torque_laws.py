@@ -1,4 +1,7 @@
-"""What every law that leads a tip by torques keeps to, on every robot of the zoo and on strangers."""
+"""Laws that lead a tip by torques, on our arms and on strangers: each against its linear design and its model's terms.
+
+A session takes the twelve laws of EACH_SESSION: every law, task and kind of arm. The slow ones take all.
+"""
 
 import functools
 import itertools
@@ -9,6 +12,7 @@ import pytest
 from scipy.optimize import minimize
 from support import strangers
 from support.arms import checked
+from support.physics import assert_agree, assert_order, critically_damped, linear_design, torque_of
 
 from runner.controllers.computed_torque import ComputedTorqueConfig
 from runner.controllers.computed_torque import build as build_computed_torque
@@ -51,6 +55,20 @@ JOINT_LAWS = [
     if task == "position" or name in ("xarm7", "meca500")  # the combined arm's pose is singular at home
 ] + [("computed_torque", name, task) for name, task in STRANGE]
 LAWS = TIP_LAWS + JOINT_LAWS
+EACH_SESSION = [
+    ("operational_space", "macro", "position"),
+    ("operational_space", "planar", "position"),
+    ("operational_space", "mixed", "position"),  # sliding and turning, redundant
+    ("operational_space", "meca500", "pose"),
+    ("operational_space", "xarm7", "pose"),  # redundant
+    ("whole_body", "combined", "position"),  # redundant
+    ("whole_body", "crane", "position"),  # sliding
+    ("whole_body", "planar_two", "position"),
+    ("computed_torque", "mini", "position"),
+    ("computed_torque", "planar", "position"),
+    ("computed_torque", "xarm7", "pose"),  # redundant
+    ("computed_torque", "scara", "pose"),  # sliding, with one direction less than a pose
+]
 XI, OMEGA_N = 0.8, 12.0
 
 
@@ -69,6 +87,15 @@ def scale_of(name):
 
 def omega_of(name):
     return 25.0 / scale_of(name)
+
+
+def of(laws):
+    """Return laws as parameters of a test; those that a session leaves out are slow."""
+    assert any(law in EACH_SESSION for law in laws)
+    return pytest.mark.parametrize(
+        ("kind", "name", "task"),
+        [pytest.param(*law, id="-".join(law), marks=() if law in EACH_SESSION else pytest.mark.slow) for law in laws],
+    )
 
 
 def law(kind, name, task, **changes):
@@ -136,7 +163,7 @@ def asked_acceleration(name, task, q, dq, reference, feedforward=True):
     arm, wn = arm_of(name), omega_of(name)
     pose, velocity = arm.model.tip_pose(q), jacobian(name, task, q) @ dq
     desired = reference * np.array([[1.0], [feedforward], [feedforward]])
-    F = desired[2] + 2.0 * XI * wn * desired[1] + wn**2 * (desired[0] - pose[:3, 3])
+    F = linear_design(desired, pose[:3, 3], np.zeros(3), wn, XI)
     if task == "pose":
         turn = pin.log3(arm.model.tip_pose(arm.home)[:3, :3] @ pose[:3, :3].T)
         F = np.concatenate([F, wn**2 * turn])
@@ -145,27 +172,23 @@ def asked_acceleration(name, task, q, dq, reference, feedforward=True):
 
 def ask(controller, q, dq, reference):
     controller.reset()
-    return controller.torque(0.0, q, dq, reference).copy()
-
-
-def agree(actual, expected, tolerance=1e-9):
-    np.testing.assert_allclose(actual, expected, atol=tolerance * np.abs(expected).max(), rtol=0.0)
+    return torque_of(controller, q, dq, reference)
 
 
 # The error's dynamics
 
 
 @pytest.mark.parametrize("feedforward", [True, False])
-@pytest.mark.parametrize(("kind", "name", "task"), TIP_LAWS)
+@of(TIP_LAWS)
 def test_the_tip_s_error_obeys_the_linear_design(kind, name, task, feedforward):
     controller = law(kind, name, task, feedforward=feedforward)
     for q, dq, reference in states(name, task):
         ddq = arm_of(name).model.forward_dynamics(q, dq, ask(controller, q, dq, reference))
         found = jacobian(name, task, q) @ ddq + bias(name, task, q, dq)
-        agree(found, asked_acceleration(name, task, q, dq, reference, feedforward), 1e-6)  # of the differences
+        assert_agree(found, asked_acceleration(name, task, q, dq, reference, feedforward), 1e-6)  # of the differences
 
 
-@pytest.mark.parametrize(("kind", "name", "task"), JOINT_LAWS)
+@of(JOINT_LAWS)
 def test_each_joint_s_error_obeys_the_linear_design(kind, name, task):
     # What is left of the joints' acceleration without their feedback is the joint motion's, whatever is measured.
     k_v, k_p = 2.0 * XI * omega_of(name), omega_of(name) ** 2
@@ -178,23 +201,25 @@ def test_each_joint_s_error_obeys_the_linear_design(kind, name, task):
 
     expected = driven(start[0], np.zeros(len(start[0])))
     for q, dq, _ in states(name, task):
-        agree(driven(q, dq), expected)
+        assert_agree(driven(q, dq), expected, 1e-9)
 
 
 @pytest.mark.parametrize("feedforward", [True, False])
-@pytest.mark.parametrize(("kind", "name", "task"), JOINT_LAWS)
+@of(JOINT_LAWS)
 def test_the_joint_motion_starts_with_the_tip_s_linear_design(kind, name, task, feedforward):
     controller = law(kind, name, task, feedforward=feedforward)
     for q, _, reference in states(name, task):
         rest = np.zeros(len(q))
         ddq = arm_of(name).model.forward_dynamics(q, rest, ask(controller, q, rest, reference))
-        agree(jacobian(name, task, q) @ ddq, asked_acceleration(name, task, q, rest, reference, feedforward))
+        assert_agree(
+            jacobian(name, task, q) @ ddq, asked_acceleration(name, task, q, rest, reference, feedforward), 1e-9
+        )
 
 
 # The null space
 
 
-@pytest.mark.parametrize(("kind", "name", "task"), [*REDUNDANT, *(law for law in JOINT_LAWS if law[1] == "xarm7")])
+@of([*REDUNDANT, *(law for law in JOINT_LAWS if law[1] == "xarm7")])
 def test_null_space_torques_do_not_move_the_tip(kind, name, task):
     model = arm_of(name).model
     for q, dq, reference in states(name, task):
@@ -208,7 +233,7 @@ def test_null_space_torques_do_not_move_the_tip(kind, name, task):
         np.testing.assert_allclose(J @ M_inverse @ null, 0.0, atol=1e-12 * felt * np.linalg.norm(with_posture))
 
 
-@pytest.mark.parametrize(("kind", "name", "task"), REDUNDANT)
+@of(REDUNDANT)
 def test_the_projector_is_dynamically_consistent(kind, name, task):
     for q, _, _ in states(name, task):
         J, M_inverse = jacobian(name, task, q), np.linalg.inv(arm_of(name).model.mass_matrix(q))
@@ -224,37 +249,37 @@ def test_the_projector_is_dynamically_consistent(kind, name, task):
         F = asked_acceleration(name, task, q, dq, reference)
         task_torque = J.T @ np.linalg.solve(mobility, F) + arm_of(name).model.gravity_torque(q)
         null = ask(law(kind, name, task), q, dq, reference) - task_torque
-        agree(N_T @ null, null, 1e-8)
+        assert_agree(N_T @ null, null, 1e-8)
 
 
 # The model's terms
 
 
-@pytest.mark.parametrize(("kind", "name", "task"), LAWS)
+@of(LAWS)
 def test_the_torque_is_the_inverse_dynamics_of_the_acceleration_it_causes(kind, name, task):
     model = arm_of(name).model
     for q, dq, reference in states(name, task, 4):
         tau = ask(law(kind, name, task), q, dq, reference)
         ddq = model.forward_dynamics(q, dq, tau)
-        agree(model.mass_matrix(q) @ ddq + model.coriolis_torque(q, dq) + model.gravity_torque(q), tau, 1e-7)
+        assert_agree(model.mass_matrix(q) @ ddq + model.coriolis_torque(q, dq) + model.gravity_torque(q), tau, 1e-7)
 
 
-@pytest.mark.parametrize(("kind", "name", "task"), LAWS)
+@of(LAWS)
 def test_without_gravity_compensation_exactly_the_gravity_term_is_missing(kind, name, task):
     for q, dq, reference in states(name, task, 4):
         full, bare = (ask(law(kind, name, task, gravity_compensation=on), q, dq, reference) for on in (True, False))
-        np.testing.assert_allclose(full - bare, arm_of(name).model.gravity_torque(q), atol=1e-11 * np.abs(full).max())
+        assert_agree(full - bare, arm_of(name).model.gravity_torque(q), 1e-11, of=full)
 
 
-@pytest.mark.parametrize(("kind", "name", "task"), LAWS)
+@of(LAWS)
 def test_without_feedforward_the_desired_derivatives_are_zero(kind, name, task):
     for q, dq, reference in states(name, task, 4):
         goal = reference * np.array([[1.0], [0.0], [0.0]])
         bare = ask(law(kind, name, task, feedforward=False), q, dq, reference)
-        agree(bare, ask(law(kind, name, task), q, dq, goal), 1e-12)
+        assert_agree(bare, ask(law(kind, name, task), q, dq, goal), 1e-12)
 
 
-@pytest.mark.parametrize(("kind", "name", "task"), LAWS)
+@of(LAWS)
 def test_gravity_off_leaves_the_model_of_others_alone(kind, name, task):
     before = arm_of(name).model.gravity_torque(arm_of(name).home)
     law(kind, name, task, gravity_compensation=False)
@@ -281,7 +306,7 @@ def singular_posture(name, task):
 
 # The stretched combined arm, whose mass matrix is singular, too, stands in test_whole_body.
 # Sliding joints alone are never singular, and the search does not find a singular posture of 30 joints.
-@pytest.mark.parametrize(("kind", "name", "task"), [law for law in LAWS[1:] if law[1] not in ("gantry", "snake")])
+@of([law for law in LAWS[1:] if law[1] not in ("gantry", "snake")])
 def test_torques_at_a_singular_posture_are_bounded_by_the_damping_alone(kind, name, task):
     model, q = arm_of(name).model, singular_posture(name, task)
     rows = np.linalg.svd(in_lengths(name, task, jacobian(name, task, q)))[0][:, -1]
@@ -308,7 +333,7 @@ def test_torques_at_a_singular_posture_are_bounded_by_the_damping_alone(kind, na
 # Convergence
 
 
-@pytest.mark.parametrize(("kind", "name", "task"), LAWS)
+@of(LAWS)
 def test_a_small_step_follows_the_critically_damped_closed_form(kind, name, task):
     arm, wn = arm_of(name), omega_of(name)
     within = directions(name, "position")  # the plane of a planar arm
@@ -325,11 +350,11 @@ def test_a_small_step_follows_the_critically_damped_closed_form(kind, name, task
             tips.append(arm.model.tip_position(plant.q))
             plant.advance(controller.torque(tick * period, plant.q, plant.dq, reference))
         t = np.arange(count) * period
-        return np.abs(reference[0] - tips - np.outer((1.0 + wn * t) * np.exp(-wn * t), step)).max()
+        return np.abs(reference[0] - tips - np.outer(critically_damped(t, wn), step)).max()
 
     deviations = [deviation(period / wn) for period in (0.02, 0.01, 0.005)]
     assert deviations[2] < 0.01 * np.abs(step).max()
-    assert np.divide(deviations[1:], deviations[:-1]) == pytest.approx([0.5, 0.5], abs=0.03)
+    assert_order(deviations, 1, within=0.08)
 
 
 @pytest.mark.parametrize("kind", ["operational_space", "computed_torque"])
@@ -345,13 +370,12 @@ def test_a_turned_tip_returns_about_its_axis_critically_damped(kind, name):
     home, axis = arm.model.tip_pose(arm.home)[:3, :3], arm.model.tip_jacobian(arm.home)[3:, -1]
     for tick in range(round(4.0 / wn / period)):
         turn = pin.log3(arm.model.tip_pose(plant.q)[:3, :3] @ home.T)
-        expected = angle * (1.0 + wn * tick * period) * np.exp(-wn * tick * period)
-        np.testing.assert_allclose(turn, expected * axis, atol=0.01 * angle)
+        np.testing.assert_allclose(turn, angle * critically_damped(tick * period, wn) * axis, atol=0.01 * angle)
         plant.advance(controller.torque(tick * period, plant.q, plant.dq, reference))
     np.testing.assert_allclose(arm.model.tip_position(plant.q), reference[0], atol=1e-4 * arm.model.reach)
 
 
-@pytest.mark.parametrize(("kind", "name", "task"), [law for law in LAWS if law[1] in ("xarm7", "meca500")])
+@of([law for law in LAWS if law[1] in ("xarm7", "meca500")])
 def test_runs_are_alike_after_a_reset(kind, name, task):
     controller, (q, dq, reference) = law(kind, name, task), states(name, task, 1)[0]
 

@@ -6,6 +6,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import strangers
 from support.arms import checked, model_of
+from support.physics import assert_agree, assert_passive, critically_damped, linear_design, torque_of
 
 from runner.controllers.operational_space import OperationalSpace
 from runner.controllers.whole_body import WholeBody, WholeBodyConfig, build
@@ -32,10 +33,6 @@ def config(**changes):
         "singularity_damping": 0.0,
     }
     return WholeBodyConfig(**(values | changes))
-
-
-def ask(controller, q, dq, reference, time=0.0):
-    return controller.torque(time, np.array(q), np.array(dq), np.array(reference)).copy()
 
 
 @st.composite
@@ -85,27 +82,25 @@ def chain(axes, masses=None):
 
 @given(states())
 def test_the_law_with_an_explicit_null_space(state):
-    q, dq, (x_d, xd_d, xdd_d) = state
+    q, dq, reference = state
     M, J, _, Lambda, N_T, bias = terms(q, dq)
     h = MODEL.coriolis_torque(q, dq) + MODEL.gravity_torque(q)
-    F = xdd_d - 2.0 * 0.8 * 25.0 * (J @ dq - xd_d) - 25.0**2 * (MODEL.tip_position(q) - x_d)
+    F = linear_design(reference, MODEL.tip_position(q), J @ dq, 25.0, 0.8)
     tau_0 = -2.0 * 12.0 * M @ dq - 12.0**2 * INERTIA_AT_REST @ (q - REST)
     expected = h + J.T @ Lambda @ (F - bias) + N_T @ tau_0
-    found = ask(WholeBody(MODEL, config(), REST), q, dq, [x_d, xd_d, xdd_d])
-    np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected).max())
+    found = torque_of(WholeBody(MODEL, config(), REST), q, dq, reference)
+    assert_agree(found, expected, 1e-9)
 
 
 @given(states())
 def test_the_tip_accelerates_as_asked_whatever_the_null_space_does(state):
     q, dq, reference = state
     _, J, _, _, _, bias = terms(q, dq)
-    x_d, xd_d, xdd_d = reference
-    F = xdd_d - 2.0 * 0.8 * 25.0 * (J @ dq - xd_d) - 25.0**2 * (MODEL.tip_position(q) - x_d)
+    F = linear_design(reference, MODEL.tip_position(q), J @ dq, 25.0, 0.8)
     for frequency in (0.0, 12.0, 100.0):
-        tau = ask(WholeBody(MODEL, config(null_space_frequency=frequency), REST), q, dq, reference)
+        tau = torque_of(WholeBody(MODEL, config(null_space_frequency=frequency), REST), q, dq, reference)
         acceleration = J @ MODEL.forward_dynamics(q, dq, tau) + bias
-        scale = np.abs(F).max() + frequency**2 + 1.0
-        np.testing.assert_allclose(acceleration, F, atol=1e-8 * scale)
+        assert_agree(acceleration, F, 1e-8, of=np.abs(F).max() + frequency**2 + 1.0)
 
 
 @given(states())
@@ -113,23 +108,23 @@ def test_null_space_torque_causes_no_tip_acceleration(state):
     q, dq, reference = state
     _, J, M_inverse, _, N_T, _ = terms(q, dq)
     with_posture, without = (
-        ask(WholeBody(MODEL, config(null_space_frequency=frequency), REST), q, dq, reference)
+        torque_of(WholeBody(MODEL, config(null_space_frequency=frequency), REST), q, dq, reference)
         for frequency in (50.0, 0.0)
     )
     null = with_posture - without
     assert np.abs(null).max() > 1e-3 or np.abs(q - REST).max() < 1e-3
     scale = np.abs(M_inverse @ null).max()
     np.testing.assert_allclose(J @ M_inverse @ null, 0.0, atol=1e-9 * max(scale, 1.0))
-    np.testing.assert_allclose(N_T @ null, null, atol=1e-9 * np.abs(with_posture).max())  # it lies in the null space
+    assert_agree(N_T @ null, null, 1e-9, of=with_posture)  # it lies in the null space
 
 
 @given(states())
 def test_without_gravity_compensation_exactly_the_gravity_term_is_missing(state):
     q, dq, reference = state
     full, bare = (
-        ask(WholeBody(MODEL, config(gravity_compensation=on), REST), q, dq, reference) for on in (True, False)
+        torque_of(WholeBody(MODEL, config(gravity_compensation=on), REST), q, dq, reference) for on in (True, False)
     )
-    np.testing.assert_allclose(full - bare, MODEL.gravity_torque(q), atol=1e-11 * max(1.0, np.abs(full).max()))
+    assert_agree(full - bare, MODEL.gravity_torque(q), 1e-11, of=[1.0, *full])
 
 
 @given(states())
@@ -137,9 +132,9 @@ def test_without_feedforward_the_desired_derivatives_are_zero(state):
     q, dq, reference = state
     goal = reference.copy()
     goal[1:] = 0.0
-    bare = ask(WholeBody(MODEL, config(feedforward=False), REST), q, dq, reference)
-    expected = ask(WholeBody(MODEL, config(), REST), q, dq, goal)
-    np.testing.assert_allclose(bare, expected, atol=1e-12 * max(1.0, np.abs(expected).max()))
+    bare = torque_of(WholeBody(MODEL, config(feedforward=False), REST), q, dq, reference)
+    expected = torque_of(WholeBody(MODEL, config(), REST), q, dq, goal)
+    assert_agree(bare, expected, 1e-12, of=[1.0, *expected])
 
 
 @pytest.mark.parametrize("name", ["macro", "mini"])
@@ -154,8 +149,7 @@ def test_with_three_joints_it_is_operational_space_control(name):
         if np.linalg.svd(model.tip_jacobian(q)[:3], compute_uv=False)[-1] < 0.3 * scale:
             continue
         reference = generator.uniform(-1.0, 1.0, (3, 3)) * np.array([[scale], [1.0], [1.0 / scale]])
-        expected = ask(theirs, q, dq, reference)
-        np.testing.assert_allclose(ask(ours, q, dq, reference), expected, atol=1e-8 * np.abs(expected).max())
+        assert_agree(torque_of(ours, q, dq, reference), torque_of(theirs, q, dq, reference), 1e-8)
         compared += 1
 
 
@@ -170,8 +164,8 @@ def test_the_approach_saturates_at_the_largest_tip_speed(state, speed):
     nu = min(1.0, speed * k_v / (k_p * np.linalg.norm(error)))
     F = xdd_d - k_v * (J @ dq - xd_d - nu * k_p / k_v * error)
     controller = WholeBody(MODEL, config(max_tip_speed=speed, null_space_frequency=0.0), REST)
-    acceleration = J @ MODEL.forward_dynamics(q, dq, ask(controller, q, dq, [x_d, xd_d, xdd_d])) + bias
-    np.testing.assert_allclose(acceleration, F, atol=1e-8 * (np.abs(F).max() + 1.0))
+    acceleration = J @ MODEL.forward_dynamics(q, dq, torque_of(controller, q, dq, [x_d, xd_d, xdd_d])) + bias
+    assert_agree(acceleration, F, 1e-8, of=np.abs(F).max() + 1.0)
 
 
 def tip_speed(trace, period):
@@ -223,7 +217,7 @@ def small_motion(frequency, start, ticks, tick=1e-3):
     plant.reset(REST + start, np.zeros(6))
     for _ in range(ticks):
         yield plant.q.copy(), plant.dq.copy()
-        plant.advance(ask(controller, plant.q, plant.dq, reference))
+        plant.advance(torque_of(controller, plant.q, plant.dq, reference))
 
 
 @pytest.mark.parametrize("joint", range(3))
@@ -231,7 +225,7 @@ def test_beside_rest_each_joint_of_the_mini_returns_critically_damped(joint):
     size, wn, tick = 1e-4, 12.0, 1e-4
     found = np.array([q for q, _ in small_motion(wn, size * Z[:, joint], 3000, tick)]) - REST
     t = np.arange(3000) * tick
-    expected = np.outer((1.0 + wn * t) * np.exp(-wn * t), size * Z[:, joint])
+    expected = np.outer(critically_damped(t, wn), size * Z[:, joint])
     np.testing.assert_allclose(found, expected, atol=0.01 * size * np.abs(Z).max())
 
 
@@ -243,7 +237,7 @@ def test_at_rest_the_posture_only_loses_energy():
     for q, dq in small_motion(12.0, start, 3000):
         energies.append(0.5 * dq @ MODEL.mass_matrix(q) @ dq + 0.5 * (q - REST) @ K @ (q - REST))
     settled = np.array(energies[500:])  # once the tip is back, 25 rad/s and 0.5 s
-    assert np.diff(settled).max() < 1e-9
+    assert_passive(settled, rounding=1e-9)
     assert settled[-1] < 1e-6 * energies[0]
     np.testing.assert_allclose(q, REST, atol=1e-3)
 
@@ -253,22 +247,23 @@ def test_a_singular_mass_matrix_has_no_answer(damping):
     axes, masses = ["1 0 0", "0 1 0", "1 0 0", "0 1 0"], [1.0, 1.0, 1.0, 1.0, 0.0]
     controller = WholeBody(chain(axes, masses), config(singularity_damping=damping), np.zeros(4))
     with pytest.raises(np.linalg.LinAlgError, match="the mass matrix is singular"):
-        ask(controller, [0.1, 0.2, 0.3, 0.4], np.zeros(4), np.ones((3, 3)))
+        torque_of(controller, [0.1, 0.2, 0.3, 0.4], np.zeros(4), np.ones((3, 3)))
 
 
 def test_a_singular_jacobian_has_no_answer_without_damping():
     upright = chain(["1 0 0", "0 1 0"] * 2)  # stretched, it can neither lengthen nor shorten
     state = np.zeros(4), np.zeros(4), np.ones((3, 3))
     with pytest.raises(np.linalg.LinAlgError, match="the tip's Jacobian is singular"):
-        ask(WholeBody(upright, config(), np.zeros(4)), *state)
-    assert np.isfinite(ask(WholeBody(upright, config(singularity_damping=0.3), np.zeros(4)), *state)).all()
+        torque_of(WholeBody(upright, config(), np.zeros(4)), *state)
+    assert np.isfinite(torque_of(WholeBody(upright, config(singularity_damping=0.3), np.zeros(4)), *state)).all()
 
 
 @given(states())
 def test_damping_has_no_influence_on_a_regular_posture(state):
     q, dq, reference = state
     damped, printed = (
-        ask(WholeBody(MODEL, config(singularity_damping=damping), REST), q, dq, reference) for damping in (0.3, 0.0)
+        torque_of(WholeBody(MODEL, config(singularity_damping=damping), REST), q, dq, reference)
+        for damping in (0.3, 0.0)
     )
     np.testing.assert_array_equal(damped, printed)  # the smallest singular value is above a tenth of the reach
 
@@ -282,7 +277,7 @@ def test_torques_beside_the_stretched_posture_are_bounded_by_the_damping():
     controller = WholeBody(MODEL, config(singularity_damping=0.3), np.zeros(6))
     for offset in (1e-9, 1e-6, 1e-3):
         posture = np.add(stretched, [0.0, 0.0, offset, 0.0, 0.01, 0.0])
-        torque = ask(controller, posture, np.zeros(6), reference)
+        torque = torque_of(controller, posture, np.zeros(6), reference)
         assert np.linalg.norm(torque) < 1e5
 
 
@@ -293,11 +288,11 @@ def test_torques_beside_the_stretched_posture_are_bounded_by_the_damping():
 def test_the_same_call_gives_the_same_torques(state, time):
     q, dq, reference = state
     controller = WholeBody(MODEL, config(max_tip_speed=0.5), REST)
-    first = ask(controller, q, dq, reference)
-    ask(controller, q + 0.1, dq - 0.2, reference + 0.3)
-    np.testing.assert_array_equal(ask(controller, q, dq, reference, time), first)
+    first = torque_of(controller, q, dq, reference)
+    torque_of(controller, q + 0.1, dq - 0.2, reference + 0.3)
+    np.testing.assert_array_equal(torque_of(controller, q, dq, reference, time), first)
     controller.reset()
-    np.testing.assert_array_equal(ask(controller, q, dq, reference), first)
+    np.testing.assert_array_equal(torque_of(controller, q, dq, reference), first)
 
 
 def test_inputs_are_only_read():
@@ -323,5 +318,5 @@ def test_build_makes_one_loop_that_rests_at_home():
     (loop,) = build(config(), COMBINED)
     assert (loop.joints, loop.period) == (slice(0, 6), 0.001)
     q, dq, reference = REST, np.ones(6), np.ones((3, 3))
-    expected = ask(WholeBody(MODEL, config(), np.zeros(6)), q, dq, reference)
-    np.testing.assert_array_equal(ask(loop.controller, q, dq, reference), expected)
+    expected = torque_of(WholeBody(MODEL, config(), np.zeros(6)), q, dq, reference)
+    np.testing.assert_array_equal(torque_of(loop.controller, q, dq, reference), expected)
