@@ -1,4 +1,4 @@
-"""Arms that are shipped and configs of runs, each read once in a process."""
+"""Arms that are shipped and configs of runs; files are read once in a process."""
 
 import copy
 import functools
@@ -17,9 +17,8 @@ def urdf_of(name: str) -> str:
     return read_urdf(find_urdf(f"{name}.urdf"), {})
 
 
-@functools.cache
 def model_of(name: str, tip: str = "tip") -> RobotModel:
-    """Return the model of a shipped URDF, which all tests of a process share."""
+    """Return a model of a shipped URDF, a new one each time."""
     return RobotModel(urdf_of(name), tip)
 
 

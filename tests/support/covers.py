@@ -1,13 +1,14 @@
 """Cases of several options: pairwise covers for each session, all the other cases for the slow ones."""
 
 import itertools
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from typing import Any
 
 import pytest
 
 Options = dict[str, Sequence[Hashable]]
 Case = dict[str, Any]
+Choice = tuple[str, Hashable]
 
 SWITCH = (False, True)
 
@@ -20,7 +21,8 @@ def every_case(options: Options) -> list[Case]:
 def pairwise(options: Options) -> list[Case]:
     """Return few cases in which each value of an option meets each value of every other option.
 
-    Greedy: a case starts with a pair that is missing and takes for each further option the value that adds most pairs.
+    Greedy: a case starts with a pair that is missing and takes for each further option the value that adds most
+    pairs to the case, and of those the one that has most pairs left.
     """
     missing = dict.fromkeys(  # in a fixed order, unlike a set
         frozenset(pair)
@@ -29,18 +31,19 @@ def pairwise(options: Options) -> list[Case]:
     )
     cases = []
     while missing:
-        case = dict(sorted(next(iter(missing)), key=lambda choice: list(options).index(choice[0])))
+        case = dict(next(iter(missing)))
         for name in options:
             if name not in case:
-                taken = list(case.items())
-                case[name] = max(
-                    options[name],
-                    key=lambda value: sum(frozenset([(name, value), other]) in missing for other in taken),
-                )
+                case[name] = _best(_choices(options, name), set(case.items()), missing)
         cases.append({name: case[name] for name in options})
         for pair in itertools.combinations(case.items(), 2):
             missing.pop(frozenset(pair), None)
     return cases
+
+
+def _best(choices: list[Choice], taken: set[Choice], missing: Iterable[frozenset[Choice]]) -> Hashable:
+    left = {choice: [other for pair in missing if choice in pair for other in pair - {choice}] for choice in choices}
+    return max(choices, key=lambda choice: (len(taken.intersection(left[choice])), len(left[choice])))[1]
 
 
 def covered(options: Options) -> list[Any]:
@@ -58,5 +61,5 @@ def name_of(case: Case) -> str:
     return "-".join(on) or "none"
 
 
-def _choices(options: Options, name: str) -> list[tuple[str, Hashable]]:
+def _choices(options: Options, name: str) -> list[Choice]:
     return [(name, value) for value in options[name]]

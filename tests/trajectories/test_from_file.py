@@ -1,9 +1,11 @@
+"""Motions read from files: splines through their rows, and messages that name the line of what is wrong."""
+
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet
 import pytest
-from support.arms import checked
 
+from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.execution import run
@@ -24,8 +26,8 @@ def _in_an_empty_folder(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def macro():
-    return checked("robot=macro").arm
+def macro(checked_config):
+    return checked_config("robot=macro").arm
 
 
 @pytest.fixture
@@ -45,20 +47,20 @@ def written(tmp_path):
     return write
 
 
-def checked_file(file, *more, robot="macro"):
+def checked(file, *more, robot="macro"):
     overrides = [f"robot={robot}", "trajectory=from_file", f"trajectory.file={file}", *more]
-    return checked(*overrides)
+    return validate(compose(overrides).resolved)
 
 
 def problems_of(file, *more):
     with pytest.raises(ConfigError) as raised:
-        checked_file(file, *more)
+        checked(file, *more)
     return raised.value.problems
 
 
 def test_a_spline_passes_the_rows_from_rest_to_rest(written, macro):
     tip = end_points(macro, macro.home + POSTURE)[-1]
-    path = checked_file(written("xyz", tip)).path
+    path = checked(written("xyz", tip)).path
     motion = path.sample(T)
     np.testing.assert_allclose(motion[:, 0], tip, atol=1e-14)
     np.testing.assert_allclose(motion[[0, -1], 1], 0.0, atol=1e-14)
@@ -72,7 +74,7 @@ def test_velocity_and_acceleration_are_derivatives(written):
     h, t = 1e-5, np.random.default_rng(0).uniform(1e-3, 1.999, 50)
     for orders, kind in ((1, "spline"), (2, "hermite"), (3, "hermite")):
         file = written(JOINTS[: 3 * orders], np.hstack([POSTURE, SPEED, PUSH])[:, : 3 * orders], f"{orders}.csv")
-        path = checked_file(file, f"trajectory.interpolation={kind}").path
+        path = checked(file, f"trajectory.interpolation={kind}").path
         for sample in (path.sample, path.sample_joints):
             here, after, before = sample(t), sample(t + h), sample(t - h)
             np.testing.assert_allclose((after[:, 0] - before[:, 0]) / (2.0 * h), here[:, 1], atol=1e-7)
@@ -80,7 +82,7 @@ def test_velocity_and_acceleration_are_derivatives(written):
 
 def test_what_the_file_says_of_speed_and_acceleration_holds_at_its_rows(written):
     names, values = JOINTS, np.hstack([POSTURE, SPEED, PUSH])
-    path = checked_file(written(names, values), "trajectory.interpolation=hermite").path
+    path = checked(written(names, values), "trajectory.interpolation=hermite").path
     motion = path.sample_joints(T)
     for order, expected in enumerate((POSTURE, SPEED, PUSH)):
         np.testing.assert_allclose(motion[:, order], expected, atol=1e-12)
@@ -92,7 +94,7 @@ def test_between_rows_the_error_falls_with_the_order_of_the_interpolation(writte
     errors = []
     for orders, kind in ((1, "spline"), (2, "hermite"), (3, "hermite")):
         file = written(JOINTS[: 3 * orders], np.hstack([POSTURE, SPEED, PUSH])[:, : 3 * orders], f"{orders}.csv")
-        path = checked_file(file, f"trajectory.interpolation={kind}").path
+        path = checked(file, f"trajectory.interpolation={kind}").path
         errors.append(np.abs(path.sample_joints(fine)[:, 0] - true).max())
     h = 0.1 * np.pi  # phase between rows
     assert errors[1] < 0.1 * h**4 / 384 * 1.01
@@ -101,7 +103,7 @@ def test_between_rows_the_error_falls_with_the_order_of_the_interpolation(writte
 
 
 def test_parquet_holds_the_same_as_csv(written):
-    csv, parquet = (checked_file(written(JOINTS[:3], POSTURE, name)) for name in ("a.csv", "a.parquet"))
+    csv, parquet = (checked(written(JOINTS[:3], POSTURE, name)) for name in ("a.csv", "a.parquet"))
     np.testing.assert_array_equal(csv.path.sample_joints(T), parquet.path.sample_joints(T))
     assert simulated_part(csv.resolved) == simulated_part(parquet.resolved)
 
@@ -109,7 +111,7 @@ def test_parquet_holds_the_same_as_csv(written):
 def test_its_content_makes_the_run_and_not_its_name(written):
     one, same, other = written(JOINTS[:3], POSTURE), written(JOINTS[:3], POSTURE, "b.csv"), None
     other = written(JOINTS[:3], 1.001 * POSTURE, "c.csv")
-    names = [run_hash(checked_file(file).resolved, "") for file in (one, same, other)]
+    names = [run_hash(checked(file).resolved, "") for file in (one, same, other)]
     assert names[0] == names[1] != names[2]
 
 
@@ -140,7 +142,7 @@ def test_a_sweep_over_files_is_one_of_their_contents(written, cli):
 
 def test_a_name_leads_to_the_working_folder(written):
     written(JOINTS[:3], POSTURE)
-    assert checked_file("motion.csv").path.duration == 2.0
+    assert checked("motion.csv").path.duration == 2.0
     (problem,) = problems_of("gone.csv")
     assert problem.startswith("trajectory.file: no file 'gone.csv'; looked in ")
     assert problems_of("../motion.csv")[0].endswith("leads out of its folder; give its whole path")

@@ -144,13 +144,3 @@ def test_columns_of_friction_take_friction_away(simulated):
         return np.abs(trace.q[late] - path.sample_joints(trace.t[late])[:, 0]).max()
 
     assert error("true") < 0.25 * error("false")
-
-
-@pytest.mark.parametrize("option", ["scale=uniform", "friction=false", "adaptation=0.1", "feedforward=false",
-                                    "task=pose", "gravity_compensation=false", "damping_ratio=0.8",
-                                    "singularity_damping=0.1", "null_space_frequency=5"])  # fmt: skip
-def test_every_option_composes_and_runs(simulated, option):
-    more = ("controller.adaptation=1e-3",) if option == "scale=uniform" else ()
-    trace = simulated("robot=xarm7", "controller=adaptive", "robot.rotor_inertia=assumed", "controller.period=0.001",
-                      "controller.natural_frequency=10", "duration=0.1", *more, f"controller.{option}")  # fmt: skip
-    assert trace.failure is None

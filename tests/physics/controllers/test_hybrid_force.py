@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support.physics import critically_damped
 
 from runner.controllers.force_stability import force_loop_limit
 from runner.execution import run
@@ -59,7 +60,7 @@ def test_it_comes_as_a_critically_damped_mass_on_the_wall_does(push, checked_con
     J = model.tip_jacobian(q)[:3]
     mass = 1.0 / (NORMAL @ J @ np.linalg.solve(model.mass_matrix(q), J.T @ NORMAL))
     w = np.sqrt(2.0 * 300.0 / mass)
-    np.testing.assert_allclose(force, 2.0 * (1.0 - (1.0 + w * trace.t) * np.exp(-w * trace.t)), atol=0.02)
+    np.testing.assert_allclose(force, 2.0 * (1.0 - critically_damped(trace.t, w)), atol=0.02)
 
 
 def test_the_macro_is_slower_than_the_mini_by_the_root_of_their_masses(push):

@@ -77,11 +77,3 @@ def test_the_tip_reaches_a_goal(simulated, name):
                       "controller.natural_frequency=10", "trajectory=goal", "duration=3", *more)  # fmt: skip
     assert trace.failure is None
     np.testing.assert_allclose(trace.error[-1], 0.0, atol=1e-6)
-
-
-@pytest.mark.parametrize("option", ["inertia=posture", "feedforward=false", "singularity_damping=0.1",
-                                    "null_space_frequency=5", "task=pose"])  # fmt: skip
-def test_every_option_composes_and_runs(simulated, option):
-    trace = simulated("robot=xarm7", "controller=joint_pd", f"controller.{option}", "robot.rotor_inertia=assumed",
-                      "controller.natural_frequency=10", "controller.period=0.001", "duration=0.1")  # fmt: skip
-    assert trace.failure is None

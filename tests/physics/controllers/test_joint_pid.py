@@ -83,12 +83,3 @@ def test_anti_windup_changes_nothing_within_the_limits(simulated):
     motion = ("trajectory=joint_quintic", "duration=1", "torque_limits.max=null")
     held, wound = (simulated(*LINE, *motion, f"controller.anti_windup={on}") for on in ("true", "false"))
     np.testing.assert_array_equal(held.q, wound.q)
-
-
-@pytest.mark.parametrize("option", ["integral_share=0.5", "anti_windup=false", "feedforward=false", "task=pose",
-                                    "gravity_compensation=false", "damping_ratio=0.8", "singularity_damping=0.1",
-                                    "null_space_frequency=5"])  # fmt: skip
-def test_every_option_composes_and_runs(simulated, option):
-    trace = simulated("robot=xarm7", "controller=joint_pid", f"controller.{option}", "robot.rotor_inertia=assumed",
-                      "controller.natural_frequency=10", "controller.period=0.001", "duration=0.1")  # fmt: skip
-    assert trace.failure is None

@@ -62,14 +62,6 @@ def test_the_energy_of_s_falls_by_its_damping(name):
     np.testing.assert_allclose((energy(h) - energy(-h)) / (2.0 * h), falls, rtol=1e-6)
 
 
-@pytest.mark.parametrize("option", ["feedforward=false", "singularity_damping=0.1", "null_space_frequency=5",
-                                    "task=pose", "gravity_compensation=false", "damping_ratio=0.8"])  # fmt: skip
-def test_every_option_composes_and_runs(simulated, option):
-    trace = simulated("robot=xarm7", "controller=passivity", f"controller.{option}", "robot.rotor_inertia=assumed",
-                      "controller.natural_frequency=10", "controller.period=0.001", "duration=0.1")  # fmt: skip
-    assert trace.failure is None
-
-
 def test_the_tip_reaches_a_goal(simulated):
     trace = simulated("robot=macro", "controller=passivity", "controller.period=0.001",
                       "controller.natural_frequency=10", "trajectory=goal", "duration=3")  # fmt: skip

@@ -84,12 +84,3 @@ def test_a_thin_layer_makes_the_torques_of_noisy_encoders_rough(simulated):
     # Within the layer the gain of s is K_D + K / phi: K as it is at phi 0.05, in a layer of a tenth.
     rough, smooth = roughness(0.005, "controller.switching=10"), roughness(0.05)
     assert rough > 3.0 * smooth
-
-
-@pytest.mark.parametrize("option", ["layer=0.1", "switching=2", "feedforward=false", "task=pose", "damping_ratio=0.8",
-                                    "gravity_compensation=false", "singularity_damping=0.1",
-                                    "null_space_frequency=5"])  # fmt: skip
-def test_every_option_composes_and_runs(simulated, option):
-    trace = simulated("robot=xarm7", "controller=sliding_mode", f"controller.{option}", "robot.rotor_inertia=assumed",
-                      "controller.natural_frequency=10", "controller.period=0.001", "duration=0.1")  # fmt: skip
-    assert trace.failure is None

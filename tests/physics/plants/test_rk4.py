@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from support.arms import model_of, urdf_of
+from support.physics import assert_order
 
 from runner.plants.rk4 import Rk4, build, default_step
 from runner.robots import RobotModel
@@ -42,8 +43,7 @@ def reference_state(name, scale):
 def test_fourth_order_convergence_under_held_torques(name, scale):
     reference = reference_state(name, scale)
     errors = [np.linalg.norm(final_state(name, scale, steps) - reference) for steps in (10, 20, 40, 80)]
-    orders = np.log2(np.divide(errors[:-1], errors[1:]))
-    assert orders == pytest.approx([4.0] * 3, abs=0.25)
+    assert_order(errors, 4, within=0.25)
 
 
 @pytest.mark.parametrize(("name", "scale"), ARMS)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support.physics import critically_damped
 
 from runner.plants.rk4 import Rk4
 from runner.plants.servo import JointServo, ServoConfig
@@ -63,7 +64,7 @@ def test_a_small_step_answers_as_a_critically_damped_spring(servo, macro):
     for _ in times:
         plant.advance(target)
         answer.append(plant.q[0] - Q[0])
-    expected = 1e-3 * (1.0 - (1.0 + wn * times) * np.exp(-wn * times))
+    expected = 1e-3 * (1.0 - critically_damped(times, wn))
     assert np.abs(answer - expected).max() < 1e-3 * wn * PERIOD  # the servo's end-of-period evaluation is first order
 
 

@@ -5,6 +5,7 @@ from itertools import islice, pairwise
 import numpy as np
 import pytest
 from support.arms import checked
+from support.physics import assert_order
 
 from runner.assembly import assemble
 from runner.config.compose import compose
@@ -46,11 +47,11 @@ def test_the_tip_of_the_trace_is_that_of_the_bent_links(simulated):
 
 
 def test_stiffer_links_bring_the_arm_nearer_to_its_path(simulated):
-    soft, harder = (
+    errors = [
         np.linalg.norm(simulated(*MACRO, *MOVE, *stiff(EI), "plant.step=0.0005").error, axis=1).max()
         for EI in (3e3, 6e3)
-    )
-    assert soft / harder == pytest.approx(2.0, rel=0.1)
+    ]
+    assert_order(errors, 1, within=0.13)  # in the compliance
 
 
 def test_more_parts_change_the_motion_less_and_less(simulated):
@@ -136,7 +137,7 @@ def test_a_sensor_of_the_tip_sees_what_links_bend(simulated):
     sag = 2.0 * 9.81 / (2.0 * 3000)  # m: link 3 leans by the slope of the end of link 2
     assert error(6, "[]") > sag
     assert error(6, "[macro]") < 0.15 * sag
-    assert error(3, "[macro]") / error(6, "[macro]") == pytest.approx(4.0, rel=0.05)
+    assert_order([error(omega, "[macro]") for omega in (3, 6)], 2, within=0.07)  # in the period of the law
 
 
 def test_a_mini_that_sees_the_tip_errs_by_the_desired_acceleration_whatever_bends_below_it(simulated):

@@ -1,0 +1,36 @@
+"""Options of the laws that follow joints: a short run for each two values of any two options."""
+
+import pytest
+from support.covers import covered
+
+OPTIONS = {
+    "law": ("adaptive", "computed_torque", "joint_pd", "joint_pid", "passivity", "sliding_mode"),
+    "own": (False, True),
+    "task": ("position", "pose"),
+    "feedforward": ("true", "false"),
+    "gravity_compensation": ("true", "false"),
+    "damping_ratio": ("1", "0.8"),
+    "singularity_damping": ("0.3", "0.1"),
+    "null_space_frequency": ("10", "5"),
+}
+OWN = {
+    "adaptive": ("scale=uniform", "friction=false", "adaptation=1e-3"),
+    "computed_torque": ("integral_gain=100",),
+    "joint_pd": ("inertia=posture",),
+    "joint_pid": ("integral_share=0.5", "anti_windup=false"),
+    "passivity": (),
+    "sliding_mode": ("layer=0.1", "switching=2"),
+}
+"""Options of one law alone, away from their defaults."""
+
+
+@pytest.mark.parametrize("chosen", covered(OPTIONS))
+def test_every_option_composes_and_runs(simulated, chosen):
+    law = chosen["law"]
+    keys = [f"{key}={value}" for key, value in chosen.items() if key not in ("law", "own")]
+    own = OWN[law] if chosen["own"] else ()
+    trace = simulated(
+        "robot=xarm7", f"controller={law}", *(f"controller.{key}" for key in (*keys, *own)),
+        "robot.rotor_inertia=assumed", "controller.natural_frequency=10", "controller.period=0.001", "duration=0.1",
+    )  # fmt: skip
+    assert trace.failure is None
