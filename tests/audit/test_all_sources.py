@@ -1,3 +1,5 @@
+"""Audit of all sources: verdicts of known slips, repairs and the table of equations."""
+
 import csv
 import io
 

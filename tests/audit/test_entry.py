@@ -1,3 +1,5 @@
+"""Entries of audited equations: bad files name entry and key; ids and findings are valid."""
+
 import pytest
 
 from runner.audit.entry import Entry, entries, parts

@@ -1,3 +1,5 @@
+"""Values of printed expressions against Python's arithmetic."""
+
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,3 +1,5 @@
+"""Inventory of a source against the equations that are audited."""
+
 import pytest
 
 from runner.audit import inventory as module

@@ -1,3 +1,5 @@
+"""A user's own formulas against the model of a robot: right ones, planted errors and bad input."""
+
 import numpy as np
 import pytest
 

@@ -1,3 +1,5 @@
+"""Rollouts: the corrected formula does ten times better than the printed one."""
+
 import numpy as np
 import pytest
 

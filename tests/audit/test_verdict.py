@@ -1,3 +1,5 @@
+"""Verdicts: planted errors, repairs, angles and missing numbers against the verdict that each must give."""
+
 import numpy as np
 import pytest
 

@@ -1,3 +1,5 @@
+"""Compensation of a tool's load: sensor readings of a known tool against the external wrench."""
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation

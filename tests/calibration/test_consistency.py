@@ -1,3 +1,5 @@
+"""Consistency of errors with their covariance: the band's coverage against its stated probability."""
+
 import numpy as np
 import pytest
 

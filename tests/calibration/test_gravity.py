@@ -1,3 +1,5 @@
+"""Identification of a tool's weight: estimates and covariance against the true tool, exact and noisy."""
+
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,3 +1,5 @@
+"""Orientations that weigh a tool: the matrices against a tool at rest, condition numbers and refusals."""
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation

@@ -1,3 +1,5 @@
+"""Repeatability: scatter of the tip and its covariance against drawn joint errors."""
+
 import numpy as np
 
 from runner.calibration import joint_deviation, pose_covariances

@@ -1,3 +1,5 @@
+"""Load of a tool: its wrench against the sum over its mass points."""
+
 import numpy as np
 import pytest
 from hypothesis import given

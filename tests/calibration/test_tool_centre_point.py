@@ -1,3 +1,5 @@
+"""Tool centre point: estimates and covariance against the true tip, exact and noisy; refused poses."""
+
 import numpy as np
 import pytest
 from hypothesis import assume, given

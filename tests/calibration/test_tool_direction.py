@@ -1,3 +1,5 @@
+"""Direction of a tool: alignment angles against rotations, and errors against their covariance."""
+
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,3 +1,5 @@
+"""Caveat of an arm's load: masses carried against the arm's own."""
+
 import pytest
 from support.caveat_runs import found
 

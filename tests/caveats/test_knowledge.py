@@ -1,3 +1,5 @@
+"""Caveats of what a controller knows: exact velocities, noise alone and exact models."""
+
 import pytest
 from support.caveat_runs import found, signals
 from support.engines import ASKED

@@ -1,3 +1,5 @@
+"""Caveat of parts of an MJCF that are left out of the motion."""
+
 from textwrap import dedent
 
 import pytest

@@ -1,3 +1,5 @@
+"""Caveats of a motion: error of the motion's size, goals missed and position limits passed."""
+
 import numpy as np
 import pytest
 from support.caveat_runs import found, signals

@@ -1,3 +1,5 @@
+"""Caveat of integration error: its thresholds, and the step that it names."""
+
 import pytest
 
 from runner.caveats.plant_error import PlantStep, caveat_of

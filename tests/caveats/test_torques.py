@@ -1,3 +1,5 @@
+"""Caveats of torques: time at the limit and chatter, on both sides of their thresholds."""
+
 import numpy as np
 import pytest
 from support.caveat_runs import found, signals

@@ -1,3 +1,5 @@
+"""Names on axes: none is cut off, overlaps or is read as mathematics."""
+
 import pytest
 from matplotlib.figure import Figure
 

@@ -1,3 +1,5 @@
+"""Drawings as SVG: reproducible, offline, on the paper; camera and circles against geometry."""
+
 import re
 import xml.etree.ElementTree as ET
 

@@ -1,3 +1,5 @@
+"""Moving arm: its frames against the instants and the area of the motion."""
+
 import re
 import xml.etree.ElementTree as ET
 

@@ -1,3 +1,5 @@
+"""Palette: distances of colours, as readers with each colour blindness see them."""
+
 import itertools
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""Shared legend: one for panels of the same curves, in the figure and on the page."""
+
 import re
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""Thinning of curves: peaks, gaps and edges against the full curve."""
+
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,3 +1,5 @@
+"""Marks on axes: plain and logarithmic, in one notation."""
+
 import pytest
 
 from runner.drawing.ticks import at_2_and_5, marks, plain_mark, power_mark

@@ -1,3 +1,5 @@
+"""Units of panels: chosen by the largest value, one for panels side by side."""
+
 import numpy as np
 import pytest
 

@@ -1,3 +1,5 @@
+"""Differences of two expressions: terms, signs and exchanged symbols."""
+
 import pytest
 
 from runner.expressions.difference import difference

@@ -1,3 +1,5 @@
+"""Parser of expressions: positions in messages, limits of length, order of names."""
+
 import pytest
 
 from runner.expressions.parser import ExpressionError, parse

@@ -1,3 +1,5 @@
+"""Shortened expressions: every marked term stays."""
+
 from runner.expressions.difference import difference
 from runner.expressions.parser import parse
 from runner.expressions.shortening import ELLIPSIS, holds, shortened

@@ -1,3 +1,5 @@
+"""Typeset expressions: valid mathematics with subscripts, brackets and signs."""
+
 import pytest
 
 from runner.expressions.parser import parse

@@ -1,3 +1,5 @@
+"""Guarded controllers: laws that raise, return or change what they must not, and the failure's place."""
+
 import re
 from dataclasses import replace
 

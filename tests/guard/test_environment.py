@@ -1,3 +1,5 @@
+"""Guarded environments: wrenches that are none, and the failure's place."""
+
 import re
 from dataclasses import replace
 

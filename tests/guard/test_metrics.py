@@ -1,3 +1,5 @@
+"""Guarded metrics: a metric that fails loses its value alone."""
+
 import re
 from types import ModuleType
 

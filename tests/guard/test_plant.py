@@ -1,3 +1,5 @@
+"""Guarded plants: states that are none, and the failure's place."""
+
 import re
 from dataclasses import replace
 

@@ -1,3 +1,5 @@
+"""Read-only arrays: writing is refused and reaches nothing."""
+
 from dataclasses import FrozenInstanceError, dataclass
 
 import numpy as np

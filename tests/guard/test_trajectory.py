@@ -1,3 +1,5 @@
+"""Guarded trajectories: samples that are none are refused before or during the run."""
+
 import re
 from dataclasses import dataclass, replace
 

@@ -1,3 +1,5 @@
+"""Summary over repetitions: order, quantiles, missing values and units against NumPy."""
+
 from dataclasses import replace
 
 import numpy as np

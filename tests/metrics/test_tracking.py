@@ -1,3 +1,5 @@
+"""Metrics of tracking errors against hand-made traces."""
+
 import numpy as np
 import pytest
 from support.one_run import of_one

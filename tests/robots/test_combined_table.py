@@ -1,3 +1,5 @@
+"""Denavit-Hartenberg table of the combined arm against the thesis and the model's tip pose."""
+
 import numpy as np
 import pytest
 from support.arms import checked

@@ -1,3 +1,5 @@
+"""Denavit-Hartenberg tables against the thesis and the tip poses of models."""
+
 import numpy as np
 import pytest
 from support.arms import model_of

@@ -1,3 +1,5 @@
+"""Robot files: where they are found, and masses and limits from a config against the model."""
+
 import xml.etree.ElementTree as ET
 
 import numpy as np

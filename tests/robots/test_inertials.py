@@ -1,3 +1,5 @@
+"""Sets of inertials and payloads against the masses of the model; bad sets are refused."""
+
 import numpy as np
 import pytest
 import yaml

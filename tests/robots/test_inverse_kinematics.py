@@ -1,3 +1,5 @@
+"""Inverse kinematics against forward kinematics, within joint limits and on the branch of home."""
+
 import re
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""Arms read from MJCF against MuJoCo's own model of the same file."""
+
 import re
 from pathlib import Path
 

@@ -1,3 +1,5 @@
+"""Files of an MJCF: includes and meshes that are missing, outside or not of an arm are refused."""
+
 import pytest
 from support.mjcf_arms import CHAIN, written
 

@@ -1,3 +1,5 @@
+"""Parts of an MJCF that an arm cannot have: refused or named."""
+
 import pytest
 from support.mjcf_arms import CHAIN, written
 

@@ -1,3 +1,5 @@
+"""Rigid-body model: Jacobians, mass matrix, gravity and energy against differences and the thesis."""
+
 import numpy as np
 import pytest
 from hypothesis import given

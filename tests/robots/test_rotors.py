@@ -1,3 +1,5 @@
+"""Rotor inertias: the model against the stated rule and against the engines."""
+
 import numpy as np
 import pytest
 import yaml

@@ -1,3 +1,5 @@
+"""Directions of a task: every motion of the tip lies in them, for spatial, planar and sliding arms."""
+
 import numpy as np
 import pytest
 from support import strangers

@@ -1,3 +1,5 @@
+"""URDF tree: root, ends and ways between links; files that are none are refused."""
+
 import pytest
 from support import strangers
 

@@ -1,3 +1,5 @@
+"""Workspace: reach, manipulability and singular surfaces against the thesis."""
+
 import numpy as np
 import pytest
 from support.arms import model_of, urdf_of

@@ -1,3 +1,5 @@
+"""Encoders: noise, steps and biases of readings against their stated distributions."""
+
 import numpy as np
 import pytest
 

@@ -1,3 +1,5 @@
+"""Wrist sensor: frame, noise, drift, low-pass and range of readings against closed forms."""
+
 import numpy as np
 import pytest
 from pydantic import ValidationError

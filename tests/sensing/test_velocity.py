@@ -1,3 +1,5 @@
+"""Velocity estimates against the transfer functions that they state."""
+
 import numpy as np
 import pytest
 from scipy.signal import dlsim, dlti

@@ -1,3 +1,5 @@
+"""Wrenches in other frames: power, composition and inverse against rigid-body algebra."""
+
 from fractions import Fraction
 
 import numpy as np

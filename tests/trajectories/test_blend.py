@@ -1,3 +1,5 @@
+"""Quintic blend: ends, symmetry and derivatives."""
+
 import numpy as np
 
 from runner.trajectories.blend import quintic_blend

@@ -1,3 +1,5 @@
+"""Circle: radius, plane, speed and distance against geometry."""
+
 import numpy as np
 import pytest
 from hypothesis import given

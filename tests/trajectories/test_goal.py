@@ -1,3 +1,5 @@
+"""Goal: a desired tip at rest and the distance to the segment that leads to it."""
+
 import numpy as np
 import pytest
 

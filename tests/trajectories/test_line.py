@@ -1,3 +1,5 @@
+"""Line to and fro: extent, speed and acceleration against the harmonic motion."""
+
 import numpy as np
 import pytest
 from hypothesis import assume, given

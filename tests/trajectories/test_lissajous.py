@@ -1,3 +1,5 @@
+"""Lissajous figures: sines along each axis, crossings and distance."""
+
 import numpy as np
 import pytest
 

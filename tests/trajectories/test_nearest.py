@@ -1,3 +1,5 @@
+"""Nearest point of a curve against parabolas."""
+
 import numpy as np
 
 from runner.trajectories.nearest import distance_to_curve

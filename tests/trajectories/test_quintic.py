@@ -1,3 +1,5 @@
+"""Quintic: end conditions, derivatives and distance along the straight path."""
+
 import numpy as np
 import pytest
 from hypothesis import assume, given

@@ -1,3 +1,5 @@
+"""Square: rests at its corners, speed of its edges and distance."""
+
 import numpy as np
 import pytest
 

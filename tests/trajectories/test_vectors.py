@@ -1,3 +1,5 @@
+"""Frame of a plane from its normal and one direction."""
+
 import numpy as np
 import pytest
 from hypothesis import assume, given

@@ -1,3 +1,5 @@
+"""Motion through way points: least jerk, continuity and times."""
+
 from itertools import pairwise
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""Admittance filter: steps, energy and composition against the exact solution of its linear law."""
+
 import numpy as np
 import pytest
 from hypothesis import given

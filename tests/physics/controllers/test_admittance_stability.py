@@ -1,3 +1,5 @@
+"""Stability of an admittance on a wall: the bound against Jury's criterion and simulated contact."""
+
 import numpy as np
 import pytest
 

@@ -1,3 +1,5 @@
+"""Stability under delays and missed deadlines: bounds against polynomials and simulated loops."""
+
 import numpy as np
 import pytest
 

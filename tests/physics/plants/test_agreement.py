@@ -1,3 +1,5 @@
+"""Agreement of engines: MuJoCo, PyBullet and Runge-Kutta on smooth closed loops."""
+
 import numpy as np
 import pytest
 from support import strangers

@@ -1,3 +1,5 @@
+"""PyBullet's plant: one step against Pinocchio's dynamics, files it misreads, servers and resets."""
+
 import numpy as np
 import pytest
 from support import strangers

@@ -1,3 +1,5 @@
+"""Flexible joints: modes, energy, stability bounds and rest against closed forms."""
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp

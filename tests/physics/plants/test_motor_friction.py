@@ -1,3 +1,5 @@
+"""Friction and brakes of motors behind flexible joints, against closed forms."""
+
 import numpy as np
 import pytest
 

@@ -1,3 +1,5 @@
+"""MuJoCo's plant: mass matrices against Pinocchio's, and files whose contents it must ignore."""
+
 import re
 
 import numpy as np

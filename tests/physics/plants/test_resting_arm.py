@@ -1,3 +1,5 @@
+"""Exact map of a resting arm with flexible joints: against the plant, and bounds of gains against Routh."""
+
 from dataclasses import replace
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""Runge-Kutta plant: fourth order against an adaptive integrator."""
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp

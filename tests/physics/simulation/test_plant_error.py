@@ -1,3 +1,5 @@
+"""Integration error of a run: differences to Runge-Kutta, and the step that would do."""
+
 import json
 from dataclasses import replace
 

@@ -1,3 +1,5 @@
+"""Closed loop: ticks, held torques, noise, limits and failures, row by row of the trace."""
+
 import dataclasses
 import hashlib
 import subprocess

@@ -1,3 +1,5 @@
+"""Compiled flexible joints against the plant through Pinocchio."""
+
 import numpy as np
 import pytest
 from support.arms import model_of
