@@ -1,3 +1,5 @@
+"""Output of C libraries: caught line by line, and written where it belongs."""
+
 import ctypes
 import os
 

@@ -1,3 +1,5 @@
+"""Errors for users: one and many problems, the nearest name, safe texts."""
+
 import pickle
 
 import pytest

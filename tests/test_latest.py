@@ -1,3 +1,5 @@
+"""The newest result: noted in order by many processes, and never an older one."""
+
 import shutil
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path

@@ -1,3 +1,5 @@
+"""Plug-ins: named on the command line, hashed, inherited by workers; their errors are placed."""
+
 import io
 import json
 import os

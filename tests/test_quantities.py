@@ -1,3 +1,5 @@
+"""Texts of quantities: digits, units, ranges and missing values."""
+
 import math
 
 import pytest

@@ -1,3 +1,5 @@
+"""Registry of kinds: look-up, late import, copies for plug-ins and strict models."""
+
 import sys
 import types
 from importlib.metadata import EntryPoint

@@ -1,3 +1,5 @@
+"""Texts for terminals and tables: control characters, length and formulas."""
+
 import csv
 import io
 

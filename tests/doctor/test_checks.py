@@ -1,3 +1,5 @@
+"""Checks of the doctor: each fault of a robot file against the finding that it must give."""
+
 import re
 
 import numpy as np

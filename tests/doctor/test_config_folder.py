@@ -1,3 +1,5 @@
+"""Config folders that the doctor writes: names of files and folders."""
+
 import pytest
 import yaml
 from support import strangers

@@ -1,3 +1,5 @@
+"""The doctor on MJCF files against the same arms as URDF."""
+
 import pytest
 import yaml
 from support.mjcf_arms import CHAIN, disagreement, written

@@ -1,3 +1,5 @@
+"""Starting points that the doctor proposes: home, goal and gains against the model."""
+
 import numpy as np
 import pytest
 from support import strangers

@@ -1,3 +1,5 @@
+"""References: bands at both ends, missing values and bad files; the shipped ones are valid."""
+
 import math
 
 import pytest

@@ -1,3 +1,5 @@
+"""Atomic writing: leftovers of killed writers against files of living ones."""
+
 import os
 import socket
 import subprocess

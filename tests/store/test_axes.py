@@ -1,3 +1,5 @@
+"""Stored axes of a sweep: order, reading back and damaged lists."""
+
 import itertools
 import json
 

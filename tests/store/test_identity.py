@@ -1,3 +1,5 @@
+"""Run hash: what counts and what does not, key by key."""
+
 import hashlib
 import json
 from importlib.metadata import EntryPoint

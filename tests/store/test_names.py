@@ -1,3 +1,5 @@
+"""Names of runs as bytes: size, look-up and choice of the best entry."""
+
 import numpy as np
 
 from runner.store.names import Names, best_of_each, look_up

@@ -1,3 +1,5 @@
+"""Shards: outcomes read back as written; damaged shards and rows are named."""
+
 import re
 
 import pyarrow

@@ -1,3 +1,5 @@
+"""Stored sweeps: opened as they were made; damaged and foreign folders are named."""
+
 import json
 
 import pytest
