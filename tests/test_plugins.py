@@ -125,7 +125,7 @@ def test_what_raises_outside_of_the_loop_is_told_with_its_place(mine):
     assert ending.stderr.endswith(f"(spring.py, line {line}, in start_posture)\n")
 
 
-def test_so_is_what_its_config_model_raises(mine):
+def test_what_a_config_model_of_the_users_raises_is_told_with_its_place(mine):
     check = "    @field_validator('period')\n    def check(cls, period):\n        return {}[period]\n"
     text = SPRING.replace("    stiffness: PositiveFloat\n", f"    stiffness: PositiveFloat\n\n{check}")
     (mine / "mine/spring.py").write_text(text.replace("import PositiveFloat", "import PositiveFloat, field_validator"))

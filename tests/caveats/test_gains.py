@@ -29,5 +29,5 @@ QUIET = [
 
 
 @pytest.mark.parametrize("more", QUIET)
-def test_others_are_quiet(checked_config, more):
+def test_other_laws_have_no_caveat_of_gains(checked_config, more):
     assert "unstable_gains" not in found(checked_config(*LINE, *more))

@@ -26,7 +26,7 @@ def test_an_error_of_the_size_of_the_motion_is_told(path):
     assert caveat.text == "the arm did not follow: the tip's error reaches 50 % of the size of its motion"
 
 
-def test_a_small_error_is_not(path):
+def test_a_small_error_has_no_caveat(path):
     error = np.multiply(np.sin(np.pi * ROWS) * 0.05, OFF)
     assert found(path, signals(tip=PATH - error, desired=PATH)) == {}
 
@@ -55,7 +55,7 @@ def test_a_joint_beyond_its_position_limits_is_told(path):
     assert caveat.text == ("joint q2 goes 0.05 rad beyond its position limits, at which the plant rk4 does not hold it")
 
 
-def test_one_at_its_limit_is_not(path):
+def test_a_joint_at_its_position_limit_has_no_caveat(path):
     limits = np.array([[-1.0, -2.0, -3.0], [1.0, 2.0, 3.0]])
     assert found(path, signals(q=ROWS * [1.0, -2.005, 3.0]), position_limits=limits) == {}
 

@@ -24,7 +24,7 @@ def test_a_joint_at_its_limit_for_long_is_told(limited):
     assert caveat.text == "joint q2 is at its torque limit, 10 N m, in 25 % of the ticks"
 
 
-def test_one_at_its_limit_for_a_short_time_is_not(limited):
+def test_a_joint_at_its_limit_for_a_short_time_has_no_caveat(limited):
     assert found(limited, signals(tau=torques(10))) == {}
     assert found(limited, signals(tau=torques(100) * 0.999)) == {}
 
@@ -37,7 +37,7 @@ def test_a_torque_that_jumps_between_its_limits_chatters(limited):
     assert "joint q1 chatters: its torque jumps from one limit, 10 N m, to the opposite one at 99 %" in caveat.text
 
 
-def test_one_that_swings_from_limit_to_limit_does_not(limited):
+def test_a_torque_that_swings_from_limit_to_limit_does_not_chatter(limited):
     t = np.arange(200)
     tau = torques(0, 200)
     tau[:, 0] = np.clip(20.0 * np.sin(2.0 * np.pi * t / 50.0), -10.0, 10.0)

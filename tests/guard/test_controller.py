@@ -54,7 +54,7 @@ def test_a_law_that_goes_wrong_is_a_failure_that_names_the_place(checked_config,
     assert re.search(reason, trace.failure.reason), trace.failure.reason
 
 
-def test_a_law_that_changes_what_it_is_handed_is_one_too(checked_config, closed_loop):
+def test_a_law_that_changes_what_it_is_handed_is_a_failure(checked_config, closed_loop):
     class Writes(Law):
         def torque(self, time, q, dq, reference):
             reference[0] -= 1.0
@@ -97,7 +97,7 @@ class Feels(Law):
         return 1 / 0
 
 
-def test_what_it_feels_and_tells_is_watched_too():
+def test_forces_that_a_law_feels_and_tells_are_watched():
     law = WatchedController(Feels(None), 3)
     with pytest.raises(SimulationError, match=r"read-only \(test_controller.py, line \d+, in feel\)"):
         law.feel(np.ones(6))

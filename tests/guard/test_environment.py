@@ -49,7 +49,7 @@ def test_an_environment_that_goes_wrong_is_a_failure_that_names_the_place(checke
 
 
 @pytest.mark.parametrize("method", ["reset", "wrench"])
-def test_one_that_changes_what_it_is_handed_is_one_too(checked_config, closed_loop, method):
+def test_an_environment_that_changes_what_it_is_handed_is_a_failure(checked_config, closed_loop, method):
     wind = Wind(lambda: np.zeros(6))
 
     def write(*handed):

@@ -48,7 +48,7 @@ def write(*handed):
 
 
 @pytest.mark.parametrize("method", ["reset", "advance"])
-def test_one_that_changes_what_it_is_handed_is_one_too(checked_config, closed_loop, method):
+def test_a_plant_that_changes_what_it_is_handed_is_a_failure(checked_config, closed_loop, method):
     plant = Plant()
     setattr(plant, method, write)
     loop = replace(closed_loop("robot=macro", "duration=0.2"), plant=watch_plant(plant))
@@ -57,7 +57,7 @@ def test_one_that_changes_what_it_is_handed_is_one_too(checked_config, closed_lo
     assert re.search(r"read-only \(test_plant.py, line \d+, in write\)", trace.failure.reason)
 
 
-def test_one_with_a_state_of_another_shape_is_one_too(checked_config, closed_loop):
+def test_a_plant_with_a_state_of_another_shape_is_a_failure(checked_config, closed_loop):
     plant = Plant()
     plant.dq = np.zeros(2)
     loop = replace(closed_loop("robot=macro", "duration=0.2"), plant=watch_plant(plant))

@@ -15,7 +15,7 @@ def test_an_array_is_copied_and_cannot_be_written_to():
         handed[0] = 1.0
 
 
-def test_one_that_is_made_writable_again_reaches_nothing():
+def test_a_copy_made_writable_again_reaches_nothing():
     own = np.zeros((2, 3))
     handed = read_only(own[0])
     handed.setflags(write=True)
@@ -30,7 +30,7 @@ class Record:
     name: str = "a"
 
 
-def test_so_is_every_array_of_a_dataclass():
+def test_arrays_of_a_dataclass_are_copied_and_cannot_be_written_to():
     own = Record(np.zeros(2), Record(np.ones(2)))
     handed = read_only(own)
     for array in (handed.values, handed.inner.values):

@@ -73,7 +73,7 @@ def test_a_wrist_sensor_that_goes_wrong_ends_the_run_with_the_place(closed_loop,
     assert make_wrist_sensor(loop, config.wrist_sensor, 0, 0) is not None
 
 
-def test_torque_sensors_are_watched_too():
+def test_readings_of_torque_sensors_are_watched():
     watched = WatchedTorqueSensors(Sensor(lambda load: load[:1]))
     own = np.ones(3)
     answer = watched.read(0, own)

@@ -60,7 +60,7 @@ def test_a_trajectory_that_is_right_passes():
     assert watched.sample(np.zeros(2)).shape == (2, 3, 3)
 
 
-def test_one_that_changes_what_it_is_handed_is_refused():
+def test_a_trajectory_that_changes_what_it_is_handed_is_refused():
     class Writes(Path):
         def sample(self, times):
             times *= 2.0
@@ -69,7 +69,7 @@ def test_one_that_changes_what_it_is_handed_is_refused():
         WatchedTrajectory(Writes())
 
 
-def test_one_that_goes_wrong_later_is_a_failure(checked_config, closed_loop):
+def test_a_trajectory_that_goes_wrong_later_is_a_failure(checked_config, closed_loop):
     class Tires(Path):
         def sample(self, times):
             return super().sample(times) if len(times) == 1001 else times / {}

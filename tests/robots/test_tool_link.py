@@ -90,7 +90,7 @@ def test_a_tool_whose_inertia_no_body_has_is_refused(bare, moments):
 
 
 @pytest.mark.parametrize("plant", ["bullet", "rk4"])
-def test_so_is_a_run_with_it(cli, tmp_path, plant):
+def test_a_run_with_a_tool_whose_inertia_no_body_has_is_refused(cli, tmp_path, plant):
     overrides = ("controller=computed_torque", "trajectory=line", "duration=0.05", "robot.tool.inertia=[1,0.001,0.001]")
     ending = cli("robot=meca500", f"plant={plant}", *overrides)
     assert ending.code == 2

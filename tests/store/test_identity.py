@@ -47,7 +47,7 @@ def test_where_it_is_kept_and_the_preset_do_not_count(keys):
     assert changed(**keys) == changed()
 
 
-def test_neither_does_the_experiment_that_says_the_same():
+def test_an_experiment_that_says_the_same_does_not_count():
     groups = ("robot=macro", "trajectory=quintic", "noise=thesis", "torque_limits=thesis")
     overrides = (*groups, "repetitions=40", "plant_error=true", "controller.singularity_damping=0.0")
     spelled_out = compose(overrides).resolved

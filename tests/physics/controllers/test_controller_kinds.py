@@ -87,7 +87,7 @@ def test_a_module_may_choose_the_posture_at_the_start(own_part, cli):
         ("1 / 0", "ZeroDivisionError"),
     ],
 )
-def test_one_that_is_none_is_refused(own_part, cli, posture, why):
+def test_a_posture_at_the_start_that_is_none_is_refused(own_part, cli, posture, why):
     own = law(own_part, "odd", TORQUES, more=START + posture)
     ending = cli("--config-dir", own, "robot=macro", "controller=odd", *QUINTIC)
     assert ending.code == 2
@@ -155,7 +155,7 @@ def test_a_law_that_wants_its_torque_limits_is_told_them(own_part, cli):
     np.testing.assert_array_equal(run.trace[["tau1", "tau2", "tau3"]].to_numpy()[0], [3.0, 2.0, 1.0])
 
 
-def test_one_that_fails_when_it_is_told_is_refused(own_part, cli):
+def test_a_law_that_raises_at_its_torque_limits_is_refused(own_part, cli):
     own = law(own_part, "limit_refuser", LIMITED.replace("told.limits = limits", "1 / 0"))
     ending = cli("--config-dir", own, "robot=macro", "controller=limit_refuser", *QUINTIC)
     assert ending.code == 2

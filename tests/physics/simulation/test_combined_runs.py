@@ -245,7 +245,7 @@ def test_a_singular_situation_is_a_result_and_never_a_crash(measured, case):
 
 @pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
 @pytest.mark.parametrize("situation", ["Mini folded, tracking", "all stretched out", "on the base axis"])
-def test_the_whole_body_too_has_a_result_there(measured, situation, plant):
+def test_the_whole_body_has_a_result_in_a_singular_situation(measured, situation, plant):
     changes = [change for change in SINGULAR[situation] if not change.startswith("controller.macro_target")]
     trace, _ = measured("robot=combined", "controller=whole_body", f"plant={plant}", *changes, "duration=2")
     good = slice(None) if trace.failure is None else slice(0, -1)

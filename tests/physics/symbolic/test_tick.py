@@ -67,7 +67,9 @@ def run_both(monkeypatch, *overrides, seed=0):
 
 
 @pytest.mark.parametrize(
-    ("seed", "overrides"), enumerate(RUNS), ids=lambda part: f"seed={part}" if isinstance(part, int) else " ".join(part)
+    ("seed", "overrides"),
+    list(enumerate(RUNS)),
+    ids=lambda part: f"seed={part}" if isinstance(part, int) else " ".join(part),
 )
 def test_whole_runs_are_those_of_pinocchio(monkeypatch, overrides, seed):
     horizon = 0.6 if "robot=combined" in overrides else 1.2  # s; the combined arm has ten times as many ticks
