@@ -37,7 +37,7 @@ def formulas(tmp_path):
     return write
 
 
-@pytest.mark.parametrize(("quantity", "text"), [("mass-matrix", MASS), ("jacobian", JACOBIAN)])
+@pytest.mark.parametrize(("quantity", "text"), [("mass-matrix", MASS), ("jacobian", JACOBIAN)], ids=["M", "J"])
 def test_right_formulas_agree(macro, formulas, quantity, text):
     assert all(each.largest < 1e-12 for each in compare(macro, quantity, formulas(text), 200))
 

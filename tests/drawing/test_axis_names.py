@@ -10,7 +10,7 @@ LAWS = ["computed_torque", "operational_space"]
 NARROW = column(88.0)
 
 
-@pytest.mark.parametrize("sheet", [REPORT, NARROW, column(180.0)])
+@pytest.mark.parametrize("sheet", [REPORT, NARROW, column(180.0)], ids=["report", "narrow", "column"])
 @pytest.mark.parametrize("length", [0.9, 1.4, 2.5, 5.0])
 def test_texts_below_an_axis_are_whole(sheet, length):
     names = names_below(LAWS, length, sheet)

@@ -35,6 +35,7 @@ from runner.expressions.tree import names
         ("(" * 70 + "1" + ")" * 70, 62, "nested more than 60 deep"),
         ("-" * 5000 + "1", 63, "nested more than 60 deep"),
     ],
+    ids=lambda part: part[:40] if isinstance(part, str) else None,
 )
 def test_what_cannot_be_read_is_told_with_its_position(text, position, reason):
     with pytest.raises(ExpressionError) as error:

@@ -252,6 +252,7 @@ def write_part(mine, group, name, module, spoils):
         ("trajectory", PATH),
         ("metric", METRIC),
     ],
+    ids=["law", "wind", "cable", "noise", "wrist", "torques", "belief", "plant", "path", "metric"],
 )
 def test_an_array_made_writable_again_reaches_nothing(mine, cli, group, module):
     found = {}

@@ -103,7 +103,9 @@ def test_no_metric_is_taken_for_another_s_suffix():
         assert summary(1.0, name=name).unit == unit
 
 
-@pytest.mark.parametrize("context", [TRACKED, MetricContext(Goal(np.zeros(3), np.ones(3)), 0.02, 0.01)])
+@pytest.mark.parametrize(
+    "context", [TRACKED, MetricContext(Goal(np.zeros(3), np.ones(3)), 0.02, 0.01)], ids=["tracked", "goal"]
+)
 def test_every_metric_of_a_run_has_a_unit(hand_made_trace, context):
     found = summarize([evaluate(hand_made_trace(T, desired=1.0), context)])
     assert {name.removesuffix("_q1").removesuffix("_x") for name in found} <= set(found)

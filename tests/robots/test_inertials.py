@@ -93,7 +93,11 @@ def test_a_bad_set_says_where(arm, change, problem):
         read_urdf(arm(one_set({**HAND, **change})), {}, inertials="other")
 
 
-@pytest.mark.parametrize("text", ["a: [", "", "- 1", "a: " + "[" * 50_000, "a: &a [*a]"])
+@pytest.mark.parametrize(
+    "text",
+    ["a: [", "", "- 1", "a: " + "[" * 50_000, "a: &a [*a]"],
+    ids=["open list", "empty", "list", "deep list", "list in itself"],
+)
 def test_a_set_file_that_is_none(arm, text):
     with pytest.raises(ConfigError, match=r"robot\.inertials: .*arm\.inertials\.yaml"):
         read_urdf(arm(text), {}, inertials="other")

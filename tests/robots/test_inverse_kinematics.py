@@ -129,7 +129,7 @@ def test_the_xarm7_reaches_its_line_near_home(x, y):
 
 @pytest.mark.parametrize(("model", "home"), [(XARM7, XARM7_HOME), (MECA500, MECA500_HOME)], ids=["xarm7", "meca500"])
 def test_what_some_posture_reaches_is_reached_within_the_limits(model, home):
-    for posture in postures(model, 15):
+    for posture in postures(model, 8):
         position = solve_tip_position(model, model.tip_position(posture), home)
         assert np.linalg.norm(model.tip_position(position) - model.tip_position(posture)) < 1e-9
         pose = solve_tip_pose(model, model.tip_pose(posture), home)

@@ -229,6 +229,7 @@ def test_beliefs_leave_the_noise_alone(checked_config):
             "allowed: -1.5 or more",
         ),
     ],
+    ids=["mass", "length", "gravity", "spread", "key", "group", "payload"],
 )
 def test_beliefs_that_cannot_be(cli, overrides, message):
     ending = cli("robot=macro", *overrides)

@@ -19,7 +19,7 @@ def refused(path):
     return problem
 
 
-@pytest.mark.parametrize("inertial", ["", INERTIAL])
+@pytest.mark.parametrize("inertial", ["", INERTIAL], ids=["of the mesh", "of its own"])
 def test_a_missing_mesh_is_refused(tmp_path, inertial):
     path = written(
         tmp_path, MESH.replace("FILE", "hand.stl").replace('<joint name="q3"', f'{inertial}<joint name="q3"')

@@ -90,6 +90,7 @@ def test_bullet_agrees_with_the_model(checked_config, robot, capfd):
         ("[0.1,-0.2,0,0,0,0,0]", "must be a number of 0 or more, a list"),
         ("null", "must be a number of 0 or more, a list"),
     ],
+    ids=["set", "few", "negative", "one negative", "null"],
 )
 def test_what_is_no_rotor_is_refused(value, problem):
     with pytest.raises(ConfigError, match=rf"robot.rotor_inertia: {problem}"):

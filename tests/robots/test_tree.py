@@ -43,6 +43,7 @@ def test_a_tree_knows_its_root_its_ends_and_the_ways_to_links(read):
             r"joint 'q' has a child 'bb', which is no link \(did you mean b",
         ),
     ],
+    ids=["circle", "circle apart", "two trees", "two parents", "same name", "no link"],
 )
 def test_what_is_no_tree(read, joints, problem):
     with pytest.raises(ConfigError, match=problem):

@@ -111,7 +111,7 @@ def test_the_distance_to_the_path_is_the_smallest_there_is(trajectory):
     t = np.linspace(0.0, trajectory.duration, 2_001)
     path = trajectory.sample(t)[:, 0]
     random = np.random.default_rng(1)
-    points = path[random.integers(len(path), size=30)] + random.normal(size=(30, 3)) * np.logspace(-6, 0, 30)[:, None]
+    points = path[random.integers(len(path), size=12)] + random.normal(size=(12, 3)) * np.logspace(-6, 0, 12)[:, None]
 
     def nearest(point):
         def distance(time):

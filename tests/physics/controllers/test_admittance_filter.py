@@ -37,7 +37,7 @@ def run(law, period, wrenches):
 
 
 @pytest.mark.parametrize("period", PERIODS)
-@pytest.mark.parametrize("law", [LAW, GUIDED])
+@pytest.mark.parametrize("law", [LAW, GUIDED], ids=["sprung", "guided"])
 @pytest.mark.parametrize("axis", range(6))
 def test_a_step_is_answered_as_the_law_says_at_any_rate(period, law, axis):
     ticks = min(round(2.0 / period), 2000)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from support.arms import checked
+from support.covers import covered
 from support.physics import assert_order
 
 from runner.controllers.computed_torque import ComputedTorque, ComputedTorqueConfig, build
@@ -168,15 +169,13 @@ def test_a_thesis_arm_s_tracking_error_is_the_sampling_s(simulated, name, period
     assert_order(errors, 1, within=0.13)
 
 
-LINE = [(kind, task, period) for kind in ("operational_space", "computed_torque") for task in ("position", "pose")
-        for period in (0.01, 0.004, 0.002)]  # fmt: skip
+LINE = {"kind": ("operational_space", "computed_torque"), "task": ("position", "pose"), "period": (0.01, 0.004, 0.002)}
 
 
-@pytest.mark.parametrize(("kind", "task", "period"), LINE)
-def test_the_xarm7_tracks_its_line_within_its_limits(simulated, kind, task, period):
-    trace = simulated(
-        "robot=xarm7", f"controller={kind}", f"controller.task={task}", f"controller.period={period}", "plant=default"
-    )
+@pytest.mark.parametrize("case", covered(LINE))
+def test_the_xarm7_tracks_its_line_within_its_limits(simulated, case):
+    task, keys = case["task"], (f"controller.task={case['task']}", f"controller.period={case['period']}")
+    trace = simulated("robot=xarm7", f"controller={case['kind']}", *keys, "plant=default")
     assert trace.failure is None
     assert np.linalg.norm(trace.error, axis=1).max() < 2e-5  # required: 1e-4
     np.testing.assert_array_less(np.abs(trace.tau).max(axis=0), 0.62 * XARM7.model.effort_limits)

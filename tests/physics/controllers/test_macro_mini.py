@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support.covers import covered
 
 from runner.controllers import CONTROLLERS, macro_mini
 from runner.errors import ConfigError
@@ -10,6 +11,7 @@ from runner.robots.robot import end_points
 P = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # from the Mini's base into the Macro's tip frame
 R_0 = np.array([0.0, 0.1, 0.1])
 COUPLINGS = ("one_way", "two_way", "independent", "independent_base", "mini_held")
+TARGETS = {"coupling": COUPLINGS, "macro_target": ("minus_home", "tip_goal"), "wrist_rotation": ("real", "parallel")}
 
 
 class Spy:
@@ -69,15 +71,10 @@ def ask(loop, law, q, dq, reference, time=0.0):
 # Targets.
 
 
-@pytest.mark.parametrize("coupling", COUPLINGS)
-@pytest.mark.parametrize("macro_target", ["minus_home", "tip_goal"])
-@pytest.mark.parametrize("wrist_rotation", ["real", "parallel"])
-def test_the_macro_s_target(spied, coupling, macro_target, wrist_rotation):
-    loops, laws, arm = spied(
-        f"controller.coupling={coupling}",
-        f"controller.macro_target={macro_target}",
-        f"controller.wrist_rotation={wrist_rotation}",
-    )
+@pytest.mark.parametrize("case", covered(TARGETS))
+def test_the_macro_s_target(spied, case):
+    coupling, macro_target, wrist_rotation = case.values()
+    loops, laws, arm = spied(*(f"controller.{key}={value}" for key, value in case.items()))
     for q, dq, way, derivatives in random_states():
         x_E, R = place(arm, q, wrist_rotation == "parallel")
         reference = np.vstack([x_E + way, derivatives])

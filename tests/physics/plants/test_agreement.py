@@ -1,5 +1,7 @@
 """Agreement of engines: MuJoCo, PyBullet and Runge-Kutta on smooth closed loops."""
 
+import functools
+
 import numpy as np
 import pytest
 from support import strangers
@@ -20,8 +22,9 @@ CLOSED = {
 
 @pytest.fixture(scope="module")
 def followed(checked_config):
-    """Simulate one of CLOSED on a plant; return its trace."""
+    """Simulate one of CLOSED on a plant, once; return its trace."""
 
+    @functools.cache
     def simulate_on(robot, *plant):
         overrides = ("trajectory=quintic", "duration=1", *CLOSED[robot], *plant)
         config = (

@@ -1,5 +1,6 @@
 """The repetitions of one run in blocks and on threads, against all of them at once."""
 
+import functools
 import threading
 
 import numpy as np
@@ -25,6 +26,13 @@ def job(*overrides):
     return validate(composed.resolved), composed
 
 
+@functools.cache
+def at_once(*overrides):
+    """Return a job and all of its repetitions in one block."""
+    given = job(*overrides)
+    return given, simulate_blocks(given)
+
+
 def record(result):
     return {key: value for key, value in make_record(result).items() if key not in ("timing", "provenance")}
 
@@ -41,8 +49,8 @@ def record(result):
 )
 @pytest.mark.parametrize(("ticks", "threads"), [(1, 3), (250, 1), (250, 2), (900, 5)])
 def test_blocks_and_threads_change_nothing(overrides, ticks, threads):
-    given = job(*overrides, "repetitions=45")
-    whole, parted = simulate_blocks(given), simulate_blocks(given, threads, ticks)
+    given, whole = at_once(*overrides, "repetitions=45")
+    parted = simulate_blocks(given, threads, ticks)
     assert record(parted) == record(whole)
     for name, values in vars(whole.trace).items():
         if isinstance(values, np.ndarray) and name != "tick_seconds":

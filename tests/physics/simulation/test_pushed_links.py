@@ -155,6 +155,7 @@ def test_a_link_that_is_not_there(checked_config):
         (Loads(lambda *_: np.zeros(2)), r"Loads.joint_torques .* gave an array of shape \(2,\)"),
         (Loads(lambda *_: 1 / 0), r"ZeroDivisionError: division by zero \(test_pushed_links.py, line \d+"),
     ],
+    ids=["shape of forces", "nan", "shape of torques", "raises"],
 )
 def test_what_goes_wrong_ends_the_run_with_the_place(run_in, environment, reason):
     trace = run_in(watch_environment(environment))

@@ -39,6 +39,7 @@ def frame_of(name, ticks, between, rows, lanes, **chosen):
         ("less", select(less(A, B), A, -B), lambda a, b: np.where(a < b, a, -b)),
         ("both", select(both(less(A, B), negated(equal(A, 1.0))), 1.0, 0.0), lambda a, b: 1.0 * ((a < b) & (a != 1.0))),
     ],
+    ids=["sum", "root", "whole", "half", "less", "both"],
 )
 def test_arithmetic_is_numpy_s_in_every_lane(name, value, expected, lanes):
     frame = frame_of(name, [Block([(ROWS, 0, value)])], [], 50, lanes)

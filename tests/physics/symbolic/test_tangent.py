@@ -40,6 +40,7 @@ SAMPLES = np.array([-2.5, -1.2, -0.7, -0.1, 0.3, 0.9, 1.7, 3.1])
         ("steps", rounded(A) + floor(A) + expression(1.0), lambda a: 0.0 * a),
         ("one branch", select(less(A, 0.0), 1.0, A), lambda a: np.where(a < 0.0, 0.0, 1.0)),
     ],
+    ids=["sum", "product", "quotient", "negative", "size", "root", "sine", "cosine", "branch", "steps", "one branch"],
 )
 def test_each_operation_has_its_rule(name, value, derivative):
     found = with_tangent(name, [Block([(ROWS, 0, value)])], [], SAMPLES)[1][0]
