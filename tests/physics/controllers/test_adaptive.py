@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from support.arms import checked
+from support.motions import to_and_fro
 
 from runner.assembly import assemble
 from runner.controllers.torque_law import PinocchioArm
@@ -16,20 +17,6 @@ def closed_loop(*overrides):
     closed = assemble(checked(*LINE, *overrides))
     closed.close()
     return closed
-
-
-def to_and_fro(home, swing, h, lasts):
-    """Desired joints, shape (n, 3, nq): quintics of 1.5 s each way, with their exact derivatives."""
-    t = h * np.arange(round(lasts / h) + 1)
-    back = t % 3.0 >= 1.5
-    u = np.where(back, 3.0 - t % 3.0, t % 3.0) / 1.5
-    sign = np.where(back, -1.0, 1.0)
-    s = 10.0 * u**3 - 15.0 * u**4 + 6.0 * u**5
-    ds = sign * (30.0 * u**2 - 60.0 * u**3 + 30.0 * u**4) / 1.5
-    dds = (60.0 * u - 180.0 * u**2 + 120.0 * u**3) / 1.5**2
-    way = np.multiply.outer(np.stack([s, ds, dds], axis=1), swing)
-    way[:, 0] += home
-    return way
 
 
 def followed(closed, desired, h):
@@ -89,7 +76,7 @@ def test_the_function_of_lyapunov_never_rises(name, swing, more):
     """Between ticks by less than a thousandth of its start, which is of the sampling."""
     h = 0.002 if name == "macro" else 0.001
     closed = closed_loop(f"robot={name}", "mismatch.mass=0.8", f"controller.period={h}", *more)
-    errors, V = followed(closed, to_and_fro(closed.robot.home, swing, h, 6.0), h)
+    errors, V = followed(closed, to_and_fro(swing, h, 6.0, closed.robot.home), h)
     assert np.diff(V).max() < 1e-3 * V[0]
     assert V[-1] < 0.8 * V[0]
     assert np.sqrt(np.mean(errors[-3000:] ** 2)) < 2e-3
@@ -98,7 +85,7 @@ def test_the_function_of_lyapunov_never_rises(name, swing, more):
 def test_the_error_falls_from_period_to_period_as_a_prototype_s():
     h = 0.002
     closed = closed_loop("robot=macro", "mismatch.mass=0.8", f"controller.period={h}", *UNIFORM)
-    errors, V = followed(closed, to_and_fro(closed.robot.home, [0.8, -0.5, 0.6], h, 15.0), h)
+    errors, V = followed(closed, to_and_fro([0.8, -0.5, 0.6], h, 15.0, closed.robot.home), h)
     rms = 1e3 * np.sqrt(np.mean(errors[:-1].reshape(5, -1) ** 2, axis=1))
     assert rms == pytest.approx([0.784, 0.235, 0.194, 0.175, 0.161], rel=0.01)
     assert rms[4] < 0.25 * rms[0]

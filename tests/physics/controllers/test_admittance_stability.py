@@ -2,12 +2,18 @@
 
 import numpy as np
 import pytest
+from support.covers import covered
 
 from runner.controllers.admittance_filter import Admittance, AdmittanceFilter
 from runner.controllers.admittance_stability import check_wall, spectral_radius, stiffest_wall
 from runner.errors import ConfigError
 
 LAW = Admittance(np.full(6, 2.0), np.full(6, 60.0), np.array([0.0, 300.0, 300.0, 0.0, 0.0, 0.0]))
+CONTACTS = {
+    "period": (0.001, 0.0167),
+    "axis": (0, 1),
+    "damping of the wall and delay": ((0.0, 0), (0.0, 1), (0.0, 3), (5.0, 1)),
+}
 
 
 def press(law, period, axis, stiffness, damping, delay, ticks=2000):
@@ -26,10 +32,9 @@ def press(law, period, axis, stiffness, damping, delay, ticks=2000):
     return max(peaks[-ticks // 4 :]) / max(peaks[: ticks // 4])
 
 
-@pytest.mark.parametrize("period", [0.001, 0.0167])
-@pytest.mark.parametrize("axis", [0, 1])
-@pytest.mark.parametrize(("damping", "delay"), [(0.0, 0), (0.0, 1), (0.0, 3), (5.0, 1)])
-def test_contact_dies_out_below_the_bound_and_grows_above_it(period, axis, damping, delay):
+@pytest.mark.parametrize("case", covered(CONTACTS))
+def test_contact_dies_out_below_the_bound_and_grows_above_it(case):
+    period, axis, (damping, delay) = case.values()
     bound = stiffest_wall(LAW, period, axis, damping, delay)
     assert press(LAW, period, axis, 0.95 * bound, damping, delay) < 0.5
     assert press(LAW, period, axis, 1.05 * bound, damping, delay) > 2.0

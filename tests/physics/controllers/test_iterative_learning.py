@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support import strangers
+from support.motions import to_and_fro, write_joints
 
 from runner.assembly import assemble
 from runner.controllers.iterative_learning import IterativeLearning, IterativeLearningConfig
@@ -115,14 +116,10 @@ def test_reset_forgets():
 
 
 @pytest.fixture
-def to_and_fro(tmp_path):
-    """Return a file with the motion of test_joint_laws for 18 s, and q_d."""
-    t = 0.002 * np.arange(9001)
-    u = np.clip(1.0 - np.abs(t % 3.0 / 1.5 - 1.0), 0.0, 1.0)
-    q_d = np.outer(10.0 * u**3 - 15.0 * u**4 + 6.0 * u**5, [0.8, -0.5, 0.6])
-    path = tmp_path / "to_and_fro.csv"
-    np.savetxt(path, np.column_stack([t, q_d]), delimiter=",", header="t,q1,q2,q3", comments="", fmt="%.15g")
-    return f"trajectory.file={path}", q_d
+def prototype(tmp_path):
+    """Choose a file with the motion of test_joint_laws for 18 s; and its joints q_d."""
+    q_d = to_and_fro([0.8, -0.5, 0.6], 0.002, 18.0)[:, 0]
+    return f"trajectory.file={write_joints(tmp_path / 'to_and_fro.csv', q_d, 0.002)}", q_d
 
 
 def rms(trace, q_d):
@@ -132,9 +129,9 @@ def rms(trace, q_d):
     return 1e3 * np.sqrt(error.mean(axis=1))
 
 
-def test_iterations_from_rest_are_those_of_the_prototype(checked_config, to_and_fro):
+def test_iterations_from_rest_are_those_of_the_prototype(checked_config, prototype):
     """The prototype puts the arm back to rest at the start before each iteration, as Arimoto does."""
-    file, q_d = to_and_fro
+    file, q_d = prototype
     config = checked_config(*TO_AND_FRO, file, "duration=6.002")
     closed = replace(assemble(config), ticks=1499)
     law, found, forget = closed.loops[0].controller, [], closed.loops[0].controller.reset
@@ -154,8 +151,8 @@ def test_iterations_from_rest_are_those_of_the_prototype(checked_config, to_and_
     np.testing.assert_allclose(found, [3.63, 0.745, 0.160, 0.043, 0.020], rtol=0.1)
 
 
-def test_the_error_shrinks_from_period_to_period_of_one_run(simulated, to_and_fro):
-    file, q_d = to_and_fro
+def test_the_error_shrinks_from_period_to_period_of_one_run(simulated, prototype):
+    file, q_d = prototype
     found = rms(simulated(*TO_AND_FRO, file, "duration=18"), q_d)
     ratios = found[2:] / found[1:-1]
     assert (ratios[:2] < 0.3).all()

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from support.arms import checked
+from support.motions import to_and_fro, write_joints
 
 from runner.assembly import assemble
 from runner.plants.rk4 import Rk4
@@ -26,21 +27,16 @@ WRONG = ("mismatch.mass=0.8", "plant.friction.viscous=0.2", "plant.friction.coul
 
 
 @pytest.fixture(scope="module")
-def to_and_fro(tmp_path_factory):
-    """Return a file with (0, 0, 0) to (0.8, -0.5, 0.6) rad and back, a quintic of 1.5 s each way, for 12 s; and q_d."""
-    t = 0.002 * np.arange(6001)
-    u = 1.0 - np.abs(t % 3.0 / 1.5 - 1.0)
-    u, way = np.clip(u, 0.0, 1.0), np.array([0.8, -0.5, 0.6])
-    q_d = np.outer(10.0 * u**3 - 15.0 * u**4 + 6.0 * u**5, way)
-    path = tmp_path_factory.mktemp("motion") / "to_and_fro.csv"
-    np.savetxt(path, np.column_stack([t, q_d]), delimiter=",", header="t,q1,q2,q3", comments="", fmt="%.15g")
-    return path, q_d
+def prototype(tmp_path_factory):
+    """Return a file with the motion of the prototype, for 12 s, and its joints q_d."""
+    q_d = to_and_fro([0.8, -0.5, 0.6], 0.002, 12.0)[:, 0]
+    return write_joints(tmp_path_factory.mktemp("motion") / "to_and_fro.csv", q_d, 0.002), q_d
 
 
 @pytest.mark.parametrize("law", PROTOTYPE)
 @pytest.mark.parametrize(("column", "more"), [(0, ()), (1, WRONG), (2, (*WRONG, *NOISE))])
-def test_errors_are_those_of_the_prototype(simulated, to_and_fro, law, column, more):
-    path, q_d = to_and_fro
+def test_errors_are_those_of_the_prototype(simulated, prototype, law, column, more):
+    path, q_d = prototype
     lasts = 12 if law in ("adaptive", "joint_pid") else 6  # s; those two settle over several periods of 3 s
     trace = simulated("robot=macro", f"controller={law}", "controller.period=0.002", "plant=rk4",
                       "controller.natural_frequency=30", f"duration={lasts}", "trajectory=from_file",
@@ -62,9 +58,9 @@ INTEGRATING = {
 
 
 @pytest.mark.parametrize("more", INTEGRATING)
-def test_what_integrates_has_the_errors_of_the_prototype_whose_dry_friction_is_smooth(to_and_fro, more):
+def test_what_integrates_has_the_errors_of_the_prototype_whose_dry_friction_is_smooth(prototype, more):
     """c tanh(v / (0.01 rad/s)): at a standstill less than dry friction, which these laws would have to break away."""
-    path, q_d = to_and_fro
+    path, q_d = prototype
     line = ("robot=macro", "controller=computed_torque", "controller.period=0.002", "controller.natural_frequency=30",
             "trajectory=from_file", f"trajectory.file={path}", more)  # fmt: skip
     for wrong, printed in zip(((), WRONG[:1]), INTEGRATING[more], strict=True):
@@ -83,8 +79,8 @@ def test_what_integrates_has_the_errors_of_the_prototype_whose_dry_friction_is_s
         assert rms == pytest.approx(printed, rel=0.1) if wrong else rms < 0.01
 
 
-def test_an_observer_takes_a_twentieth_or_less_of_the_error_of_computed_torque(simulated, to_and_fro):
-    path, q_d = to_and_fro
+def test_an_observer_takes_a_twentieth_or_less_of_the_error_of_computed_torque(simulated, prototype):
+    path, q_d = prototype
     rms = []
     for more in ((), ("disturbance_observer.bandwidth=60",)):
         trace = simulated("robot=macro", "controller=computed_torque", "controller.period=0.002", "plant=rk4",

@@ -203,6 +203,11 @@ def test_every_picture_keeps_the_rules():
         check_ways(graph)
 
 
-@pytest.mark.parametrize("flags", FIGURES, ids=name_of)
+@pytest.mark.parametrize(
+    "flags",
+    [
+        pytest.param(flags, id=name_of(flags), marks=() if flags["goal"] else pytest.mark.slow) for flags in FIGURES
+    ],  # those to a goal have the most texts; drawing takes time
+)
 def test_no_text_of_the_picture_stands_on_a_line(flags):
     check_texts(macro_mini_graph(**flags))

@@ -3,10 +3,16 @@
 import numpy as np
 import pytest
 from support.arms import model_of
+from support.covers import covered
 
 from runner.trajectories.quintic import Quintic
 
 ARMS = [("macro", 1.0), ("mini", 0.1)]  # name, and by what its lengths, masses, times and torques are scaled
+SCALES = dict(ARMS)
+PLANTS = ("bullet", "mujoco", "rk4")
+ON_PLANTS = {"robot": tuple(SCALES), "plant": PLANTS}
+SAMPLED = {"robot": tuple(SCALES), "steps": (1, 4, 10), "share": (0.98, 0.99, 1.01, 1.02)}
+SIMILAR = {"plant": PLANTS, "limits": ("none", "thesis"), "motion": ("goal", "quintic")}
 HOME_TIP, GOAL = np.array([0.0, 1.0, 1.0]), np.array([0.1679, -0.7571, 0.4255])
 DISTANCE = np.linalg.norm(GOAL - HOME_TIP)
 
@@ -22,10 +28,10 @@ def quintic(scale, t_f, rest=0.0):
 # Lag: a goal law that follows a moving goal is behind it by the speed over k_p / k_v.
 
 
-@pytest.mark.parametrize(("robot", "scale"), ARMS)
-@pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
-@pytest.mark.parametrize(("t_f", "tolerance"), [(2.0, 0.02), (3.0, 0.002), (4.0, 0.002), (6.0, 0.002)])
-def test_lag_without_feedforward(simulated, robot, scale, plant, t_f, tolerance):
+@pytest.mark.parametrize("case", covered(ON_PLANTS | {"t_f": (2.0, 3.0, 4.0, 6.0)}))
+def test_lag_without_feedforward(simulated, case):
+    robot, plant, t_f = case.values()
+    scale, tolerance = SCALES[robot], 0.02 if t_f == 2.0 else 0.002
     trace = simulated(f"robot={robot}", f"plant={plant}", "controller.feedforward=false", *quintic(scale, t_f))
     expected = 2.0 / 30.0 * 1.875 * DISTANCE / t_f * scale
     assert np.linalg.norm(trace.error, axis=1).max() == pytest.approx(expected, rel=tolerance)
@@ -48,10 +54,10 @@ def test_lag_grows_with_damping_and_falls_with_frequency(simulated, damping_rati
 # Sag: without the gravity term the loop's spring k_p carries the arm.
 
 
-@pytest.mark.parametrize(("robot", "scale"), ARMS)
-@pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
-@pytest.mark.parametrize("trajectory", ["goal", "quintic"])
-def test_sag_without_gravity_compensation(simulated, arms, robot, scale, plant, trajectory):
+@pytest.mark.parametrize("case", covered(ON_PLANTS | {"trajectory": ("goal", "quintic")}))
+def test_sag_without_gravity_compensation(simulated, arms, case):
+    robot, plant, trajectory = case.values()
+    scale = SCALES[robot]
     motion = quintic(scale, 3.0, 2.0) if trajectory == "quintic" else (f"duration={5.0 * scale}",)
     trace = simulated(f"robot={robot}", f"plant={plant}", "controller.gravity_compensation=false", *motion)
     model, q = arms[robot], trace.q[-1]
@@ -105,13 +111,12 @@ def test_sampled_stability_on_rk4(simulated, robot, scale, w, stable):
 
 
 @pytest.mark.bullet
-@pytest.mark.parametrize(("robot", "scale"), ARMS)
-@pytest.mark.parametrize(("steps", "printed"), [(1, 0.83), (4, 0.944), (10, 0.976)])
-@pytest.mark.parametrize("share", [0.98, 0.99, 1.01, 1.02])
-def test_sampled_stability_on_bullet(simulated, robot, scale, steps, printed, share):
+@pytest.mark.parametrize("case", covered(SAMPLED))
+def test_sampled_stability_on_bullet(simulated, case):
+    robot, steps, share = case.values()
     limit = 2.0 * steps * (np.sqrt(1.0 + 1.0 / steps) - 1.0)  # 4 - 4 w - w^2 / n = 0
-    assert limit == pytest.approx(printed, abs=2e-3)
-    factor, expected = envelope_factor(simulated, robot, scale, "bullet", share * limit, steps)
+    assert limit == pytest.approx({1: 0.83, 4: 0.944, 10: 0.976}[steps], abs=2e-3)  # as printed
+    factor, expected = envelope_factor(simulated, robot, SCALES[robot], "bullet", share * limit, steps)
     assert (factor < 1.0) == (share < 1.0)
     assert factor == pytest.approx(expected, rel=1e-3)
 
@@ -145,18 +150,14 @@ def assert_similar(simulated, plant, motion, limits, gravity):
     assert limited == (limits == "thesis")  # the limit is at work where there is one
 
 
-@pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
-@pytest.mark.parametrize("limits", ["none", "thesis"])
-@pytest.mark.parametrize("motion", ["goal", "quintic"])
-def test_without_gravity_the_arms_are_similar(simulated, plant, limits, motion):
-    assert_similar(simulated, plant, motion, limits, (0.0, 0.0))
+@pytest.mark.parametrize("case", covered(SIMILAR))
+def test_without_gravity_the_arms_are_similar(simulated, case):
+    assert_similar(simulated, **case, gravity=(0.0, 0.0))
 
 
-@pytest.mark.parametrize("plant", ["bullet", "mujoco", "rk4"])
-@pytest.mark.parametrize("limits", ["none", "thesis"])
-@pytest.mark.parametrize("motion", ["goal", "quintic"])
-def test_with_ten_times_the_gravity_the_mini_is_similar(simulated, plant, limits, motion):
-    assert_similar(simulated, plant, motion, limits, (9.81, 98.1))
+@pytest.mark.parametrize("case", covered(SIMILAR))
+def test_with_ten_times_the_gravity_the_mini_is_similar(simulated, case):
+    assert_similar(simulated, **case, gravity=(9.81, 98.1))
 
 
 def test_under_one_gravity_the_arms_are_not_similar(simulated):

@@ -176,14 +176,14 @@ def test_each_carrier_has_its_metrics(moved, checked_config):
 @pytest.mark.parametrize("coupling", ["two_way", "independent", "independent_base", "mini_held"])
 @pytest.mark.parametrize("chain", CHAINS)
 def test_every_coupling_runs(simulated, chain, coupling):
-    overrides = (f"experiment=staged/{chain}", "plant=rk4", f"controller.coupling={coupling}", "duration=0.3")
+    overrides = (f"experiment=staged/{chain}", "plant=rk4", f"controller.coupling={coupling}", "duration=0.1")
     assert simulated(*overrides).failure is None
 
 
 @pytest.mark.parametrize("changes", [("controller.schedule=turns",), ("controller=whole_body", "noise=none")])
 @pytest.mark.parametrize("chain", CHAINS)
 def test_other_ways_of_control_run(simulated, chain, changes):
-    assert simulated(f"experiment=staged/{chain}", "plant=rk4", *changes, "duration=0.3").failure is None
+    assert simulated(f"experiment=staged/{chain}", "plant=rk4", *changes, "duration=0.1").failure is None
 
 
 # Targets along a chain of three
