@@ -1,4 +1,4 @@
-"""The truths themselves: the two ways of each agree, and known values come out."""
+"""Truths of audited equations: the two ways of each agree, and known values come out."""
 
 import numpy as np
 import pytest

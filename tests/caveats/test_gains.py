@@ -1,4 +1,4 @@
-"""The rule on gains that the control period does not bear."""
+"""Caveat of gains that the control period does not bear, on both sides of the bound."""
 
 import pytest
 from support.caveat_runs import found

@@ -1,4 +1,4 @@
-"""The files of claims and statements of all works."""
+"""Files of claims and statements of all works."""
 
 import pytest
 import yaml

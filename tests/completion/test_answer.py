@@ -1,4 +1,4 @@
-"""What a shell gets at TAB: words alone, whatever is typed."""
+"""Answers to a shell at TAB: words alone, for any typed line."""
 
 import os
 import shutil

@@ -1,4 +1,4 @@
-"""Which words complete a half typed line."""
+"""Words that complete a half typed line."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What the world does to the tip."""
+"""Environments: wrenches on the tip against closed forms."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""How often the last stage cannot reach x_d: its distance from that stage's base, not from the tip."""
+"""Share of ticks with x_d out of reach: by the distance from the last stage's base."""
 
 from dataclasses import replace
 

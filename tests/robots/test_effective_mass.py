@@ -1,4 +1,4 @@
-"""The mass that a tip has in each direction."""
+"""Mass of the tip in each direction, against Khatib's inequality and closed forms."""
 
 from itertools import pairwise
 

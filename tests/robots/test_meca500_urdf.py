@@ -1,4 +1,4 @@
-"""The Meca500's URDF against the report's table, in the modified convention, and the arm's published data."""
+"""Meca500's URDF against the report's table, in the modified convention, and published data."""
 
 import xml.etree.ElementTree as ET
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What controllers believe of the arm, each term by its effect against a closed form."""
+"""Model error of controllers: each term by its effect against a closed form."""
 
 import numpy as np
 import pinocchio as pin

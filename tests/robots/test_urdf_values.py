@@ -1,4 +1,4 @@
-"""What no arm has, refused by a run and by the doctor in the same words."""
+"""Values that no arm has: a run and the doctor refuse them in the same words."""
 
 import pytest
 from support import strangers

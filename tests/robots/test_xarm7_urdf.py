@@ -1,4 +1,4 @@
-"""The xArm7's URDF against the chain of the xArm7 report and the arm's published data."""
+"""xArm7's URDF against the chain of the xArm7 report and published data."""
 
 import math
 import xml.etree.ElementTree as ET

@@ -1,4 +1,4 @@
-"""What holds for every robot that ships, on random postures within its joint limits."""
+"""Every shipped robot on random postures within its joint limits: dynamics against differences."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Which repetitions keep a spec, from values alone."""
+"""Repetitions that keep a spec, from values alone."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""What some repetitions say of a probability of failing that is allowed."""
+"""Verdict on a probability of failing, from some repetitions, against exact bounds."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What a run's caveats are where it is stored without trace, or was stored before there were any."""
+"""Caveats of stored runs without a trace, and of runs older than caveats."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""What holds for a trajectory of any kind."""
+"""Trajectories of every kind: starts, rests, derivatives and distance against dense samples."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What holds for a motion of the joints of any kind, and for that of the tip which follows from it."""
+"""Motions of the joints of every kind, and the tip's motion that follows: derivatives and distance."""
 
 import numpy as np
 import pytest

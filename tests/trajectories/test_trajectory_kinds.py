@@ -1,4 +1,4 @@
-"""What the config of a trajectory from outside the package may offer."""
+"""Trajectories from outside the package: each part that their config may offer."""
 
 import pytest
 

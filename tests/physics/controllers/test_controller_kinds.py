@@ -1,4 +1,4 @@
-"""What a controller from outside the package may offer, and what is done with it."""
+"""Controllers from outside the package: each part that they may offer, and refusals."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The momentum disturbance observer: what it finds, what it is told, which laws carry it, and what is refused."""
+"""Momentum observer against its closed form, under every law and with wrong models; refusals."""
 
 import re
 from unittest.mock import patch

@@ -1,4 +1,4 @@
-"""How stiff a wall a sampled force law stands."""
+"""Stiffest wall of a sampled force law: the bound against simulated contact."""
 
 import numpy as np
 import pytest

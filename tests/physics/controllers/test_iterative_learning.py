@@ -1,4 +1,4 @@
-"""Iterative learning: contraction by frequency, its limits, the prototype's iterations, and what it refuses."""
+"""Iterative learning: contraction by frequency, limits, a prototype's iterations and refusals."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The laws that follow a motion of the joints, against each other: a prototype's errors on the Macro."""
+"""Laws that follow a motion of the joints: their errors on the Macro against a prototype's."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The notch in the torques: what passes, which laws take it, what it does to a flexible arm, and what is refused."""
+"""Notch of torques: its frequency response, a flexible arm with and without it, and refusals."""
 
 from dataclasses import replace
 

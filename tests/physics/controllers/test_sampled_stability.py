@@ -1,4 +1,4 @@
-"""The closed form of sampled velocity loops, against the eigenvalues of the exact map of law and arm at home."""
+"""Bound of sampled velocity loops against the eigenvalues of the exact map of law and arm at home."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The torques that give a tip an acceleration and a force, and a null space that it does not feel."""
+"""Torques for an acceleration and a force of the tip, against forward dynamics."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The tip's task: its rows, what a pose adds, and what it refuses."""
+"""Task of the tip: rows of position and pose against the Jacobian and differences; refusals."""
 
 import numpy as np
 import pinocchio as pin

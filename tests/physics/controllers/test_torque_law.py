@@ -1,4 +1,4 @@
-"""What an arm tells a law of it, and what a law keeps; the laws' physics stands in test_torque_laws."""
+"""Torque laws: values that an arm hands to a law and numbers that a law keeps."""
 
 import numpy as np
 

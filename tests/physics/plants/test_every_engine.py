@@ -1,4 +1,4 @@
-"""The physics of an arm under torques, which is the same in every engine but for the order of its step."""
+"""Arm under torques in every engine: energy, rest, contact and delays, but for the order of the step."""
 
 import numpy as np
 import pytest

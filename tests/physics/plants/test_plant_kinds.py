@@ -1,4 +1,4 @@
-"""What a plant from outside the package may offer, and what the loop does with it."""
+"""Plants from outside the package: each part that they may offer, and its use by the loop."""
 
 import re
 

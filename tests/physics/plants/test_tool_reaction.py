@@ -1,4 +1,4 @@
-"""The engines' reaction in the tool's mount against the tool's own balance."""
+"""Reaction of engines in the tool's mount against the tool's own balance."""
 
 import numpy as np
 import pinocchio as pin

@@ -1,4 +1,4 @@
-"""The repetitions of one run in blocks and on threads, against all of them at once."""
+"""Repetitions of a run in blocks and on threads against all of them at once."""
 
 import functools
 import threading

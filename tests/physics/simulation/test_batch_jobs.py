@@ -1,4 +1,4 @@
-"""What is stored of runs that are simulated together, against the same runs one by one."""
+"""Stored runs that were simulated together against the same runs one by one."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The Mini riding on the Macro, from config to metrics: what the runs have to reach, and where they may fail."""
+"""Mini on a Macro, from config to metrics: accuracy, options, repeatability and singular situations."""
 
 import hashlib
 import json

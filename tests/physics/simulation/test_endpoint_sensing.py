@@ -1,4 +1,4 @@
-"""What a Mini does about the vibration of a Macro with flexible joints: blind, by the tip's sensor, by its inertia."""
+"""Mini on a Macro with flexible joints: blind, with a sensor of the tip and by its inertia."""
 
 from dataclasses import replace
 

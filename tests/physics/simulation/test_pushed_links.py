@@ -1,4 +1,4 @@
-"""What environments put on links and joints beside the tip, by statics, virtual work and energy."""
+"""Forces of environments on links and joints, by statics, virtual work and energy."""
 
 import re
 from dataclasses import replace

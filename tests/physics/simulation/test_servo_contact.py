@@ -1,4 +1,4 @@
-"""The linear map of contact behind joint servos: its limits, and what runs do near its bound."""
+"""Linear map of contact behind joint servos: limits, and runs on both sides of its bound."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The recursion over any kind of scalar, on floats: against Pinocchio, closed forms and differences."""
+"""Rigid-body recursion over any scalar, on floats: against Pinocchio, closed forms and differences."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The compiled Runge-Kutta step against Pinocchio's articulated bodies."""
+"""Compiled Runge-Kutta step against Pinocchio's articulated bodies."""
 
 import numpy as np
 import pytest
