@@ -1,5 +1,6 @@
 """Drawings as SVG: reproducible, offline, on the paper; camera and circles against geometry."""
 
+import functools
 import re
 import xml.etree.ElementTree as ET
 
@@ -42,9 +43,15 @@ def makers(macro, line):
     }
 
 
+@pytest.fixture(scope="module")
+def drawn(makers):
+    """Return a drawing by name, made once."""
+    return functools.cache(lambda name: makers[name]())
+
+
 @pytest.mark.parametrize("name", ["frames", "workspace", "diagram", "arm", "top"])
-def test_a_drawing_is_one_reproducible_svg_without_text_or_links(makers, name):
-    svg = makers[name]()
+def test_a_drawing_is_one_reproducible_svg_without_text_or_links(makers, drawn, name):
+    svg = drawn(name)
     assert svg == makers[name]()
     root = ET.fromstring(svg)
     assert root.tag == "{http://www.w3.org/2000/svg}svg"
@@ -56,10 +63,8 @@ def test_a_drawing_is_one_reproducible_svg_without_text_or_links(makers, name):
 
 
 @pytest.mark.parametrize("name", ["frames", "workspace", "diagram", "arm", "top"])
-def test_a_drawing_fits_on_the_paper(makers, name):
-    width, height = (
-        float(ET.fromstring(makers[name]()).get(key).removesuffix("pt")) / 72 for key in ("width", "height")
-    )
+def test_a_drawing_fits_on_the_paper(drawn, name):
+    width, height = (float(ET.fromstring(drawn(name)).get(key).removesuffix("pt")) / 72 for key in ("width", "height"))
     assert 3.0 < width < 8.0
     assert 1.5 < height < 6.0
 

@@ -12,6 +12,7 @@ from runner.execution import run
 from runner.robots.robot import end_points
 from runner.store import run_hash
 from runner.store.identity import simulated_part
+from runner.sweeps.grid import plan_sweep
 
 T = np.linspace(0.0, 2.0, 21)
 POSTURE = 0.1 * np.outer(1.0 - np.cos(np.pi * T), [1.0, -0.5, 0.7])  # a swing and back, at rest at both ends
@@ -133,11 +134,12 @@ def test_a_changed_file_is_another_run_though_the_line_is_the_same(written, cli)
     assert len(set(folders)) == 2
 
 
-def test_a_sweep_over_files_is_one_of_their_contents(written, cli):
+def test_a_sweep_over_files_is_one_of_their_contents(written):
     names = [written(JOINTS[:3], share * POSTURE, f"m{share}.csv").name for share in (1.0, 0.5)]
-    ending = cli("-m", "robot=macro", "trajectory=from_file", f"trajectory.file={','.join(names)}", "duration=0.05")
-    assert ending.code == 0
-    assert "2 runs" in ending.err + ending.out or "2 made" in ending.err + ending.out
+    plan = plan_sweep(["robot=macro", "trajectory=from_file", f"trajectory.file={','.join(names)}"])
+    swept = [run_hash(validate(plan.composed(cell).resolved).resolved, "") for cell in range(len(plan))]
+    assert swept == [run_hash(checked(name).resolved, "") for name in names]
+    assert swept[0] != swept[1]
 
 
 def test_a_name_leads_to_the_working_folder(written):
