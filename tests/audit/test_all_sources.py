@@ -19,6 +19,7 @@ def verdicts(audited):
     return {each.entry.id: each.verdict for source in audited.values() for each in source}
 
 
+@pytest.mark.costs(2)
 def test_every_source_is_audited(everything):
     assert tuple(everything) == sources()
 

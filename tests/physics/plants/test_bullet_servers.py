@@ -27,6 +27,7 @@ print(simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0))
 """
 
 
+@pytest.mark.costs(2)
 def test_a_used_server_gives_what_a_fresh_one_gives(simulated):
     fresh = subprocess.run([sys.executable, "-c", RUN], capture_output=True, text=True, check=True).stdout.strip()
     for other in ("robot=mini", "robot=combined", "robot=macro"):

@@ -230,6 +230,7 @@ def test_a_repetition_does_not_depend_on_those_before(checked_config, simulated,
     assert len(set(in_a_row)) == 3
 
 
+@pytest.mark.costs(2)
 def test_another_process_gives_the_same_bits(simulated):
     overrides = (*NOISY, "torque_limits=thesis")
     program = (
