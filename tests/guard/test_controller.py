@@ -101,7 +101,8 @@ def test_forces_that_a_law_feels_and_tells_are_watched():
     law = WatchedController(Feels(None), 3)
     with pytest.raises(SimulationError, match=r"read-only \(test_controller.py, line \d+, in feel\)"):
         law.feel(np.ones(6))
-    assert law.notices() == ["ZeroDivisionError: division by zero (test_controller.py, line 95, in notices)"]
+    (notice,) = law.notices()
+    assert re.fullmatch(r"ZeroDivisionError: division by zero \(test_controller.py, line \d+, in notices\)", notice)
     law._controller.felt = np.zeros(3)
     with pytest.raises(SimulationError, match=r"Feels.feel .* gave an array of shape \(3,\)"):
         _ = law.felt

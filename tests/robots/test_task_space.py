@@ -49,7 +49,7 @@ def test_an_oblique_plane_has_two_unit_directions_in_it():
 
 def test_every_motion_of_the_tip_lies_in_its_directions():
     for name in strangers.STRANGERS:
-        arm = strangers.examined(name).model
+        arm = strangers.config(name).arm.model
         D = task_directions(arm, True)
         for q in np.random.default_rng(5).uniform(*arm.usual_range, (5, arm.nq)):
             J = arm.tip_jacobian(q)

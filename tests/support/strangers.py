@@ -104,13 +104,13 @@ def _examine(name):
 @functools.cache
 def robot(name) -> str:
     """The name under which a stranger stands in the config folder."""
-    found = _read(name)
-    write_folder(found, folder())
-    return robot_name(found)
+    write_folder(read(name), folder())
+    return robot_name(read(name))
 
 
-def _read(name):
-    """The examination without comparing engines and searching the workspace: the folder holds nothing of them."""
+@functools.cache
+def read(name):
+    """The examination without comparing engines and searching the workspace, which take 1 s and change no config."""
     with pytest.MonkeyPatch.context() as patch:
         for left_out in ("compare_readings", "compare_engines", "describe_singular", "describe_workspace"):
             patch.setattr(examination, left_out, lambda *_: [])
