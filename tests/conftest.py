@@ -16,7 +16,7 @@ quiet_environment()
 
 from runner.engines import has_pybullet  # noqa: E402 - after the environment
 
-_FIXTURES = ("cli", "cost", "installed", "own_parts", "robots", "runs")
+_FIXTURES = ("cli", "cost", "installed", "own_parts", "robots", "runs", "stored")
 pytest_plugins = ("support.engines", *(f"fixtures.{name}" for name in _FIXTURES))
 
 _LONGEST_ID = 60  # characters of a case's name

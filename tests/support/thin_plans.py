@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from runner import store
 from runner.calibration_job import calibrate
@@ -18,7 +18,16 @@ from runner.execution import run
 from runner.store import Calibration, Run
 
 Overrides = tuple[str, ...]
-Kept = TypeVar("Kept", Run, Calibration)
+
+
+class HasFolder(Protocol):
+    """Something that is stored in a folder."""
+
+    @property
+    def folder(self) -> Path: ...
+
+
+Kept = TypeVar("Kept", bound=HasFolder)
 
 _NUMBER = re.compile(r"-?\d+(\.\d*)?(e-?\d+)?")
 _OPTIONS = ("experiment=", "preset=", "plant=", "robot=")
@@ -62,18 +71,26 @@ def make_runs(
         return run(*overrides, config_dirs=config_dirs)
 
     stands_for = {name: name for name in jobs} if stands_for is None else stands_for
-    made = _make(folder, {name: jobs[name] for name in stands_for.values()}, run_here, store.open_run)
+    made = make_once(folder, {name: jobs[name] for name in stands_for.values()}, run_here, store.open_run)
     return {name: made[stands_for[name]] for name in jobs}
 
 
 def make_calibrations(folder: Path, jobs: Mapping[str, Overrides]) -> dict[str, Calibration]:
     """Return the calibrations of jobs by name, likewise."""
-    return _make(folder, jobs, calibrate, store.open_calibration)
+    return make_once(folder, jobs, calibrate, store.open_calibration)
 
 
-def _make(
+def make_once(
     folder: Path, jobs: Mapping[str, Overrides], make: Callable[..., Kept], read: Callable[[Path], Kept]
 ) -> dict[str, Kept]:
+    """Return what jobs give by name, each made by the first process that comes to it.
+
+    Args:
+        folder: Shared by all test processes.
+        jobs: Overrides by name.
+        make: Makes one of its overrides; its name and the overrides tell what is made.
+        read: Reads what was made from its folder.
+    """
     made: dict[str, Kept] = {}
     left = dict(jobs)
     while left:

@@ -1,12 +1,14 @@
+"""The folder that a command is about: `latest`, copies, and folders of the wrong kind."""
+
 import shutil
 
 import pytest
 
-SHORT = ("robot=macro", "duration=0.1")
+SHORT = ("robot=macro", "duration=0.05")
 SWEEP = ("-m", "hydra.sweeper.workers=0", *SHORT, "seed=0,1")
 
 
-def test_latest_is_the_run_or_sweep_made_or_found_last(cli):
+def test_latest_is_the_run_or_sweep_made_or_found_last(cli, monkeypatch):
     first, second = cli(*SHORT).folder, cli(*SHORT, "seed=1").folder
     assert str(second.name) in cli("compare", "latest", first).out.splitlines()[0]
     cli(*SHORT)  # found stored
@@ -14,6 +16,7 @@ def test_latest_is_the_run_or_sweep_made_or_found_last(cli):
     sweep = cli(*SWEEP).folder
     assert cli("table", "latest").folder == sweep
     assert "2 runs: 2 done" in cli("status", "latest").out
+    monkeypatch.setattr("runner.reporting.render.write_report", lambda *_: None)  # its folder alone is asked for
     of_sweep = cli("report", "latest", "--html").folder
     assert cli("report", sweep, "--html").folder == of_sweep
     assert "is a run and" in cli("compare", "latest", second).err  # the sweep is meant, which was found last
@@ -35,10 +38,9 @@ def test_nothing_to_be_the_latest_is_one_line(cli, command):
     assert ending.err.count("\n") == 1
 
 
-@pytest.mark.parametrize("command", ["status"])
-def test_a_run_in_place_of_a_sweep_is_one_line(cli, command):
-    run = cli(*SHORT).folder
-    ending = cli(command, run)
+def test_a_run_in_place_of_a_sweep_is_one_line(cli, copy_run):
+    run = copy_run("goal")
+    ending = cli("status", run)
     assert (ending.code, ending.out) == (2, "")
     assert ending.err.startswith(f"runner: {run} is the folder of a run; needed: the folder of a sweep")
     assert ending.err.count("\n") == 1

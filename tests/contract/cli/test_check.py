@@ -1,11 +1,13 @@
+"""`runner check` of runs and sweeps against references: bands, and what is refused."""
+
 import json
 import shutil
 
+import numpy as np
 import pytest
 
 from runner.references import shipped_references
 
-SHORT = ("robot=macro", "duration=0.05")
 GOOD = "schema: 1\nmetrics:\n  peak_torque: {min: 0.0, reason: torques have no sign here}\n"
 BAD = """\
 schema: 1
@@ -27,16 +29,16 @@ def reference(tmp_path):
     return write
 
 
-def test_a_run_inside_its_bands_says_so_in_one_line(cli, reference):
-    run = cli(*SHORT).folder
+def test_a_run_inside_its_bands_says_so_in_one_line(cli, copy_run, reference):
+    run = copy_run("goal")
     path = reference(GOOD)
     ending = cli("check", run, "--reference", path)
     assert (ending.code, ending.err) == (0, "")
     assert ending.out == f"good: 1 metrics of 1 run lie in the bands of {path}\n"
 
 
-def test_what_falls_short_is_a_table_with_reasons(cli, reference):
-    run = cli(*SHORT).folder
+def test_what_falls_short_is_a_table_with_reasons(cli, copy_run, reference):
+    run = copy_run("goal")
     ending = cli("check", run, "--reference", reference(BAD))
     assert (ending.code, ending.err) == (1, "")
     head, title, *rows = ending.out.splitlines()
@@ -49,28 +51,23 @@ def test_what_falls_short_is_a_table_with_reasons(cli, reference):
     assert "saturation_fraction" not in table
 
 
-def test_the_median_over_repetitions_is_checked(cli, reference):
-    run = cli(*SHORT, "repetitions=3", "noise=thesis").folder
+def test_the_median_over_repetitions_is_checked(cli, copy_run, reference):
+    run = copy_run("pairs")
     record = json.loads((run / "metrics.json").read_text())
-    metric = record["metrics"]["peak_joint_speed"]
-    bounds = sorted(metric["values"])
-    band = (
-        f"schema: 1\nmetrics:\n  peak_joint_speed: {{min: {bounds[1]}, max: {bounds[1]}, reason: exactly the median}}\n"
-    )
+    median = float(np.median(record["metrics"]["peak_joint_speed"]["values"]))
+    band = f"schema: 1\nmetrics:\n  peak_joint_speed: {{min: {median}, max: {median}, reason: exactly the median}}\n"
     assert cli("check", run, "--reference", reference(band)).code == 0
 
 
-def test_a_failed_run_falls_short(cli, reference):
-    overrides = ("plant=rk4", "controller.period=0.06", "controller.singularity_damping=0", "trajectory=quintic")
-    run = cli("robot=macro", *overrides).folder
-    ending = cli("check", run, "--reference", reference(GOOD))
+def test_a_failed_run_falls_short(cli, copy_run, reference):
+    ending = cli("check", copy_run("failed"), "--reference", reference(GOOD))
     assert ending.code == 1
     assert "1 of 1 metrics fall short" in ending.out
     assert "  failed in repetition 0 at t = 0.6 s (q1): diverged" in ending.out
 
 
-def test_a_sweep_is_checked_run_by_run(cli, reference):
-    sweep = cli("-m", "hydra.sweeper.workers=0", *SHORT, "robot=macro,mini").folder
+def test_a_sweep_is_checked_run_by_run(cli, copy_sweep, reference):
+    sweep = copy_sweep("goal", "other seed")
     assert cli("check", sweep, "--reference", reference(GOOD)).out.startswith("good: 2 metrics of 2 runs lie in ")
     assert cli("check", sweep, "--reference", reference(BAD)).out.count("fall short") == 2
 
@@ -90,9 +87,8 @@ def test_a_changed_controller_falls_short_of_the_shipped_reference(cli):
     assert "max_tracking_error" in ending.out
 
 
-def test_without_a_shipped_reference_the_way_out_is_named(cli):
-    run = cli(*SHORT).folder
-    ending = cli("check", run)
+def test_without_a_shipped_reference_the_way_out_is_named(cli, copy_run):
+    ending = cli("check", copy_run("goal"))
     assert ending.code == 2
     assert (
         "no reference comes with the runner for a run without an experiment; give one by --reference FILE" in ending.err
@@ -103,16 +99,15 @@ def test_without_a_shipped_reference_the_way_out_is_named(cli):
     assert "for 'thesis/lag.sound'" in cli("check", run).err
 
 
-def test_a_copied_run_is_checked_elsewhere(cli, reference, tmp_path):
-    run = cli(*SHORT).folder
-    copy = shutil.copytree(run, tmp_path / "elsewhere" / "copy")
+def test_a_copied_run_is_checked_elsewhere(cli, copy_run, reference, tmp_path):
+    copy = shutil.copytree(copy_run("goal"), tmp_path / "elsewhere" / "copy")
     shutil.rmtree(tmp_path / "outputs")
     assert cli("check", copy, "--reference", reference(GOOD)).code == 0
     assert cli("diff", copy, copy).code == 0
 
 
-def test_folders_and_files_that_cannot_be_read(cli, reference, tmp_path):
-    run = cli(*SHORT).folder
+def test_folders_and_files_that_cannot_be_read(cli, copy_run, reference, tmp_path):
+    run = copy_run("goal")
     cases = [
         (("check", tmp_path / "gone"), "no folder"),
         (("check", tmp_path), "is nothing that is stored"),

@@ -1,11 +1,12 @@
+"""`runner compare` of stored runs: what differs, in pairs or not, and what is refused."""
+
 import json
 
 import pytest
+from fixtures.stored import SHORT
 from support.engines import ASKED
 
 from runner.store.stored import write_job
-
-SHORT = ("robot=macro", "duration=0.05")
 
 
 def change(folder, edit):
@@ -22,8 +23,8 @@ def cells(text, name):
     return next(line.split()[1:] for line in text.splitlines() if line.split()[:1] == [name])
 
 
-def test_a_run_and_itself(cli):
-    run = cli(*SHORT).folder
+def test_a_run_and_itself(cli, copy_run):
+    run = copy_run("goal")
     ending = cli("compare", run, run)
     assert (ending.code, ending.err) == (0, "")
     assert "same config\nsame provenance\n" in ending.out
@@ -31,13 +32,13 @@ def test_a_run_and_itself(cli):
     assert (unit, a, difference, ratio) == ("rad/s", b, "0", "1")
 
 
-def test_config_keys_and_metrics_that_differ(cli):
-    a = cli(*SHORT, "trajectory=quintic", "trajectory.duration=0.5").folder
+def test_config_keys_and_metrics_that_differ(cli, copy_run):
+    a = copy_run("quintic")
     changes = ("trajectory.duration=0.4", "torque_limits.max=[50,50,20]", "plant=rk4", "plant.step=0.001")
-    b = cli(*SHORT, "trajectory=quintic", *changes).folder
+    b = cli(*SHORT, "trajectory=quintic", "noise=thesis", *changes).folder
     out = cli("compare", a, b).out
     head, table = out.split("config differs:")[1].split("same provenance")
-    assert cells(head, "trajectory.duration") == ["0.5", "0.4"]
+    assert cells(head, "trajectory.duration") == ["1", "0.4"]
     assert cells(head, "torque_limits.max") == ["null", "[50,", "50,", "20]"]
     assert cells(head, "plant.kind") == [ASKED.removeprefix("plant="), "rk4"]
     assert cells(head, "plant.step") == ["null", "0.001"]
@@ -48,8 +49,8 @@ def test_config_keys_and_metrics_that_differ(cli):
     assert float(ratio) == pytest.approx(float(found_b) / float(found_a), rel=1e-3)
 
 
-def test_caveats_of_either(cli):
-    a, b = cli(*SHORT).folder, cli(*SHORT, "seed=1").folder
+def test_caveats_of_either(cli, copy_run):
+    a, b = copy_run("goal"), copy_run("other seed")
     change(a, lambda record: record.update(caveats=[]))
     caveat = {"rule": "saturation", "text": "joint q1 is at its torque limit", "value": 0.5, "repetitions": 1}
     assert "\nno caveats\n" in cli("compare", a, a).out
@@ -57,17 +58,16 @@ def test_caveats_of_either(cli):
     assert "\ncaveats:\n  B  saturation  joint q1 is at its torque limit\n" in cli("compare", a, b).out
 
 
-def test_keys_and_metrics_of_one_run_only(cli):
-    a = cli(*SHORT).folder
-    b = cli(*SHORT, "trajectory=quintic").folder
+def test_keys_and_metrics_of_one_run_only(cli, copy_run):
+    a, b = copy_run("goal"), copy_run("pairs")
     out = cli("compare", a, b).out
     assert cells(out, "trajectory.duration") == ["(absent)", "3.0"]
     assert cells(out, "max_tracking_error")[:2] == ["m", "-"]
     assert cells(out, "max_tracking_error")[3:] == ["-", "-"]
 
 
-def test_provenance_and_robots_that_differ(cli):
-    a, b = cli(*SHORT).folder, cli(*SHORT, "seed=1").folder
+def test_provenance_and_robots_that_differ(cli, copy_run):
+    a, b = copy_run("goal"), copy_run("other seed")
     (b / "robot.urdf").write_text((b / "robot.urdf").read_text() + "<!-- another -->\n")
     change(b, lambda record: record["provenance"].update(commit="abc", plant_step=5e-4))
     change(b, lambda record: record["provenance"]["versions"].update(pin="9.9"))
@@ -78,19 +78,18 @@ def test_provenance_and_robots_that_differ(cli):
     assert cells(out, "plant_step") == ["0.001", "0.0005"]
 
 
-def test_a_failed_run_says_why(cli):
-    overrides = ("plant=rk4", "controller.period=0.06", "controller.singularity_damping=0", "trajectory=quintic")
-    run = cli("robot=macro", *overrides).folder
+def test_a_failed_run_says_why(cli, copy_run):
+    run = copy_run("failed")
     assert f"B  {run}  failed in repetition 0 at t = 0.6 s (q1): diverged" in cli("compare", run, run).out
 
 
-def test_a_ratio_to_zero_is_left_out(cli):
-    run = cli(*SHORT).folder
+def test_a_ratio_to_zero_is_left_out(cli, copy_run):
+    run = copy_run("goal")
     assert cells(cli("compare", run, run).out, "saturation_fraction") == ["1", "0", "0", "0", "-"]
 
 
-def test_folders_that_are_no_runs(cli, tmp_path):
-    run = cli(*SHORT).folder
+def test_folders_that_are_no_runs(cli, copy_run, tmp_path):
+    run = copy_run("goal")
     for bad, what in ((tmp_path / "gone", "no folder"), (tmp_path, "is nothing that is stored")):
         for pair in ((run, bad), (bad, run)):
             ending = cli("compare", *pair)
@@ -98,17 +97,15 @@ def test_folders_that_are_no_runs(cli, tmp_path):
             assert what in ending.err
 
 
-def test_one_run_alone_is_refused(cli):
-    run = cli(*SHORT).folder
-    ending = cli("compare", run)
+def test_one_run_alone_is_refused(cli, copy_run):
+    ending = cli("compare", copy_run("goal"))
     assert (ending.code, ending.out) == (2, "")
     assert "is one run alone; give a second one" in ending.err
 
 
-def test_what_is_compared_is_told_before_any_number(cli):
-    a = cli(*SHORT, "trajectory=quintic").folder
-    b = cli(*SHORT, "trajectory=quintic", "controller.period=0.005", "gravity=9.7").folder
-    one = cli(*SHORT, "trajectory=quintic", "gravity=9.7").folder
+def test_what_is_compared_is_told_before_any_number(cli, copy_run):
+    a = copy_run("goal")
+    b, one = (cli(*SHORT, *other, "gravity=9.7").folder for other in (("controller.period=0.005",), ()))
     assert "\nA and B differ in gravity alone: 9.81 against 9.7.\n" in cli("compare", a, one).out
     told = next(line for line in cli("compare", a, b).out.splitlines() if line.startswith("A and B differ"))
     assert "gravity (9.81 against 9.7), and beside it in " in told
@@ -117,25 +114,24 @@ def test_what_is_compared_is_told_before_any_number(cli):
     assert "\nA and B differ in no value.\nsame config\n" in cli("compare", a, a).out
 
 
-def test_several_runs_are_held_against_the_first(cli):
-    runs = [cli(*SHORT, f"gravity={gravity}").folder for gravity in (9.81, 9.7, 9.6)]
+def test_several_runs_are_held_against_the_first(cli, copy_run):
+    runs = [copy_run(name) for name in ("goal", "other seed", "contact")]
     out = cli("compare", *runs, "--metrics", "energy").out
     blocks = out.split(f"A  {runs[0]}  ok")[1:]
-    assert ["C differ in gravity" in block for block in blocks] == [False, True]
+    assert ["C differ in environment" in block for block in blocks] == [False, True]
     assert cells(blocks[1].split("metric")[1], "energy")[0] == "J"
     assert "peak_torque" not in out
 
 
-def test_an_unknown_metric_is_refused(cli):
-    run = cli(*SHORT).folder
+def test_an_unknown_metric_is_refused(cli, copy_run):
+    run = copy_run("goal")
     ending = cli("compare", run, run, "--metrics", "enrgy")
     assert (ending.code, ending.out) == (2, "")
     assert "the runs have no metric 'enrgy' (did you mean energy?); known: " in ending.err
 
 
-def test_equal_seeds_are_compared_in_pairs(cli):
-    case = (*SHORT, "trajectory=quintic", "noise=thesis", "repetitions=6")
-    a, b = cli(*case).folder, cli(*case, "noise.position=2e-3").folder
+def test_equal_seeds_are_compared_in_pairs(cli, copy_run):
+    a, b = copy_run("pairs"), copy_run("more noise")
     _, paired = cli("compare", a, b).out.split("in 6 pairs on the same seeds")
     line = next(line for line in paired.splitlines() if line.split()[:1] == ["rms_torque"])
     *_, n, effect, p_value, _ = line.split()
@@ -145,12 +141,11 @@ def test_equal_seeds_are_compared_in_pairs(cli):
 
 
 @pytest.mark.parametrize(
-    ("other", "reason"),
+    ("one", "other", "reason"),
     [
-        (("seed=1", "repetitions=6"), "not compared in pairs: seed 0 and seed 1 share no noise"),
-        (("repetitions=5",), "not compared in pairs: 5 repetitions in common, and 6 are needed"),
+        ("goal", "other seed", "not compared in pairs: seed 0 and seed 1 share no noise"),
+        ("pairs", "noise", "not compared in pairs: 2 repetitions in common, and 6 are needed"),
     ],
 )
-def test_what_makes_no_pairs_is_said(cli, other, reason):
-    a, b = cli(*SHORT, "repetitions=6").folder, cli(*SHORT, *other).folder
-    assert reason in cli("compare", a, b).out
+def test_what_makes_no_pairs_is_said(cli, copy_run, one, other, reason):
+    assert reason in cli("compare", copy_run(one), copy_run(other)).out

@@ -1,3 +1,5 @@
+"""`runner compare` of stored sweeps: how cells are matched, counted and refused."""
+
 import shutil
 
 import pytest
@@ -5,9 +7,15 @@ import pytest
 TASK = ("robot=macro", "duration=0.05", "noise=thesis", "repetitions=6", "hydra.sweeper.workers=0")
 
 
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory):
+    """Outputs for all tests that only read: cells of several sweeps are made once."""
+    return f"outputs={tmp_path_factory.mktemp('compared')}"
+
+
 @pytest.fixture(name="sweep")
-def _sweep(cli):
-    return lambda *overrides: cli("-m", *TASK, *overrides).folder
+def _sweep(cli, shared):
+    return lambda *overrides: cli("-m", *TASK, shared, *overrides).folder
 
 
 def cells(text, *names):
@@ -86,8 +94,9 @@ def test_sweeps_of_other_seeds_are_refused(cli, sweep):
     assert "have 2 cells in common, but no seed" in ending.err
 
 
-def test_cells_that_are_not_stored_are_counted_and_the_others_are_compared(cli, sweep):
-    a, b = sweep("gravity=9.81,9.7,9.6"), sweep("gravity=9.81,9.7,9.6", "torque_limits.max=30")
+def test_cells_that_are_not_stored_are_counted_and_the_others_are_compared(cli):
+    grid = ("-m", *TASK, "gravity=9.81,9.7,9.6")
+    a, b = cli(*grid).folder, cli(*grid, "torque_limits.max=30").folder
     gone = cli(*TASK[:-1], "gravity=9.6", "torque_limits.max=30").folder
     shards = list((b.parent.parent / "runs").glob("*.shard*"))
     assert not shards  # else what is removed would still be stored
@@ -112,9 +121,9 @@ def test_failed_cells_are_counted(cli, sweep):
     assert ending.err == "runner: A and B have no metric in common: all runs of one of them failed\n"
 
 
-def test_a_run_against_a_sweep_is_refused_with_what_works(cli, sweep):
+def test_a_run_against_a_sweep_is_refused_with_what_works(cli, sweep, shared):
     a = sweep("gravity=9.81,9.7")
-    cell, other = cli(*TASK[:-1], "gravity=9.81").folder, cli(*TASK[:-1], "gravity=9.6").folder
+    cell, other = (cli(*TASK[:-1], shared, f"gravity={gravity}").folder for gravity in (9.81, 9.6))
     ending = cli("compare", cell, a)
     assert (ending.code, ending.out) == (2, "")
     assert "this run is the sweep's cell robot=macro " in ending.err

@@ -1,14 +1,14 @@
-import pytest
+"""`runner figures`: the files of figures of runs and sweeps, and what is refused."""
 
-CASE = ("robot=macro", "trajectory=quintic", "duration=0.05", "noise.position=1e-4", "outputs=o")
+import pytest
 
 
 def names(folder):
     return {path.name for path in folder.iterdir()}
 
 
-def test_the_figures_of_a_run_lie_beside_its_report(cli):
-    made = cli(*CASE).folder
+def test_the_figures_of_a_run_lie_beside_its_report(cli, copy_run):
+    made = copy_run("pairs")
     ending = cli("figures", made)
     assert ending.code == 0
     assert ending.folder.name == "figures"
@@ -17,8 +17,8 @@ def test_the_figures_of_a_run_lie_beside_its_report(cli):
     assert names(ending.folder) >= {f"{name}.{kind}" for name in listed for kind in ("svg", "pdf", "csv")}
 
 
-def test_the_figures_of_a_sweep_and_a_tuning(cli, tmp_path):
-    swept = cli("-m", *CASE, "controller=computed_torque,operational_space", "hydra.sweeper.workers=0").folder
+def test_a_figure_of_a_sweep_is_made_again_in_the_width_asked_for(cli, copy_sweep, tmp_path):
+    swept = copy_sweep("goal", "other seed")
     ending = cli("figures", swept, "--width", "double", "--output", tmp_path / "papers", "--only", "s3-figure-2")
     assert ending.folder == tmp_path / "papers"
     (name,) = ending.out.splitlines()[:-1]
@@ -28,19 +28,17 @@ def test_the_figures_of_a_sweep_and_a_tuning(cli, tmp_path):
     assert {path.name: path.read_bytes() for path in (tmp_path / "papers").iterdir()} == before
 
 
-def test_a_failed_run_is_drawn_up_to_its_failure_and_told(cli):
-    made = cli("robot=macro", "trajectory=quintic", "controller.natural_frequency=300", "duration=3", "outputs=o")
-    assert made.code == 1
-    ending = cli("figures", made.folder)
+def test_a_failed_run_is_drawn_up_to_its_failure_and_told(cli, copy_run):
+    ending = cli("figures", copy_run("failed"))
     assert ending.code == 0
     assert "runner: the run failed in repetition 0 at t = " in ending.err
     assert "its figures show repetition 0, up to " in ending.err
 
 
-def test_a_failed_run_without_a_trace_has_no_figures(cli):
-    made = cli("robot=macro", "trajectory=quintic", "controller.natural_frequency=300", "duration=3", "outputs=o")
-    (made.folder / "trace.parquet").unlink()
-    ending = cli("figures", made.folder)
+def test_a_failed_run_without_a_trace_has_no_figures(cli, copy_run):
+    made = copy_run("failed")
+    (made / "trace.parquet").unlink()
+    ending = cli("figures", made)
     assert ending.code == 2
     assert "the run failed in repetition 0 at t = " in ending.err
     assert "it has no trace to draw" in ending.err
@@ -84,14 +82,14 @@ def test_bad_input_is_one_line(cli, arguments, message):
         ("5", "--width 5: allowed are single"),
     ],
 )
-def test_a_width_that_is_none_is_one_line(cli, width, message):
-    ending = cli("figures", cli(*CASE).folder, "--width", width)
+def test_a_width_that_is_none_is_one_line(cli, copy_run, width, message):
+    ending = cli("figures", copy_run("goal"), "--width", width)
     assert (ending.code, ending.err.count("\n")) == (2, 1)
     assert message in ending.err
 
 
-def test_an_unknown_figure_is_told_with_those_that_there_are(cli):
-    ending = cli("figures", cli(*CASE).folder, "--only", "figure-9")
+def test_an_unknown_figure_is_told_with_those_that_there_are(cli, copy_run):
+    ending = cli("figures", copy_run("goal"), "--only", "figure-9")
     assert ending.code == 2
     assert "--only: no figure 'figure-9'" in ending.err
     assert "s1-figure-1-torque-of-each-joint-and-tip" in ending.err

@@ -1,30 +1,36 @@
+"""`runner report`: what each kind of folder gives, and what is refused."""
+
 import json
 import re
 import shutil
 
 import pytest
-
-SHORT = ("robot=macro", "duration=0.1")
+from fixtures.stored import SHORT
 
 
 @pytest.fixture
-def stored(cli):
-    return cli(*SHORT).folder
+def stored(copy_run):
+    return copy_run("goal")
 
 
-def test_a_run_is_reported_as_html_and_pdf(cli, stored):
-    ending = cli("report", stored)
-    assert ending.code == 0
-    assert ending.folder.parent == stored.parent.parent / "reports"
-    assert sorted(path.name for path in ending.folder.iterdir()) == ["report.html", "report.pdf"]
+@pytest.fixture
+def sweep(copy_sweep):
+    return copy_sweep("goal", "other seed")
 
 
 @pytest.mark.parametrize(
     ("flags", "files"),
-    [(["--html"], ["report.html"]), (["--pdf"], ["report.pdf"]), (["--pdf", "--html"], ["report.html", "report.pdf"])],
+    [
+        ([], ["report.html", "report.pdf"]),
+        (["--html"], ["report.html"]),
+        (["--pdf"], ["report.pdf"]),
+        (["--pdf", "--html"], ["report.html", "report.pdf"]),
+    ],
 )
-def test_a_format_can_be_chosen(cli, stored, flags, files):
+def test_a_run_is_reported_in_the_formats_chosen(cli, stored, flags, files):
     ending = cli("report", stored, *flags)
+    assert ending.code == 0
+    assert ending.folder.parent == stored.parent.parent / "reports"
     assert sorted(path.name for path in ending.folder.iterdir()) == files
 
 
@@ -38,21 +44,18 @@ def test_a_report_can_be_made_from_a_copied_run(cli, stored, tmp_path):
     assert ending.folder.joinpath("report.html").read_bytes() == here
 
 
-@pytest.fixture
-def sweep(cli):
-    return cli("-m", "hydra.sweeper.workers=0", *SHORT, "seed=0,1").folder
-
-
-def test_a_sweep_has_a_report_of_its_own(cli, sweep):
+def test_a_sweep_has_a_report_of_its_own_with_links_to_its_runs(cli, sweep):
     ending = cli("report", sweep, "--html")
     page = ending.folder.joinpath("report.html").read_text()
     assert "Sweep over seed" in page
     assert "2 cells over seed (2), all of them finished; repetitions in each: 1." in page
+    links = re.findall(r'"folders": (\[.*?\])', page)
+    assert [(ending.folder / link / "metrics.json").exists() for link in json.loads(links[0])] == [True, True]
     assert ending.folder != cli("report", sweep, "--html", "--metric", "peak_torque").folder
 
 
-def test_several_runs_are_reported_run_by_run(cli, stored):
-    other = cli(*SHORT, "seed=1").folder
+def test_several_runs_are_reported_run_by_run(cli, copy_run, stored):
+    other = copy_run("other seed")
     page = cli("report", other, stored, "--html").folder.joinpath("report.html").read_text()
     assert "Overview" in page
     assert "2 runs, all of them finished." in page
@@ -81,12 +84,6 @@ def test_runs_and_sweeps_have_no_report_together(cli, sweep, stored):
     assert (
         ending.err == "runner: runs and sweeps have no report together; give runs alone, sweeps alone, or one folder\n"
     )
-
-
-def test_the_links_of_a_report_lead_to_the_runs(cli, sweep):
-    folder = cli("report", sweep, "--html").folder
-    links = re.findall(r'"folders": (\[.*?\])', folder.joinpath("report.html").read_text())
-    assert [(folder / link / "metrics.json").exists() for link in json.loads(links[0])] == [True, True]
 
 
 def test_a_metric_is_asked_for_where_a_sweep_has_it(cli, sweep, stored):

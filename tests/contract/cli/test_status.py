@@ -1,3 +1,5 @@
+"""`runner status` of sweeps: done, left, at work, failed."""
+
 import shutil
 
 import pytest

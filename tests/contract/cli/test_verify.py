@@ -1,16 +1,12 @@
+"""`runner verify`: what is as written, what is damaged, and how it is mended."""
+
 import shutil
 
-import pytest
-
-SHORT = ("robot=macro", "duration=0.05")
+from fixtures.stored import SHORT
 
 
-@pytest.fixture
-def run(cli):
-    return cli(*SHORT).folder
-
-
-def test_what_is_as_it_was_written_is_counted(cli, run):
+def test_what_is_as_it_was_written_is_counted(cli, copy_run):
+    copy_run("goal")
     sweep = ("-m", *SHORT, "seed=1,2", "hydra.sweeper.workers=0", "sweep.trace=never")
     assert cli(*sweep).code == 0
     ending = cli("verify")
@@ -18,7 +14,8 @@ def test_what_is_as_it_was_written_is_counted(cli, run):
     assert ending.out.splitlines() == ["runs: 1 as written", "shards: 2 as written", "sweeps: 1 as written"]
 
 
-def test_damage_is_named_with_what_makes_it_anew(cli, run):
+def test_damage_is_named_with_what_makes_it_anew(cli, copy_run):
+    run = copy_run("goal")
     trace = run / "trace.parquet"
     trace.write_bytes(trace.read_bytes()[:-1])
     half = shutil.copytree(run, run.with_name("half"))
