@@ -2,22 +2,22 @@
 
 import numpy as np
 import pytest
+from fixtures.stored import DRAWN
 
 from runner.store import open_run
 
-SHORT = ("robot=macro", "plant=rk4", "noise=thesis", "duration=0.3", "repetitions=40")
 BOUND = "spec.metrics.cross_track_error.max"
 
 
 @pytest.fixture
-def cut(cli):
-    """Return a bound that so many of the 40 repetitions break."""
-    values = np.sort(open_run(cli(*SHORT).folder).values("cross_track_error"))
+def cut(copy_run):
+    """Return a bound that so many of the 40 repetitions break, which are stored without one."""
+    values = np.sort(open_run(copy_run("rk4")).values("cross_track_error"))
     return lambda failing: f"{BOUND}={float(values[39 - failing] + values[min(40 - failing, 39)]) / 2}"
 
 
 def test_a_run_tells_how_often_it_keeps_each_bound(cli, cut):
-    ending = cli(*SHORT, cut(4), "spec.metrics.peak_torque.max=5e3")
+    ending = cli(*DRAWN, cut(4), "spec.metrics.peak_torque.max=5e3")
     assert ending.code == 0  # a spec is no failure
     table = [line.split("  ") for line in ending.err.splitlines() if " of 40  " in line]
     cells = [[cell.strip() for cell in row if cell.strip()] for row in table]
@@ -27,7 +27,8 @@ def test_a_run_tells_how_often_it_keeps_each_bound(cli, cut):
 
 
 def test_a_run_tells_of_a_metric_that_it_lacks(cli):
-    ending = cli(*SHORT, "spec.metrics.max_tracking_error.max=1", "spec.metrics.peak_torque.max=1e6")
+    goal = ("robot=macro", "plant=rk4", "trajectory=goal", "duration=0.05")
+    ending = cli(*goal, "spec.metrics.max_tracking_error.max=1", "spec.metrics.peak_torque.max=1e6")
     assert ending.code == 0
     assert "spec: the run has no max_tracking_error (did you mean cross_track_error?)" in ending.err
     checked = cli("check", ending.folder)
@@ -40,7 +41,7 @@ def test_a_run_tells_of_a_metric_that_it_lacks(cli):
     [(0, 0, "good: 1 bound, kept in every repetition"), (1, 1, "broken: 1 of 1 bound")],
 )
 def test_without_a_probability_no_repetition_may_fail(cli, cut, failing, code, said):
-    ending = cli("check", cli(*SHORT, cut(failing)).folder)
+    ending = cli("check", cli(*DRAWN, cut(failing)).folder)
     assert (ending.code, ending.out.splitlines()[-1], ending.err) == (code, said, "")
 
 
@@ -55,7 +56,7 @@ def test_without_a_probability_no_repetition_may_fail(cli, cut, failing, code, s
     ],
 )
 def test_the_interval_decides_on_a_probability(cli, cut, failing, at_most, code, said):
-    ending = cli("check", cli(*SHORT, cut(failing)).folder, "--at-most", at_most)
+    ending = cli("check", cli(*DRAWN, cut(failing)).folder, "--at-most", at_most)
     row = ending.out.splitlines()[1]
     assert ending.code == code
     assert said in row
@@ -63,34 +64,36 @@ def test_the_interval_decides_on_a_probability(cli, cut, failing, at_most, code,
         assert row.endswith("good")
 
 
+@pytest.mark.usefixtures("cut")
 def test_a_broken_bound_is_told_with_its_reason(cli):
-    ending = cli(*SHORT, "spec.metrics.peak_torque={max: 1, reason: the gear of joint 2}")
+    ending = cli(*DRAWN, "spec.metrics.peak_torque={max: 1, reason: the gear of joint 2}")
     assert cli("check", ending.folder).out.splitlines()[1].endswith("broken (the gear of joint 2)")
 
 
+@pytest.mark.usefixtures("cut")
 def test_a_reference_that_is_given_counts_and_not_the_spec(cli, tmp_path):
     path = tmp_path / "reference.yaml"
     path.write_text("schema: 1\nmetrics:\n  peak_torque: {min: 0.0, reason: torques have no sign here}\n")
-    run = cli(*SHORT, "spec.metrics.peak_torque.max=1").folder
+    run = cli(*DRAWN, "spec.metrics.peak_torque.max=1").folder
     assert cli("check", run, "--reference", path).code == 0
     assert cli("check", run).code == 1
 
 
 @pytest.mark.parametrize("value", ["0", "1", "often", "nan"])
-def test_a_probability_lies_between_0_and_1(cli, value):
-    ending = cli("check", cli(*SHORT, "spec.metrics.peak_torque.max=1").folder, "--at-most", value)
+def test_a_probability_lies_between_0_and_1(cli, copy_run, value):
+    ending = cli("check", copy_run("rk4"), "--at-most", value)
     assert ending.code == 2
     assert f"--at-most: must be a number above 0 and below 1; found '{value}'" in ending.err
 
 
-def test_a_probability_needs_a_spec(cli):
-    ending = cli("check", cli(*SHORT, "seed=1").folder, "--at-most", "0.1")
+def test_a_probability_needs_a_spec(cli, copy_run):
+    ending = cli("check", copy_run("rk4"), "--at-most", "0.1")
     assert ending.code == 2
     assert "--at-most needs a run with a spec" in ending.err
 
 
 def test_a_sweep_is_checked_cell_by_cell(cli, cut):
-    swept = cli("-m", *SHORT, "noise.position=0,1e-3", cut(4), "hydra.sweeper.workers=0")
+    swept = cli("-m", *DRAWN, "noise.position=0,1e-3", cut(4), "hydra.sweeper.workers=0")
     assert "runner: 1 of 2 cells keep the spec in every repetition." in swept.err
     ending = cli("check", swept.folder)
     assert ending.code == 1
@@ -99,13 +102,13 @@ def test_a_sweep_is_checked_cell_by_cell(cli, cut):
     assert (good.split()[-1], broken.split()[-1]) == ("good", "broken")
     assert last == "broken: 1 of 2 bounds of 2 runs"
     # The same cells, found stored, are judged by the spec of the line that asks.
-    again = cli("-m", *SHORT, "noise.position=0,1e-3", f"{BOUND}=1", "hydra.sweeper.workers=0")
+    again = cli("-m", *DRAWN, "noise.position=0,1e-3", f"{BOUND}=1", "hydra.sweeper.workers=0")
     assert again.folder == swept.folder
     assert cli("check", again.folder).code == 0
 
 
 def test_runs_in_shards_are_judged_as_those_in_folders(cli, cut):
-    line = ("-m", *SHORT, "noise.position=0,1e-3", cut(4), "hydra.sweeper.workers=0")
+    line = ("-m", *DRAWN, "noise.position=0,1e-3", cut(4), "hydra.sweeper.workers=0")
     shards = cli("check", cli(*line, "sweep.trace=never", "outputs=shards").folder)
     folders = cli("check", cli(*line, "outputs=folders").folder)
     assert shards.out == folders.out

@@ -1,12 +1,20 @@
+"""`runner compare SWEEP --by AXIS`: the levels of an axis within those of the others."""
+
 import pytest
 
 TASK = ("robot=macro", "duration=0.05", "noise=thesis", "repetitions=6", "hydra.sweeper.workers=0")
 
 
+@pytest.fixture(scope="module")
+def outputs(tmp_path_factory):
+    """Outputs for all tests: the sweep is made once; the shared one of twelve cells has no axis of laws."""
+    return f"outputs={tmp_path_factory.mktemp('levels')}"
+
+
 @pytest.fixture(name="folder")
-def _folder(cli):
+def _folder(cli, outputs):
     laws = "controller=computed_torque,operational_space"
-    return cli("-m", *TASK, "trajectory=quintic", laws, "gravity=9.81,9.7").folder
+    return cli("-m", *TASK, outputs, "trajectory=quintic", laws, "gravity=9.81,9.7").folder
 
 
 def rows(out, metric):
@@ -24,7 +32,6 @@ def test_levels_are_compared_within_each_level_of_the_other_axis(cli, folder):
 
 
 def test_axes_that_are_not_named_are_pooled(cli, folder):
-    cli("-m", *TASK, "gravity=9.81")
     axis = ("--by", "gravity", "--within", "controller", "--metrics", "rms_torque")
     assert [row[0] for row in rows(cli("compare", folder, *axis).out, "rms_torque")] == [
         "controller=computed_torque",

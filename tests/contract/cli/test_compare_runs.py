@@ -115,10 +115,10 @@ def test_what_is_compared_is_told_before_any_number(cli, copy_run):
 
 
 def test_several_runs_are_held_against_the_first(cli, copy_run):
-    runs = [copy_run(name) for name in ("goal", "other seed", "contact")]
+    runs = [copy_run(name) for name in ("goal", "other seed", "noise")]
     out = cli("compare", *runs, "--metrics", "energy").out
     blocks = out.split(f"A  {runs[0]}  ok")[1:]
-    assert ["C differ in environment" in block for block in blocks] == [False, True]
+    assert ["C differ in noise" in block for block in blocks] == [False, True]
     assert cells(blocks[1].split("metric")[1], "energy")[0] == "J"
     assert "peak_torque" not in out
 

@@ -1,3 +1,5 @@
+"""`runner table`: of runs and sweeps, in every format, to a file or the terminal."""
+
 import json
 import re
 
