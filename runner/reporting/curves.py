@@ -26,6 +26,7 @@ _DASHES = {"dashed": "dash", "dotted": "dot"}
 _LEGEND_WIDTH, _TITLE_WIDTH = 40, 45
 _MOST_NAMES = 16
 _FEW_DECADES = 2
+_LARGEST = float(np.finfo("<f4").max)
 _UNIT = re.compile(r"\(([^(),]+)\)$")
 
 
@@ -180,6 +181,6 @@ def _compared(series: Series) -> bool:
 
 
 def _typed(values: FloatArray) -> Json:
-    # Infinities overflow the autorange; NaN is a gap.
-    finite = np.where(np.isfinite(values), values, np.nan).astype("<f4")
+    # What single precision cannot hold overflows the autorange; NaN is a gap.
+    finite = np.where(np.abs(values) <= _LARGEST, values, np.nan).astype("<f4")
     return {"dtype": "f4", "bdata": base64.b64encode(finite.tobytes()).decode("ascii")}

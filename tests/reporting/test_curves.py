@@ -1,3 +1,5 @@
+"""Figures of curves as data for Plotly: texts, ranges, colours, gaps."""
+
 import base64
 import json
 
@@ -54,10 +56,10 @@ def test_a_range_that_a_logarithmic_axis_cannot_show_is_left_to_plotly():
     assert "range" not in plotly_spec(panel_of(y_log=True, y_range=(0.0, 1.0)))[0]["layout"]["yaxis"]
 
 
-def test_infinities_become_gaps():
-    y = np.array([1.0, np.inf, 2.0])
-    trace = plotly_spec(Curves("", [Panel("", "", "", [Series("", np.arange(3.0), y)])]))[0]["traces"][0]
-    assert np.isnan(decoded(trace["y"])[1])
+def test_what_single_precision_cannot_hold_becomes_a_gap():
+    y = np.array([1.0, np.inf, 2.0, 1e39, -1e39, 3e38])
+    trace = plotly_spec(Curves("", [Panel("", "", "", [Series("", np.arange(6.0), y)])]))[0]["traces"][0]
+    assert np.isnan(decoded(trace["y"])).tolist() == [False, True, False, True, True, False]
 
 
 def test_curves_that_belong_together_share_a_color():
