@@ -1,4 +1,4 @@
-"""Errors for users: one and many problems, the nearest name, safe texts."""
+"""Messages of errors: problems, nearest names, safe to print."""
 
 import pickle
 

@@ -1,4 +1,4 @@
-"""The newest result: noted in order by many processes, and never an older one."""
+"""`latest`: the folder made or found last, of each kind."""
 
 import shutil
 from concurrent.futures import ThreadPoolExecutor
@@ -28,14 +28,14 @@ def made(kind, name, outputs="outputs"):
     return folder
 
 
-def test_it_is_what_was_made_or_found_last():
+def test_latest_is_what_was_made_or_found_last():
     first, second = made("runs", "b"), made("runs", "a")
     assert find_folder("latest", ["run"]) == second
     note(first)
     assert find_folder("latest", ["run"]) == first
 
 
-def test_of_several_kinds_it_is_the_last_one_of_all():
+def test_of_several_kinds_latest_is_the_last_of_all():
     run, sweep, tuning = made("runs", "r"), made("sweeps", "s"), made("tunings", "t")
     assert find_folder("latest", ["run", "sweep", "tuning"]) == tuning
     assert find_folder("latest", ["run", "sweep"]) == sweep
@@ -50,13 +50,13 @@ def test_the_order_stays_where_the_clock_is_set_back(monkeypatch):
     assert find_folder("latest", ["run", "sweep"]) == run
 
 
-def test_another_outputs_folder_has_its_own():
+def test_each_outputs_folder_has_its_own_latest():
     made("runs", "here")
     there = made("runs", "there", "elsewhere")
     assert find_folder("elsewhere/latest", ["run"]) == there
 
 
-def test_a_copied_outputs_folder_keeps_it():
+def test_a_copied_outputs_folder_keeps_its_latest():
     made("runs", "r")
     shutil.copytree("outputs", "copy")
     assert find_folder(Path("copy/latest"), ["run"]) == Path("copy/runs/r")

@@ -1,4 +1,4 @@
-"""Texts of quantities: digits, units, ranges and missing values."""
+"""Numbers with units as text: digits, powers of ten, ranges."""
 
 import math
 

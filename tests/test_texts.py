@@ -1,4 +1,4 @@
-"""Texts for terminals and tables: control characters, length and formulas."""
+"""Texts for terminals and tables: escaped, cut, quoted."""
 
 import csv
 import io

@@ -1,3 +1,5 @@
+"""Values that differ between the configs of two sweeps, and those that follow from others."""
+
 from dataclasses import replace
 
 from support.sample_sides import LAWS, side

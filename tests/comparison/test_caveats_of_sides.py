@@ -1,3 +1,5 @@
+"""Caveats of the sweeps that are compared, counted by rule."""
+
 from dataclasses import replace
 
 from support.sample_sides import LAWS, side

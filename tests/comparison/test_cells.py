@@ -1,3 +1,5 @@
+"""Cells of sweeps matched by the values of their axes."""
+
 from dataclasses import replace
 
 import pytest

@@ -1,3 +1,5 @@
+"""Levels of an axis compared within one sweep, against shifts that are put in."""
+
 from dataclasses import replace
 
 import numpy as np

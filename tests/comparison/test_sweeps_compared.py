@@ -1,3 +1,5 @@
+"""Two sweeps compared metric by metric and cell by cell, against shifts that are put in."""
+
 from dataclasses import replace
 
 import numpy as np

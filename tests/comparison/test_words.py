@@ -1,3 +1,5 @@
+"""Sentences of comparisons: counts, and repetitions that differ in noise alone."""
+
 import pytest
 
 from runner.comparison.words import at_once, counted, noise_alone

@@ -1,3 +1,5 @@
+"""Columns of tables for papers: digits by interval, one unit, powers of ten."""
+
 import numpy as np
 import pytest
 

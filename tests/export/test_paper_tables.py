@@ -1,3 +1,5 @@
+"""Tables for papers as Markdown and LaTeX: rows, notes, units and escapes."""
+
 import re
 from dataclasses import replace
 

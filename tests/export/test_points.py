@@ -1,3 +1,5 @@
+"""Points of figures as CSV, in the units and columns of the figures."""
+
 import csv
 import io
 

@@ -1,3 +1,5 @@
+"""Cells of a sweep pooled over seeds and other axes into rows of a table."""
+
 from dataclasses import replace
 
 import numpy as np

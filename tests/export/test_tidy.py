@@ -1,3 +1,5 @@
+"""A selection of a sweep as tidy data in SI units, as CSV and Parquet."""
+
 import io
 from dataclasses import replace
 
@@ -21,7 +23,7 @@ def test_a_selection_in_si_units():
     assert frame["rms_tracking_error.median"].tolist() == pytest.approx(expected, rel=1e-15)
 
 
-def test_both_files_hold_it():
+def test_csv_and_parquet_hold_a_selection():
     frame = selection(by_hand(), ["peak_torque"], where=["controller=operational_space"])
     pd.testing.assert_frame_equal(pd.read_csv(io.BytesIO(as_csv(frame))), frame, check_exact=True)
     parquet = as_parquet(frame, by_hand())

@@ -1,3 +1,5 @@
+"""Links as bodies of a playback, against the forward kinematics."""
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation

@@ -1,3 +1,5 @@
+"""Citations of a source and of the report on it, as BibTeX."""
+
 from types import SimpleNamespace
 
 from runner.reporting.citing import citing_section

@@ -1,3 +1,5 @@
+"""Units of table columns: one that spares powers of ten, digits kept."""
+
 import pytest
 
 from runner.quantities import number
@@ -31,7 +33,7 @@ def test_a_column_of_lengths_has_one_unit_that_spares_powers_of_ten(values, unit
     assert column("error (m)", *map(number, values)) == (f"error ({unit})", cells)
 
 
-def test_times_likewise_and_other_units_never():
+def test_a_column_of_times_has_one_unit_and_other_quantities_keep_theirs():
     assert column("settles (s)", number(0.091)) == ("settles (ms)", ["91"])
     assert column("turn (rad)", number(9e-3)) == ("turn (rad)", ["9·10⁻³"])
     assert column("speed (m/s)", number(9e-3)) == ("speed (m/s)", ["9·10⁻³"])

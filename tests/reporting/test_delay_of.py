@@ -1,3 +1,5 @@
+"""The delay of a stored run, under each key that it has had."""
+
 from types import SimpleNamespace
 
 import pandas as pd

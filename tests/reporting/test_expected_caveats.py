@@ -1,3 +1,5 @@
+"""Caveats that a work expects, against those of runs that are made up here."""
+
 from types import SimpleNamespace
 
 import pytest

@@ -1,3 +1,5 @@
+"""Findings and their conditions: comparisons, words, and those that no longer hold."""
+
 import numpy as np
 import pytest
 

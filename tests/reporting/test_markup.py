@@ -1,3 +1,5 @@
+"""Markup in texts: mathematics, links, literals."""
+
 import pytest
 
 from runner.reporting.markup import Link, Literal, Math, spans

@@ -1,3 +1,5 @@
+"""Titles of metrics: every metric has its own, with stage, axis and joint."""
+
 import sys
 
 import pytest

@@ -1,3 +1,5 @@
+"""Numbers of sections, and blocks and formulas in reading order."""
+
 import numpy as np
 from support.sample_document import document
 

@@ -1,3 +1,5 @@
+"""Recordings of motions for the player: frames, ends, no socket."""
+
 import base64
 import socket
 import threading

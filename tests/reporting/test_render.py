@@ -1,3 +1,5 @@
+"""Report files: written whole or not at all, in the formats asked for."""
+
 import pytest
 from support.sample_document import document
 

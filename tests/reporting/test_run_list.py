@@ -1,3 +1,5 @@
+"""The list of a sweep's runs, on the page and on paper."""
+
 import base64
 import json
 

@@ -1,3 +1,5 @@
+"""Letters in texts as symbols with their scripts."""
+
 import pytest
 
 from runner.reporting.symbols import Symbol, symbols_in

@@ -1,3 +1,5 @@
+"""Verdicts of a report counted, with their places."""
+
 from support.sample_document import equations
 
 from runner.reporting.claim import Claim, ClaimResult

@@ -1,4 +1,4 @@
-"""Stored axes of a sweep: order, reading back and damaged lists."""
+"""Axes of stored grids: order, reading, folder names, damage."""
 
 import itertools
 import json

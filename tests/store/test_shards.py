@@ -1,4 +1,4 @@
-"""Shards: outcomes read back as written; damaged shards and rows are named."""
+"""Shards of runs: what goes in comes out, the better outcome counts, damage is named."""
 
 import re
 

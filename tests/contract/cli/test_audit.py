@@ -1,3 +1,5 @@
+"""`runner audit FILE`: own formulas against the model of a URDF."""
+
 from runner.paths import robots_dir
 
 RIGHT = "elements: {P_x: s1*(sin(q2 + q3) - c2), P_y: c1*(c2 - sin(q2 + q3)), P_z: cos(q2 + q3) + s2}"

@@ -1,3 +1,5 @@
+"""`runner calibrate`: errors told, warnings, and what is refused."""
+
 import pytest
 
 from runner.config.options import group_options

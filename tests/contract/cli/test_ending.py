@@ -1,3 +1,5 @@
+"""The last lines of runs and sweeps: key metrics, failures, what comes next."""
+
 from support.engines import ASKED
 
 from runner.reporting.key_metrics import key_metrics

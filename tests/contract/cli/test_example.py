@@ -1,3 +1,5 @@
+"""`runner example`: the files copied, and that they run."""
+
 import os
 import sys
 

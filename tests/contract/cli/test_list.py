@@ -1,3 +1,5 @@
+"""`runner list`: every topic, own options, unknown names."""
+
 import pytest
 
 from runner.commands.list import TOPICS

@@ -1,3 +1,5 @@
+"""`runner work diff`: what moved between two makings."""
+
 import copy
 import json
 
@@ -41,7 +43,7 @@ def test_what_moved_is_printed_and_counted(cli, makings):
     assert len(cli("work", "diff", *makings, "--all").out.splitlines()) == 2 + 2 + 29 + 1
 
 
-def test_the_same_twice(cli, makings):
+def test_equal_makings_differ_in_nothing(cli, makings):
     assert cli("work", "diff", makings[0], makings[0]).out == "nothing changed\n"
 
 

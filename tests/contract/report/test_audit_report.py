@@ -1,3 +1,5 @@
+"""The report on the audit of two sources: tables, counts, marks and curves."""
+
 import re
 import unicodedata
 

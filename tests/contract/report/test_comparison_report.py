@@ -1,3 +1,5 @@
+"""The report on compared sweeps: first screen, tables, figure, and markup in configs."""
+
 from dataclasses import replace
 
 import numpy as np
@@ -115,7 +117,7 @@ def test_caveats_of_both_and_the_commands_are_shown():
     assert [block.text for block in parts(document.sections, Code)] == ["runner -m A", "runner -m B"]
 
 
-def test_it_is_written_and_escapes_what_comes_from_a_config(tmp_path):
+def test_a_comparison_escapes_what_comes_from_a_config(tmp_path):
     one = side("A", {"robot": ["a<b>$x$", "b"]}, lambda _: 1.0, note={"text": "<script>1</script>"})
     other = side("B", {"robot": ["a<b>$x$", "b"]}, lambda _: 1.1)
     html, pdf = write_report(comparison_document([one, other]), tmp_path)

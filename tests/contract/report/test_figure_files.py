@@ -1,3 +1,5 @@
+"""Figures of a report as files: their names, letters, sizes, and any text in them."""
+
 import re
 import zlib
 from xml.etree import ElementTree
@@ -9,7 +11,8 @@ from support.sample_document import HOSTILE, SVG, curves, document, maps, playba
 from runner.drawing.sheet import column
 from runner.errors import RunnerError
 from runner.export.figures import chosen, figures_of, write_figures
-from runner.reporting.document import Curves, Document, Origin, Panel, Picture, Section, Series
+from runner.export.points import as_csv
+from runner.reporting.document import Curves, Document, Maps, Origin, Panel, Picture, Section, Series
 
 SHEETS = {88.0: column(88.0), 180.0: column(180.0)}
 POINTS = 72.0 / 25.4  # in a millimetre
@@ -87,14 +90,23 @@ def test_a_drawing_is_made_smaller_and_never_larger(tmp_path):
     assert second == pytest.approx([40.0, 20.0], abs=0.1)
 
 
-@pytest.mark.parametrize("text", HOSTILE)
-def test_any_text_in_any_field_gives_files(text, tmp_path):
-    for _ in write_figures(figures_of(document(text)), tmp_path, SHEETS[88.0]):
-        pass
-    for path in tmp_path.iterdir():
-        assert re.fullmatch(r"[a-z0-9-]+\.(svg|pdf|csv)", path.name)
-        if path.suffix == ".svg":
-            ElementTree.fromstring(path.read_text())
+def test_any_text_in_any_field_gives_a_plain_name_and_points():
+    for text in HOSTILE:
+        figures = figures_of(document(text))
+        assert len(figures) == 4
+        assert [name for name in figures if not re.fullmatch(r"[a-z0-9-]+", name)] == []
+        for figure in figures.values():
+            as_csv(figure)
+
+
+def test_any_text_in_any_field_is_drawn(tmp_path):
+    """A figure of each kind has panels for every text: each stands in every field that is drawn."""
+    lines = [panel for text in HOSTILE for panel in curves(text).panels]
+    cells = [panel for text in HOSTILE for panel in maps(text).panels]
+    names = written(tmp_path, [Curves("lines", lines, columns=3), Maps("cells", HOSTILE[0], cells)])
+    for name in names:
+        ElementTree.fromstring((tmp_path / f"{name}.svg").read_text())
+        assert (tmp_path / f"{name}.pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_one_figure_may_be_asked_for():

@@ -1,6 +1,8 @@
+"""Figures of stored runs against their traces, and the command behind each."""
+
 import numpy as np
 import pytest
-from support.engines import ASKED
+from fixtures.stored import RUNS
 
 from runner.execution import run
 from runner.reporting.figures import (
@@ -13,18 +15,16 @@ from runner.reporting.figures import (
     torque_and_error,
 )
 
-OVERRIDES = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "noise=thesis")
 
-
-@pytest.fixture(scope="module")
-def stored(tmp_path_factory):
-    return run(*OVERRIDES, ASKED, f"outputs={tmp_path_factory.mktemp('outputs')}")
+@pytest.fixture
+def stored(runs):
+    return runs["quintic"]
 
 
 def test_an_origin_names_the_command_that_makes_the_run(stored):
     source = origin(stored, "figure 3.5")
     assert source.number == "figure 3.5"
-    assert source.command == f"runner robot=macro trajectory=quintic trajectory.duration=1 noise=thesis {ASKED}"
+    assert source.command == f"runner {' '.join(RUNS['quintic'])}"
     assert source.commit == "" or len(source.commit.removesuffix("+changes")) == 12
 
 
@@ -66,7 +66,7 @@ def test_desired_motion_ends_with_the_motion_and_keeps_the_colour_of_its_axis(st
 
 def test_a_shaped_motion_is_shown_to_its_end(tmp_path):
     shaper = ("input_shaper=zv", "input_shaper.frequency=2.5", "duration=1.3")
-    shaped = run(*OVERRIDES, ASKED, *shaper, f"outputs={tmp_path}")
+    shaped = run(*RUNS["quintic"], *shaper, f"outputs={tmp_path}")
     speed = desired_motion(shaped, "caption").panels[1].series[0]
     assert speed.x[-1] == pytest.approx(1.3)
     assert abs(speed.y[np.searchsorted(speed.x, 1.1)]) > 0.01  # later than trajectory.duration
@@ -82,8 +82,8 @@ def test_a_playback_thins_the_frames_but_not_the_path(stored):
     assert np.allclose(tip.positions[-1], shown.path[-1], atol=1e-9)
 
 
-def test_a_playback_of_a_diverged_run_leaves_out_what_is_no_number(tmp_path):
-    failed = run("robot=macro", "controller.period=0.1", "trajectory.goal=[0,0.9,1]", f"outputs={tmp_path}")
+def test_a_playback_of_a_diverged_run_leaves_out_what_is_no_number(runs):
+    failed = runs["failed"]
     assert failed.status == "failed"
     failed.trace.loc[len(failed.trace) - 1, "q1"] = np.nan
     shown = playback(failed, "caption")

@@ -1,3 +1,5 @@
+"""Formulas as images: their measures, faulty ones, and one compilation for all."""
+
 import pytest
 from support.sample_document import document
 
@@ -37,8 +39,10 @@ def test_faulty_names_what_a_report_would_show_as_source():
 def test_one_compilation_serves_all_formulas_and_is_kept(monkeypatch):
     texts = [f"kept_{i}".replace("kept", "k") for i in range(20)]
     calls = []
-    pages = formulas._pages
-    monkeypatch.setattr(formulas, "_pages", lambda *given: calls.append(given) or pages(*given))
+    make = formulas.typst.Compiler
+    monkeypatch.setattr(
+        formulas.typst, "Compiler", lambda *given, **named: calls.append(given) or make(*given, **named)
+    )
     formulas.draw(texts, displayed=False)
     formulas.draw(texts, displayed=False)
     assert len(calls) == 1

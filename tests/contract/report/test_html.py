@@ -1,3 +1,5 @@
+"""Documents as HTML: no markup from texts, no network, the same page each time."""
+
 import base64
 import gzip
 import json

@@ -1,3 +1,5 @@
+"""Maps as drawings and as data for Plotly: cells, scale, texts."""
+
 import json
 from dataclasses import replace
 from xml.etree import ElementTree

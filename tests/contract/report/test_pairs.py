@@ -1,9 +1,12 @@
+"""Cells of a sweep compared in pairs on the same seeds: tables by axis, the best and its followers."""
+
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from support.sample_sweep import measurements, noisy, two_axes
 
-from runner.reporting.document import Table
+from runner.reporting.document import Section, Table
 from runner.reporting.sweep import extremes, pairs
 from runner.reporting.sweep.subject import choose
 
@@ -87,15 +90,22 @@ def test_missing_repetitions_are_left_out_and_failed_ones_are_beyond_every_numbe
     assert "spread evenly" not in table.caption
 
 
-def test_n_stands_beside_the_intervals_of_best_and_worst():
-    table = extremes._medians(robots(), [2, 1])
+@pytest.fixture(name="blocks")
+def _blocks(monkeypatch):
+    """Return the blocks on the best and the worst cell, whose runs are not stored: no motion is shown."""
+    monkeypatch.setattr(extremes, "_motion", lambda title, _: Section(title, ()))
+    return lambda subject: extremes.section(subject, None, None).blocks
+
+
+def test_n_stands_beside_the_intervals_of_best_and_worst(blocks):
+    table = blocks(robots())[0]
     assert all(cell.endswith("n = 8)") for cell in table.rows[0][1:])
 
 
-def test_the_best_is_held_against_its_followers_in_every_metric():
+def test_the_best_is_held_against_its_followers_in_every_metric(blocks):
     subject = two_axes()
     best, followers = subject.ranked[0], subject.ranked[1:]
-    first, second = extremes._behind(subject, subject.ranked)
+    _, first, second = blocks(subject)
     assert [row[0] for row in first.rows] == [subject.cell_name(cell) for cell in followers[:5]]
     assert "by largest tracking error, on the same seeds" in first.caption
     torque = subject.medians["peak_torque"]

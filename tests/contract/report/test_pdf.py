@@ -1,3 +1,5 @@
+"""Documents as PDF by Typst: any text, the same bytes each time."""
+
 from dataclasses import replace
 from typing import get_args
 

@@ -1,3 +1,5 @@
+"""Sentences on the plant and the error of its integration step."""
+
 import pytest
 
 from runner.engines import has_pybullet

@@ -1,6 +1,9 @@
+"""The report on runs: one that finished, one that failed, and several of them."""
+
 from types import SimpleNamespace
 
 import pytest
+from fixtures.stored import RUNS
 from support.engines import ASKED
 
 from runner.execution import run
@@ -14,19 +17,14 @@ from runner.reporting.run_report import provenance, run_document
 from runner.reporting.words import PLANT
 
 
-@pytest.fixture(scope="module")
-def outputs(tmp_path_factory):
-    return f"outputs={tmp_path_factory.mktemp('outputs')}"
+@pytest.fixture
+def finished(runs):
+    return runs["quintic"]
 
 
-@pytest.fixture(scope="module")
-def finished(outputs):
-    return run("robot=macro", "trajectory=quintic", "duration=0.5", "repetitions=2", "noise=thesis", ASKED, outputs)
-
-
-@pytest.fixture(scope="module")
-def diverged(outputs):
-    return run("experiment=thesis/singular", ASKED, outputs)
+@pytest.fixture
+def diverged(runs):
+    return runs["failed"]
 
 
 def blocks_of(document, kind):
@@ -54,18 +52,18 @@ def test_a_finished_run_is_told_whole(finished):
     assert metrics.rows[0][0] == title(metrics.rows[0][1])
     assert metrics.caption == "Metrics over 2 repetitions."
     assert ["controller.natural_frequency", "30.0"] in [list(row) for row in config.rows]
-    assert ["duration", "0.5", "null"] in [list(row) for row in changed.rows]
+    assert ["trajectory.duration", "1", "3.0"] in [list(row) for row in changed.rows]
     assert "outputs" not in [row[0] for row in config.rows]
     (block,) = blocks_of(document, Provenance)
     rows = dict(block.rows)
     assert rows["plant"] == f"{PLANT[ASKED.removeprefix('plant=')]} in steps of 1 ms"
     assert rows["seed"] == "0"
-    assert rows["command"].startswith("runner robot=macro trajectory=quintic")
+    assert rows["command"] == f"runner {' '.join(RUNS['quintic'])}"
     assert rows["run"] == finished.hash
 
 
-def test_a_shaper_and_a_notch_stand_below_the_title(outputs):
-    shaped = ("input_shaper=zvd", "input_shaper.frequency=3", "notch=torques", "duration=0.2", ASKED, outputs)
+def test_a_shaper_and_a_notch_stand_below_the_title(tmp_path):
+    shaped = ("input_shaper=zvd", "input_shaper.frequency=3", "notch=torques", "duration=0.05", f"outputs={tmp_path}")
     document = run_document([run("robot=macro", "trajectory=quintic", *shaped)])
     assert document.subtitle == "no torque limits, noise none, input shaper ZVD, a notch in the torques"
 
@@ -92,9 +90,8 @@ def test_a_failed_run_says_when_and_where(diverged):
     assert f"In repetition 0 at t = {time:.3g} s, joint {joint}: diverged" in notice.text
 
 
-def test_a_sweep_is_led_by_what_distinguishes_its_runs(finished, diverged, outputs):
-    case = ("robot=macro", "trajectory=quintic", "duration=0.5", "repetitions=2", "noise=thesis")
-    other = run(*case, "seed=1", ASKED, outputs)
+def test_a_sweep_is_led_by_what_distinguishes_its_runs(finished, diverged, tmp_path):
+    other = run(*RUNS["quintic"], "seed=1", f"outputs={tmp_path}")
     document = run_document([finished, other, diverged])
     assert document.abstract == "3 runs, 1 of them failed."
     count, failed, least = document.key_numbers

@@ -1,3 +1,5 @@
+"""Stored sweeps and runs as sides of a comparison, with what is missing or damaged."""
+
 import shutil
 
 import pytest

@@ -3,7 +3,6 @@
 import pytest
 
 from runner.config.spec import Bound
-from runner.execution import run
 from runner.reporting import outline
 from runner.reporting.document import Notice, Table
 from runner.reporting.formulas import faulty
@@ -11,17 +10,15 @@ from runner.reporting.render import write_report
 from runner.reporting.run_report import run_document
 from runner.reporting.spec_words import HEADER, bound_text
 
-SHORT = ("robot=macro", "plant=rk4", "noise=thesis", "duration=0.3", "repetitions=20")
-TORQUE = "spec.metrics.peak_torque={max: 1, reason: 'gear <b>2</b>'}"
-
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    outputs = f"outputs={tmp_path_factory.mktemp('outputs')}"
+def made(runs):
+    """Two runs with specs of their own, one of which lacks the metric, and one without."""
+    torque = Bound(max=1.0, reason="gear <b>2</b>")
     return [
-        run(*SHORT, outputs, TORQUE, "spec.metrics.cross_track_error.max=1"),
-        run(*SHORT, "seed=1", outputs, "spec.metrics.max_tracking_error.max=1"),
-        run(*SHORT, "seed=2", outputs),
+        runs["rk4"].judged_by({"peak_torque": torque, "cross_track_error": Bound(max=1.0)}),
+        runs["goal"].judged_by({"max_tracking_error": Bound(max=1.0)}),
+        runs["noise"],
     ]
 
 
@@ -34,9 +31,9 @@ def test_the_report_on_a_run_has_its_bounds_with_reasons(made, tmp_path):
     document = run_document([made[0]])
     (table,) = specs(document)
     assert list(table.header) == [*HEADER, "reason"]
-    assert [row[1] for row in table.rows] == ["0 of 20", "20 of 20", "0 of 20"]
-    assert table.rows[0][2:4] == ["1", "0.832 to 1"]
-    assert "0 of 20 repetitions keep all 2 bounds of the spec: the probability of failing is 1" in document.abstract
+    assert [row[1] for row in table.rows] == ["0 of 40", "40 of 40", "0 of 40"]
+    assert table.rows[0][2:4] == ["1", "0.912 to 1"]
+    assert "0 of 40 repetitions keep all 2 bounds of the spec: the probability of failing is 1" in document.abstract
     assert not faulty(document)
     html = write_report(document, tmp_path, ["html"])[0].read_text()
     assert "gear <b>2</b>" not in html

@@ -1,43 +1,47 @@
+"""Drawings of arms in stages and of their control, and figures of a run of theirs."""
+
 import re
 import xml.etree.ElementTree as ET
 
-import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from matplotlib.patches import FancyBboxPatch, Polygon
 
-from runner.cli import dispatch
-from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.controllers.macro_mini_graph import macro_mini_graph
 from runner.controllers.whole_body_graph import whole_body_graph
-from runner.drawing import block_diagram, canvas, frame_assignment
-from runner.drawing.control_steps import _centre, _half, control_steps, steps
+from runner.drawing import block_diagram, frame_assignment
+from runner.drawing.control_steps import control_steps, steps
 from runner.drawing.stills import draw
 from runner.reporting.figures_staged import macro_mini_targets, staged_torque_and_error
-from runner.store import open_run
 
 SCHEDULES = [(schedule, beyond) for schedule in ("both", "turns") for beyond in ("hold", "stretch")]
 GRAPH = ("two_way", "minus_home", "full", "real", True, True, True, False, "turns")
 
 
-@pytest.fixture(scope="module")
-def run(tmp_path_factory):
-    outputs = tmp_path_factory.mktemp("staged")
-    overrides = ["robot=combined", "trajectory=quintic", "trajectory.duration=0.05", "duration=0.1", "plant=rk4"]
-    assert dispatch([*overrides, "repetitions=1", "noise=thesis", "torque_limits=thesis", f"outputs={outputs}"]) == 0
-    (folder,) = (path for path in (outputs / "runs").iterdir() if path.is_dir())
-    return open_run(folder)
+@pytest.fixture
+def run(runs):
+    return runs["stages"]
+
+
+@pytest.fixture
+def measured(monkeypatch):
+    """Return what is measured of the figure behind a drawing, in the style that it is drawn in."""
+
+    def measure(draw, of_figure):
+        found = []
+        with monkeypatch.context() as patch:
+            patch.setattr(Figure, "savefig", lambda figure, *_, **__: found.append(of_figure(figure)))
+            draw()
+        return found[0]
+
+    return measure
 
 
 @pytest.fixture(scope="module")
-def robot():
-    return validate(compose(["robot=combined"]).resolved).arm
-
-
-@pytest.fixture(scope="module")
-def makers(robot):
+def makers(combined):
     return {
-        "frames": lambda: frame_assignment(robot.model, 0, "T"),
+        "frames": lambda: frame_assignment(combined.model, 0, "T"),
         "whole": lambda: block_diagram(whole_body_graph(True, True, True, False, True)),
         "staged": lambda: block_diagram(macro_mini_graph(*GRAPH)),
         "steps": lambda: control_steps("turns", "stretch"),
@@ -57,12 +61,13 @@ def test_a_drawing_is_one_reproducible_svg_that_fits_on_the_paper(makers, name):
 
 
 @pytest.mark.parametrize("stage", [None, 0, 1])
-def test_every_axis_of_every_frame_is_labelled_once_and_apart(robot, stage):
-    model = robot.model if stage is None else robot.stages[stage].model
-    with mpl.rc_context(canvas._STYLE):
-        figure = frame_assignment.__wrapped__(model, 0, "T")
-        texts = [text for text in figure.axes[0].texts if text.get_text()]
-        areas = [(text.get_text(), text.get_window_extent()) for text in texts]
+def test_every_axis_of_every_frame_is_labelled_once_and_apart(combined, measured, stage):
+    model = combined.model if stage is None else combined.stages[stage].model
+
+    def labels(figure):
+        return [(text.get_text(), text.get_window_extent()) for text in figure.axes[0].texts if text.get_text()]
+
+    areas = measured(lambda: frame_assignment(model, 0, "T"), labels)
     names = [*map(str, range(model.nq)), "T"]
     expected = {f"${letter}_{{{name}}}$" for letter in "xyz" for name in names}
     expected |= {f"$q_{{{joint}}}$" for joint in range(1, model.nq + 1)}
@@ -73,25 +78,27 @@ def test_every_axis_of_every_frame_is_labelled_once_and_apart(robot, stage):
             assert not area.overlaps(other_area), f"{one} on {other}"
 
 
-def test_only_the_combined_arm_is_shown_enlarged(robot):
-    def texts(model):
-        return " ".join(text.get_text() for text in frame_assignment.__wrapped__(model).axes[0].texts)
+def test_only_the_combined_arm_is_shown_enlarged(combined, measured):
+    def texts(figure):
+        return " ".join(text.get_text() for text in figure.axes[0].texts)
 
-    assert "enlarged" in texts(robot.model)
-    assert not any("enlarged" in texts(stage.model) for stage in robot.stages)
+    models = [combined.model, *(stage.model for stage in combined.stages)]
+    enlarged = ["enlarged" in measured(lambda model=model: frame_assignment(model), texts) for model in models]
+    assert enlarged == [True, False, False]
 
 
 def walk(schedule, beyond, turn, within):
-    """What is done in a period, from the chart."""
+    """Return what is done in a period, from the chart: at most every step once."""
     chart = {step.name: step for step in steps(schedule, beyond)}
     step, done = steps(schedule, beyond)[0], []
-    while True:
+    for _ in chart:
         if step.kind == "action":
             done.append(step.text)
         if not step.then:
             return " ".join(done)
         answer = {"turn": turn, "reach": within}.get(step.name)
         step = chart[step.then["" if answer is None else "yes" if answer else "no"]]
+    raise AssertionError(f"{schedule}, {beyond}: the steps have no end")
 
 
 @pytest.mark.parametrize(("schedule", "beyond"), SCHEDULES)
@@ -109,16 +116,23 @@ def test_the_steps_do_what_the_loops_do(schedule, beyond, turn, within):
 
 
 @pytest.mark.parametrize(("schedule", "beyond"), SCHEDULES)
-def test_the_chart_has_every_text_within_its_block(schedule, beyond):
-    with mpl.rc_context(canvas._STYLE):
-        figure = control_steps.__wrapped__(schedule, beyond)
+def test_the_chart_has_every_text_within_its_block(measured, schedule, beyond):
+    def areas(figure):
         axes = figure.axes[0]
-        to_inches = axes.transData.inverted()
-        areas = [(t.get_text(), to_inches.transform(t.get_window_extent())) for t in axes.texts if t.get_text()]
-    for step in steps(schedule, beyond):
-        low, high = next(a for text, a in areas if text == step.text and abs(a.mean(0) - _centre(step)).max() < 0.1)
-        assert np.all(low > _centre(step) - _half(step))
-        assert np.all(high < _centre(step) + _half(step))
+        texts = [(text.get_text(), text.get_window_extent()) for text in axes.texts if text.get_text()]
+        return texts, [
+            block.get_window_extent() for block in axes.patches if isinstance(block, FancyBboxPatch | Polygon)
+        ]
+
+    texts, blocks = measured(lambda: control_steps(schedule, beyond), areas)
+    chart = steps(schedule, beyond)
+    for step in chart:
+        within = [
+            sum(block.x0 < area.x0 < area.x1 < block.x1 and block.y0 < area.y0 < area.y1 < block.y1 for block in blocks)
+            for text, area in texts
+            if text == step.text
+        ]
+        assert within == [1] * sum(other.text == step.text for other in chart)
 
 
 def test_an_unknown_schedule_has_no_steps():

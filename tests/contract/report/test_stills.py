@@ -1,3 +1,5 @@
+"""Figures of curves as SVG: any text, odd values, legends."""
+
 import json
 from xml.etree import ElementTree
 

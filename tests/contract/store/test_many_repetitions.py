@@ -1,6 +1,7 @@
 """Runs of so many repetitions that their values stand beside the record."""
 
 import json
+import shutil
 
 import numpy as np
 import pyarrow.parquet
@@ -8,6 +9,7 @@ import pytest
 
 import runner
 from runner.compiled.engine import evaluator
+from runner.execution import run
 from runner.metrics.summary import MOST_LISTED
 from runner.store import DamagedError, open_run
 from runner.sweeps.measurements import measure_sweep
@@ -17,9 +19,15 @@ MANY = MOST_LISTED + 1
 SHORT = ("robot=macro", "plant=rk4", "trajectory=goal", "noise=thesis", "duration=0.05")
 
 
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory):
+    """The run, too large to be one of the shared ones; tests take copies."""
+    return run(*SHORT, f"repetitions={MANY}", f"outputs={tmp_path_factory.mktemp('many')}")
+
+
 @pytest.fixture
-def many(cli):
-    return open_run(cli(*SHORT, f"repetitions={MANY}").folder)
+def many(stored, tmp_path):
+    return open_run(shutil.copytree(stored.folder, tmp_path / "outputs" / "runs" / stored.hash))
 
 
 def test_up_to_two_thousand_stand_in_the_record_and_more_beside_it(cli, many):
@@ -56,11 +64,11 @@ def test_failed_repetitions_have_no_value(cli):
         "torque_limits=none",
     )  # fmt: skip
     assert ending.code == 1
-    run = open_run(ending.folder)
-    lost = np.isnan(run.values("energy"))
+    failed = open_run(ending.folder)
+    lost = np.isnan(failed.values("energy"))
     assert 0 < lost.sum() < MANY
-    assert run.failure["repetition"] == np.flatnonzero(lost)[0]
-    assert run.metrics["energy"]["max"] is None
+    assert failed.failure["repetition"] == np.flatnonzero(lost)[0]
+    assert failed.metrics["energy"]["max"] is None
 
 
 @pytest.mark.parametrize("spoil", ["flip", "remove"])
@@ -92,14 +100,14 @@ def test_commands_read_it(cli, many):
 
 
 def test_python_reads_it(many):
-    run = runner.Run(many)
-    metric = run.metrics["energy"]
+    found = runner.Run(many)
+    metric = found.metrics["energy"]
     assert metric.quantiles == many.metrics["energy"]["quantiles"]
     assert list(metric.values) == many.values("energy").tolist()
     assert str(metric).count("J") == 1
-    assert run.metrics["steady_state_error"].values == (None,) * MANY
-    assert run.metrics_frame().loc[["energy", "steady_state_error"], "n"].tolist() == [MANY, 0]
-    assert len(run.trace(MANY - 1)) == 6  # simulated again, with the metrics that are stored
+    assert found.metrics["steady_state_error"].values == (None,) * MANY
+    assert found.metrics_frame().loc[["energy", "steady_state_error"], "n"].tolist() == [MANY, 0]
+    assert len(found.trace(MANY - 1)) == 6  # simulated again, with the metrics that are stored
 
 
 @pytest.mark.parametrize("trace", ["never", "all"])
@@ -110,7 +118,7 @@ def test_cells_of_a_sweep_have_the_values_that_each_has_alone(cli, many, trace):
     )
     sweep = runner.open_sweep(swept.folder).stored
     runs = list(sweep.runs())
-    assert [run.folder.exists() for run in runs] == [trace == "all"] * 2
+    assert [each.folder.exists() for each in runs] == [trace == "all"] * 2
     found = measure_sweep(sweep)
     for name in many.metrics:
         expected = many.values(name)

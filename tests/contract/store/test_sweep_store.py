@@ -1,8 +1,9 @@
-"""Stored sweeps: opened as they were made; damaged and foreign folders are named."""
+"""Stored sweeps: their jobs and runs in order, and what damage leads to."""
 
 import json
 
 import pytest
+from fixtures.stored import RUNS
 
 from runner.errors import StoreError
 from runner.store import is_run, is_sweep, open_runs, open_sweep, write_sweep
@@ -11,13 +12,13 @@ from runner.store.stored import write_job
 
 
 @pytest.fixture
-def sweep(cli):
-    return cli("-m", "hydra.sweeper.workers=0", "robot=macro", "seed=0,1", "duration=0.05").folder
+def sweep(copy_sweep):
+    return copy_sweep("goal", "other seed")
 
 
 def test_a_sweep_opens_with_its_runs_in_order(sweep):
     opened = open_sweep(sweep)
-    assert opened.overrides == [("robot=macro", f"seed={seed}", "duration=0.05") for seed in (0, 1)]
+    assert opened.overrides == [RUNS["goal"], RUNS["other seed"]]
     assert [run.config["seed"] for run in opened.runs()] == [0, 1]
     assert [run.hash for run in opened.runs()] == list(opened.hashes)
     assert [run.hash for run in open_runs(sweep)] == list(opened.hashes)

@@ -1,3 +1,5 @@
+"""Forms of an audited equation: printed, corrected, and where they differ."""
+
 import pytest
 
 from runner.audit.entry import Entry, Form, Repair

@@ -1,3 +1,5 @@
+"""Marks on parts of a formula that the other form lacks."""
+
 import pytest
 
 from runner.reporting import formulas

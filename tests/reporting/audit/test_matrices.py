@@ -1,3 +1,5 @@
+"""Elements of equations gathered into matrices."""
+
 import pytest
 
 from runner.expressions.parser import parse

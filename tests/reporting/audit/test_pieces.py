@@ -1,3 +1,5 @@
+"""Texts of equations compared piece by piece, and cut to what differs."""
+
 from runner.expressions.shortening import ELLIPSIS
 from runner.reporting.audit.pieces import LONG, cut, pieces
 

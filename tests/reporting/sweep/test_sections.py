@@ -1,3 +1,5 @@
+"""Sections of the report on a sweep, from sweeps that were never run."""
+
 from dataclasses import replace
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""Metrics that a sweep's report compares, and the ranking of its cells."""
+
 import numpy as np
 import pytest
 from support.sample_sweep import measurements, noisy, two_axes
@@ -19,7 +21,7 @@ def test_metrics_that_differ_are_compared_and_parts_of_them_are_not():
     assert choose(measurements(AXES, metrics)).metrics == ("max_tracking_error", "overshoot")
 
 
-def test_what_a_motion_costs_is_among_them():
+def test_what_a_motion_costs_is_compared():
     names = ["max_tracking_error", "settling_time", "steady_state_error", "cross_track_error", "energy"]
     metrics = {name: noisy(lambda n: 1.0 + n) for name in names}
     assert choose(measurements(AXES, metrics)).metrics == (*names[:3], "energy")

@@ -1,3 +1,5 @@
+"""Lines of theory in maps: frequency times sample time equal to one."""
+
 import numpy as np
 import pytest
 

@@ -1,3 +1,5 @@
+"""Trade-off between two metrics: the Pareto front against its definition."""
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st

@@ -1,3 +1,5 @@
+"""Columns of numbers and words on a terminal."""
+
 import numpy as np
 
 from runner.commands.columns import COMPARED, aligned, comparison_cells, letter
