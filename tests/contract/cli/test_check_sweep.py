@@ -7,9 +7,15 @@ SWEEP = ("-m", "hydra.sweeper.workers=0", "robot=macro", "duration=0.3", "noise=
 AXIS = "controller.natural_frequency=20,30"
 
 
+@pytest.fixture(scope="module")
+def outputs(tmp_path_factory):
+    """Outputs for all tests: the sweep that is learned is made once."""
+    return f"outputs={tmp_path_factory.mktemp('learned')}"
+
+
 @pytest.fixture
-def learned(cli, tmp_path):
-    folder = cli(*SWEEP, AXIS, "repetitions=5").folder
+def learned(cli, outputs, tmp_path):
+    folder = cli(*SWEEP, outputs, AXIS, "repetitions=5").folder
     path = tmp_path / "reference.yaml"
     ending = cli("check", folder, "--learn", path)
     assert ending.code == 0
@@ -36,8 +42,8 @@ def test_a_sweep_is_good_against_what_it_taught(cli, learned):
         assert ending.out.count("\n") == 1
 
 
-def test_other_seeds_move_within_the_spread(cli, learned):
-    other = cli(*SWEEP, AXIS, "repetitions=5", "seed=1").folder
+def test_other_seeds_move_within_the_spread(cli, outputs, learned):
+    other = cli(*SWEEP, outputs, AXIS, "repetitions=5", "seed=1").folder
     ending = cli("check", other, "--reference", learned[1])
     assert " 0 moved" not in ending.out
     moved = [line.split() for line in ending.out.splitlines()[2:]]
@@ -75,15 +81,15 @@ def test_a_metric_without_value_is_beyond_every_number(cli, learned):
     assert rows["controller.natural_frequency=20peak_torque"][-1] == "no"
 
 
-def test_cells_that_are_new_gone_or_failed_are_told(cli, learned):
-    other = cli(*SWEEP, "controller.natural_frequency=20,40", "repetitions=5").folder
+def test_cells_that_are_new_gone_or_failed_are_told(cli, outputs, learned):
+    other = cli(*SWEEP, outputs, "controller.natural_frequency=20,40", "repetitions=5").folder
     ending = cli("check", other, "--reference", learned[1])
     assert ending.code == 1
     lines = [" ".join(line.split()) for line in ending.out.splitlines()]
     assert "controller.natural_frequency=40 (all) is new no" in lines
     assert "controller.natural_frequency=30 (all) is gone yes" in lines
     failing = ("plant=rk4", "controller.period=0.06", "controller.singularity_damping=0", "duration=2")
-    failed = cli(*SWEEP, AXIS, "repetitions=5", *failing).folder
+    failed = cli(*SWEEP, outputs, AXIS, "repetitions=5", *failing).folder
     ending = cli("check", failed, "--reference", learned[1])
     assert ending.code == 1
     assert "diverged" in ending.out

@@ -45,9 +45,8 @@ def test_options_are_those_of_the_command():
     assert words("work diff --") == ["--all", "--help", "--json"]
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_every_command_tells_its_options(command):
-    assert "--help" in words(f"{command} -")
+def test_every_command_tells_its_options():
+    assert [command for command in COMMANDS if "--help" not in words(f"{command} -")] == []
 
 
 def test_values_of_options():

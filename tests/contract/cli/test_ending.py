@@ -1,10 +1,10 @@
 """The last lines of runs and sweeps: key metrics, failures, what comes next."""
 
+from fixtures.stored import RUNS
 from support.engines import ASKED
 
 from runner.reporting.key_metrics import key_metrics
 from runner.reporting.run_report import run_document
-from runner.store import open_run
 
 SHORT = ("robot=macro", ASKED, "trajectory=quintic", "trajectory.duration=0.5", "duration=1.2")
 
@@ -41,8 +41,7 @@ def test_a_goal_that_is_not_reached_is_told(cli):
 
 
 def test_a_failed_run_tells_why_and_no_metrics(cli):
-    fails = ("robot=macro", "plant=rk4", "controller.period=0.06", "controller.singularity_damping=0")
-    ending = cli(*fails, "trajectory=quintic")
+    ending = cli(*RUNS["failed"])
     assert ending.code == 1
     assert "runner: failed in repetition 0 at t = 0.6 s (q1): diverged" in ending.err
     assert "largest torque" not in ending.err
@@ -75,8 +74,8 @@ def test_of_very_many_cells_the_best_is_not_sought(cli, monkeypatch):
     assert ending.err.splitlines()[-2] == "runner: 2 runs: 2 made, 0 stored before, none of them failed"
 
 
-def test_the_choice_is_that_of_the_report(cli):
-    run = open_run(cli(*SHORT).folder)
+def test_the_choice_is_that_of_the_report(runs):
+    run = runs["quintic"]
     shown = list(run_document([run]).key_numbers)
     assert len(shown) == 4
     assert shown == list(key_metrics(run, 5))[:4]

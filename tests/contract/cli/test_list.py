@@ -1,7 +1,5 @@
 """`runner list`: every topic, own options, unknown names."""
 
-import pytest
-
 from runner.commands.list import TOPICS
 from runner.config.options import group_options
 from runner.metrics import units
@@ -15,13 +13,14 @@ def test_an_overview_of_all_topics(cli):
     assert ", ".join(group_options("robot")) in " ".join(ending.out.split())
 
 
-@pytest.mark.parametrize("topic", TOPICS)
-def test_every_topic_has_entries_with_descriptions(cli, tmp_path, topic):
-    ending = cli("list", topic)
-    assert (ending.code, ending.err) == (0, "")
-    lines = ending.out.splitlines()
-    assert lines
-    assert all(len(line.split(maxsplit=1)) == 2 for line in lines)
+def test_every_topic_has_entries_with_descriptions(cli, tmp_path):
+    wrong = []
+    for topic in TOPICS:
+        ending = cli("list", topic)
+        lines = ending.out.splitlines()
+        if (ending.code, ending.err) != (0, "") or not lines or any(len(line.split()) < 2 for line in lines):
+            wrong.append((topic, ending))
+    assert wrong == []
     assert list(tmp_path.iterdir()) == []
 
 
