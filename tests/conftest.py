@@ -5,7 +5,6 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
 import pytest
 from hypothesis import settings
 from support import compiled_once
@@ -14,7 +13,9 @@ from runner.quiet import quiet_environment
 
 quiet_environment()
 
-from runner.engines import has_pybullet  # noqa: E402 - after the environment
+import numpy as np  # noqa: E402 - after the environment
+
+from runner.engines import has_pybullet  # noqa: E402
 
 _FIXTURES = ("cli", "cost", "installed", "own_parts", "robots", "runs", "stored")
 pytest_plugins = ("support.engines", *(f"fixtures.{name}" for name in _FIXTURES))

@@ -189,6 +189,7 @@ def test_answers_are_bounded(tmp_path, monkeypatch):
     assert len(list((tmp_path / "cache").iterdir())) <= 3
 
 
+@pytest.mark.costs(2)
 def test_a_stored_run_imports_no_simulator(tmp_path):
     heavy = "{'hydra', 'omegaconf', 'pinocchio', 'scipy', 'pandas', 'llvmlite', 'pyarrow', 'pybullet', 'mujoco'}"
     lines = f"import sys; from runner.cli import dispatch; dispatch({LINE}); print({heavy} & {{*sys.modules}})"

@@ -1,13 +1,9 @@
 """Citations of a source and of the report on it, as BibTeX."""
 
-from types import SimpleNamespace
+from support.made_up_runs import made_up_run
 
 from runner.reporting.citing import citing_section
 from runner.reporting.document import Code
-
-
-def run(date, commit):
-    return SimpleNamespace(provenance={"date": date, "commit": commit})
 
 
 def codes(section):
@@ -15,7 +11,7 @@ def codes(section):
 
 
 def test_the_source_and_the_report_with_the_newest_run():
-    runs = {"a": run("2026-01-01", "0" * 40), "b": run("2026-02-03", "f" * 40)}
+    runs = {"a": made_up_run(date="2026-01-01", commit="0" * 40), "b": made_up_run(date="2026-02-03", commit="f" * 40)}
     source, report = codes(citing_section("Arms & hands", "A report", "@misc{x,}\n", runs))
     assert source == "@misc{x,}"
     assert report.splitlines() == [

@@ -1,17 +1,14 @@
 """The verdicts on a work's claims, from runs that are made up here."""
 
-from pathlib import Path
-
 import numpy as np
-import pandas as pd
 import pytest
+from support.made_up_runs import made_up_metric, made_up_run
 
 from runner.claims import CONTRADICTION, PublishedClaim, PublishedStatement
 from runner.reporting.claims import judged_claims, judged_statements, run_name
 from runner.reporting.document import Verdicts
 from runner.reporting.job import PRESETS, MissingError
 from runner.reporting.words import PRESET
-from runner.store import Run
 
 NUMBER = {
     "number": 1,
@@ -29,24 +26,18 @@ MOTION = NUMBER | {
     "metric": "",
     "extents": [{"axis": "y", "span": 0.4, "tolerance": 5e-3}, {"axis": "z", "span": 0.0, "tolerance": 5e-4}],
 }
-FAILURE = {"reason": "diverged", "time": 0.5, "joint": None, "repetition": 0}
 
 
-def metric(*values, unit="s"):
-    return {"unit": unit, "median": float(np.median(values)), "min": min(values), "max": max(values), "values": values}
+def seconds(*values):
+    return made_up_metric(*values, unit="s")
 
 
-def run(metrics=None, failure=None, width=0.4):
-    status = "ok" if failure is None else "failed"
-    made = Run(
-        Path("run"),
-        {"robot": {"settling_band": 0.02}},
-        {"status": status, "metrics": metrics or {}, "failure": failure, "provenance": {"command": "runner macro"}},
-    )
+def run_of(metrics=None, failed=False, width=0.4):
+    """Return a run whose tip moves along y by a width; 0.4 m are wanted."""
     y = np.linspace(0.0, width, 5)
     signals = {"tip_x": 0.6, "tip_y": y, "tip_z": 0.1508, "desired_x": 0.6, "desired_y": 0.4 * y / width}
-    made.__dict__["trace"] = pd.DataFrame(signals | {"desired_z": 0.1508})
-    return made
+    band = {"robot": {"settling_band": 0.02}}
+    return made_up_run(metrics, signals | {"desired_z": 0.1508}, band, failed=failed, command="runner macro")
 
 
 def blocks(runs, *claims):
@@ -65,50 +56,50 @@ def test_a_run_is_named_by_the_last_part_of_its_experiment():
 
 
 def test_a_number_is_judged_by_the_median_and_shown_with_its_range():
-    (block,) = blocks({"macro": run({"settling_time": metric(3.0, 4.0, 5.0)})}, NUMBER)
+    (block,) = blocks({"macro": run_of({"settling_time": seconds(3.0, 4.0, 5.0)})}, NUMBER)
     assert told(block) == ("4.00 s (3.00 to 5.00)", "worse")
     assert (block.number, block.printed, block.reason) == ("1", "1.4 s", "As printed.")
     assert block.command == "runner macro"
 
 
 def test_a_printed_range_is_shown_by_both_ends():
-    (block,) = blocks({"macro": run({"settling_time": metric(1.4)})}, NUMBER | {"printed": [0.7, 1.4]})
+    (block,) = blocks({"macro": run_of({"settling_time": seconds(1.4)})}, NUMBER | {"printed": [0.7, 1.4]})
     assert block.printed == "0.7 to 1.4 s"
 
 
 def test_a_run_that_failed_is_worse_and_says_why():
-    (block,) = blocks({"macro": run(failure=FAILURE)}, NUMBER)
+    (block,) = blocks({"macro": run_of(failed=True)}, NUMBER)
     assert told(block) == ("failed in repetition 0 at t = 0.5 s: diverged", "worse")
 
 
 def test_a_motion_is_judged_by_the_tip_and_shown_axis_by_axis():
-    (block,) = blocks({"macro": run()}, MOTION)
+    (block,) = blocks({"macro": run_of()}, MOTION)
     assert told(block) == ("y 0.0000 to 0.4000 m, z 0.1508 to 0.1508 m", "holds")
     assert block.printed == "0.1508 m"
-    (block,) = blocks({"macro": run(width=0.3)}, MOTION)
+    (block,) = blocks({"macro": run_of(width=0.3)}, MOTION)
     assert told(block) == ("y 0.0000 to 0.3000 m, z 0.1508 to 0.1508 m", "worse")
 
 
 def test_a_failure_that_is_told_holds_where_the_run_fails():
-    (block,) = blocks({"macro": run(failure=FAILURE, width=0.1)}, MOTION | {"fails": True})
+    (block,) = blocks({"macro": run_of(failed=True, width=0.1)}, MOTION | {"fails": True})
     assert told(block) == ("failed in repetition 0 at t = 0.5 s: diverged", "holds")
 
 
 def test_a_comparison_in_words_takes_the_other_runs_median():
     like = NUMBER | {"printed": [], "like": {"experiment": "work/mini", "metric": "rise_time"}}
-    runs = {"macro": run({"settling_time": metric(1.0)}), "mini": run({"rise_time": metric(2.0)})}
+    runs = {"macro": run_of({"settling_time": seconds(1.0)}), "mini": run_of({"rise_time": seconds(2.0)})}
     (block,) = blocks(runs, like)
     assert told(block) == ("1 s", "better")
     assert block.printed == "in words"
     with pytest.raises(MissingError, match="claim 1: there is nothing to compare it with under as_reported"):
-        blocks(runs | {"mini": run(failure=FAILURE)}, like)
+        blocks(runs | {"mini": run_of(failed=True)}, like)
 
 
 @pytest.mark.parametrize(("macro", "verdict"), [(1.0, CONTRADICTION), (3.0, "holds")])
 def test_a_bound_is_the_other_claims_number_or_our_median_where_that_is_larger(macro, verdict):
     bound = {"claim": 1, "scale": 0.1, "name": "A tenth of the Macro's", "reason": "It is scaled."}
     mini = NUMBER | {"number": 2, "printed": [0.3], "experiment": "work/mini", "bound": bound}
-    runs = {"macro": run({"settling_time": metric(macro)}), "mini": run({"settling_time": metric(0.3)})}
+    runs = {"macro": run_of({"settling_time": seconds(macro)}), "mini": run_of({"settling_time": seconds(0.3)})}
     block = blocks(runs, NUMBER, mini)[1]
     assert told(block) == ("0.3 s", verdict)
     each = f"{macro / 10:g} s"
@@ -118,16 +109,16 @@ def test_a_bound_is_the_other_claims_number_or_our_median_where_that_is_larger(m
 
 def test_repetitions_that_are_late_are_counted_where_the_error_at_rest_is_judged():
     error = NUMBER | {"metric": "steady_state_error", "unit": "m", "printed": [0.009]}
-    made = run({"steady_state_error": metric(0.01, 0.019, 0.03, unit="m")})
+    made = run_of({"steady_state_error": made_up_metric(0.01, 0.019, 0.03)})
     (block,) = blocks({"macro": made}, error)
     late = [f"1 of 3 repetitions ({PRESET[preset]}) are beyond 20 mm in the last half second." for preset in PRESETS]
     assert block.reason == " ".join(["As printed.", *late])
-    (block,) = blocks({"macro": run({"steady_state_error": metric(0.01, unit="m")})}, error)
+    (block,) = blocks({"macro": run_of({"steady_state_error": made_up_metric(0.01)})}, error)
     assert block.reason == "As printed."
 
 
 def test_the_table_has_a_row_for_each_claim_and_a_column_for_each_preset():
-    made = blocks({"macro": run({"settling_time": metric(1.4)})}, NUMBER, NUMBER | {"number": 2})
+    made = blocks({"macro": run_of({"settling_time": seconds(1.4)})}, NUMBER, NUMBER | {"number": 2})
     assert Verdicts("Verdicts.", made).ways == ["as the thesis ran it", "with its full equations"]
     assert [row.number for row in made] == ["1", "2"]
     assert [(found.measured, found.verdict) for found in made[0].findings] == [("1.4 s", "holds")] * 2
@@ -144,7 +135,7 @@ def test_statements_are_numbered_and_take_their_verdicts_by_name():
 
 def test_a_claim_names_a_run_and_presets_of_the_works_own():
     claim = PublishedClaim.model_validate({**NUMBER, "experiment": "", "run": "goal"})
-    runs = {"goal/slow": run({"settling_time": metric(1.4)}), "goal/fast": run({"settling_time": metric(0.1)})}
+    runs = {"goal/slow": run_of({"settling_time": seconds(1.4)}), "goal/fast": run_of({"settling_time": seconds(0.1)})}
     (block,) = judged_claims([claim], runs, {"slow": "half", "fast": "whole"})
     assert [(each.preset, each.verdict) for each in block.findings] == [("slow", "holds"), ("fast", "better")]
     assert Verdicts("All.", [block]).ways == ["half", "whole"]
@@ -152,7 +143,7 @@ def test_a_claim_names_a_run_and_presets_of_the_works_own():
 
 def test_without_presets_a_claim_is_judged_once():
     claim = PublishedClaim.model_validate({**NUMBER, "experiment": "", "run": "goal"})
-    (block,) = judged_claims([claim], {"goal": run({"settling_time": metric(1.4)})}, {})
+    (block,) = judged_claims([claim], {"goal": run_of({"settling_time": seconds(1.4)})}, {})
     assert [(each.preset, each.verdict) for each in block.findings] == [("", "holds")]
     assert Verdicts("All.", [block]).ways == ["simulated"]
 

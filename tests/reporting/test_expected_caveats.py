@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
+from support.made_up_runs import made_up_run
 
 from runner.caveats.registry import KEYS
 from runner.errors import RunnerError
@@ -18,15 +19,16 @@ from runner.reporting.run_values import cell, measured
 from runner.works.work import load_work
 
 
-def run(*rules):
+def run_with(*rules):
+    """Return a run with caveats by rule and value."""
     caveats = [{"rule": rule, "text": f"{rule} of {value:g} $", "value": value} for rule, value in rules]
-    return SimpleNamespace(caveats=caveats)
+    return made_up_run(caveats=caveats)
 
 
 RUNS = {
-    "fast/sound": run(("saturation", 0.4)),
-    "fast/as_reported": run(("saturation", 0.6), ("chatter", 0.2)),
-    "slow/sound": run(),
+    "fast/sound": run_with(("saturation", 0.4)),
+    "fast/as_reported": run_with(("saturation", 0.6), ("chatter", 0.2)),
+    "slow/sound": run_with(),
 }
 SATURATED = ExpectedCaveat("saturation", "fast/*", "The limit is what the section is about.")
 
@@ -47,7 +49,7 @@ def test_the_section_tells_how_many_and_the_worst_and_warns_of_others():
 
 
 def test_a_work_without_caveats_says_so():
-    (text,) = caveats_section({"slow/sound": run()}, []).blocks
+    (text,) = caveats_section({"slow/sound": run_with()}, []).blocks
     assert text.text == "No rule found anything at the end of the runs."
 
 
@@ -72,7 +74,7 @@ def test_what_a_work_expects_is_of_known_rules_and_of_runs_that_it_has(work):
 
 
 def test_a_run_that_a_work_does_not_have_is_refused_with_the_nearest_name():
-    made = Made({"figure_3_5/sound": run()}, {"figure_3_6/sound": "not begun"})
+    made = Made({"figure_3_5/sound": run_with()}, {"figure_3_6/sound": "not begun"})
     with pytest.raises(
         RunnerError, match=r"no run or calibration 'figure_3_5/soud' \(did you mean figure_3_5/sound\?\)"
     ):

@@ -134,6 +134,7 @@ def test_calibrations_are_made_by_the_same_engine(small_work, tmp_path):
     assert again == [found["tool"].folder / "result.json"]
 
 
+@pytest.mark.costs(2)
 def test_the_audit_is_a_report_and_a_table(cli, monkeypatch, tmp_path):
     monkeypatch.setattr("runner.audit.audit.audit_all", lambda: {"meca500": audit("meca500", samples=20)})
     ending = cli("reproduce", "audit")

@@ -21,6 +21,7 @@ def no_report(monkeypatch):
     monkeypatch.setattr("runner.reporting.render.write_report", lambda *_: None)
 
 
+@pytest.mark.costs(2)
 def test_the_best_trial_is_told_and_the_report_made_the_same_each_time(cli, tmp_path):
     ending = cli(*TUNE)
     assert ending.code == 0

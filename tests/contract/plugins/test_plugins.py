@@ -90,6 +90,7 @@ def folder(ending):
     return ending.stdout.splitlines()[-1]
 
 
+@pytest.mark.costs(2)
 def test_a_module_named_on_the_command_line_runs_and_is_recorded(mine):
     ending = process(*PLUGIN, *COMMAND)
     assert (ending.returncode, without_caveats(without_results(ending.stderr))) == (0, "")

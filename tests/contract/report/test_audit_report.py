@@ -33,6 +33,7 @@ def tables(document, kind):
     return [block for block in outline.blocks(document) if isinstance(block, kind)]
 
 
+@pytest.mark.costs(5)
 def test_each_source_has_one_table_with_a_row_for_each_equation(document, judged):
     found = tables(document, Equations)
     assert [len(table.rows) for table in found] == [len(each) for each in judged.values()]

@@ -99,6 +99,7 @@ def test_any_text_in_any_field_gives_a_plain_name_and_points():
             as_csv(figure)
 
 
+@pytest.mark.costs(3)
 def test_any_text_in_any_field_is_drawn(tmp_path):
     """A figure of each kind has panels for every text: each stands in every field that is drawn."""
     lines = [panel for text in HOSTILE for panel in curves(text).panels]

@@ -41,5 +41,6 @@ def test_no_other_damage_is_read_as_something_else(outputs):
     assert list(damage_files(outputs, CASES, 2)) == []
 
 
+@pytest.mark.costs(2)
 def test_no_damage_ends_a_command_with_a_traceback(outputs):
     assert list(damage_files(outputs, CASES // 25, 3, commands=True)) == []

@@ -1,10 +1,8 @@
 """Numbers over the runs that patterns stand for, and tables whose cells stand in the chapter."""
 
-from types import SimpleNamespace
-
 import numpy as np
-import pandas as pd
 import pytest
+from support.made_up_runs import made_up_run
 
 from runner.errors import RunnerError
 from runner.reporting.measured import Measured
@@ -15,14 +13,13 @@ from runner.reporting.prose.signals import moved, part, scaled, setting
 from runner.reporting.prose.tables import listing
 
 
-def run(stiffness, status="ok"):
-    provenance = {"commit": "", "command": "runner"}
-    trace = pd.DataFrame({"t": [0.0, 1.0], "tip_x": [2.0, 2.5]})
-    own = {"wall": {"stiffness": stiffness}}
-    return SimpleNamespace(status=status, config=own, trace=trace, provenance=provenance, hash="h")
+def pressed(stiffness, failed=False):
+    """Return a run against a wall of a stiffness."""
+    motion = {"t": [0.0, 1.0], "tip_x": [2.0, 2.5]}
+    return made_up_run(trace=motion, config={"wall": {"stiffness": stiffness}}, failed=failed)
 
 
-RUNS = {"wall/soft": run(10.0), "wall/hard": run(1000.0), "wall/gone": run(5.0, "failed"), "free": run(0.0)}
+RUNS = {"wall/soft": pressed(10.0), "wall/hard": pressed(1000.0), "wall/gone": pressed(5.0, True), "free": pressed(0.0)}
 
 
 def test_a_number_of_each_run_is_none_where_it_failed():
@@ -38,7 +35,7 @@ def test_a_number_of_some_runs_alone():
 
 
 def test_a_logarithmic_axis_leaves_zeros_out():
-    levels = {"at/0": run(0.0), "at/2": run(4.0)}
+    levels = {"at/0": pressed(0.0), "at/2": pressed(4.0)}
     series = over(levels, "at/{level}", "level", setting("wall.stiffness"), x_factor=1000.0)
     drawn = panel("", "x", "y", series, x_log=True).series[0]
     np.testing.assert_array_equal(drawn.x, [2000.0])

@@ -1,40 +1,32 @@
 """Tables, curves and numbers over the runs that a pattern names, from runs that are made up here."""
 
-from pathlib import Path
-
 import numpy as np
-import pandas as pd
 import pytest
+from support.made_up_runs import made_up_metric, made_up_run
 
 from runner.errors import RunnerError
 from runner.reporting.job import Made, MissingError
 from runner.reporting.measured import Measured
 from runner.reporting.prose import blocks, plots, signals, tables
 from runner.reporting.prose.patterns import found
-from runner.store import Run
 
 
-def run(value, failed=False, ends=None, unit="m"):
+def run_of(value, failed=False, ends=None, unit="m"):
+    """Return a run whose gain, error and signals follow from one value."""
     low, high = ends or (value, value)
-    stored = {"unit": unit, "median": value, "min": low, "max": high, "values": [value]}
-    record = {
-        "status": "failed" if failed else "ok",
-        "metrics": {} if failed else {"error": stored, "settling_time": {**stored, "unit": "s", "median": None}},
-        "failure": {"reason": "diverged", "time": 0.5, "joint": None, "repetition": 0} if failed else None,
-        "provenance": {"command": f"runner {value}", "commit": ""},
-    }
-    made = Run(Path("run"), {"controller": {"gain": 10 * value}}, record)
+    stored = {**made_up_metric(value, unit=unit), "min": low, "max": high}
+    metrics = {} if failed else {"error": stored, "settling_time": {**stored, "unit": "s", "median": None}}
     t = np.array([0.0, 0.5, 1.0])
     signal = {"error_x": 3.0 * value * t, "error_y": 4.0 * value * t, "error_z": 0.0 * t}
-    made.__dict__["trace"] = pd.DataFrame({"t": t, "q1": value * t, "q2": -t} | signal)
-    return made
+    trace = {"t": t, "q1": value * t, "q2": -t} | signal
+    return made_up_run(metrics, trace, {"controller": {"gain": 10 * value}}, failed=failed, command=f"runner {value}")
 
 
 RUNS = {
-    f"gain/{gain}/{preset}": run(float(gain) * (1.0 if preset == "sound" else 2.0))
+    f"gain/{gain}/{preset}": run_of(float(gain) * (1.0 if preset == "sound" else 2.0))
     for preset in ("sound", "as_reported")
     for gain in (1, 10, 5)
-} | {"held": run(7.0)}
+} | {"held": run_of(7.0)}
 
 
 def test_a_pattern_names_runs_in_the_order_of_the_plan():
@@ -82,7 +74,7 @@ def test_a_table_has_a_row_for_each_run_and_a_unit_for_each_metric():
 
 
 def test_a_failed_run_says_so():
-    runs = {**RUNS, "gain/10/sound": run(0.0, failed=True)}
+    runs = {**RUNS, "gain/10/sound": run_of(0.0, failed=True)}
     made = tables.table(runs, "Errors.", "gain/{gain}/sound", tables.column("error", "error"))
     assert [row[0] for row in made.rows] == ["1", "failed", "5"]
     (series,) = plots.over(runs, "gain/{gain}/sound", "gain", "error")
@@ -98,7 +90,7 @@ def test_a_comparison_has_a_row_for_each_metric_and_a_column_for_each_level():
 
 
 def test_a_number_against_an_axis_has_the_band_of_its_repetitions():
-    runs = {**RUNS, "gain/10/sound": run(10.0, ends=(8.0, 13.0))}
+    runs = {**RUNS, "gain/10/sound": run_of(10.0, ends=(8.0, 13.0))}
     sound, reported = plots.over(runs, "gain/{gain}/{preset}", "gain", "error", "{preset}", color=3)
     assert (sound.name, reported.name, sound.color, reported.color) == (
         "with its full equations",
@@ -170,7 +162,7 @@ def test_a_panel_of_powers_of_ten_leaves_zeros_out():
 
 
 def test_a_map_has_a_cell_for_each_run():
-    runs = {**RUNS, "gain/10/sound": run(0.0, failed=True)}
+    runs = {**RUNS, "gain/10/sound": run_of(0.0, failed=True)}
     made = plots.heat_map(runs, "Map.", "gain/{gain}/{preset}", "gain", "preset", "error", "error (m)")
     (panel,) = made.panels
     assert (panel.x_names, panel.y_names) == (["1", "10", "5"], ["sound", "as_reported"])
@@ -184,7 +176,9 @@ def test_values_of_runs_and_the_largest_of_them():
     assert blocks.smallest("smallest", one, two).parts == (one, two)
     assert blocks.largest("largest", one, Measured("none", None, "m")).value is None
     assert blocks.of_run(RUNS, "end", signals.at_the_end("q1"), "rad", "held").value == 7.0
-    assert blocks.of_run({"held": run(1.0, failed=True)}, "end", signals.at_the_end("q1"), "rad", "held").value is None
+    assert (
+        blocks.of_run({"held": run_of(1.0, failed=True)}, "end", signals.at_the_end("q1"), "rad", "held").value is None
+    )
 
 
 @pytest.mark.parametrize(

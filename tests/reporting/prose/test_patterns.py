@@ -1,9 +1,7 @@
 """Patterns of run names, and what is made of the runs that they stand for."""
 
-from types import SimpleNamespace
-
-import pandas as pd
 import pytest
+from support.made_up_runs import made_up_metric, made_up_run
 
 from runner.errors import RunnerError
 from runner.reporting.measured import Measured
@@ -39,14 +37,14 @@ def test_a_listing_shows_texts_and_numbers_as_they_are():
     assert table.numeric == (1,)
 
 
-def run(value, status="ok"):
-    trace = pd.DataFrame({"t": [0.0, 1.0], "tip_x": [0.0, value], "tip_y": [2.0, 3.0]})
-    metric = {"median": value, "unit": "m"}
-    return SimpleNamespace(status=status, metrics={"error": metric}, trace=trace)
+def run_of(value, failed=False):
+    """Return a run with an error and a motion of that length."""
+    motion = {"t": [0.0, 1.0], "tip_x": [0.0, value], "tip_y": [2.0, 3.0]}
+    return made_up_run({"error": made_up_metric(value)}, motion, failed=failed)
 
 
 def test_each_run_gives_a_value_that_conditions_call_by_words_with_axes_or_by_its_name():
-    runs = {"line/1": run(0.5), "line/2": run(0.7, status="failed")}
+    runs = {"line/1": run_of(0.5), "line/2": run_of(0.7, failed=True)}
     found = each(runs, "error at {rate} Hz", "error", "m", "line/{rate}")
     assert [(one.name, one.value, one.unit) for one in found] == [
         ("error at 1 Hz", 0.5, "m"),
@@ -57,7 +55,7 @@ def test_each_run_gives_a_value_that_conditions_call_by_words_with_axes_or_by_it
 
 
 def test_a_signal_is_drawn_over_another_one():
-    (series,) = line({"line/1": run(0.5)}, "line/1", "tip_x", x="tip_y")
+    (series,) = line({"line/1": run_of(0.5)}, "line/1", "tip_x", x="tip_y")
     assert (series.x.tolist(), series.y.tolist()) == ([2.0, 3.0], [0.0, 0.5])
 
 

@@ -1,0 +1,39 @@
+"""Stored runs that were never simulated, from what a test names."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from runner.store import Run
+
+FAILURE = {"reason": "diverged", "time": 0.5, "joint": None, "repetition": 0}
+
+
+def made_up_metric(*values: float, unit: str = "m") -> dict[str, Any]:
+    """Return a metric as it is stored, from its values in the repetitions."""
+    return {"unit": unit, "median": float(np.median(values)), "min": min(values), "max": max(values), "values": values}
+
+
+def made_up_run(
+    metrics: Mapping[str, Mapping[str, Any]] | None = None,
+    trace: Mapping[str, Any] | None = None,
+    config: Mapping[str, Any] | None = None,
+    *,
+    failed: bool = False,
+    caveats: Sequence[Mapping[str, Any]] = (),
+    **provenance: Any,
+) -> Run:
+    """Return a run with these contents; a failed one diverged at 0.5 s."""
+    record = {
+        "status": "failed" if failed else "ok",
+        "metrics": metrics or {},
+        "failure": FAILURE if failed else None,
+        "caveats": caveats,
+        "provenance": {"commit": "", "command": "runner", **provenance},
+    }
+    run = Run(Path("run"), config or {}, record)
+    run.__dict__["trace"] = pd.DataFrame(trace or {})
+    return run
