@@ -65,7 +65,9 @@ def test_letters_are_of_8_points_and_embedded_at_any_width(block, width, tmp_pat
     assert float(svg.get("width").removesuffix("pt")) == pytest.approx(width * POINTS, abs=0.01)
 
 
-@pytest.mark.parametrize("block", [curves("error"), maps("error"), Picture("p", SVG, "")])
+@pytest.mark.parametrize(
+    "block", [curves("error"), maps("error"), Picture("p", SVG, "")], ids=["curves", "maps", "picture"]
+)
 def test_the_same_figure_gives_the_same_bytes(block, tmp_path):
     first, second = tmp_path / "1", tmp_path / "2"
     names = [written(folder, [block]) for folder in (first, second)]
