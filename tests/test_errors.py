@@ -1,4 +1,4 @@
-"""Messages of errors: problems, nearest names, safe to print."""
+"""Errors for users: one and many problems, the nearest name, safe texts."""
 
 import pickle
 

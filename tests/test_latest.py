@@ -1,4 +1,4 @@
-"""`latest`: the folder made or found last, of each kind."""
+"""The newest result: noted in order by many processes, and never an older one."""
 
 import shutil
 from concurrent.futures import ThreadPoolExecutor

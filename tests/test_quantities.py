@@ -1,4 +1,4 @@
-"""Numbers with units as text: digits, powers of ten, ranges."""
+"""Texts of quantities: digits, units, ranges and missing values."""
 
 import math
 

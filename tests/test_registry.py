@@ -1,4 +1,4 @@
-"""Registry of kinds: what is built, refused, guarded."""
+"""Registry of kinds: look-up, late import, copies for plug-ins and strict models."""
 
 import sys
 import types

@@ -1,4 +1,4 @@
-"""Texts for terminals and tables: escaped, cut, quoted."""
+"""Texts for terminals and tables: control characters, length and formulas."""
 
 import csv
 import io

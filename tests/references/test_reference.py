@@ -1,4 +1,4 @@
-"""Reference files: bands, what is refused with its place, and those that are shipped."""
+"""References: bands at both ends, missing values and bad files; the shipped ones are valid."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Atomic writing: leftovers of killed writers, files of living ones."""
+"""Atomic writing: leftovers of killed writers against files of living ones."""
 
 import os
 import socket

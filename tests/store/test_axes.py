@@ -1,4 +1,4 @@
-"""Axes of stored grids: order, reading, folder names, damage."""
+"""Stored axes of a sweep: order, reading back and damaged lists."""
 
 import itertools
 import json

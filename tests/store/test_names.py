@@ -1,4 +1,4 @@
-"""Names of runs as packed bytes: look-up and choice."""
+"""Names of runs as bytes: size, look-up and choice of the best entry."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Shards of runs: what goes in comes out, the better outcome counts, damage is named."""
+"""Shards: outcomes read back as written; damaged shards and rows are named."""
 
 import re
 

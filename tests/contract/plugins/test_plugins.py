@@ -1,4 +1,4 @@
-"""Plug-ins named by `--plugin`: how they are found, recorded and counted, and what is told of their faults."""
+"""Plug-ins: named on the command line, hashed, inherited by workers; their errors are placed."""
 
 import io
 import json
@@ -135,7 +135,7 @@ def test_what_raises_outside_of_the_loop_is_told_with_its_place(mine):
     assert ending.stderr.endswith(f"(spring.py, line {line}, in start_posture)\n")
 
 
-def test_what_a_config_model_raises_is_told_with_its_place(mine):
+def test_what_a_config_model_of_the_users_raises_is_told_with_its_place(mine):
     check = "    @field_validator('period')\n    def check(cls, period):\n        return {}[period]\n"
     text = SPRING.replace("    stiffness: PositiveFloat\n", f"    stiffness: PositiveFloat\n\n{check}")
     (mine / "mine/spring.py").write_text(text.replace("import PositiveFloat", "import PositiveFloat, field_validator"))

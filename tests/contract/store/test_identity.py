@@ -1,4 +1,4 @@
-"""The hash of a run: what counts in it and what does not."""
+"""Run hash: what counts and what does not, key by key."""
 
 import json
 from importlib.metadata import EntryPoint
@@ -46,7 +46,7 @@ def test_outputs_and_the_preset_do_not_count(keys):
     assert changed(**keys) == changed()
 
 
-def test_an_experiment_has_the_hash_of_what_it_says():
+def test_an_experiment_that_says_the_same_does_not_count():
     groups = ("robot=macro", "trajectory=quintic", "noise=thesis", "torque_limits=thesis")
     overrides = (*groups, "repetitions=40", "plant_error=true", "controller.singularity_damping=0.0")
     spelled_out = compose(overrides).resolved

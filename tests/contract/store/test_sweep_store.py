@@ -1,4 +1,4 @@
-"""Stored sweeps: their jobs and runs in order, and what damage leads to."""
+"""Stored sweeps: opened as they were made; damaged and foreign folders are named."""
 
 import json
 
