@@ -99,7 +99,9 @@ def _blocks(monkeypatch):
 
 def test_n_stands_beside_the_intervals_of_best_and_worst(blocks):
     table = blocks(robots())[0]
-    assert all(cell.endswith("n = 8)") for cell in table.rows[0][1:])
+    assert all(cell.endswith(", n = 8)") for cell in table.rows[0][1:])
+    few = blocks(robots(5))[0]
+    assert all(cell.endswith("(n = 5)") for cell in few.rows[0][1:])
 
 
 def test_the_best_is_held_against_its_followers_in_every_metric(blocks):

@@ -1,5 +1,6 @@
 """Run hash: what counts and what does not, key by key."""
 
+import hashlib
 import json
 from importlib.metadata import EntryPoint
 
@@ -52,6 +53,21 @@ def test_an_experiment_that_says_the_same_does_not_count():
     spelled_out = compose(overrides).resolved
     named = compose(["experiment=thesis/figure_3_9"]).resolved
     assert run_hash(named, "") == run_hash(spelled_out, "")
+
+
+def test_what_is_hashed_is_json_with_sorted_keys(monkeypatch):
+    texts, make = [], hashlib.sha256
+    monkeypatch.setattr(identity.hashlib, "sha256", lambda text=b"": texts.append(text) or make(text))
+    config = compose(["robot=macro", ASKED, "noise=thesis", "torque_limits.max=[1,2,3]"]).resolved
+    urdf = '<robot name="é">\n</robot>'
+    name = run_hash(config, urdf)
+    content = json.loads(texts[-1])
+    assert texts[-1].decode() == json.dumps(content, sort_keys=True)
+    assert name == make(texts[-1]).hexdigest()[:24]
+    assert set(content) == {"config", "engines", "parts", "source", "urdf"}
+    assert (content["config"], content["urdf"]) == (simulated_part(config), urdf)
+    assert content["source"] == identity.source_digest()
+    assert "pin" in content["engines"]
 
 
 def test_hashes_of_many_seeds_are_those_of_each_alone():
