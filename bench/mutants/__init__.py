@@ -1,67 +1,115 @@
-"""Small errors put into the physics one at a time: each has to be found by the tests of the module that it is in.
+"""Small errors put into the package one at a time: each has to be found by the tests.
 
-A mutant is one text of a module replaced by another. It stands in a copy of the tree, so that the checkout stays as it
-is, and the module's own test file runs there. What survives is named, and so is what stands nowhere any more.
+`python -m bench mutants` tries those written by hand, by the test file that each one names. `make mutants SAMPLE=200
+SEED=1` draws places of the whole package, and runs the tests that run them by the map of `make coverage-map`.
 """
 
-import os
-import shutil
-import subprocess
-import sys
-import tempfile
-from collections.abc import Iterable
+import argparse
+import json
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
+from typing import Any
 
-from bench.mutants_list import MUTANTS, Mutant
+from bench.mutants.choosing import Choice, CoverageMap, test_files
+from bench.mutants.drawing import all_places, draw
+from bench.mutants.engine import failing, try_all
+from bench.mutants.listed import MUTANTS
+from bench.mutants.mutant import Mutant
+from bench.mutants.recording import PLACE, record
+from bench.mutants.results import KILLED, NOT_COVERED, TIMEOUT, again, table, written
+from bench.mutants.trees import modules
 
-_ROOT = Path(__file__).resolve().parents[1]
-_TREE = ("bench", "conf", "hydra_plugins", "pyproject.toml", "reports", "robots", "runner", "tests")
-_FAILED = 1  # pytest's exit code where tests failed; others tell that none ran
+_ROOT = Path(__file__).resolve().parents[2]
 
 
-def main() -> bool:
-    """Try every mutant and print what became of it; return whether all were found."""
-    with tempfile.TemporaryDirectory() as folder:
-        tree = Path(folder)
-        _copy(tree)
-        broken = [test for test in sorted({mutant.test for mutant in MUTANTS}) if _run(tree, test) != 0]
-        for test in broken:
+def main(arguments: Sequence[str] = ()) -> bool:
+    """Try mutants and print what became of each; return whether all were found."""
+    chosen = _parser().parse_args(arguments)
+    tree = chosen.tree.resolve()
+    if chosen.results is None:
+        chosen.results = tree / ".cache" / "mutants.jsonl"
+        chosen.results.parent.mkdir(exist_ok=True)
+        chosen.results.unlink(missing_ok=True)
+    sources = {path: (tree / path).read_text() for path in modules(tree)}
+    if chosen.sample is None and chosen.only is None:
+        mutants = [listed.at(sources[listed.module]) for listed in MUTANTS]
+        coverage = CoverageMap.empty()
+    else:
+        if not (tree / PLACE).is_file():
+            record(tree, processes=2)
+        coverage = CoverageMap.read(tree)
+        places = all_places(tree)
+        print(f"{len(places)} places in {len(sources)} modules")
+        mutants = (
+            again(chosen.only, places, sources) if chosen.only else draw(places, sources, chosen.sample, chosen.seed)
+        )
+    results = _tried(tree, mutants, sources, coverage, chosen)
+    print("\n".join(table(results)))
+    return all(result["status"] in (KILLED, TIMEOUT) for result in results)
+
+
+def _tried(
+    tree: Path, mutants: list[Mutant], sources: dict[str, str], coverage: CoverageMap, chosen: argparse.Namespace
+) -> list[dict[str, Any]]:
+    """Try the mutants that have no result yet, and again those that were only found by a test that always fails."""
+    files = test_files(tree)
+    fit: set[str] = set()
+    unfit: set[str] = set()
+    while True:
+        known = written(chosen.results)
+        work: list[tuple[Mutant, Choice]] = []
+        for mutant in mutants:
+            if mutant.identity not in known or known[mutant.identity]["by"] in unfit:
+                choice = coverage.choose(mutant, tree, chosen.limit, unfit)
+                if choice is None:
+                    _tell(chosen.results, sources, mutant, {"status": NOT_COVERED, "by": "", "ran": 0, "cpu": 0.0})
+                else:
+                    work.append((mutant, choice))
+        if work:
+            tell = partial(_tell, chosen.results, sources)
+            try_all(tree, work, chosen.workers, chosen.limit, coverage.tests, tell)
+        known = written(chosen.results)
+        results = [known[mutant.identity] for mutant in mutants]
+        finders = {result["by"] for result in results if result["by"].partition("::")[0] in files} - fit - unfit
+        wrong = (
+            failing(tree, {test: files[test.partition("::")[0]] for test in finders}, chosen.limit)
+            if finders
+            else set()
+        )
+        for test in sorted(wrong):
             print(f"  {test} fails without a mutant")
-        survivors = [] if broken else list(_survivors(tree))
-    if not broken:
-        print(f"{len(MUTANTS) - len(survivors)} of {len(MUTANTS)} mutants are found by the tests of their own module")
-    return not broken and not survivors
+        fit, unfit = fit | finders - wrong, unfit | wrong
+        if not wrong:
+            return results
 
 
-def _survivors(tree: Path) -> Iterable[Mutant]:
-    """Try each mutant, and give those that no test finds."""
-    for mutant in MUTANTS:
-        path = tree / mutant.module
-        source = path.read_text()
-        path.write_text(mutant.apply(source))
-        found = _run(tree, mutant.test) == _FAILED
-        path.write_text(source)
-        print(f"  {'found' if found else 'SURVIVES':8} {mutant.module}: {mutant.why}", flush=True)
-        if not found:
-            yield mutant
+def _tell(results: Path, sources: dict[str, str], mutant: Mutant, result: dict[str, Any]) -> None:
+    """Print what became of a mutant, and add it to the file of results."""
+    source = sources[mutant.path]
+    was, now = mutant.change(source)
+    line = {
+        "mutant": mutant.identity,
+        "path": mutant.path,
+        "line": mutant.line(source),
+        "owner": mutant.owner,
+        "was": was,
+        "now": now,
+        **result,
+    }
+    with results.open("a") as file:
+        file.write(json.dumps(line) + "\n")
+    about = mutant.why or now.strip().partition("\n")[0]
+    print(f"  {result['status']:11} {result['cpu']:6.1f} s  {mutant.path}:{line['line']}  {about}", flush=True)
 
 
-def _copy(tree: Path) -> None:
-    for name in _TREE:
-        source = _ROOT / name
-        if source.is_dir():
-            shutil.copytree(source, tree / name, ignore=shutil.ignore_patterns("__pycache__"))
-        else:
-            shutil.copy(source, tree / name)
-
-
-def _run(tree: Path, test: str) -> int:
-    """Run a test file of the tree on the tree's own package; return pytest's exit code."""
-    return subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cacheprovider", test],
-        cwd=tree,
-        env={**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1"},
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        check=False,
-    ).returncode
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m bench.mutants", description="Try mutants of the package.")
+    parser.add_argument("--sample", type=int, help="number of mutants to draw; without it those written by hand")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--only", type=Path, help="file of results: try its mutants again")
+    parser.add_argument("--tree", type=Path, default=_ROOT, help="checkout with its own .venv")
+    parser.add_argument("--results", type=Path, help="file of JSON lines, which a later call goes on with")
+    parser.add_argument("--workers", type=int, default=2, help="processes that run tests")
+    parser.add_argument("--limit", type=float, default=60.0, help="CPU time of tests for a mutant [s]")
+    return parser

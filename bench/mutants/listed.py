@@ -1,10 +1,12 @@
-"""The mutants: where each stands, and what it gets wrong."""
+"""Mutants written by hand: where each stands, and what it gets wrong."""
 
 from dataclasses import dataclass
 
+from bench.mutants.mutant import Mutant
+
 
 @dataclass(frozen=True)
-class Mutant:
+class Listed:
     """An error put into a module.
 
     Attributes:
@@ -21,20 +23,22 @@ class Mutant:
     wrong: str
     test: str
 
-    def apply(self, source: str) -> str:
-        """Return the module's source with the error.
+    def at(self, source: str) -> Mutant:
+        """Return the mutant of the module's source.
 
         Raises:
-            ValueError: where what is to be replaced does not stand there once.
+            ValueError: if what is to be replaced does not stand there once.
         """
         if source.count(self.right) != 1:
             raise ValueError(f"{self.module}: {self.right!r} stands there {source.count(self.right)} times, not once")
-        return source.replace(self.right, self.wrong)
+        start = len(source.partition(self.right)[0].encode())
+        end = start + len(self.right.encode())
+        return Mutant(self.module, start, end, self.wrong, self.right, 0, why=self.why, test=self.test)
 
 
-def _of(module: str, test: str, *errors: tuple[str, str, str]) -> list[Mutant]:
+def _of(module: str, test: str, *errors: tuple[str, str, str]) -> list[Listed]:
     """Return mutants of one module from (why, right, wrong)."""
-    return [Mutant(why, f"runner/{module}", right, wrong, f"tests/{test}") for why, right, wrong in errors]
+    return [Listed(why, f"runner/{module}", right, wrong, f"tests/{test}") for why, right, wrong in errors]
 
 
 MUTANTS = [
