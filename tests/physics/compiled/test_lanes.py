@@ -1,0 +1,54 @@
+"""Compiled runs side by side: a block of runs begins at rest, whatever the block before left in its lanes."""
+
+import numpy as np
+import pytest
+
+from runner.assembly import assemble
+from runner.compiled.closed_loop import run_all
+from runner.compiled.engine import evaluator
+from runner.compiled.program import LANES, Frame
+
+pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a whole by llvmlite")
+
+
+@pytest.fixture(scope="module")
+def sliding(checked_config):
+    """A closed loop with dry friction, whose code remembers the way that each joint slides."""
+    return assemble(
+        checked_config("robot=macro", "plant=rk4", "controller=operational_space", "trajectory=goal", "duration=0.1",
+                       "torque_limits.max=200", "plant.friction.coulomb=[0,8,1]")
+    )  # fmt: skip
+
+
+def together(closed, count):
+    """Return the signals of equal runs, each from a start of its own."""
+    whole, times = closed.compiled, np.arange(closed.ticks + 1) * closed.tick
+    q = closed.q_start + 0.05 * np.arange(count)[:, None]
+    still = np.zeros((count, len(times), 3))
+    shared = whole.commands.shared(times, closed.trajectory.sample(times))
+    values = np.repeat([whole.values], count, axis=0)
+    return run_all(whole, values, shared, [still], whole.commands.start(q, [still[:, 0]]))
+
+
+def test_no_joint_slides_before_a_block_begins(sliding, monkeypatch):
+    begun, ended, call = [], [], Frame.call
+    commands = sliding.compiled.commands
+    known = commands.start(sliding.q_start[None], [np.zeros((1, 3))]).shape[1]
+
+    def noted(frame):
+        begun.append(frame.state[known:].copy())
+        call(frame)
+        ended.append(frame.state[known:].copy())
+
+    monkeypatch.setattr(Frame, "call", noted)
+    together(sliding, LANES + 1)
+    assert len(begun) == 2
+    assert np.any(ended[0] != 0.0)  # some slide in the end, so that the next block would begin with it
+    np.testing.assert_array_equal(begun, np.zeros_like(begun))
+
+
+@pytest.mark.parametrize("count", [LANES, LANES + 1, 2 * LANES])
+def test_the_last_run_has_the_bits_of_a_shorter_list(sliding, count):
+    found, fewer = together(sliding, count), together(sliding, 2)
+    for name in ("q", "dq", "torque"):
+        np.testing.assert_array_equal(getattr(found, name)[:2], getattr(fewer, name))
