@@ -34,7 +34,7 @@ def main(arguments: Sequence[str] = ()) -> bool:
     sources = {path: (tree / path).read_text() for path in modules(tree)}
     if chosen.sample is None and chosen.only is None:
         mutants = [listed.at(sources[listed.module]) for listed in MUTANTS]
-        coverage = CoverageMap.empty()
+        coverage = CoverageMap()
     else:
         if not (tree / PLACE).is_file():
             record(tree, processes=2)
@@ -68,7 +68,7 @@ def _tried(
                     work.append((mutant, choice))
         if work:
             tell = partial(_tell, chosen.results, sources)
-            try_all(tree, work, chosen.workers, chosen.limit, coverage.tests, tell)
+            try_all(tree, work, chosen.workers, chosen.limit, [*coverage.tests, *unfit], tell)
         known = written(chosen.results)
         results = [known[mutant.identity] for mutant in mutants]
         finders = {result["by"] for result in results if result["by"].partition("::")[0] in files} - fit - unfit

@@ -1,7 +1,8 @@
 """The tests that may find a mutant, by the coverage map: the mirrored file's first, then those that run little."""
 
 import ast
-from collections.abc import Iterable
+import functools
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -9,8 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from bench.mutants.inside.blocks import mark
 from bench.mutants.mutant import Mutant
 from bench.mutants.recording import PLACE
+
+_LEAST = 0.01  # CPU time that any test counts for [s]
 
 
 def short(test: str) -> str:
@@ -25,13 +29,13 @@ class Choice:
 
     Attributes:
         files: Test files to collect.
-        tests: Short names; None: all of the files.
-        whole: Base names of files whose tests are also taken where the map does not know them.
+        tests: Short names.
+        whole: Base names of files whose tests run before, but for those that the map knows.
         cost: CPU time that they took when the map was recorded [s].
     """
 
     files: tuple[str, ...]
-    tests: tuple[str, ...] | None
+    tests: tuple[str, ...]
     whole: tuple[str, ...] = ()
     cost: float = 0.0
 
@@ -43,14 +47,14 @@ class CoverageMap:
     Attributes:
         blocks: Keys of blocks.
         tests: Short names of tests.
-        costs: CPU time of each test [s].
-        ran: If test t runs block b, shape (tests, blocks).
+        costs: CPU time of each test, shape (tests,) [s].
+        ran: True where a test runs a block, shape (tests, blocks).
     """
 
-    blocks: tuple[str, ...]
-    tests: tuple[str, ...]
-    costs: np.ndarray[Any, Any] = field(repr=False)
-    ran: np.ndarray[Any, Any] = field(repr=False)
+    blocks: tuple[str, ...] = ()
+    tests: tuple[str, ...] = ()
+    costs: np.ndarray[Any, Any] = field(default_factory=lambda: np.zeros(0))
+    ran: np.ndarray[Any, Any] = field(default_factory=lambda: np.zeros((0, 0), dtype=bool))
 
     @classmethod
     def read(cls, tree: Path) -> "CoverageMap":
@@ -59,11 +63,6 @@ class CoverageMap:
             blocks, tests = stored["blocks"].tolist(), stored["tests"].tolist()
             ran = np.unpackbits(stored["ran"], axis=1, count=len(blocks)).astype(bool)
             return cls(tuple(blocks), tuple(map(short, tests)), stored["costs"], ran)
-
-    @classmethod
-    def empty(cls) -> "CoverageMap":
-        """Return the map that knows nothing, for mutants that name their test file."""
-        return cls((), (), np.zeros(0), np.zeros((0, 0), dtype=bool))
 
     @cached_property
     def _by_owner(self) -> dict[str, dict[str, dict[int, int]]]:
@@ -78,67 +77,57 @@ class CoverageMap:
     def _breadth(self) -> np.ndarray[Any, Any]:
         return self.ran.sum(axis=1)
 
-    def running(self, blocks: Iterable[int]) -> np.ndarray[Any, Any]:
-        """Return the indices of the tests that run any of some blocks."""
-        chosen = list(blocks)
-        return np.flatnonzero(self.ran[:, chosen].any(axis=1)) if chosen else np.array([], dtype=int)
-
-    def covering(self, mutant: Mutant, tree: Path) -> np.ndarray[Any, Any]:
+    def covering(self, mutant: Mutant, tree: Path) -> list[int]:
         """Return the indices of the tests that run a mutant.
 
-        What runs at import counts for the functions of the module that use the name which is assigned there; where
-        there are none for all functions of the module, and at last for those of the modules that import it.
+        What runs at import counts for the functions of the module that use the name which is assigned there; where no
+        test runs these, for all functions of the module, and at last for those of the modules that import it.
         """
         owners = self._by_owner.get(mutant.path, {})
-        if mutant.block is not None:
-            if mutant.owner in owners:
-                own = owners[mutant.owner]
-                return self.running([own[mutant.block]] if mutant.block in own else own.values())
-            return self._of_owners(mutant.path, owners)
-        users = _users(ast.parse((tree / mutant.path).read_text()), mutant.name) if mutant.name else set()
-        importers = [path for path in self._by_owner if mutant.path in _imported(tree, path)]
-        nearest = self._of_owners(mutant.path, users)
-        if not len(nearest):
-            nearest = self._of_owners(mutant.path, owners)
+        if mutant.block is not None and mutant.owner in owners:
+            own = owners[mutant.owner]
+            return self._running([own[mutant.block]] if mutant.block in own else own.values())
+        users = _users((tree / mutant.path).read_text(), mutant.name) if mutant.name else set()
         return (
-            nearest
-            if len(nearest)
-            else np.unique(
-                np.concatenate([nearest, *(self._of_owners(path, self._by_owner[path]) for path in importers)])
-            )
-        )
+            self._of_owners(mutant.path, users)
+            or self._of_owners(mutant.path, owners)
+            or sorted({test for path in self._by_owner if mutant.path in _imported(tree / path)
+                       for test in self._of_owners(path, self._by_owner[path])})
+        )  # fmt: skip
 
-    def _of_owners(self, path: str, owners: Iterable[str]) -> np.ndarray[Any, Any]:
+    def _of_owners(self, path: str, owners: Iterable[str]) -> list[int]:
         known = self._by_owner.get(path, {})
-        return self.running(index for owner in owners for index in known.get(owner, {}).values())
+        return self._running(index for owner in owners for index in known.get(owner, {}).values())
+
+    def _running(self, blocks: Iterable[int]) -> list[int]:
+        chosen = list(blocks)
+        return np.flatnonzero(self.ran[:, chosen].any(axis=1)).tolist() if chosen else []
 
     def choose(self, mutant: Mutant, tree: Path, limit: float, without: Iterable[str] = ()) -> Choice | None:
         """Return the tests for a mutant, until they take a limit of CPU time [s]; None where none runs it."""
         files = test_files(tree)
         if mutant.test is not None:
             file = files[Path(mutant.test).name]
-            return Choice((file,), None)
-        mirrors = _mirrors(mutant.path, files)
-        own = {Path(file).name for file in mirrors}
-        left_out = set(without)
+            return Choice((file,), (), (Path(file).name,))
+        mirrored, left_out = _mirror(mutant.path, files), set(without)
+        whole = () if mirrored is None else (mirrored,)
         found = [
             index
             for index in self.covering(mutant, tree)
-            if self.tests[index] not in left_out and self.tests[index].partition("::")[0] in files
+            if self.tests[index] not in left_out and _file(self.tests[index]) in files
         ]
-        found.sort(key=lambda index: self._rank(index, own))
-        total = np.cumsum([self.costs[index] for index in found])
+        found.sort(key=lambda index: self._rank(index, mirrored))
+        total = np.cumsum(self.costs[found])
         found = found[: max(1, int(np.searchsorted(total, limit, side="right")))]
-        tests = tuple(self.tests[index] for index in found)
-        if not tests and not mirrors:
+        if not found and not whole:
             return None
-        chosen = dict.fromkeys([*mirrors, *(files[test.partition("::")[0]] for test in tests)])
-        return Choice(tuple(chosen), tests, tuple(sorted(own)), float(total[len(found) - 1]) if found else 0.0)
+        tests = tuple(self.tests[index] for index in found)
+        collected = dict.fromkeys(files[name] for name in (*whole, *map(_file, tests)))
+        return Choice(tuple(collected), tests, whole, float(total[len(found) - 1]) if found else 0.0)
 
-    def _rank(self, index: int, mirrored: set[str]) -> tuple[bool, float]:
+    def _rank(self, index: int, mirrored: str | None) -> tuple[bool, float]:
         """Return what orders tests: the mirrored file first, then cheap ones that run little."""
-        apart = self.tests[index].partition("::")[0] not in mirrored
-        return apart, float((self.costs[index] + 0.01) * self._breadth[index])
+        return _file(self.tests[index]) != mirrored, float((self.costs[index] + _LEAST) * self._breadth[index])
 
 
 def test_files(tree: Path) -> dict[str, str]:
@@ -146,18 +135,20 @@ def test_files(tree: Path) -> dict[str, str]:
     return {path.name: str(path.relative_to(tree)) for path in sorted((tree / "tests").rglob("test_*.py"))}
 
 
-def _mirrors(module: str, files: dict[str, str]) -> list[str]:
-    """Return the test files that have a module's name and lie in a folder with the name of one of its packages."""
-    path = Path(module)
-    named = files.get(f"test_{path.stem}.py")
+def _file(test: str) -> str:
+    return test.partition("::")[0]
+
+
+def _mirror(module: str, files: Mapping[str, str]) -> str | None:
+    """Return the test file that has a module's name and lies in a folder with the name of one of its packages."""
+    path, name = Path(module), f"test_{Path(module).stem}.py"
     packages = set(path.parent.parts[1:])
-    return [named] if named is not None and (not packages or packages & set(Path(named).parts)) else []
+    return name if name in files and (not packages or packages & set(Path(files[name]).parts)) else None
 
 
-def _users(tree: ast.Module, name: str) -> set[str]:
+def _users(source: str, name: str) -> set[str]:
     """Return the functions of a module that read a name, or that have it."""
-    from bench.mutants.inside.blocks import mark
-
+    tree = ast.parse(source)
     blocks = mark(tree)
     found = {block.owner for block in blocks if name in block.owner.split(".")}
     for node in ast.walk(tree):
@@ -167,19 +158,14 @@ def _users(tree: ast.Module, name: str) -> set[str]:
     return found
 
 
-_IMPORTED: dict[Path, set[str]] = {}
-
-
-def _imported(tree: Path, path: str) -> set[str]:
+@functools.cache
+def _imported(module: Path) -> frozenset[str]:
     """Return the modules of the packages that a module imports by name, as paths."""
-    place = tree / path
-    if place not in _IMPORTED:
-        names: set[str] = set()
-        for node in ast.walk(ast.parse(place.read_text())):
-            if isinstance(node, ast.ImportFrom) and node.module:
-                names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
-            elif isinstance(node, ast.Import):
-                names |= {alias.name for alias in node.names}
-        stems = {name.replace(".", "/") for name in names}
-        _IMPORTED[place] = {f"{stem}.py" for stem in stems} | {f"{stem}/__init__.py" for stem in stems}
-    return _IMPORTED[place]
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(module.read_text())):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+        elif isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+    stems = {name.replace(".", "/") for name in names}
+    return frozenset({f"{stem}.py" for stem in stems} | {f"{stem}/__init__.py" for stem in stems})

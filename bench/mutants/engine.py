@@ -32,11 +32,11 @@ class Worker:
         tree: The checkout, with its own `.venv`.
         scratch: A folder that is used once.
         limit: CPU time after which no further test begins [s].
-        known: Short names of the tests that the coverage map knows.
+        left_out: Short names of tests that run only where a choice names them.
     """
 
-    def __init__(self, tree: Path, scratch: Path, limit: float, known: Iterable[str]) -> None:
-        self._copy, self._scratch, self._limit, self._known = scratch / "tree", scratch, limit, list(known)
+    def __init__(self, tree: Path, scratch: Path, limit: float, left_out: Iterable[str]) -> None:
+        self._copy, self._scratch, self._limit, self._left_out = scratch / "tree", scratch, limit, list(left_out)
         copy_tree(tree, self._copy)
         self._writes = int(time.time())
         self._server = subprocess.Popen(
@@ -90,7 +90,7 @@ class Worker:
             "files": choice.files,
             "tests": choice.tests,
             "whole": choice.whole,
-            "known": self._known,
+            "left_out": self._left_out,
             "limit": self._limit,
             "hard": _START + _HARD * min(choice.cost or self._limit, self._limit),
             "wall": _WALL,
@@ -127,7 +127,7 @@ def try_all(
     work: Iterable[tuple[Mutant, Choice]],
     workers: int,
     limit: float,
-    known: Iterable[str],
+    left_out: Iterable[str],
     done: Callable[[Mutant, dict[str, Any]], None],
 ) -> None:
     """Try mutants by several workers, and tell each result as it comes."""
@@ -137,7 +137,7 @@ def try_all(
     lock = threading.Lock()
 
     def serve() -> None:
-        with _working(tree, limit, known) as worker:
+        with _working(tree, limit, left_out) as worker:
             while True:
                 try:
                     mutant, choice = waiting.get_nowait()
@@ -165,9 +165,9 @@ def failing(tree: Path, finders: Mapping[str, str], limit: float) -> set[str]:
 
 
 @contextmanager
-def _working(tree: Path, limit: float, known: Iterable[str]) -> Iterator[Worker]:
+def _working(tree: Path, limit: float, left_out: Iterable[str]) -> Iterator[Worker]:
     with tempfile.TemporaryDirectory(prefix="mutants-", ignore_cleanup_errors=True) as folder:
-        worker = Worker(tree, Path(folder).resolve(), limit, known)
+        worker = Worker(tree, Path(folder).resolve(), limit, left_out)
         try:
             yield worker
         finally:

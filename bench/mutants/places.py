@@ -147,8 +147,9 @@ class _Places:
 
 
 def _is_for_people(node: ast.AST) -> bool:
-    """Tell whether a node is a call that shows a text."""
-    called = node.func if isinstance(node, ast.Call) else None
+    """Tell whether a node is a call that shows a text, or the statement of one."""
+    call = node.value if isinstance(node, ast.Expr) else node
+    called = call.func if isinstance(call, ast.Call) else None
     return getattr(called, "id", getattr(called, "attr", None)) in _FOR_PEOPLE
 
 

@@ -63,21 +63,19 @@ def _lines(scratch: Path) -> Iterator[dict[str, Any]]:
 
 
 def _write(place: Path, blocks: list[str], lines: list[dict[str, Any]]) -> None:
-    passed = [line for line in lines if line["passed"]]
-    ran = np.zeros((len(passed), len(blocks)), dtype=bool)
-    for row, line in zip(ran, passed, strict=True):
-        row[line["blocks"]] = True
+    ran = np.zeros((len(lines), len(blocks)), dtype=bool)
+    for row, line in zip(ran, lines, strict=True):
+        row[line["blocks"]] = line["passed"]  # a test that fails or is skipped finds nothing
     place.parent.mkdir(exist_ok=True)
     np.savez_compressed(
         place,
         blocks=np.array(blocks),
-        tests=np.array([line["test"] for line in passed]),
-        costs=np.array([line["cpu"] for line in passed]),
+        tests=np.array([line["test"] for line in lines]),
+        costs=np.array([line["cpu"] for line in lines]),
         ran=np.packbits(ran, axis=1),
     )
-    print(
-        f"{place}: {len(passed)} of {len(lines)} tests passed, {int(ran.any(axis=0).sum())} of {len(blocks)} blocks ran"
-    )
+    passed, covered = sum(line["passed"] for line in lines), int(ran.any(axis=0).sum())
+    print(f"{place}: {passed} of {len(lines)} tests passed, {covered} of {len(blocks)} blocks ran")
 
 
 def main(arguments: Sequence[str] = ()) -> None:

@@ -3,6 +3,7 @@
 import json
 from collections import Counter, defaultdict
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,26 +20,34 @@ def written(file: Path) -> dict[str, dict[str, Any]]:
 
 
 def again(file: Path, places: list[Mutant], sources: dict[str, str]) -> list[Mutant]:
-    """Return the mutants of a file of results.
+    """Return the mutants of a file of results; those whose lines are not there once any more are printed.
 
-    Where the function has changed since, it is the place whose lines are the same; what has none is printed.
+    Where the function has changed since, the lines decide.
     """
     by_name = {mutant.identity: mutant for mutant in places}
     by_path: defaultdict[str, list[Mutant]] = defaultdict(list)
     for mutant in places:
         by_path[mutant.path].append(mutant)
-    found: dict[str, Mutant] = {}
+    found: list[Mutant] = []
     for name, result in written(file).items():
-        mutant = by_name.get(name)
+        path = result["path"]
+        mutant = by_name.get(name) or _by_lines(result["was"], result["now"], by_path[path], sources.get(path, ""))
         if mutant is None:
-            change = result["was"], result["now"]
-            same = [each for each in by_path[result["path"]] if each.change(sources[each.path]) == change]
-            mutant = same[0] if len(same) == 1 else None
-        if mutant is None:
-            print(f"  gone         {result['path']}:{result['line']}  {result['was'].strip()}")
+            print(f"  gone         {path}:{result['line']}  {result['was'].strip()}")
         else:
-            found[mutant.identity] = mutant
-    return list(found.values())
+            found.append(mutant)
+    return found
+
+
+def _by_lines(was: str, now: str, places: list[Mutant], source: str) -> Mutant | None:
+    """Return the mutant that replaces lines which stand in a module once."""
+    text, lines = f"\n{source}".encode(), f"\n{was}\n".encode()
+    if text.count(lines) != 1:
+        return None
+    start = text.index(lines)
+    end = start + len(was.encode())
+    beside = next((place for place in places if start <= place.start < end), None)
+    return None if beside is None else replace(beside, start=start, end=end, new=now)
 
 
 def table(results: list[dict[str, Any]]) -> Iterator[str]:

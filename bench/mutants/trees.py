@@ -34,5 +34,9 @@ def environment(copy: Path, scratch: Path, own: Mapping[str, str]) -> dict[str, 
     """Return the variables for tests of a copy: its package comes first, what they write goes to `scratch`."""
     given = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST_", "BLOCKS_", "RUNNER_"))}
     threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    places = {"PYTHONPATH": f"{copy}{os.pathsep}{INSIDE}", "XDG_CACHE_HOME": str(scratch / "cache")}
+    places = {
+        "PYTHONPATH": f"{copy}{os.pathsep}{INSIDE}",
+        "XDG_CACHE_HOME": str(scratch / "cache"),
+        "HOME": str(scratch),
+    }
     return {**given, **threads, **places, "HYDRA_FULL_ERROR": "1", "TMPDIR": str(scratch), **own}

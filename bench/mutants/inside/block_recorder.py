@@ -20,7 +20,7 @@ Path(os.environ["BLOCKS_HITS"]).write_bytes(bytes(int(os.environ["BLOCKS_COUNT"]
 
 import block_probes  # noqa: E402 - opens the file
 
-functools.lru_cache = block_probes.lru_cache  # type: ignore[assignment]
+functools.lru_cache = block_probes.lru_cache
 _made: dict[int, bytes] = {}
 _used: set[int] = set()
 _failed: list[str] = []

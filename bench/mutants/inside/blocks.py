@@ -64,7 +64,7 @@ class _Marking:
 
     def visit(self, node: ast.AST, block: int | None, owner: str) -> None:
         """Mark a node and all below it."""
-        node.block, node.owner = block, owner  # type: ignore[attr-defined]
+        node.block, node.owner = block, owner
         inner = f"{owner}.{node.name}".lstrip(".") if isinstance(node, (*_WITH_DOCSTRING, ast.ClassDef)) else owner
         for _, value in ast.iter_fields(node):
             if isinstance(value, list) and value and isinstance(value[0], ast.stmt):

@@ -35,18 +35,15 @@ class Selection:
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, config: pytest.Config, items: list[pytest.Item]) -> None:
-        """Take the tests asked for, and those of whole files that are not known."""
-        if self._request["tests"] is None:
-            return
+        """Take the tests asked for, and before them those of whole files, but for those that are left out."""
         place = {test: index for index, test in enumerate(self._request["tests"])}
-        known = set(self._request["known"])
-        whole = set(self._request["whole"])
+        left_out, whole = set(self._request["left_out"]), set(self._request["whole"])
         ranked = []
         for item in items:
             test = f"{item.path.name}::{item.nodeid.partition('::')[2]}"
             if test in place:
                 ranked.append((place[test], item))
-            elif item.path.name in whole and test not in known:
+            elif item.path.name in whole and test not in left_out:
                 ranked.append((-1, item))
         items[:] = [item for _, item in sorted(ranked, key=lambda pair: pair[0])]
 

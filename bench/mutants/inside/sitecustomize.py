@@ -23,4 +23,4 @@ def _with_probes(self: SourceFileLoader, data: Any, path: Any, *, _optimize: int
 
 if "BLOCKS_TABLE" in os.environ:
     _first = json.loads(Path(os.environ["BLOCKS_TABLE"]).read_text())
-    SourceFileLoader.source_to_code = _with_probes  # type: ignore[method-assign]
+    SourceFileLoader.source_to_code = _with_probes
