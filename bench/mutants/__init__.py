@@ -1,7 +1,7 @@
 """Small errors put into the package one at a time: each has to be found by the tests.
 
 `python -m bench mutants` tries those written by hand, by the test file that each one names. `make mutants SAMPLE=200
-SEED=1` draws places of the whole package, and runs the tests that run them by the map of `make coverage-map`.
+SEED=1` draws them over the whole package, and runs the tests that the map of `make coverage-map` gives.
 """
 
 import argparse
@@ -24,29 +24,31 @@ _ROOT = Path(__file__).resolve().parents[2]
 
 
 def main(arguments: Sequence[str] = ()) -> bool:
-    """Try mutants and print what became of each; return whether all were found."""
+    """Try mutants and print what became of each; return whether all that are written by hand were found."""
     chosen = _parser().parse_args(arguments)
     tree = chosen.tree.resolve()
+    drawn = chosen.sample is not None or chosen.only is not None
+    if chosen.record or (drawn and not (tree / PLACE).is_file()):
+        record(tree, chosen.workers, chosen.tests)
+    if chosen.record:
+        return True
     if chosen.results is None:
         chosen.results = tree / ".cache" / "mutants.jsonl"
         chosen.results.parent.mkdir(exist_ok=True)
         chosen.results.unlink(missing_ok=True)
     sources = {path: (tree / path).read_text() for path in modules(tree)}
-    if chosen.sample is None and chosen.only is None:
-        mutants = [listed.at(sources[listed.module]) for listed in MUTANTS]
-        coverage = CoverageMap()
+    if not drawn:
+        results = _tried(
+            tree, [mutant.at(sources[mutant.module]) for mutant in MUTANTS], sources, CoverageMap(), chosen
+        )
     else:
-        if not (tree / PLACE).is_file():
-            record(tree, processes=2)
-        coverage = CoverageMap.read(tree)
         places = all_places(tree)
         print(f"{len(places)} places in {len(sources)} modules")
-        mutants = (
-            again(chosen.only, places, sources) if chosen.only else draw(places, sources, chosen.sample, chosen.seed)
-        )
-    results = _tried(tree, mutants, sources, coverage, chosen)
+        only = chosen.only
+        mutants = again(only, places, sources) if only else draw(places, sources, chosen.sample, chosen.seed)
+        results = _tried(tree, mutants, sources, CoverageMap.read(tree), chosen)
     print("\n".join(table(results)))
-    return all(result["status"] in (KILLED, TIMEOUT) for result in results)
+    return drawn or all(result["status"] in (KILLED, TIMEOUT) for result in results)
 
 
 def _tried(
@@ -106,10 +108,12 @@ def _tell(results: Path, sources: dict[str, str], mutant: Mutant, result: dict[s
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m bench.mutants", description="Try mutants of the package.")
     parser.add_argument("--sample", type=int, help="number of mutants to draw; without it those written by hand")
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--seed", type=int, default=0, help="of the draws; the same one draws the same mutants")
     parser.add_argument("--only", type=Path, help="file of results: try its mutants again")
+    parser.add_argument("--record", action="store_true", help="record the coverage map, and nothing else")
     parser.add_argument("--tree", type=Path, default=_ROOT, help="checkout with its own .venv")
     parser.add_argument("--results", type=Path, help="file of JSON lines, which a later call goes on with")
     parser.add_argument("--workers", type=int, default=2, help="processes that run tests")
     parser.add_argument("--limit", type=float, default=60.0, help="CPU time of tests for a mutant [s]")
+    parser.add_argument("tests", nargs="*", help="with --record: arguments of pytest behind --; without them all tests")
     return parser

@@ -1,10 +1,8 @@
 """Run all tests of a checkout once, and keep which blocks of the package each one runs: `make coverage-map`."""
 
-import argparse
 import ast
 import json
 import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -15,7 +13,6 @@ import numpy as np
 from bench.mutants.inside.blocks import mark
 from bench.mutants.trees import copy_tree, environment, modules, python
 
-_ROOT = Path(__file__).resolve().parents[2]
 PLACE = Path(".cache") / "coverage_map.npz"
 
 
@@ -76,17 +73,3 @@ def _write(place: Path, blocks: list[str], lines: list[dict[str, Any]]) -> None:
     )
     passed, covered = sum(line["passed"] for line in lines), int(ran.any(axis=0).sum())
     print(f"{place}: {passed} of {len(lines)} tests passed, {covered} of {len(blocks)} blocks ran")
-
-
-def main(arguments: Sequence[str] = ()) -> None:
-    """Record the map of a checkout."""
-    parser = argparse.ArgumentParser(prog="python -m bench.mutants.recording", description="Record the coverage map.")
-    parser.add_argument("--tree", type=Path, default=_ROOT, help="checkout with its own .venv")
-    parser.add_argument("--processes", type=int, default=2, help="processes that run tests")
-    parser.add_argument("tests", nargs="*", help="arguments of pytest, after --; without them all tests")
-    chosen = parser.parse_args(arguments)
-    record(chosen.tree.resolve(), chosen.processes, chosen.tests)
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])
