@@ -1,11 +1,11 @@
 """A notch in the torques of any torque law, so that it does not push at a frequency at which its arm rings."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, cast
 
 import numpy as np
-from scipy.signal import iirnotch
 
 from runner.controllers.controller import Controller, FloatArray, Loop
 from runner.controllers.maths import FLOATS, Array, Maths, Scalar
@@ -42,10 +42,8 @@ class Notch:
     """
 
     def __init__(self, frequency: FloatArray, width: float, period: float) -> None:
-        through = (np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0]))
-        each = [iirnotch(f, f / width, 1.0 / period) if np.isfinite(f) else through for f in frequency]
-        b, a = (np.array(side).T for side in zip(*each, strict=True))
-        self.numbers = NotchNumbers(period, b, a[1:])
+        each = np.array([_coefficients(float(f), width, period) for f in frequency]).T
+        self.numbers = NotchNumbers(period, each[:3], each[3:])
 
     def structure(self) -> dict[str, Any]:
         """Return what decides how it goes, beside its numbers; see TorqueLaw.structure."""
@@ -66,6 +64,20 @@ class Notch:
         memory = maths.choose(maths.less(time, 0.5 * numbers.period), lambda: rest, lambda: memory)
         passed = b0 * torque + memory[:n]
         return passed, np.concatenate([b1 * torque - a1 * passed + memory[n:], b2 * torque - a2 * passed])
+
+
+def _coefficients(frequency: float, width: float, period: float) -> tuple[float, float, float, float, float]:
+    """Return b0, b1, b2, a1 and a2 of the notch at one frequency, in Hz; those that change nothing if it is infinite.
+
+    Orfanidis, Introduction to Signal Processing, 1996, equations 11.3.6, 11.3.7 and 11.3.21 with a gain of -3 dB at the
+    edges of the width; rounded as by `scipy.signal.iirnotch`.
+    """
+    if math.isinf(frequency):
+        return 1.0, 0.0, 0.0, 0.0, 0.0
+    turn = 2.0 * frequency / (1.0 / period)  # pi times it is the angle in one tick
+    gain = 1.0 / (1.0 + math.tan(turn / (frequency / width) * math.pi / 2.0))
+    cosine = math.cos(turn * math.pi)
+    return gain, gain * (-2.0 * cosine), gain, -2.0 * gain * cosine, 2.0 * gain - 1.0
 
 
 class NotchedNumbers(NamedTuple):
