@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from runner.recordings.smoothing import FloatArray, cutoff, derivative, low_pass
 from runner.robots.model import RobotModel
@@ -216,5 +216,5 @@ def _solve(X: FloatArray, Y: FloatArray, y: FloatArray, weights: FloatArray, blo
         scores = np.array([own[blocks == block].T @ rest[blocks == block] for block in different])
         bread = np.linalg.pinv(own.T @ own)
         variances = np.diagonal(bread @ scores.T @ scores @ bread) * len(y) / freedom
-        half = float(student.ppf(0.975, len(different) - 1)) * np.sqrt(variances)
+        half = float(stdtrit(len(different) - 1, 0.975)) * np.sqrt(variances)
     return _Solved(theta, half, left, rest / weights)

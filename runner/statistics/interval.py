@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
+from scipy.special import ndtr, stdtrit
 
 FloatArray = NDArray[np.float64]
 
@@ -66,7 +66,7 @@ def median_intervals(samples: FloatArray, seed: int = 0) -> tuple[FloatArray, Fl
     """
     n = samples.shape[1]
     places, counts = _resampled(n, seed)
-    tail = stats.norm.cdf(np.sqrt(n / (n - 1)) * stats.t.ppf((1 - CONFIDENCE) / 2, n - 1))
+    tail = ndtr(np.sqrt(n / (n - 1)) * stdtrit(n - 1, (1 - CONFIDENCE) / 2))
     ends = np.empty((2, len(samples)))
     rows = max(1, _VALUES_AT_ONCE // len(counts))
     for start in range(0, len(samples), rows):

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from runner.statistics.interval import SMALLEST_SAMPLE, FloatArray, Interval, median_interval
+from runner.statistics.signed_rank import signed_rank
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,7 @@ class Comparison:
 def compare_paired(a: FloatArray, b: FloatArray, seed: int = 0) -> Comparison:
     """Compare two configs run on the same seeds.
 
-    The effect size is (W+ - W-) / (W+ + W-), W the sums of ranks of the differences' sizes (Kerby, "The simple
-    difference formula", Comprehensive Psychology 3, 2014).
+    Effect size and p-value are those of `signed_rank`.
 
     Args:
         a: Values of the first config, shape (n,), one for each repetition; infinity is beyond every number, and two
@@ -53,11 +52,5 @@ def compare_paired(a: FloatArray, b: FloatArray, seed: int = 0) -> Comparison:
     difference = np.zeros(len(a))
     unequal = a != b
     difference[unequal] = b[unequal] - a[unequal]
-    moved = difference[unequal]
-    effect, p_value = 0.0, None
-    if moved.size:
-        ranks = stats.rankdata(np.abs(moved))
-        effect = float(np.sum(np.sign(moved) * ranks) / np.sum(ranks))
-    if len(a) >= SMALLEST_SAMPLE:
-        p_value = float(stats.wilcoxon(moved).pvalue) if moved.size else 1.0
-    return Comparison(median_interval(difference, seed), effect, p_value)
+    effect, p_value = signed_rank(difference)
+    return Comparison(median_interval(difference, seed), effect, p_value if len(a) >= SMALLEST_SAMPLE else None)
