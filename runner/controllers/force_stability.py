@@ -4,7 +4,6 @@ from typing import Protocol
 
 import numpy as np
 from scipy.linalg import expm
-from scipy.optimize import brentq
 
 from runner.controllers.controller import FloatArray
 
@@ -82,6 +81,8 @@ def force_loop_limit(force_gain: float, damping: float, delay: int = 0) -> float
 
     The stiffest wall of a mass m at a period h is then k = m (omega_c h)^2 / (h^2 (1 + k_f)).
     """
+    from scipy.optimize import brentq  # takes longer to import than a short run to simulate
+
     low = 1e-3
     high = low
     while force_loop_radius(high, force_gain, damping, delay) < 1.0:

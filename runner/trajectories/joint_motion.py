@@ -6,11 +6,11 @@ from typing import Protocol
 
 import numpy as np
 import pinocchio as pin
-from scipy.interpolate import BPoly
 
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, StageBase
 from runner.trajectories.nearest import distance_to_curve
+from runner.trajectories.sampled_curve import SampledCurve
 from runner.trajectories.trajectory import FloatArray
 
 
@@ -94,24 +94,16 @@ class TipOfJoints:
         return motion
 
     def distance_to_path(self, points: FloatArray) -> FloatArray:
-        """Return the distance to the curve of the tip, as the spline through its samples has it."""
-        curve, derivatives = self._curve
-        within = self._samples
-
-        def motion(times: FloatArray) -> FloatArray:
-            return np.stack([part(times) for part in (curve, *derivatives)], axis=1)
-
-        return distance_to_curve(points, motion, within)
+        """Return the distance to the curve of the tip; see SampledCurve for what is between its samples."""
+        return distance_to_curve(points, self._curve.sample, self._samples)
 
     @cached_property
     def _samples(self) -> FloatArray:
         return np.linspace(0.0, self.duration, self.joints.samples + 1)
 
     @cached_property
-    def _curve(self) -> tuple[BPoly, tuple[BPoly, BPoly]]:
-        """The tip over time, between samples by the polynomial of fifth order with their first two derivatives."""
-        curve = BPoly.from_derivatives(self._samples, self.sample(self._samples))
-        return curve, (curve.derivative(1), curve.derivative(2))
+    def _curve(self) -> SampledCurve:
+        return SampledCurve(self._samples, self.sample(self._samples))
 
 
 def _tip_motion(model: RobotModel, joints: FloatArray) -> FloatArray:

@@ -1,11 +1,11 @@
 """Tool and sensor by weighing the tool in several orientations (Meca500 report, section 4)."""
 
+import itertools
 from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveInt
-from scipy.stats import qmc
 
 from runner.calibration.compensation import WrenchCompensation
 from runner.calibration.gravity import PARAMETERS, GravityCalibration, identify_gravity
@@ -150,12 +150,24 @@ class Weighing:
 def even_postures(model: RobotModel, count: int) -> FloatArray:
     """Return postures spread evenly over the joint limits (Halton), shape (count, nq), in rad; always the same ones.
 
-    A joint that turns without limit is taken once around.
+    Halton, "On the efficiency of certain quasi-random sequences of points in evaluating multi-dimensional integrals",
+    Numerische Mathematik 2, 1960. A joint that turns without limit is taken once around.
     """
     lower, upper = np.clip(model.position_limits, -np.pi, np.pi)
-    share = qmc.Halton(model.nq, scramble=False).random(count + 1)[1:]  # the first one is the corner
-    postures: FloatArray = lower + share * (upper - lower)
+    primes = (n for n in itertools.count(2) if all(n % factor for factor in range(2, n)))
+    shares = [_mirrored_digits(count, base) for base in itertools.islice(primes, model.nq)]
+    postures: FloatArray = lower + np.column_stack(shares) * (upper - lower)
     return postures
+
+
+def _mirrored_digits(count: int, base: int) -> FloatArray:
+    """Return 1, 2, ..., count with their digits in a base mirrored at the point, shape (count,), 0 to 1."""
+    left, mirrored, weight = np.arange(1, count + 1), np.zeros(count), 1.0 / base
+    while left.any():
+        left, digits = np.divmod(left, base)
+        mirrored += digits * weight
+        weight /= base
+    return mirrored
 
 
 CONFIG = WeighingConfig
