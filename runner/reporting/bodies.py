@@ -3,7 +3,7 @@
 import xml.etree.ElementTree as ET
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+import pinocchio as pin
 
 from runner.reporting.document import Body
 from runner.robots.model import FloatArray, RobotModel
@@ -85,7 +85,7 @@ def _origin(element: ET.Element) -> tuple[FloatArray, FloatArray]:
     """Return position and rotation matrix of an element's <origin>, which may be missing."""
     origin = element.find("origin")
     attributes = {} if origin is None else origin.attrib
-    rotation: FloatArray = Rotation.from_euler("xyz", _numbers(attributes.get("rpy", "0 0 0"))).as_matrix()
+    rotation: FloatArray = pin.rpy.rpyToMatrix(_numbers(attributes.get("rpy", "0 0 0")))
     return _numbers(attributes.get("xyz", "0 0 0")), rotation
 
 
@@ -100,7 +100,7 @@ def _point(vector: FloatArray) -> Point:
 
 def _quaternions(rotations: FloatArray) -> FloatArray:
     """Return unit quaternions w, x, y, z that never jump in sign, shapes (T, 3, 3) to (T, 4)."""
-    quaternions: FloatArray = Rotation.from_matrix(rotations).as_quat(scalar_first=True)
+    quaternions = np.array([np.roll(pin.Quaternion(R).coeffs(), 1) for R in rotations]).reshape(-1, 4)
     jumps = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) < 0.0
     quaternions[1:] *= np.cumprod(np.where(jumps, -1.0, 1.0))[:, None]
     return quaternions
