@@ -9,7 +9,7 @@ import hashlib
 import importlib
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
@@ -72,10 +72,10 @@ def named() -> list[str]:
 def added(group: str) -> tuple[EntryPoint, ...]:
     """Return the parts of a group that do not come with this package.
 
-    Installed packages are read once for each `sys.path`, as that takes half a millisecond and is asked in every run.
+    Installed packages are read once for each `sys.path`, as that takes milliseconds and is asked for each group.
     """
     of_command_line = [_point(line) for line in in_use() if line.partition("=")[0] == group]
-    return (*of_command_line, *_installed(f"runner.{group}", tuple(sys.path)))
+    return (*of_command_line, *_installed(tuple(sys.path))[group])
 
 
 def has_users_parts() -> bool:
@@ -121,8 +121,9 @@ def digests() -> dict[str, str]:
 
 
 @lru_cache(maxsize=16)
-def _installed(group: str, _path: tuple[str, ...]) -> tuple[EntryPoint, ...]:
-    return tuple(entry_points(group=group))
+def _installed(_path: tuple[str, ...]) -> Mapping[str, Sequence[EntryPoint]]:
+    found = entry_points()
+    return {group: tuple(found.select(group=f"runner.{group}")) for group in GROUPS}
 
 
 def _is_file(module: str) -> bool:
