@@ -104,7 +104,6 @@ def tell_sweep(ended: "Ended") -> int:
 def _tell_cells(ended: "Ended") -> None:
     """Print how many runs were made, which cell is the best, and what may be typed next."""
     from runner import store
-    from runner.reporting.sweep.spec import summary
     from runner.reporting.sweep.subject import choose
     from runner.sweeps.measurements import measure_sweep
 
@@ -116,7 +115,10 @@ def _tell_cells(ended: "Ended") -> None:
         sweep = store.open_sweep(ended.folder)
         subject = choose(measure_sweep(sweep))
         best = subject.best
-        kept = summary(subject, sweep.spec) if sweep.spec else ""
+        if sweep.spec:
+            from runner.reporting.sweep.spec import summary  # imports what draws, which takes long
+
+            kept = summary(subject, sweep.spec)
     if best is not None:
         metric, value, cell = best
         text += f"; least {metric}: {value} (median), {cell}"
