@@ -1,0 +1,36 @@
+"""Imports of the commands used most, against the few parts of SciPy and of other large packages that they need."""
+
+import json
+import subprocess
+import sys
+
+from support.patience import PATIENCE
+
+SHORT = ("robot=macro", "duration=0.05")
+LINES = (
+    SHORT,
+    (*SHORT, "trajectory=joint_quintic", "notch=torques"),
+    ("-m", *SHORT, "controller.period=5ms,10ms", "seed=0,1", "hydra.sweeper.workers=0"),
+    ("compare", "latest", "--by", "controller.period"),
+)
+CHILD = """
+import json, sys
+import scipy
+from runner.cli import dispatch
+
+large = {"dask", "distributed", "jinja2", "matplotlib", "optuna", "pandas", "plotly"}
+codes = [dispatch(line) for line in json.loads(sys.argv[1])]
+parts = {name.split(".")[1] for name in sys.modules if name.startswith("scipy.")} & {*scipy.__all__}
+print(json.dumps([codes, sorted(parts), sorted(large & {*sys.modules})]))
+"""
+
+
+def test_runs_sweeps_and_comparisons_need_linear_algebra_and_special_functions_of_scipy_alone(tmp_path):
+    ended = subprocess.run(
+        [sys.executable, "-c", CHILD, json.dumps(LINES)],
+        check=True, cwd=tmp_path, capture_output=True, text=True, timeout=PATIENCE,
+    )  # fmt: skip
+    codes, parts, large = json.loads(ended.stdout.splitlines()[-1])
+    assert codes == [0] * len(LINES)
+    assert parts == ["linalg", "special"]
+    assert large == []
