@@ -1,3 +1,5 @@
+"""Effects of the axes of a sweep: shares by hand, p-values against F tests and the rate of false alarms."""
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -84,6 +86,15 @@ def test_an_axis_that_changes_between_blocks_alone_is_tested_over_their_means():
         effects = axis_effects({"seed": seed, "method": method}, values, block, permutations=99).effects
         found.append(effects[0].p_value <= 0.05)
     assert np.mean(found) < 0.1
+
+
+def test_an_axis_that_changes_between_two_blocks_alone_has_a_share_and_no_p_value():
+    # Means 2 and 6 of three values each: sums of squares 24 between them and 4 within.
+    level = np.repeat([0, 1], 3)
+    (effect,) = axis_effects({"a": level}, np.array([1.0, 2.0, 3.0, 5.0, 6.0, 7.0]), blocks=level).effects
+    assert effect.share == pytest.approx(24.0 / 28.0)
+    assert effect.p_value is None
+    assert effect.remark == "no repetition to tell it from chance"
 
 
 def test_a_large_sweep_is_drawn_from_in_whole_blocks():

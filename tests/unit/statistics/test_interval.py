@@ -1,9 +1,10 @@
+"""Interval of a median: its coverage, and its ends against order statistics and a bootstrap of SciPy and NumPy."""
+
 import numpy as np
 import pytest
 from scipy import stats
 
 from runner.statistics import SMALLEST_SAMPLE, median_interval, median_intervals
-from runner.statistics.interval import _middles, _middles_of_many
 
 
 def interval_of(values, seed=0):
@@ -103,12 +104,3 @@ def test_of_many_values_too_its_ends_are_the_order_statistics(n):
     spread = 0.5 * np.sqrt(n)  # of the number of values below the median, with which 9999 resamples are uncertain
     assert interval.low == pytest.approx(low, abs=0.1 * spread)
     assert interval.high == pytest.approx(high + 1.0, abs=0.1 * spread)
-
-
-@pytest.mark.parametrize("n", [6, 7, 400])
-def test_the_middle_of_a_resample_drawn_alone_has_the_law_that_it_has_in_the_whole(n):
-    whole, alone = _middles(n, np.random.default_rng(3)), _middles_of_many(n, np.random.default_rng(4))
-    for first, second in [*zip(whole, alone, strict=True), (whole[1] - whole[0], alone[1] - alone[0])]:
-        values = np.union1d(first, second)
-        shares = [np.searchsorted(np.sort(places), values, side="right") / len(places) for places in (first, second)]
-        assert np.abs(shares[0] - shares[1]).max() < 1.95 * np.sqrt(2.0 / len(first))  # Smirnov, 1 in 1000

@@ -1,7 +1,9 @@
+"""Paired comparison: effect, interval and p-value against samples whose difference is known."""
+
 import numpy as np
 import pytest
 
-from runner.statistics import compare_paired
+from runner.statistics import SMALLEST_SAMPLE, compare_paired
 
 
 def pairs(n, shift, noise=0.1, seed=0):
@@ -65,6 +67,18 @@ def test_few_pairs_are_said_to_be_few():
     assert comparison.verdict == "too few pairs to say (5 of 6)"
     assert comparison.p_value is None
     assert comparison.difference.median == 1.0
+
+
+@pytest.mark.parametrize("n", [SMALLEST_SAMPLE, SMALLEST_SAMPLE + 1])
+def test_from_the_smallest_sample_on_there_is_a_p_value(n):
+    comparison = compare_paired(np.zeros(n), np.arange(1.0, n + 1.0))
+    assert comparison.verdict == "larger"
+    assert comparison.p_value == 2.0 ** (1 - n)
+
+
+def test_the_number_of_pairs_decides_not_that_of_those_which_differ():
+    comparison = compare_paired(np.zeros(6), np.array([0.0, 0.0, 0.0, 0.0, 1.0, 2.0]))
+    assert comparison.p_value == 0.5
 
 
 @pytest.mark.parametrize(("a", "b"), [(np.zeros(3), np.zeros(4)), (np.zeros(0), np.zeros(0))])
