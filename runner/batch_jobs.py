@@ -1,7 +1,8 @@
 """Runs that are simulated together, from their checked configs to what is stored of each."""
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import astuple, dataclass
 from functools import cached_property
 from itertools import groupby
@@ -19,6 +20,8 @@ from runner.store.writing import timing
 from runner.trace import Failure, FloatArray, Trace
 
 Job = tuple[RunConfig, Composed]
+NO_DEADLINE: AbstractContextManager[None] = nullcontext()
+_LONG = 0.5  # s: what takes longer is not made twice to be timed
 
 
 @dataclass(frozen=True)
@@ -127,24 +130,44 @@ def _setting(config: RunConfig, q_start: FloatArray, batcher: Batcher) -> Settin
     return batcher.memory.known(parts, lambda: setting_of(config, q_start))
 
 
-def seconds_together(job: Job, ticks: int) -> float | None:
+def seconds_together(
+    job: Job,
+    ticks: int,
+    within: AbstractContextManager[None] = NO_DEADLINE,
+    clock: Callable[[], float] = time.perf_counter,
+) -> float | None:
     """Return the time for a tick of a run in company, in s; None where it cannot be simulated together with others.
 
     Args:
         job: The run.
-        ticks: Ticks that are made for it, about, twice.
+        ticks: Ticks that are made for it, about, and once more if that is quick.
+        within: Entered once all is assembled and compiled; may end the measurement.
+        clock: Tells the time, in s.
     """
     config, batcher = job[0], Batcher()
     repetitions = range(min(config.settings.repetitions, max(1, ticks // config.timing.ticks)))
     runs = batcher.repetitions(config, repetitions)
     if runs is None:
         return None
-    copies, start = max(1, ticks // (len(runs) * config.timing.ticks)), 0.0
-    for _ in range(2):  # the first time warms up
-        start = time.perf_counter()
+    copies = max(1, ticks // (len(runs) * config.timing.ticks))
+
+    def make() -> None:
         for _ in simulate_together([job] * copies, [runs] * copies, batcher):
             pass
-    return (time.perf_counter() - start) / (copies * len(runs) * config.timing.ticks)
+
+    with within:
+        return warm_time(make, clock) / (copies * len(runs) * config.timing.ticks)
+
+
+def warm_time(make: Callable[[], object], clock: Callable[[], float]) -> float:
+    """Return the time that something takes, in s: of the second time, if the first does not already take long."""
+    took = 0.0
+    for _ in range(2):
+        if took < _LONG:
+            start = clock()
+            make()
+            took = clock() - start
+    return took
 
 
 def simulate_together(

@@ -1,7 +1,8 @@
 """One job: the repetitions of a checked config, simulated and measured."""
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from runner import store
 from runner.assembly import assemble, metric_context
 from runner.batch_blocks import simulate_blocks
-from runner.batch_jobs import seconds_together
+from runner.batch_jobs import NO_DEADLINE, seconds_together, warm_time
 from runner.caveats import PlantStep, Watch, setting_of, signals_of
 from runner.config.compose import Composed
 from runner.config.run import RunConfig
@@ -23,7 +24,8 @@ from runner.simulation import ClosedLoop, simulate
 from runner.store.writing import timing
 from runner.trace import Failure, Trace
 
-_PROBED_TICKS = 50
+PROBED_TICKS = 50
+"""Ticks from which the time for a tick is measured, of a run that is simulated alone."""
 _PROBED_TOGETHER = 100_000  # ticks, of repetitions that are simulated together
 _CLOCKED_TICKS = 1_000_000  # ticks whose time is kept; more would tell nothing new
 
@@ -92,19 +94,29 @@ def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> sto
     )
 
 
-def seconds_per_tick(config: RunConfig, composed: Composed) -> float:
-    """Return the CPU time of a tick of a run, in s, from its first ones, made twice."""
+def seconds_per_tick(
+    config: RunConfig,
+    composed: Composed,
+    within: AbstractContextManager[None] = NO_DEADLINE,
+    clock: Callable[[], float] = time.perf_counter,
+) -> float:
+    """Return the CPU time of a tick of a run, in s, from its first ones.
+
+    Args:
+        config: The checked config.
+        composed: What it was checked from.
+        within: Entered once all is assembled and compiled; may end the measurement.
+        clock: Tells the time, in s.
+    """
     if config.timing.ticks <= _PROBED_TOGETHER:
-        together = seconds_together((config, composed), _PROBED_TOGETHER)
+        together = seconds_together((config, composed), _PROBED_TOGETHER, within, clock)
         if together is not None:
             return together
     whole = assemble(config)
-    part = replace(whole, ticks=min(whole.ticks, _PROBED_TICKS))
+    part = replace(whole, ticks=min(whole.ticks, PROBED_TICKS))
     try:
-        for _ in range(2):  # the first time warms up
-            start = time.perf_counter()
-            _simulate(part, config, 0)
-        return (time.perf_counter() - start) / (part.ticks + 1)
+        with within:
+            return warm_time(lambda: _simulate(part, config, 0), clock) / (part.ticks + 1)
     finally:
         whole.close()
 

@@ -72,13 +72,14 @@ def check_memory(limits: LimitsConfig, arm: Robot, timing: Timing, repetitions: 
         )
 
 
-def check_cpu_time(limits: LimitsConfig, seconds: float, runs: int) -> None:
+def check_cpu_time(limits: LimitsConfig, seconds: float, runs: int, known: str = "about") -> None:
     """Check that what is to be computed does not take too long.
 
     Args:
         limits: The limits.
         seconds: CPU time that it takes, as estimated, in s.
         runs: Number of runs.
+        known: What is known of the time: "about" that, "more than" that or "up to" that.
 
     Raises:
         ConfigError: if it is more than `limits.cpu_hours`; gives the estimate.
@@ -88,7 +89,7 @@ def check_cpu_time(limits: LimitsConfig, seconds: float, runs: int) -> None:
         what = f"{runs} runs" if runs > 1 else "the run"
         raise ConfigError(
             [
-                f"limits.cpu_hours: {what} would take about {hours:.3g} hours of CPU time; allowed: "
+                f"limits.cpu_hours: {what} would take {known} {hours:.3g} hours of CPU time; allowed: "
                 f"{limits.cpu_hours:g}; ask for less, or set limits.cpu_hours"
             ]
         )

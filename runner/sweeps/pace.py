@@ -1,7 +1,10 @@
 """How long jobs will take: estimated before they start, and noted while they run."""
 
 import time
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +12,7 @@ from numpy.typing import NDArray
 from runner.batch_jobs import seconds_together
 from runner.config.compose import Composed
 from runner.config.validation import validate
-from runner.job import seconds_per_tick
+from runner.job import PROBED_TICKS, seconds_per_tick
 from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
 from runner.sweeps.deadline import TimeLimitError, deadline
@@ -20,10 +23,27 @@ _EVERY = 2.0  # s between two notes of the pace
 START_UP = 3.0
 """CPU time that a worker process takes until its first run, in s."""
 _PROBES = 3  # cells that the first estimate is made from, of each power of ten of ticks
-_PROBED_WITHIN = 2.0  # s; what takes longer is told when its run is made
+_PROBED_WITHIN = 2.0  # s, for the ticks of a probe
 _FIXED = 0.010  # s that a job takes beside its ticks
 _FIXED_TOGETHER = 0.0002  # s, of runs that are simulated together and keep no trace
 _TICKS_TOGETHER = 20_000  # of runs that are simulated together for the first estimate
+
+
+Known = Literal["about", "more than", "up to"]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """CPU time that something will take.
+
+    Attributes:
+        seconds: The time, in s.
+        known: If the time is about that; more, as a few ticks took longer than all that they were given; or at most
+            that, as runs have a time limit.
+    """
+
+    seconds: float
+    known: Known = "about"
 
 
 class Pace:
@@ -31,23 +51,24 @@ class Pace:
 
     Args:
         folder: The sweep's folder.
+        clock: Tells the time, in s.
     """
 
-    def __init__(self, folder: Path) -> None:
-        self._folder, self._made = folder, 0
-        self._began = self._noted = time.monotonic()
+    def __init__(self, folder: Path, clock: Callable[[], float] = time.monotonic) -> None:
+        self._folder, self._made, self._clock = folder, 0, clock
+        self._began = self._noted = clock()
 
     def add(self, jobs: int) -> None:
         """Take note of a number of jobs that ended."""
         self._made += jobs
-        now = time.monotonic()
+        now = self._clock()
         if self._made and now - self._noted > _EVERY:
             self._noted = now
             write_atomically(self._folder / NOTE, sealed_json({"seconds_per_run": (now - self._began) / self._made}))
 
 
-def estimate(plan: Plan, checked: Checked, cells: NDArray[np.intp], kept: float) -> float:
-    """Return the CPU time that some cells will take, in s, from a few ticks of a few of their runs.
+def estimate(plan: Plan, checked: Checked, cells: NDArray[np.intp], kept: float) -> Estimate:
+    """Return the CPU time that some cells will take, from a few ticks of a few of their runs.
 
     Args:
         plan: The plan.
@@ -58,30 +79,38 @@ def estimate(plan: Plan, checked: Checked, cells: NDArray[np.intp], kept: float)
     runs = np.setdiff1d(cells, list(checked.calibrations), assume_unique=True) if checked.calibrations else cells
     # Runs of very many ticks, such as those of a thousand repetitions, may have another pace than the others.
     sizes = np.floor(np.log10(np.maximum(checked.costs[runs], 1)))
-    others = _FIXED * (len(cells) - len(runs))
-    return others + sum(_seconds(plan, checked, runs[sizes == size], kept) for size in np.unique(sizes))
+    found = [_estimate_alike(plan, checked, runs[sizes == size], kept) for size in np.unique(sizes)]
+    seconds = _FIXED * (len(cells) - len(runs)) + sum(each.seconds for each in found)
+    return Estimate(seconds, next((each.known for each in found if each.known != "about"), "about"))
 
 
-def _seconds(plan: Plan, checked: Checked, runs: NDArray[np.intp], kept: float) -> float:
-    """Return the CPU time of runs of about as many ticks, in s."""
+def _estimate_alike(plan: Plan, checked: Checked, runs: NDArray[np.intp], kept: float) -> Estimate:
+    """Return the CPU time of runs of about as many ticks, by the median of a few."""
     chosen = sorted({int(runs[len(runs) * part // _PROBES]) for part in range(_PROBES)})
-    probed = [_probe(plan.composed(cell), int(checked.costs[cell])) for cell in chosen]
-    per_tick, together = np.mean(probed, axis=0).tolist()
-    in_shards = together * (1.0 - kept) * len(runs)
+    probed = sorted(_probe(plan.composed(cell), int(checked.costs[cell])) for cell in chosen)
+    per_tick, together, known = probed[len(probed) // 2]
+    in_shards = (1.0 - kept) * len(runs) if together else 0.0
     fixed = _FIXED * (len(runs) - in_shards) + _FIXED_TOGETHER * in_shards
-    return float(fixed + per_tick * checked.costs[runs].sum())
+    limit = checked.settings.time_limit
+    if known == "more than" and limit is not None:
+        return Estimate(fixed + limit * len(runs), "up to")
+    return Estimate(float(fixed + per_tick * checked.costs[runs].sum()), known)
 
 
-def _probe(composed: Composed, ticks: int) -> tuple[float, bool]:
-    """Return the time for a tick of a run, in s, and whether it can be simulated together with others."""
+def _probe(composed: Composed, ticks: int) -> tuple[float, bool, Known]:
+    """Return the time for a tick of a run, in s, if it can be simulated together with others, and what is known of it.
+
+    Whatever is assembled and compiled counts for nothing, as it is done once.
+    """
     config = validate(composed.resolved, composed.config_dirs)
-    together = False
+    probed = max(ticks, _TICKS_TOGETHER)
     try:
-        with deadline(_PROBED_WITHIN):
-            per_tick = seconds_together((config, composed), _TICKS_TOGETHER)
-            together = per_tick is not None
-            return (seconds_per_tick(config, composed) if per_tick is None else per_tick), together
+        per_tick = seconds_together((config, composed), _TICKS_TOGETHER, deadline(_PROBED_WITHIN))
+        if per_tick is not None:
+            return per_tick, True, "about"
+        probed = min(ticks, PROBED_TICKS)
+        return seconds_per_tick(config, composed, deadline(_PROBED_WITHIN)), False, "about"
     except TimeLimitError:
-        return (config.sweep.time_limit or _PROBED_WITHIN) / ticks, together
+        return _PROBED_WITHIN / probed, False, "more than"
     except Exception:  # an error of a part is stored when its run is made
-        return 0.0, together
+        return 0.0, False, "about"

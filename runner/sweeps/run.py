@@ -24,7 +24,7 @@ from runner.sweeps.differing import Resolved
 from runner.sweeps.ends import Ends
 from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
 from runner.sweeps.lock import at_work
-from runner.sweeps.pace import START_UP, Pace, estimate
+from runner.sweeps.pace import START_UP, Estimate, Pace, estimate
 from runner.sweeps.plan import Checked, Plan, check
 from runner.sweeps.queue import Queue
 from runner.sweeps.rules import Rules, TraceKeeping, one_in
@@ -206,10 +206,10 @@ def make_jobs(
         return
     ticks = int(checked.costs[cells].sum())
     progress.begin("estimating", SOON)
-    seconds = estimate(plan, checked, cells, queue.rules.kept)
-    check_cpu_time(checked.limits, seconds, len(cells))
+    expected = estimate(plan, checked, cells, queue.rules.kept)
+    check_cpu_time(checked.limits, expected.seconds, len(cells), expected.known)
     pace = Pace(queue.rules.sweep)
-    with _workers(queue, len(cells), engine, seconds) as reports:
+    with _workers(queue, len(cells), engine, expected) as reports:
         progress.begin(SIMULATING, None, ticks, "ticks", lambda: queue.ticks_made)
         for report in reports:
             pace.add(len(report.outcomes))
@@ -224,22 +224,26 @@ def _count(checked: Checked, left: int, stored: int) -> str:
 
 
 @contextlib.contextmanager
-def _workers(queue: Queue, jobs: int, engine: Engine, seconds: float) -> Iterator[Iterator[Report]]:
-    """Start what makes the jobs of a queue, told to take some seconds of CPU time; yield what became of each chunk."""
+def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Iterator[Iterator[Report]]:
+    """Start what makes the jobs of a queue, which is expected to take some time; yield what became of each chunk."""
     if engine.address is not None:
-        _expect(0.0, seconds, 1)
+        _expect(expected, 1)
         with remote_client(engine.address) as client, contextlib.closing(on_cluster(queue, client)) as reports:
-            _tell_estimate(_expect(0.0, seconds, max(1, len(client.nthreads()))), max(1, len(client.nthreads())))
+            processes = max(1, len(client.nthreads()))
+            _expect(expected, processes)
+            _tell_estimate(expected, 0.0, processes, processes)
             yield reports
     elif engine.workers == 0:
-        _tell_estimate(_expect(0.0, seconds, 1), 1)
+        _expect(expected, 1)
+        _tell_estimate(expected, 0.0, 1, 1)
         with contextlib.closing(in_process(queue)) as reports:
             yield reports
     else:
         workers = min(engine.workers, jobs)
         together = min(workers, os.cpu_count() or 1)
         start = START_UP * workers / together
-        _tell_estimate(_expect(start, seconds, together), workers)
+        _expect(expected, together)
+        _tell_estimate(expected, start, together, workers)
         progress.begin("starting processes", start)
         with (
             local_client(workers, _scratch(queue.rules)) as client,
@@ -248,15 +252,16 @@ def _workers(queue: Queue, jobs: int, engine: Engine, seconds: float) -> Iterato
             yield reports
 
 
-def _expect(start: float, seconds: float, processes: int) -> float:
-    """Plan the simulation on some processes; return how long that and their start take together, in s."""
-    progress.plan({SIMULATING: seconds / processes})
-    return start + seconds / processes
+def _expect(expected: Estimate, together: int) -> None:
+    """Plan the simulation on processes of which so many run at a time; nothing follows from a bound."""
+    progress.plan({SIMULATING: expected.seconds / together if expected.known == "about" else None})
 
 
-def _tell_estimate(seconds: float, processes: int) -> None:
+def _tell_estimate(expected: Estimate, start: float, together: int, processes: int) -> None:
+    """Print how long some processes take, of which so many run at a time, with their start, in s."""
     several = "es" if processes > 1 else ""
-    _tell(f"about {progress.in_words(seconds)} on {processes} process{several}")
+    seconds = progress.in_words(start + expected.seconds / together)
+    _tell(f"{expected.known} {seconds} on {processes} process{several}")
 
 
 def _tell(text: str) -> None:

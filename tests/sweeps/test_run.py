@@ -20,6 +20,7 @@ from runner.errors import ConfigError, RunnerError, StoreError
 from runner.loop.command import Command
 from runner.sweeps import work
 from runner.sweeps.grid import plan_sweep
+from runner.sweeps.pace import Estimate
 from runner.sweeps.rules import one_in
 from runner.sweeps.run import Engine
 
@@ -177,7 +178,7 @@ def test_an_error_of_a_part_is_a_failed_run_with_its_traceback(sweep, monkeypatc
     part, name = (CommandsRun, "tick") if evaluator() else (Command, "update")
     update = getattr(part, name)
     monkeypatch.setattr(part, name, fall_over)
-    monkeypatch.setattr("runner.sweeps.run.estimate", lambda *_: 1.0)
+    monkeypatch.setattr("runner.sweeps.run.estimate", lambda *_: Estimate(1.0))
     ended = sweep("seed=0,1")
     ((_, why, log),) = ended.failures
     assert re.fullmatch(r"cut short: RuntimeError: a bug \(test_run.py, line \d+, in fall_over\)", why)

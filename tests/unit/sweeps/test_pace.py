@@ -1,68 +1,136 @@
-"""The first estimate of what a sweep costs."""
+"""Estimate of what a sweep costs: the paces of probes are given, and the clock of the note is a test's own."""
 
-import contextlib
-from dataclasses import replace
+import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from runner.sweeps import run
-from runner.sweeps.engine import in_process
-from runner.sweeps.grid import plan_sweep
-from runner.sweeps.pace import estimate
-from runner.sweeps.plan import check
-from runner.sweeps.run import Engine
+from runner.sweeps import pace
+from runner.sweeps.deadline import TimeLimitError
+from runner.sweeps.pace import Pace, estimate
+from runner.sweeps.status import read_pace
+
+TICKS, RUNS = 200, 30
 
 
-def estimated(tmp_path, kept, *overrides):
-    plan = plan_sweep(["robot=macro", "duration=0.05", "seed=range(0,10000)", f"outputs={tmp_path}", *overrides])
-    checked = check(plan)
-    cells = np.arange(len(plan))
-    return estimate(plan, checked, cells, kept)
+class Plan:
+    """Runs whose configs are their numbers."""
+
+    def composed(self, cell):
+        return SimpleNamespace(resolved=cell, config_dirs=())
 
 
-def test_runs_that_are_simulated_together_and_keep_no_trace_cost_little(tmp_path):
-    assert 2.0 < estimated(tmp_path, 0.0, "plant=rk4") < 20.0
+@pytest.fixture
+def estimated(monkeypatch):
+    """Estimate runs whose paces are given in turn, alone or together, by their kept share and their time limit."""
+
+    def make(*paces, together=False, kept=0.0, limit=None, costs=(TICKS,) * RUNS, calibrations=()):
+        def found(job, *_):
+            told = paces[job % len(paces)] if len(paces) < len(costs) else paces[job]
+            if isinstance(told, BaseException):
+                raise told
+            return told
+
+        monkeypatch.setattr(pace, "validate", lambda resolved, _: resolved)
+        monkeypatch.setattr(pace, "seconds_together", lambda job, *_: found(job[0]) if together else None)
+        monkeypatch.setattr(pace, "seconds_per_tick", found)
+        checked = SimpleNamespace(
+            costs=np.array(costs), calibrations=calibrations, settings=SimpleNamespace(time_limit=limit)
+        )
+        return estimate(Plan(), checked, np.arange(len(costs)), kept)
+
+    return make
 
 
-def test_a_trace_is_written_for_each_that_keeps_its_own(tmp_path):
-    assert estimated(tmp_path, 1.0, "plant=rk4") == pytest.approx(100.0, rel=0.3)
+def of_ticks(found, none):
+    """Return what ticks add to the fixed cost of runs, in s."""
+    return found.seconds - none.seconds
 
 
-def test_a_run_that_is_made_alone_has_its_fixed_cost(tmp_path):
-    assert estimated(tmp_path, 0.0, "plant=default") > 100.0
+def test_it_is_the_pace_of_a_tick_times_all_ticks_beside_what_runs_cost_anyway(estimated):
+    assert estimated(1e-3).known == "about"
+    assert of_ticks(estimated(1e-3), estimated(0.0)) == pytest.approx(1e-3 * RUNS * TICKS)
+    assert estimated(0.0).seconds > 0.0
 
 
-def test_a_few_runs_of_very_many_ticks_do_not_take_the_pace_of_the_others(tmp_path):
-    """As many ticks as all others have together, by runs that are compiled whole, cost next to nothing more."""
-    few = ("robot=macro", "duration=1", f"outputs={tmp_path}", "trajectory=quintic")
-    alone = plan_sweep([*few, "plant=mujoco", "seed=range(0,40)"])
-    cells = np.arange(len(alone))
-    some = estimate(alone, check(alone), cells, 1.0)
-
-    class Both:
-        """The plan with runs of many repetitions behind it."""
-
-        def __init__(self):
-            self.plans = (alone, plan_sweep([*few, "plant=rk4", "noise=thesis", "repetitions=1000", "seed=0,1"]))
-
-        def composed(self, cell):
-            return self.plans[cell >= 40].composed(cell if cell < 40 else cell - 40)
-
-    both = Both()
-    checks = [check(plan) for plan in both.plans]
-    costs = np.concatenate([checked.costs for checked in checks])
-    checked = replace(checks[0], costs=costs)
-    assert costs[40:].sum() > 10 * costs[:40].sum()
-    assert estimate(both, checked, np.arange(42), 1.0) < 3.0 * some
+@pytest.mark.parametrize("slow", range(3))
+def test_one_slow_probe_of_three_does_not_count(estimated, slow):
+    paces = [1e-6] * 3
+    paces[slow] = 1.0
+    by_run = [paces[run * 3 // RUNS] for run in range(RUNS)]
+    assert estimated(*by_run) == estimated(1e-6)
 
 
-@pytest.mark.parametrize(("workers", "told"), [(1, "about 43 s on 1 process"), (4, "about 26 s on 4 processes")])
-def test_the_time_that_is_told_has_the_start_of_the_processes_in_it(sweep, monkeypatch, capsys, workers, told):
-    """40 s of simulation, and 3 s to start each process, on two cores."""
-    monkeypatch.setattr(run, "local_client", lambda *_: contextlib.nullcontext())
-    monkeypatch.setattr(run, "on_cluster", lambda queue, _: in_process(queue))
-    monkeypatch.setattr(run, "estimate", lambda *_: 40.0)
-    monkeypatch.setattr(run.os, "cpu_count", lambda: 2)
-    sweep("seed=range(0,4)", "plant=rk4", engine=Engine(workers, None))
-    assert told in capsys.readouterr().err
+@pytest.mark.parametrize("late", range(3))
+def test_one_probe_of_three_that_is_late_does_not_count(estimated, late):
+    paces = [1e-6] * 3
+    paces[late] = TimeLimitError()
+    by_run = [paces[run * 3 // RUNS] for run in range(RUNS)]
+    assert estimated(*by_run) == estimated(1e-6)
+    assert estimated(*by_run, limit=7.0) == estimated(1e-6)
+
+
+def test_of_two_probes_the_slower_one_counts(estimated):
+    two = (TICKS, TICKS)
+    assert estimated(1e-6, 1.0, costs=two) == estimated(1.0, costs=two) == estimated(1.0, 1e-6, costs=two)
+
+
+def test_what_is_late_takes_up_to_the_time_limit_of_each_run(estimated):
+    found = estimated(TimeLimitError(), limit=7.0)
+    assert found.known == "up to"
+    assert of_ticks(found, estimated(0.0)) == pytest.approx(7.0 * RUNS)
+
+
+def test_what_is_late_without_a_limit_takes_more_than_the_time_of_a_probe_for_as_many_ticks(estimated):
+    found, longer = estimated(TimeLimitError()), estimated(TimeLimitError(), costs=(2 * TICKS,) * RUNS)
+    assert found.known == longer.known == "more than"
+    assert of_ticks(longer, estimated(0.0)) == pytest.approx(2.0 * of_ticks(found, estimated(0.0)))
+    assert of_ticks(found, estimated(0.0)) > 0.0
+
+
+def test_a_bound_of_some_runs_bounds_all(estimated):
+    costs = (10,) * 3 + (1000,) * 3
+    paces = [1e-6] * 3 + [TimeLimitError()] * 3
+    assert estimated(*paces, costs=costs).known == "more than"
+    assert estimated(*paces, costs=costs, limit=1.0).known == "up to"
+
+
+def test_runs_of_other_powers_of_ten_of_ticks_have_a_pace_of_their_own(estimated):
+    costs = (TICKS,) * 3 + (100 * TICKS,) * 3
+    found = estimated(1e-3, 1e-3, 1e-3, 1e-6, 1e-6, 1e-6, costs=costs)
+    assert found.known == "about"
+    assert of_ticks(found, estimated(0.0, costs=costs)) == pytest.approx(3 * TICKS * 1e-3 + 300 * TICKS * 1e-6)
+
+
+def test_runs_made_together_cost_less_unless_each_keeps_its_trace(estimated):
+    alone, kept, half, none = (
+        estimated(0.0, together=together, kept=share).seconds
+        for together, share in ((False, 0.0), (True, 1.0), (True, 0.5), (True, 0.0))
+    )
+    assert none < 0.1 * kept
+    assert half == pytest.approx(0.5 * (kept + none))
+    assert kept == alone == estimated(0.0, kept=1.0).seconds
+
+
+def test_what_fails_in_a_probe_and_what_is_calibrated_costs_no_ticks(estimated):
+    assert estimated(ValueError("a bug")) == estimated(0.0)
+    assert estimated(1e-3, calibrations=range(RUNS)) == estimated(0.0, calibrations=range(RUNS))
+    half = estimated(1e-3, calibrations=range(RUNS // 2))
+    assert of_ticks(half, estimated(0.0)) == pytest.approx(1e-3 * TICKS * (RUNS - RUNS // 2))
+
+
+def test_the_note_tells_the_time_for_a_job_by_the_clock_once_some_time_has_passed(tmp_path):
+    now = 100.0
+    noted = Pace(tmp_path, clock=lambda: now)
+    noted.add(5)
+    assert read_pace(tmp_path) is None
+    now = 130.0
+    noted.add(5)
+    assert read_pace(tmp_path) == 3.0
+    noted.add(90)  # at once: it stays
+    assert read_pace(tmp_path) == 3.0
+    now = 150.0
+    noted.add(0)
+    assert read_pace(tmp_path) == 0.5
+    assert json.loads(next(tmp_path.iterdir()).read_text())["seconds_per_run"] == 0.5

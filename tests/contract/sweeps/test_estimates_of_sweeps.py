@@ -1,0 +1,108 @@
+"""Estimate of a sweep: the words on standard error, and the measurement of ticks by a clock that a test sets."""
+
+import contextlib
+
+import pytest
+
+from runner import batch_jobs, job
+from runner.batch_jobs import seconds_together, warm_time
+from runner.config.compose import compose
+from runner.config.validation import validate
+from runner.job import PROBED_TICKS, seconds_per_tick
+from runner.sweeps import run
+from runner.sweeps.engine import in_process
+from runner.sweeps.grid import plan_sweep
+from runner.sweeps.pace import START_UP, Estimate
+from runner.sweeps.run import Engine, run_sweep
+
+SHORT = ("robot=macro", "duration=0.05", "noise=none")
+EXPECTED = 40.0
+
+
+@pytest.mark.parametrize(
+    ("known", "workers", "words"),
+    [
+        ("about", 0, f"about {EXPECTED:.0f} s on 1 process"),
+        ("up to", 0, f"up to {EXPECTED:.0f} s on 1 process"),
+        ("more than", 0, f"more than {EXPECTED:.0f} s on 1 process"),
+        ("about", 1, f"about {EXPECTED + START_UP:.0f} s on 1 process"),
+        ("up to", 4, f"up to {EXPECTED / 2 + 2 * START_UP:.0f} s on 4 processes"),
+    ],
+)
+def test_an_estimate_and_a_bound_are_told_with_the_start_of_processes_on_two_cores(
+    tmp_path, monkeypatch, capsys, known, workers, words
+):
+    monkeypatch.setattr(run, "local_client", lambda *_: contextlib.nullcontext())
+    monkeypatch.setattr(run, "on_cluster", lambda queue, _: in_process(queue))
+    monkeypatch.setattr(run, "estimate", lambda *_: Estimate(EXPECTED, known))
+    monkeypatch.setattr(run.os, "cpu_count", lambda: 2)
+    plan = plan_sweep([*SHORT, "plant=rk4", f"outputs={tmp_path}", "seed=range(0,4)"])
+    run_sweep(plan, Engine(workers, None), "runner -m ...")
+    assert f"runner: {words}\n" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("known", "told"), [("about", EXPECTED), ("up to", None), ("more than", None)])
+def test_progress_expects_nothing_of_a_bound(tmp_path, monkeypatch, known, told):
+    planned = []
+    monkeypatch.setattr(run, "estimate", lambda *_: Estimate(EXPECTED, known))
+    monkeypatch.setattr(run.progress, "plan", planned.append)
+    run_sweep(plan_sweep([*SHORT, "plant=rk4", f"outputs={tmp_path}", "seed=0,1"]), Engine(0, None), "runner -m ...")
+    assert planned[-1] == {run.SIMULATING: told}
+
+
+class Steps:
+    """A clock that moves on by a step each time it is read."""
+
+    def __init__(self, step):
+        self.now, self.step = 0.0, step
+
+    def __call__(self):
+        self.now += self.step
+        return self.now
+
+
+@pytest.mark.parametrize(("first", "made"), [(0.49, 2), (0.5, 1), (0.51, 1)])
+def test_what_is_quick_is_timed_the_second_time(first, made):
+    took, now, calls = [first, 0.25], [0.0], []
+
+    def make():
+        now[0] += took[len(calls)]
+        calls.append(1)
+
+    assert warm_time(make, lambda: now[0]) == pytest.approx(took[made - 1])
+    assert len(calls) == made
+
+
+def together(config, composed, within, clock):
+    return seconds_together((config, composed), 15, within, clock)
+
+
+@pytest.mark.parametrize(
+    ("measure", "plant", "duration", "before", "ticks"),
+    [
+        (together, "rk4", 0.05, ["repetitions asked for"], 15),
+        (seconds_per_tick, "mujoco", 0.05, ["repetitions asked for", "assembled"], 6),
+        (seconds_per_tick, "mujoco", 1.0, ["repetitions asked for", "assembled"], PROBED_TICKS + 1),
+    ],
+)
+def test_assembly_is_outside_the_deadline_and_the_ticks_within(monkeypatch, measure, plant, duration, before, ticks):
+    events = []
+
+    @contextlib.contextmanager
+    def within():
+        events.append("deadline")
+        yield
+        events.append("end")
+
+    def noted(owner, name, event):
+        plain = getattr(owner, name)
+        monkeypatch.setattr(owner, name, lambda *args, **options: (events.append(event), plain(*args, **options))[1])
+
+    noted(batch_jobs.Batcher, "repetitions", "repetitions asked for")
+    noted(batch_jobs.Batcher, "simulate", "ticks")
+    noted(job, "assemble", "assembled")
+    noted(job, "simulate", "ticks")
+    composed = compose([*SHORT, f"plant={plant}", f"duration={duration}"])
+    per_tick = measure(validate(composed.resolved), composed, within(), Steps(0.25))
+    assert events == [*before, "deadline", "ticks", "ticks", "end"]
+    assert per_tick == pytest.approx(0.25 / ticks)
