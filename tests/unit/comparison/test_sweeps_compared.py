@@ -1,4 +1,4 @@
-"""Two sweeps compared metric by metric and cell by cell, against shifts that are put in."""
+"""Two sweeps compared: counts, differences and cells against sides whose values are given."""
 
 from dataclasses import replace
 
@@ -8,6 +8,7 @@ from support.sample_sides import LAWS, side
 
 from runner.comparison.sweeps import by_cell, compare_sweeps
 from runner.errors import RunnerError
+from runner.quantities import ROUNDING
 from runner.statistics import compare_paired
 
 
@@ -44,6 +45,24 @@ def test_a_known_shift_is_found_over_all_cells_and_in_each():
     assert [cell.comparison.difference.median for cell in by_cell(found, "rms_tracking_error")] == pytest.approx(
         [0.25] * 4
     )
+
+
+@pytest.mark.parametrize(
+    ("moved", "counts"),
+    [
+        (ROUNDING, (0, 0)),
+        (np.nextafter(ROUNDING, 1.0), (0, 4)),
+        (-ROUNDING, (0, 0)),
+        (np.nextafter(-ROUNDING, -1.0), (4, 0)),
+    ],
+    ids=["rounding", "above rounding", "minus rounding", "below minus rounding"],
+)
+def test_cells_whose_median_moves_by_rounding_alone_count_on_neither_side(moved, counts):
+    a, b = side("A", LAWS, error), side("B", LAWS, error)
+    a.measurements.values["rms_tracking_error"][:] = 0.0
+    b.measurements.values["rms_tracking_error"][:] = moved
+    one = named(compare_sweeps(a, b).pooled)["rms_tracking_error"]
+    assert (one.smaller, one.larger) == counts
 
 
 def test_the_order_of_cells_and_keys_does_not_count():
