@@ -1,3 +1,5 @@
+"""When a run began on the clock of a recording: against the time by which its motion was moved."""
+
 import numpy as np
 import pytest
 
@@ -35,6 +37,47 @@ def test_encoders_with_another_zero_and_a_part_of_the_motion_do_no_harm():
     t, signals = recorded(-1.7, last=1.5)
     found = find_offset(t, signals + np.array([0.5, -0.2]), RUN_T, motion(RUN_T), NAMES)
     assert found.start == pytest.approx(-1.7, abs=1e-4)
+
+
+def test_the_clock_of_the_run_need_not_begin_at_zero():
+    t, signals = recorded(1.2345)
+    found = find_offset(t, signals, RUN_T + 10.0, motion(RUN_T), NAMES)
+    assert found.start == pytest.approx(1.2345 - 10.0, abs=1e-4)
+    assert found.lags[np.argmax(found.correlations)] == pytest.approx(found.start, abs=0.005)
+
+
+def test_positions_decide_over_more_than_a_sample_of_the_recording():
+    """A small fast swing, 8 ms ahead of the large slow one, dominates the speeds' changes and so their correlation.
+
+    The start is that of least squares over positions, 6 ms from where the speeds correlate best; a sample is 5 ms.
+    """
+
+    def swings(t, early=0.0):
+        inside, ahead = (np.clip(times, 0.0, 4.0) for times in (t, t + early))
+        slow = np.sin(np.pi * inside / 4.0) ** 2 * np.sin(2.0 * inside)
+        return (slow + 0.02 * np.sin(np.pi * ahead / 4.0) ** 2 * np.sin(25.0 * ahead))[:, None]
+
+    t = np.arange(0.0, 6.0, 0.005)
+    found = find_offset(t, swings(t - 1.0, early=0.008), RUN_T, swings(RUN_T), ["columns.a"])
+    starts = 1.0 + np.arange(-0.002, 0.0005, 1e-5)
+    apart = [np.sum((swings(t - 1.0, early=0.008) - swings(t - start)) ** 2) for start in starts]
+    assert found.start == pytest.approx(starts[np.argmin(apart)], abs=2e-5)
+    assert found.start - found.lags[np.argmax(found.correlations)] > 1.1 * 0.005
+
+
+@pytest.mark.parametrize(("other", "against"), [(0.2, True), (0.3, False)])
+def test_a_signal_moves_against_the_run_if_its_speeds_correlate_by_less_than_minus_a_half(other, against):
+    """Part of the fourth signal moves otherwise: its correlation is -0.65 and -0.46."""
+    t, signals = recorded(1.0)
+    inside = np.clip(t - 1.0, 0.0, 4.0)
+    elsewhere = other * np.sin(np.pi * inside / 4.0) ** 2 * np.sin(11.0 * inside)
+    columns = np.column_stack([signals, signals[:, 0], elsewhere - signals[:, 1]])
+    given = (t, columns, RUN_T, motion(RUN_T)[:, [0, 1, 0, 1]], [*NAMES, "columns.c", "columns.d"])
+    if against:
+        with pytest.raises(RunnerError, match=r"^columns.d: moves against the run"):
+            find_offset(*given)
+    else:
+        assert find_offset(*given).start == pytest.approx(1.0, abs=0.02)
 
 
 def test_a_motion_that_repeats_itself_has_rivals():
