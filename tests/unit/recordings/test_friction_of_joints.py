@@ -18,10 +18,10 @@ def model():
     return RobotModel(read_urdf(find_urdf("macro.urdf"), {}), "tip")
 
 
-def moved(frequencies=(2.1, 3.3, 4.7)):
+def moved(times=T):
     """Return q, dq and ddq of a swing of three joints, shapes (N, 3)."""
-    w = np.array(frequencies)
-    phase, faster = np.outer(T, w) + w, 1.7 * np.outer(T, w)
+    w = np.array([2.1, 3.3, 4.7])
+    phase, faster = np.outer(times, w) + w, 1.7 * np.outer(times, w)
     q = 0.5 * np.sin(phase) + 0.2 * np.sin(faster)
     dq = w * (0.5 * np.cos(phase) + 0.34 * np.cos(faster))
     ddq = -w * w * (0.5 * np.sin(phase) + 0.578 * np.sin(faster))
@@ -70,6 +70,20 @@ def test_intervals_hold_the_friction_about_as_often_as_they_say(model):
     assert 0.85 < np.mean(held) <= 1.0
 
 
+def test_intervals_of_few_rows_are_wider_for_what_other_masses_take_up(model):
+    """Two seconds leave some 30 rows of one joint, of which its masses, b, c and o take up half."""
+    motion = moved(np.arange(0.0, 2.0, 0.01))
+    clean = torques(model, motion) + friction_of(motion[1])
+    clean[:, 1:] = np.nan
+    held = []
+    for seed in range(80):
+        noise = np.random.default_rng(seed).normal(0.0, 0.3, clean.shape)
+        (joint,) = identify_friction(model, motion[0], clean + noise, 0.01).joints
+        assert len(joint.speed) < 40
+        held += [abs(joint.viscous - 1.2) < joint.viscous_half, abs(joint.coulomb - 1.5) < joint.coulomb_half]
+    assert 0.88 < np.mean(held) <= 1.0
+
+
 def test_other_masses_are_not_mistaken_for_friction(model):
     other = model.with_payload(1.5, np.array([0.1, 0.0, 0.05]))
     motion = moved()
@@ -99,6 +113,47 @@ def test_a_joint_that_creeps_has_no_friction(model):
     motion = tuple(part * [1.0, 1.0, 1e-3] for part in (q, dq, ddq))
     found = identify_friction(model, motion[0], torques(model, motion) + friction_of(motion[1]), H)
     assert found.lacking == ["q3: it moves too little, or in one direction alone"]
+
+
+def integrated(dq, period):
+    """Return q, dq and ddq of joints that start at zero, from their speeds."""
+    way = np.cumsum(0.5 * period * (dq[1:] + dq[:-1]), axis=0)
+    return np.vstack([np.zeros(dq.shape[1]), way]), dq, np.gradient(dq, period, axis=0)
+
+
+def test_slow_motion_tells_nothing_of_friction_that_is_larger_near_standstill(model):
+    """All joints swing for 6 s, then creep at 1.5 % of their largest speed, at which stiction doubles the torque."""
+    dq = moved()[1]
+    fastest = np.abs(dq).max(axis=0)
+    swings = (0.5 - 0.5 * np.tanh((T - 6.0) / 0.2))[:, None]
+    creeps = 0.015 * fastest * np.tanh((8.0 - T) / 0.05)[:, None]
+    motion = integrated(swings * dq + (1.0 - swings) * creeps, H)
+    stiction = 2.0 * COULOMB * np.sign(motion[1]) * np.exp(-((motion[1] / (0.02 * fastest)) ** 2))
+    found = identify_friction(model, motion[0], torques(model, motion) + friction_of(motion[1]) + stiction, H)
+    assert [joint.viscous for joint in found.joints] == pytest.approx(VISCOUS, rel=0.05)
+    assert [joint.coulomb for joint in found.joints] == pytest.approx(COULOMB, rel=0.05)
+
+
+@pytest.mark.parametrize("turns", [True, False])
+def test_coulomb_friction_that_another_mass_explains_is_not_given(model, turns):
+    """q3 turns the last link over each time that q2 turns round: gravity on q2 then has the sign of its speed."""
+    period, stroke, pause = 0.01, 4.0, 1.0
+    t = np.arange(0.0, 30.0, period)
+    number, since = np.divmod(t, stroke + pause)
+    way, share = np.where(number % 2 == 0, 1.0, -1.0), np.clip(since / stroke, 0.0, 1.0)
+    speed = (
+        0.08 * way * np.minimum(1.0, 20.0 * np.minimum(share, 1.0 - share)) * (1.0 + 0.5 * np.sin(2 * np.pi * share))
+    )
+    x = np.clip((since - stroke) / pause, 0.0, 1.0)
+    posture = 0.5 * np.pi * way * (1.0 - 2.0 * x**3 * (10.0 - 15.0 * x + 6.0 * x**2))
+    q2 = integrated(speed[:, None], period)[0]
+    q = np.column_stack([0.0 * t, q2, posture if turns else 0.5 + 0.0 * t])
+    dq = np.gradient(q, period, axis=0)
+    tau = torques(model, (q, dq, np.gradient(dq, period, axis=0))) + friction_of(dq)
+    tau[:, [0, 2]] = np.nan
+    found = identify_friction(model, q, tau, period)
+    assert [joint.joint for joint in found.joints] == ([] if turns else ["q2"])
+    assert ("q2: its motion does not tell friction from other masses" in found.lacking) == turns
 
 
 @pytest.mark.parametrize("every", [1, 8])
