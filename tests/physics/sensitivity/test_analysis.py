@@ -34,6 +34,19 @@ def test_derivatives_agree_with_central_differences_to_1e_6(analysed, overrides)
     assert sure >= 0.3 * len(found.metrics) * len(found.parameters)
 
 
+@pytest.mark.parametrize("late", [1, 3])
+def test_derivatives_of_torques_are_those_of_the_ticks_at_which_they_act(analysed, late):
+    """Nothing clips, so that each torque of the 15 ticks counts; the first one acts until the second does."""
+    found = analysed(
+        *("robot=macro", "plant=rk4", f"plant.computation.delay={late}", "controller.natural_frequency=10"),
+        *("trajectory=quintic", "trajectory.duration=0.15", "duration=0.15"),
+        groups=("gains",),
+    )
+    names = ["peak_torque", "rms_torque", "torque_chatter", "control_effort", "energy"]
+    for name, by in differences(found, names).items():
+        assert found.derivatives[name] == pytest.approx(by.derivatives, rel=1e-6), name
+
+
 def test_an_arm_that_is_heavier_in_all_links_moves_alike_with_larger_torques(analysed):
     """Law and plant are both proportional to the masses where nothing clips, so that the arm takes the same way."""
     for overrides in (MACRO, SEVEN):
