@@ -75,7 +75,7 @@ def added(group: str) -> tuple[EntryPoint, ...]:
     Installed packages are read once for each `sys.path`, as that takes milliseconds and is asked for each group.
     """
     of_command_line = [_point(line) for line in in_use() if line.partition("=")[0] == group]
-    return (*of_command_line, *_installed(tuple(sys.path))[group])
+    return (*of_command_line, *_installed(tuple(sys.path)).get(group, ()))
 
 
 def has_users_parts() -> bool:

@@ -154,7 +154,7 @@ def test_a_module_by_name_is_found_where_python_looks(mine, monkeypatch):
     trajectories = plugins.added("trajectory")
     plugins.use_plugins(["controller=spring"])
     assert next((point.name, point.value) for point in plugins.added("controller")) == ("spring", "spring")
-    assert plugins.added("trajectory") == trajectories
+    assert all(point.value != "spring" for point in plugins.added("trajectory"))
     assert plugins.named() == ["controller=spring"]
 
 
