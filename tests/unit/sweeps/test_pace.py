@@ -1,5 +1,6 @@
 """Estimate of what a sweep costs: the paces of probes are given, and the clock of the note is a test's own."""
 
+import contextlib
 import json
 from types import SimpleNamespace
 
@@ -101,6 +102,20 @@ def test_runs_of_other_powers_of_ten_of_ticks_have_a_pace_of_their_own(estimated
     found = estimated(1e-3, 1e-3, 1e-3, 1e-6, 1e-6, 1e-6, costs=costs)
     assert found.known == "about"
     assert of_ticks(found, estimated(0.0, costs=costs)) == pytest.approx(3 * TICKS * 1e-3 + 300 * TICKS * 1e-6)
+
+
+@pytest.mark.parametrize("together", [True, False])
+def test_the_deadline_is_left_to_the_measurement_which_first_assembles(estimated, monkeypatch, together):
+    entered = []
+
+    @contextlib.contextmanager
+    def deadline(seconds):
+        entered.append(seconds)
+        yield
+
+    monkeypatch.setattr(pace, "deadline", deadline)
+    estimated(1e-6, together=together)
+    assert entered == []
 
 
 def test_runs_made_together_cost_less_unless_each_keeps_its_trace(estimated):
