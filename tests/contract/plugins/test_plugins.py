@@ -151,7 +151,7 @@ def test_every_command_takes_a_plug_in_wherever_it_stands(mine):
 
 def test_a_module_by_name_is_found_where_python_looks(mine, monkeypatch):
     monkeypatch.syspath_prepend(mine / "mine")
-    trajectories = plugins.added("trajectory")
+    plugins.added("trajectory")
     plugins.use_plugins(["controller=spring"])
     assert next((point.name, point.value) for point in plugins.added("controller")) == ("spring", "spring")
     assert all(point.value != "spring" for point in plugins.added("trajectory"))
