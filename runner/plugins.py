@@ -55,6 +55,16 @@ def use_plugins(given: Sequence[str]) -> None:
     os.environ[_VARIABLE] = "\n".join(lines)
 
 
+def use_only(parts: Sequence[str]) -> None:
+    """Use these parts, as `in_use` returns them, and no others: a worker serves one command after another.
+
+    Raises:
+        RunnerError: for a module that cannot be found.
+    """
+    os.environ[_VARIABLE] = ""
+    use_plugins(parts)
+
+
 def in_use() -> tuple[str, ...]:
     """Return the parts named on the command line, as `use_plugins` takes them; files by their whole paths."""
     return tuple(os.environ.get(_VARIABLE, "").splitlines())

@@ -20,7 +20,7 @@ from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.errors import RunnerError, StoreError, user_place
 from runner.job import simulate_job
-from runner.plugins import use_plugins
+from runner.plugins import use_only
 from runner.progress.ticks import told
 from runner.provenance import job_provenance
 from runner.quiet import quiet_environment
@@ -95,7 +95,7 @@ def work(chunk: Chunk, tell: Callable[[int], None] | None = None) -> Report:
     trouble = ""
     with _one_at_a_time, told(tell), ThreadPoolExecutor(1) as disk:
         try:
-            use_plugins(chunk.rules.plugins)
+            use_only(chunk.rules.plugins)
             _check_folder(chunk.rules)
             _make_all(chunk, disk, outcomes)
         except RunnerError as error:
