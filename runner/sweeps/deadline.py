@@ -4,7 +4,7 @@ import contextlib
 import ctypes
 import os
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 STUCK = 10.0  # s after the limit, until a worker process that cannot be interrupted is ended
 
@@ -14,11 +14,17 @@ class TimeLimitError(BaseException):
 
 
 @contextlib.contextmanager
-def deadline(seconds: float | None) -> Iterator[None]:
-    """Raise TimeLimitError in what is done within, once it takes longer than some seconds; None for no limit.
+def deadline(
+    seconds: float | None, wait: Callable[[threading.Event, float], bool] = threading.Event.wait
+) -> Iterator[None]:
+    """Raise TimeLimitError in the body once it takes longer than a time limit.
 
     Python code is interrupted at its next line; a call into compiled code when it returns. A worker process in which
     that does not happen is ended, which its sweep survives.
+
+    Args:
+        seconds: The limit [s]; None for no limit.
+        wait: The clock: waits for an event for some seconds [s]; returns if it happened.
     """
     if seconds is None:
         yield
@@ -26,13 +32,13 @@ def deadline(seconds: float | None) -> Iterator[None]:
     thread, ended, guard = threading.current_thread(), threading.Event(), threading.Lock()
 
     def watch() -> None:
-        if ended.wait(seconds):
+        if wait(ended, seconds):
             return
         with guard:
             if not ended.is_set():
                 error = ctypes.py_object(TimeLimitError)
                 ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident or 0), error)
-        if not ended.wait(STUCK) and thread is not threading.main_thread():
+        if not wait(ended, STUCK) and thread is not threading.main_thread():
             os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
