@@ -22,7 +22,7 @@ from runner.config.options import group_options
 from runner.store import open_sweep
 
 SHORT = ("robot=macro", "duration=0.05")
-VERSION = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text())["project"]["version"]
+VERSION = tomllib.loads((Path(__file__).parents[3] / "pyproject.toml").read_text())["project"]["version"]
 IN_PROCESS = ("hydra.sweeper.workers=0",)
 
 
