@@ -16,10 +16,9 @@ MACRO = RobotModel(read_urdf(find_urdf("macro.urdf"), {}), "tip")
 
 
 @pytest.fixture
-def place(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+def place(code_cache):
     program._program.cache_clear()
-    return cache.folder()
+    return code_cache
 
 
 @pytest.fixture

@@ -70,15 +70,13 @@ def test_modes_with_locked_motors_are_those_of_stiffness_and_mass():
 def test_energy_is_kept_without_damping():
     plant = made(macro(), 1000.0, LOCKED, 1e-3, steps=100)
     plant.reset(HOME, np.array([0.3, -0.2, 0.4]))
-    first, kinetic = plant.energy(), 0.5 * LOCKED * np.sum(plant.dtheta**2)
-    plant.dtheta[:] = 0.0
-    first -= kinetic
-    energies = []
+    plant.dtheta[:] = 0.0  # first: the energy of heavy motors hides that of the arm
+    first, energies = plant.energy(), []
     for _ in range(50):
         plant.advance(np.zeros(3))
         energies.append(plant.energy())
     assert np.abs(plant.q - HOME).max() > 1e-2
-    assert energies == pytest.approx([first] * 50, rel=1e-6)
+    assert energies == pytest.approx([first] * 50, rel=1e-8)
 
 
 def test_the_distance_to_the_rigid_arm_falls_as_one_over_the_stiffness():

@@ -204,14 +204,13 @@ def found(controller, joints=3):
     return compile.find_commands(robot, False, [loop], 0.01, exact, np.full(joints, np.inf))
 
 
-def test_a_watched_law_of_a_user_s_is_compiled_and_watched_and_its_code_is_not_kept(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+def test_a_watched_law_of_a_user_s_is_compiled_and_watched_and_its_code_is_not_kept(code_cache):
     program._program.cache_clear()
     law, _ = users_law(Transposed)
     run = compile.compile_commands(found(WatchedController(law, 3))).begin(
         np.zeros(1), np.zeros((1, 3, 3)), [np.zeros((1, 3))], np.zeros(3)
     )
-    assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
+    assert list(code_cache.iterdir()) == []
     with pytest.raises(SimulationError, match=r"Transposed.evaluate .* gave nan at index \[0\]; it must be finite"):
         run.tick(0, np.full(3, np.nan), np.zeros(3))
 
