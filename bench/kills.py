@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from runner.store import Sweep, open_run, open_sweep
+from runner.store import open_run, open_sweep
 from runner.store.shards import read_outcomes
 
 Process = subprocess.Popen[bytes]
@@ -46,11 +46,10 @@ def torture_command(folder: Path, command: list[str], workers: int, commands: in
     draw = random.Random(seed)  # noqa: S311
     victims = ["worker"] * workers + ["command"] * commands
     draw.shuffle(victims)
-    made: dict[Path, int] = {}
-    doubled: set[str] = set()
+    stored = Stored(outputs)
     process = _start(command, folder)
     for victim in victims:
-        process = _await_runs(process, command, folder, len(made))
+        process = _await_runs(process, command, folder, len(stored.made))
         time.sleep(draw.expovariate(1.0 / pause))
         if victim == "command":
             process.kill()
@@ -59,26 +58,51 @@ def torture_command(folder: Path, command: list[str], workers: int, commands: in
             if pids:
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(draw.choice(pids), signal.SIGKILL)
-        doubled |= _look(outputs, made)
+        stored.look()
     while process.poll() is None or process.returncode < 0:
         if process.poll() is not None:
             process = _start(command, folder)
         time.sleep(0.1)
-    doubled |= _look(outputs, made)
     assert process.returncode == 0, process.returncode
-    (kept,) = [*outputs.glob("sweeps/*"), *outputs.glob("tunings/*")]  # several, if the source was changed meanwhile
-    sweep = open_sweep(kept)
-    lost = len(set(sweep.hashes)) - sum(1 for _ in sweep.runs()) if "-m" in command else _count_missing(sweep)
-    rows = Counter(end.name for shard in (outputs / "shards").glob("*.parquet") for end in read_outcomes(shard))
-    doubled |= {name for name, count in rows.items() if count > 1}
-    hidden = [path for path in outputs.rglob("*") if path.name.startswith(".") or path.name == "scratch"]
-    halves = [path for path in (outputs / "runs").iterdir() if not (path / "metrics.json").exists()]
-    return Tally(workers, commands, len(sweep.hashes), lost, len(doubled), [str(path) for path in (*hidden, *halves)])
+    return stored.tally(workers, commands)
 
 
-def _count_missing(sweep: Sweep) -> int:
-    """Return how many runs of a work or tuning, some of which stand for several cells, are not stored."""
-    return len(set(sweep.hashes) - {path.name for path in (sweep.outputs / "runs").iterdir()})
+class Stored:
+    """Runs and shards of an outputs folder, and when each was stored.
+
+    Attributes:
+        made: Time at which each was stored, in ns.
+    """
+
+    def __init__(self, outputs: Path) -> None:
+        self._outputs, self._doubled = outputs, set[str]()
+        self.made: dict[Path, int] = {}
+
+    def look(self) -> None:
+        """Note when each was stored, and those that were stored again since the last look."""
+        outputs = self._outputs
+        for path in [*(outputs / "runs").glob("*/metrics.json"), *(outputs / "shards").glob("*.parquet")]:
+            stored = path.stat().st_mtime_ns
+            if self.made.setdefault(path, stored) != stored:
+                self._doubled.add(path.parent.name)
+
+    def tally(self, workers: int, commands: int) -> Tally:
+        """Count what became of the one sweep or tuning there, which has ended, after some kills."""
+        self.look()
+        outputs = self._outputs
+        (kept,) = [
+            *outputs.glob("sweeps/*"),
+            *outputs.glob("tunings/*"),
+        ]  # several, if the source was changed meanwhile
+        sweep = open_sweep(kept)
+        rows = Counter(end.name for shard in (outputs / "shards").glob("*.parquet") for end in read_outcomes(shard))
+        folders = list((outputs / "runs").iterdir())
+        doubled = self._doubled | {name for name, count in rows.items() if count > 1}
+        lost = set(sweep.hashes) - {path.name for path in folders} - {*rows}
+        hidden = [path for path in outputs.rglob("*") if path.name.startswith(".") or path.name == "scratch"]
+        halves = [path for path in folders if not (path / "metrics.json").exists()]
+        leftovers = [str(path) for path in (*hidden, *halves)]
+        return Tally(workers, commands, len(sweep.hashes), len(lost), len(doubled), leftovers)
 
 
 def _start(command: list[str], folder: Path) -> Process:
@@ -101,16 +125,6 @@ def _count(outputs: Path) -> int:
     return sum(1 for _ in (outputs / "runs").glob("*/metrics.json")) + sum(
         1 for _ in (outputs / "shards").glob("*.parquet")
     )
-
-
-def _look(outputs: Path, made: dict[Path, int]) -> set[str]:
-    """Note when each run was stored; return those that were stored again."""
-    again = set()
-    for path in [*(outputs / "runs").glob("*/metrics.json"), *(outputs / "shards").glob("*.parquet")]:
-        stored = path.stat().st_mtime_ns
-        if made.setdefault(path, stored) != stored:
-            again.add(path.parent.name)
-    return again
 
 
 def _workers_of(pid: int) -> Iterator[int]:

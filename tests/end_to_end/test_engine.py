@@ -1,79 +1,76 @@
-"""One result, wherever the runs are made: in this process, on one or two, on a Dask cluster, and after kills."""
+"""One result, wherever the runs are made: in this process, on processes of this machine, on a Dask cluster."""
 
-import contextlib
-import os
-import signal
-import socket
-import subprocess
 import sys
-import threading
-import time
-from pathlib import Path
 
 import pytest
+from support.clusters import Cluster
+from support.patience import PATIENCE
+from support.short_runs import DAMPING, FREQUENCY
 
 from runner import store
 from runner.errors import RunnerError
 from runner.plugins import use_plugins
 from runner.store.identity import source_digest
 from runner.sweeps import engine
-from runner.sweeps.grid import plan_sweep
 from runner.sweeps.queue import Queue
-from runner.sweeps.run import Engine, run_sweep
+from runner.sweeps.run import Engine
 
-GRID = ("noise=thesis", "robot=macro,mini", "plant=rk4,default", "seed=range(0,4)", "repetitions=2", "duration=0.3")
+GRID = ("noise=thesis", "robot=macro,mini", "plant=rk4,default", "seed=0,1", "repetitions=2", "duration=0.2,0.1")
+ROWS = 11  # of a trace of 0.1 s; longer runs are made before it
+
+pytestmark = pytest.mark.usefixtures("own_plugins")
 
 
 def results(ended):
     return {run.hash: (run.metrics, run.failure) for run in store.open_sweep(ended.folder).runs()}
 
 
-@pytest.fixture(scope="module")
-def expected(tmp_path_factory):
-    plan = plan_sweep([*GRID, f"outputs={tmp_path_factory.mktemp('expected')}"], ())
-    return results(run_sweep(plan, Engine(0, None), "runner -m ..."))
-
-
 @pytest.fixture
-def scheduler(tmp_path):
-    """A scheduler with two workers, each a process of its own; gives its address and the workers."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    address = f"tcp://127.0.0.1:{port}"
-    quiet = {"cwd": tmp_path, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    command = [sys.executable, "-m", "dask"]
-    processes = [
-        subprocess.Popen([*command, "scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"], **quiet)
-    ]
-    worker = [*command, "worker", address, "--nthreads", "1", "--no-dashboard"]
-    processes += [subprocess.Popen([*worker, *how], **quiet) for how in (["--no-nanny"], ["--no-nanny"])]
-    yield address, processes
-    for process in processes:
-        process.kill()
-        process.wait()
+def expected(sweep, tmp_path):
+    return results(sweep(*GRID, f"outputs={tmp_path}/expected"))
 
 
-@pytest.mark.parametrize("workers", [pytest.param(1, marks=pytest.mark.slow), 2])
+@pytest.mark.costs(5)
+@pytest.mark.parametrize("workers", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_processes_of_this_machine_give_what_this_process_gives(sweep, expected, workers, tmp_path):
     assert results(sweep(*GRID, engine=Engine(workers, None))) == expected
     assert [path for path in tmp_path.rglob("*") if path.name.startswith(".") or path.name == "scratch"] == []
 
 
-def test_a_running_cluster_gives_it_too_though_a_worker_is_killed(sweep, expected, scheduler, tmp_path):
-    address, processes = scheduler
+@pytest.mark.costs(2)
+def test_a_running_cluster_gives_what_this_process_gives(sweep, expected, cluster):
+    assert results(sweep(*GRID, engine=Engine(0, cluster.address))) == expected
+
+
+@pytest.mark.costs(3)
+def test_the_runs_of_a_worker_that_is_killed_are_made_by_others(sweep, cluster, gate, threads, tmp_path):
+    """Each of three workers is at a run when one of them is killed."""
+    use_plugins([gate.metric(ROWS)])
+    doomed = cluster.add_worker()
+    overrides = ("duration=0.1", "seed=range(0,6)")
 
     def kill():
-        while not list((tmp_path / "outputs" / "runs").glob("*/metrics.json")):
-            time.sleep(0.01)
-        processes[1].kill()
+        at_work = {gate.wait() for _ in cluster.workers}
+        cluster.end(doomed)
+        gate.open()
+        return at_work
 
-    killer = threading.Thread(target=kill)
-    killer.start()
-    ended = sweep(*GRID, engine=Engine(0, address))
-    killer.join()
-    assert results(ended) == expected
-    assert processes[2].poll() is None
+    killed = threads.submit(kill)
+    ended = sweep(*overrides, engine=Engine(0, cluster.address))
+    assert doomed.pid in killed.result(PATIENCE)
+    assert results(ended) == results(sweep(*overrides, f"outputs={tmp_path}/expected"))
+    assert [worker.poll() for worker in cluster.workers] == [None, None]
+
+
+def test_trials_of_a_tuning_do_not_depend_on_where_they_are_made(tuned, cluster, tmp_path):
+    whole = tuned(trials=13)
+    address = f"hydra.sweeper.address={cluster.address}"
+    other = tuned(FREQUENCY, DAMPING, address, f"outputs={tmp_path}/other", trials=13)
+    assert other.trials == whole.trials
+    assert other.folder.name == whole.folder.name
+    for trial in whole.trials:
+        one, two = (store.open_run(tmp_path / place / "runs" / trial.run) for place in ("outputs", "other"))
+        assert one.metrics == two.metrics
 
 
 PULL = """\
@@ -99,109 +96,78 @@ def build(config):
 """
 
 
-SLOW_PULL = "from time import sleep\n\n" + PULL.replace("        return", "        sleep(0.02)\n        return")
-
-
 @pytest.fixture
-def pulls(tmp_path, monkeypatch):
+def pulls(tmp_path):
     """Make an environment of the user's from its name and source; returns its config folder."""
 
     def make(name, source):
         (tmp_path / "mine/environment").mkdir(parents=True)
         (tmp_path / f"mine/environment/{name}.yaml").write_text(f"kind: {name}\n")
         (tmp_path / f"mine/{name}.py").write_text(source)
-        monkeypatch.setenv("RUNNER_PLUGINS", "")
-        monkeypatch.setattr(sys, "path", [*sys.path])
         use_plugins([f"environment={tmp_path}/mine/{name}.py"])
         return tmp_path / "mine"
 
     return make
 
 
-def test_workers_of_a_cluster_take_the_parts_that_the_command_names(sweep, scheduler, pulls):
-    grid = ("environment=pull", "duration=0.1", "seed=0,1")
-    ended = sweep(*grid, engine=Engine(0, scheduler[0]), config_dirs=[pulls("pull", PULL)])
-    assert [run.status for run in store.open_sweep(ended.folder).runs()] == ["ok", "ok"]
+SPAN = 'UNITS = {"span": "s"}\n\n\ndef evaluate(trace, context):\n    return {"span": float(trace.t[-1])}\n'
 
 
-def test_a_worker_tells_how_far_a_long_run_is(sweep, pulls, monkeypatch):
+def test_workers_of_a_cluster_take_the_plug_ins_of_the_command_and_no_others(
+    sweep, cluster, pulls, tmp_path, monkeypatch
+):
+    (tmp_path / "span.py").write_text(SPAN)
+    use_plugins([f"metric={tmp_path}/span.py"])
+    remote, folder = Engine(0, cluster.address), pulls("pull", PULL)
+    ended = sweep("environment=pull", "duration=0.1", "seed=0,1", engine=remote, config_dirs=[folder])
+    assert [run.metrics["span"]["median"] for run in store.open_sweep(ended.folder).runs()] == [0.1, 0.1]
+    monkeypatch.setenv("RUNNER_PLUGINS", "")  # as in the next command
+    ended = sweep("duration=0.1", "seed=0,1", engine=remote)
+    assert ["span" in run.metrics for run in store.open_sweep(ended.folder).runs()] == [False, False]
+
+
+def test_a_worker_tells_how_far_a_long_run_is(sweep, cluster, pulls, gate, monkeypatch):
+    """The run waits at its 50th tick until the queue knows of ticks."""
     told = []
-    monkeypatch.setattr(Queue, "tell", lambda _, chunk, ticks: told.append((chunk, ticks)))
-    overrides = ("environment=slow_pull", "duration=1.5", "controller.period=0.01")
-    sweep(*overrides, engine=Engine(1, None), config_dirs=[pulls("slow_pull", SLOW_PULL)])
+
+    def note(_, chunk, ticks):
+        told.append((chunk, ticks))
+        if ticks:
+            gate.open()
+
+    monkeypatch.setattr(Queue, "tell", note)
+    monkeypatch.setattr("runner.sweeps.run.estimate", lambda *_: 1.0)  # which would wait, too
+    waits = "        if time > 0.495:\n            stop()\n        return np"
+    source = gate.source + PULL.replace("        return np", waits)
+    overrides = ("environment=long_pull", "duration=1.5", "controller.period=0.01")
+    sweep(*overrides, engine=Engine(0, cluster.address), config_dirs=[pulls("long_pull", source)])
     chunks, ticks = zip(*told, strict=True)
     assert len(set(chunks)) == 1
     assert list(ticks) == sorted(ticks)
-    assert 0 < ticks[-1] <= 150
+    assert 40 <= next(filter(None, ticks)) <= 60
+    assert ticks[-1] <= 150
 
 
-def test_a_scheduler_that_is_lost_is_said(sweep, scheduler, tmp_path):
-    address, processes = scheduler
+@pytest.mark.costs(5)
+def test_a_scheduler_that_is_lost_is_said(sweep, gate, threads, tmp_path):
+    """It is killed after a stored run, while the worker is at another one."""
+    use_plugins([gate.metric(ROWS)])
+    (tmp_path / "doomed").mkdir()
+    doomed = Cluster(tmp_path / "doomed", workers=1)
 
     def kill():
-        while not list((tmp_path / "outputs" / "runs").glob("*/metrics.json")):
-            time.sleep(0.01)
-        processes[0].kill()
+        gate.wait()
+        doomed.scheduler.kill()
 
-    threading.Thread(target=kill).start()
-    with pytest.raises(RunnerError, match=r"^the Dask scheduler is lost; finished runs are stored"):
-        sweep(*GRID, "seed=range(0,400)", engine=Engine(0, address))
-
-
-def alive(group):
-    """Count processes of a group that run still; state, parent and group follow the command in /proc/PID/stat."""
-    count = 0
-    for path in Path("/proc").glob("[0-9]*/stat"):
-        with contextlib.suppress(OSError):  # it ended meanwhile
-            state, _, its_group, *_ = path.read_text().rpartition(")")[2].split()
-            count += int(its_group) == group and state != "Z"
-    return count
-
-
-@pytest.mark.usefixtures("interruptible")
-def test_an_interrupt_waits_until_the_processes_have_started():
-    """Else a part of a cluster would be left, and its processes, still without our code, would tell of it."""
-    before, began = signal.getsignal(signal.SIGINT), []
-
-    def start():
-        with engine._undisturbed():
-            signal.raise_signal(signal.SIGINT)
-            began.append(subprocess.run([sys.executable, "-c", "import signal; signal.raise_signal(2)"], check=False))
-
-    with pytest.raises(KeyboardInterrupt):
-        start()
-    assert [child.returncode for child in began] == [0]
-    assert signal.getsignal(signal.SIGINT) is before
-    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
-
-
-@pytest.mark.parametrize(
-    ("number", "code", "word", "workers"),
-    [
-        ("SIGINT", 130, "interrupted", 2),
-        ("SIGTERM", 143, "terminated", 1),
-        pytest.param("SIGTERM", 143, "terminated", 2, marks=pytest.mark.slow),
-    ],
-)
-def test_a_signal_ends_all_processes_and_says_how_to_go_on(tmp_path, number, code, word, workers):
-    grid = ["robot=macro", "plant=rk4", "seed=range(0,2000)", f"hydra.sweeper.workers={workers}"]
-    command = [sys.executable, "-m", "runner", "-m", *grid]
-    process = subprocess.Popen(command, cwd=tmp_path, stdout=-1, stderr=-1, text=True, start_new_session=True)
-    while not list(tmp_path.glob("outputs/runs/*/metrics.json")):
-        assert process.poll() is None
-        time.sleep(0.02)
-    os.killpg(process.pid, signal.Signals[number])  # as Ctrl-C does: to the workers, too
+    killed = threads.submit(kill)
     try:
-        out, err = process.communicate(timeout=60)
+        with pytest.raises(RunnerError, match=r"^the Dask scheduler is lost; finished runs are stored"):
+            sweep("duration=0.2,0.1", engine=Engine(0, doomed.address))
     finally:
-        process.kill()
-    assert (process.returncode, out) == (code, "")
-    assert err.splitlines()[2:] == [f"runner: {word}; finished runs are stored; the same command continues"]
-    deadline = time.monotonic() + 20
-    while alive(process.pid):
-        assert time.monotonic() < deadline
-        time.sleep(0.1)
-    assert not list(tmp_path.glob("outputs/sweeps/*/scratch"))
+        doomed.close()
+    killed.result(PATIENCE)
+    (stored,) = (tmp_path / "outputs/runs").glob("*/metrics.json")
+    assert store.open_run(stored.parent).config["duration"] == 0.2
 
 
 DEADLY = """\
@@ -235,13 +201,14 @@ def deadly_metric(tmp_path, monkeypatch):
     sys.modules.pop("deadly", None)
 
 
+@pytest.mark.costs(5)
 @pytest.mark.usefixtures("deadly_metric")
 @pytest.mark.parametrize("deaths", [0, *(pytest.param(many, marks=pytest.mark.slow) for many in (1, 3))])
 def test_a_run_that_brings_its_workers_down_is_cut_short_and_the_others_are_made(sweep, monkeypatch, deaths):
     monkeypatch.setattr(engine, "_DEATHS", deaths)
-    ended = sweep("duration=0.1,0.2,0.3,0.4,0.5", engine=Engine(1, None))
+    ended = sweep("duration=0.2,0.3,0.4", engine=Engine(1, None))
     ((overrides, why, log),) = ended.failures
     assert "duration=0.3" in overrides
     assert why == f"cut short: its worker process died {deaths + 1} times"
     assert why in log.read_text()
-    assert [run.status for run in store.open_sweep(ended.folder).runs()] == ["ok", "ok", "failed", "ok", "ok"]
+    assert [run.status for run in store.open_sweep(ended.folder).runs()] == ["ok", "failed", "ok"]

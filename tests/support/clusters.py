@@ -5,6 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from distributed import Client
 from support.patience import PATIENCE, wait_until
 
 Process = subprocess.Popen[bytes]
@@ -27,21 +28,35 @@ class Cluster:
         self._where = ("--scheduler-file", str(file), "--no-dashboard")
         self.workers: list[Process] = []
         self.scheduler = self._start("scheduler", "--host", "127.0.0.1", "--port", "0")
-        for _ in range(workers):  # they wait for the file
-            self.add_worker()
+        self._start_workers(workers)  # they wait for the file
         wait_until(lambda: file.exists() and file.read_text().endswith("}"))
         self.address = str(json.loads(file.read_text())["address"])
+        self._wait_for_workers()
 
     def add_worker(self) -> Process:
         """Start one more worker; return its process."""
-        self.workers.append(self._start("worker", "--nthreads", "1", "--no-nanny"))
+        self._start_workers(1)
+        self._wait_for_workers()
         return self.workers[-1]
+
+    def end(self, worker: Process) -> None:
+        """Kill a worker."""
+        self.workers.remove(worker)
+        worker.kill()
+        worker.wait(PATIENCE)
 
     def close(self) -> None:
         """End all processes."""
         for process in (*self.workers, self.scheduler):
             process.kill()
             process.wait(PATIENCE)
+
+    def _start_workers(self, count: int) -> None:
+        self.workers += [self._start("worker", "--nthreads", "1", "--no-nanny") for _ in range(count)]
+
+    def _wait_for_workers(self) -> None:
+        with Client(self.address, set_as_default=False) as client:
+            client.wait_for_workers(len(self.workers), timeout=PATIENCE)
 
     def _start(self, *words: str) -> Process:
         command = [sys.executable, "-m", "dask", *words, *self._where]

@@ -1,6 +1,7 @@
 """Handshakes with processes: they report at a named point, and wait there until the test lets them on."""
 
 import fcntl
+import itertools
 import os
 import select
 import sys
@@ -9,6 +10,7 @@ from textwrap import dedent
 
 from support.patience import PATIENCE
 
+_NUMBERS = itertools.count()
 _STOP = """\
 import fcntl
 import os
@@ -71,14 +73,14 @@ class Gate:
         here, gate = folder / "here", folder / "gate"
         os.mkfifo(here)
         self._folder = folder
-        self._reports = os.fdopen(os.open(here, os.O_RDWR), "rb", buffering=0)  # it has a writer, and never ends
+        self._pipe = os.fdopen(os.open(here, os.O_RDWR), "r+b", buffering=0)  # it has a writer, and never ends
         self._lock = gate.open("w")
         fcntl.flock(self._lock, fcntl.LOCK_EX)
         self.source = _STOP.format(here=str(here), gate=str(gate))
 
     def metric(self, rows: int) -> str:
         """Write a metric that stops at traces of so many rows; return the plug-in."""
-        path = self._folder / "at_the_gate.py"
+        path = self._folder / f"gate_{os.getpid()}_{next(_NUMBERS)}.py"  # Python knows a module by its name alone
         path.write_text(self.source + _METRIC.format(rows=rows))
         return f"metric={path}"
 
@@ -98,15 +100,19 @@ class Gate:
         Raises:
             TimeoutError: if none does within the patience.
         """
-        if not select.select([self._reports], [], [], PATIENCE)[0]:
+        if not select.select([self._pipe], [], [], PATIENCE)[0]:
             raise TimeoutError("no process got to the gate")
-        return int(self._reports.readline())
+        return int(self._pipe.readline())
 
     def open(self) -> None:
         """Let all processes on, those that come later included."""
         fcntl.flock(self._lock, fcntl.LOCK_UN)
 
+    def give_up(self) -> None:
+        """Let whoever waits for a report have process 0."""
+        self._pipe.write(b"0\n")
+
     def close(self) -> None:
-        """Let all processes on, and close the pipe."""
+        """Close the pipe and the lock."""
+        self._pipe.close()
         self._lock.close()
-        self._reports.close()

@@ -1,19 +1,14 @@
 """A whole tuning: what is stored, what is made again, and what its trials depend on."""
 
 import json
-import os
-import signal
-import subprocess
-import sys
-import time
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.short_runs import DAMPING, FREQUENCY, SHORT
+from support.short_runs import DAMPING, FREQUENCY
 
 from runner import store
 from runner.errors import ConfigError, RunnerError, StoreError
+from runner.sweeps import lock
 from runner.sweeps.lock import at_work
 from runner.tuning.study import journal_path, open_tuning
 
@@ -70,16 +65,6 @@ def test_trials_do_not_depend_on_where_a_tuning_was_interrupted(tuned):
         assert tuned(trials=14).trials == whole.trials
     journal.unlink()
     assert tuned(trials=14).trials == whole.trials
-
-
-def test_trials_do_not_depend_on_the_number_of_processes(tuned, tmp_path):
-    whole = tuned(trials=13)
-    other = tuned(FREQUENCY, DAMPING, "hydra.sweeper.workers=2", f"outputs={tmp_path}/other", trials=13)
-    assert other.trials == whole.trials
-    assert other.folder.name == whole.folder.name
-    for trial in whole.trials:
-        one, two = (store.open_run(tmp_path / place / "runs" / trial.run) for place in ("outputs", "other"))
-        assert one.metrics == two.metrics
 
 
 def test_the_seed_decides_what_is_tried(tuned):
@@ -139,9 +124,10 @@ def test_the_first_failure_may_end_it(tuned):
     assert [bool(trial.failure) for trial in tuning.trials] == [False] * (len(tuning.trials) - 1) + [True]
 
 
+@pytest.mark.usefixtures("a_limit_of_ticks")
 def test_a_run_that_takes_too_long_failed(tuned):
-    tuning = tuned("duration=interval(1e3,1e4)", "sweep.time_limit=0.2", trials=1)
-    assert tuning.trials[0].failure == "cut short: no result within sweep.time_limit, 0.2 s"
+    tuning = tuned("duration=interval(1e3,1e4)", "sweep.time_limit=30", trials=1)
+    assert tuning.trials[0].failure == "cut short: no result within sweep.time_limit, 30 s"
 
 
 @pytest.mark.parametrize(
@@ -192,7 +178,8 @@ def test_a_metric_that_these_runs_do_not_have_is_told(tuned):
         tuned(objectives=(("macro_settling_time", "minimize"),))
 
 
-def test_two_at_once_in_one_folder(tuned, tmp_path):
+def test_two_at_once_in_one_folder(tuned, tmp_path, monkeypatch):
+    monkeypatch.setattr(lock, "_PATIENCE", 0.1)
     (tmp_path / "outputs").mkdir()
     with at_work(tmp_path / "outputs"), pytest.raises(RunnerError, match="another sweep is at work"):
         tuned()
@@ -203,38 +190,3 @@ def test_a_damaged_tuning_is_told(tuned):
     (folder / "tuning.json").write_text(json.dumps({"schema": 1}))
     with pytest.raises(StoreError, match=r"tuning\.json: it is no tuning's: KeyError: 'overrides'"):
         open_tuning(folder)
-
-
-def test_a_tuning_killed_at_any_moment_ends_as_if_it_had_not_been(tuned, tmp_path):
-    whole = tuned(trials=30)
-    overrides = [*SHORT, f"outputs={tmp_path}/killed", FREQUENCY, DAMPING]
-    options = ("--minimize=peak_torque", "--trials=30", "--at-once=3")
-    command = [sys.executable, "-m", "runner", "tune", *overrides, *options]
-    rng = np.random.default_rng(0)
-    journals = tmp_path / "killed" / "tunings"
-    kills, nowhere = 0, subprocess.DEVNULL
-    while kills < 3:
-        with subprocess.Popen(
-            [*command, f"hydra.sweeper.workers={kills % 2}"],
-            start_new_session=True,
-            stderr=nowhere,
-            stdout=nowhere,
-        ) as runner:
-            before = _size(journals)
-            deadline = time.monotonic() + 60
-            while _size(journals) == before and runner.poll() is None and time.monotonic() < deadline:
-                time.sleep(0.02)
-            time.sleep(rng.uniform(0.0, 0.3))
-            if runner.poll() is not None:
-                break
-            os.killpg(runner.pid, signal.SIGKILL)
-            kills += 1
-    assert kills >= 2
-    other = tuned(FREQUENCY, DAMPING, f"outputs={tmp_path}/killed", trials=30)
-    assert other.trials == whole.trials
-    assert not [*(tmp_path / "killed").rglob("*.tmp"), *(tmp_path / "killed").rglob("scratch")]
-    assert replace(other, folder=whole.folder) == whole
-
-
-def _size(journals):
-    return sum(path.stat().st_size for path in journals.glob("*/journal.log"))

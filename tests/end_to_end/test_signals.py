@@ -1,0 +1,111 @@
+"""Ctrl-C and SIGTERM while runs are made: all processes end, and what is stored is whole."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from support.patience import PATIENCE, wait_until
+
+import runner
+from runner import store
+from runner.progress import ticks
+from runner.sweeps import engine
+
+WHOLE = ["config.yaml", "metrics.json", "robot.urdf", "trace.parquet"]
+ROWS = 11  # of a trace of 0.1 s; longer runs are made before it
+
+pytestmark = pytest.mark.usefixtures("interruptible")
+
+
+def stored(outputs):
+    """Return the durations of stored runs, each of which must be whole."""
+    folders = list((outputs / "runs").iterdir())
+    assert [sorted(path.name for path in folder.iterdir()) for folder in folders] == [WHOLE] * len(folders)
+    return sorted(store.open_run(folder).config["duration"] for folder in folders)
+
+
+def test_an_interrupt_waits_until_the_processes_have_started():
+    """Else a part of a cluster would be left, and its processes, still without our code, would tell of it."""
+    before, began = signal.getsignal(signal.SIGINT), []
+
+    def start():
+        with engine._undisturbed():
+            signal.raise_signal(signal.SIGINT)
+            began.append(subprocess.run([sys.executable, "-c", "import signal; signal.raise_signal(2)"], check=False))
+
+    with pytest.raises(KeyboardInterrupt):
+        start()
+    assert [child.returncode for child in began] == [0]
+    assert signal.getsignal(signal.SIGINT) is before
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+
+@pytest.mark.costs(5)
+@pytest.mark.parametrize(
+    ("number", "code", "word", "workers"),
+    [
+        ("SIGINT", 130, "interrupted", 2),
+        ("SIGTERM", 143, "terminated", 1),
+        pytest.param("SIGTERM", 143, "terminated", 2, marks=pytest.mark.slow),
+    ],
+)
+def test_a_signal_ends_all_processes_and_says_how_to_go_on(tmp_path, gate, number, code, word, workers):
+    """A worker is at a run when the signal comes, and has stored another one."""
+    grid = ("robot=macro", "plant=rk4", "duration=0.2,0.1", "seed=0,1", f"hydra.sweeper.workers={workers}")
+    command = [sys.executable, "-m", "runner", "--plugin", gate.metric(ROWS), "-m", *grid]
+    process = subprocess.Popen(command, cwd=tmp_path, stdout=-1, stderr=-1, text=True, start_new_session=True)
+    try:
+        output = Path(f"/proc/{gate.wait()}/fd/2").stat()
+        os.killpg(process.pid, signal.Signals[number])  # as Ctrl-C does: to the workers, too
+        pipe = os.fstat(process.stderr.fileno())
+        out, err = process.communicate(timeout=PATIENCE)  # to the end of a pipe that its workers hold, too
+    finally:
+        gate.open()
+        process.kill()
+    assert os.path.samestat(output, pipe)
+    assert (process.returncode, out) == (code, "")
+    assert err.splitlines()[2:] == [f"runner: {word}; finished runs are stored; the same command continues"]
+    assert 1 <= len(stored(tmp_path / "outputs")) <= 2
+    assert not list(tmp_path.glob("outputs/sweeps/*/scratch"))
+
+
+@pytest.mark.usefixtures("own_plugins")
+def test_a_sweep_of_python_s_that_is_interrupted_leaves_whole_runs_and_goes_on(tmp_path, gate, threads, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = {"robot": "macro", "plant": "rk4", "duration": [0.2, 0.1], "seed": [0, 1], "workers": 0}
+
+    def interrupt():
+        gate.wait()
+        os.kill(os.getpid(), signal.SIGINT)
+
+    interrupted = threads.submit(interrupt)
+    with pytest.raises(KeyboardInterrupt, match=r"finished runs are stored; the same call continues$"):
+        runner.sweep(**words, plugins=[gate.metric(ROWS)])
+    interrupted.result(PATIENCE)
+    assert stored(tmp_path / "outputs") == [0.2, 0.2]
+    (swept,) = (tmp_path / "outputs" / "sweeps").iterdir()
+    assert "2 not made yet" in repr(runner.open_sweep(swept))
+    gate.open()
+    assert "all made" in repr(runner.sweep(**words))
+
+
+@pytest.mark.parametrize(
+    "run",
+    [("robot=mini", "repetitions=10000"), ("robot=macro", "plant=rk4", "repetitions=1000000")],
+    ids=["tick by tick", "in blocks on threads"],
+)
+def test_a_run_that_is_interrupted_leaves_nothing(cli, tmp_path, threads, run):
+    def interrupt():
+        count = ticks.counter()
+        wait_until(lambda: count() > 0)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    interrupted = threads.submit(interrupt)
+    ending = cli(*run)
+    interrupted.result(PATIENCE)
+    assert (ending.code, ending.out) == (130, "")
+    assert ending.err.startswith("runner: interrupted")
+    assert list(tmp_path.rglob("metrics.json")) == []
