@@ -1,5 +1,6 @@
 """One result, wherever the runs are made: in this process, on processes of this machine, on a Dask cluster."""
 
+import subprocess
 import sys
 
 import pytest
@@ -25,16 +26,19 @@ def results(ended):
     return {run.hash: (run.metrics, run.failure) for run in store.open_sweep(ended.folder).runs()}
 
 
+def assert_nothing_is_left(folder):
+    assert [path for path in folder.rglob("*") if path.name.startswith(".") or path.name == "scratch"] == []
+
+
 @pytest.fixture
 def expected(sweep, tmp_path):
     return results(sweep(*GRID, f"outputs={tmp_path}/expected"))
 
 
-@pytest.mark.costs(5)
-@pytest.mark.parametrize("workers", [1, pytest.param(2, marks=pytest.mark.slow)])
-def test_processes_of_this_machine_give_what_this_process_gives(sweep, expected, workers, tmp_path):
-    assert results(sweep(*GRID, engine=Engine(workers, None))) == expected
-    assert [path for path in tmp_path.rglob("*") if path.name.startswith(".") or path.name == "scratch"] == []
+@pytest.mark.slow  # the processes of the last test of this file do the same
+def test_processes_of_this_machine_give_what_this_process_gives(sweep, expected, tmp_path):
+    assert results(sweep(*GRID, engine=Engine(2, None))) == expected
+    assert_nothing_is_left(tmp_path)
 
 
 @pytest.mark.costs(2)
@@ -170,6 +174,23 @@ def test_a_scheduler_that_is_lost_is_said(sweep, gate, threads, tmp_path):
     assert store.open_run(stored.parent).config["duration"] == 0.2
 
 
+# It does not guard itself by `if __name__ == "__main__"`, and a process that began it again would be seen.
+PLAIN = """\
+print("begins")
+import runner
+sweep = runner.sweep("robot=macro", "duration=0.05", seed=range(2), workers=1)
+print(len(list(sweep.runs())), __file__, __spec__)
+"""
+
+
+@pytest.mark.costs(5)
+def test_a_plain_script_makes_a_sweep_on_processes(tmp_path):
+    (tmp_path / "plain.py").write_text(PLAIN)
+    ending = subprocess.run([sys.executable, "plain.py"], cwd=tmp_path, capture_output=True, text=True)
+    assert ending.returncode == 0, ending.stderr
+    assert ending.stdout.splitlines() == ["begins", f"2 {tmp_path / 'plain.py'} None"]
+
+
 DEADLY = """\
 import multiprocessing
 import os
@@ -204,11 +225,18 @@ def deadly_metric(tmp_path, monkeypatch):
 @pytest.mark.costs(5)
 @pytest.mark.usefixtures("deadly_metric")
 @pytest.mark.parametrize("deaths", [0, *(pytest.param(many, marks=pytest.mark.slow) for many in (1, 3))])
-def test_a_run_that_brings_its_workers_down_is_cut_short_and_the_others_are_made(sweep, monkeypatch, deaths):
+def test_a_run_that_brings_its_workers_down_is_cut_short_and_the_others_are_as_made_in_this_process(
+    sweep, monkeypatch, tmp_path, deaths
+):
     monkeypatch.setattr(engine, "_DEATHS", deaths)
-    ended = sweep("duration=0.2,0.3,0.4", engine=Engine(1, None))
-    ((overrides, why, log),) = ended.failures
-    assert "duration=0.3" in overrides
+    overrides = ("noise=thesis", "repetitions=2", "duration=0.2,0.3,0.4")
+    ended = sweep(*overrides, engine=Engine(1, None))
+    ((cell, why, log),) = ended.failures
+    assert "duration=0.3" in cell
     assert why == f"cut short: its worker process died {deaths + 1} times"
     assert why in log.read_text()
-    assert [run.status for run in store.open_sweep(ended.folder).runs()] == ["ok", "failed", "ok"]
+    assert_nothing_is_left(tmp_path)
+    expected = results(sweep(*overrides, f"outputs={tmp_path}/expected"))
+    found = results(ended)
+    assert list(found) == list(expected)
+    assert [name for name in found if found[name] != expected[name]] == [log.stem]

@@ -28,6 +28,7 @@ def test_all_that_is_called_has_an_example():
     assert all(">>> " in text for text in [*shown, runner.Run.__doc__, runner.Sweep.__doc__])
 
 
+@pytest.mark.usefixtures("no_processes")
 def test_the_notebook(tmp_path, monkeypatch):
     """Cell by cell, in one namespace; what a cell ends with is shown, as a notebook does."""
     monkeypatch.chdir(tmp_path)

@@ -1,10 +1,6 @@
 """A sweep from Python: the engine of the command line, and its results as tables."""
 
 import shutil
-import signal
-import subprocess
-import sys
-import time
 
 import numpy as np
 import pytest
@@ -159,42 +155,3 @@ def test_a_sweep_that_is_not_all_made_says_so(sweep, tmp_path):
         *SHORT, repetitions=6, outputs=outputs, workers=0, robot="macro,mini", controller=CONTROLLERS, seed="0,1"
     )
     assert len(part.table("energy")) == 8
-
-
-# Neither script guards itself by `if __name__ == "__main__"`, and a process that began it again would be seen.
-PLAIN = """\
-print("begins")
-import runner
-sweep = runner.sweep("robot=macro", "duration=0.05", seed=range(4))
-print(len(list(sweep.runs())), __file__, __spec__)
-"""
-LONG = """\
-import runner
-runner.sweep("robot=macro", "trajectory=quintic", "plant=rk4", "plant.step=1e-5", "duration=2", seed=range(60))
-"""
-
-
-def test_a_plain_script_makes_a_sweep_on_processes(tmp_path):
-    (tmp_path / "plain.py").write_text(PLAIN)
-    ending = subprocess.run([sys.executable, "plain.py"], cwd=tmp_path, capture_output=True, text=True)
-    assert ending.returncode == 0, ending.stderr
-    assert ending.stdout.splitlines() == ["begins", f"4 {tmp_path / 'plain.py'} None"]
-
-
-def test_what_is_interrupted_leaves_whole_runs_and_goes_on(tmp_path, interruptible):
-    (tmp_path / "long.py").write_text(LONG)
-    runs = tmp_path / "outputs" / "runs"
-    with subprocess.Popen([sys.executable, "long.py"], cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
-        while process.poll() is None and len(list(runs.glob("*/metrics.json"))) < 2:
-            time.sleep(0.05)
-        process.send_signal(signal.SIGINT)
-        _, told = process.communicate(timeout=60)
-    assert process.returncode != 0
-    assert told.splitlines()[-1].endswith("finished runs are stored; the same call continues")
-    whole = ["config.yaml", "metrics.json", "robot.urdf", "trace.parquet"]
-    folders = list(runs.iterdir())
-    assert 2 <= len(folders) < 60
-    for folder in folders:
-        assert sorted(path.name for path in folder.iterdir()) == whole
-    (swept,) = (tmp_path / "outputs" / "sweeps").iterdir()
-    assert f"{60 - len(folders)} not made yet" in repr(runner.open_sweep(swept))

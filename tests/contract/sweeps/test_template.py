@@ -34,7 +34,7 @@ ENTANGLED = [
 def test_a_cell_is_what_hydra_composes(arguments):
     plan = plan_sweep(arguments)
     cells = range(len(plan))
-    for cell in random.Random(1).sample(cells, min(len(cells), 8)):
+    for cell in {0, random.Random(1).choice(cells), len(plan) - 1}:  # both ends change every key with two values
         ours, hydras = plan.composed(cell), compose(plan.overrides(cell))
         assert repr(ours.resolved) == repr(hydras.resolved)  # 1, 1.0 and True are three values
         assert ours.choices == hydras.choices

@@ -60,7 +60,7 @@ def test_trials_do_not_depend_on_where_a_tuning_was_interrupted(tuned):
     whole = tuned(trials=14)
     journal = journal_path(whole.folder)
     lines = journal.read_bytes().splitlines(keepends=True)
-    for kept in (0, 1, 2, 9, 13):
+    for kept in (0, 2, 9):
         journal.write_bytes(b"".join(lines[:kept]))
         assert tuned(trials=14).trials == whole.trials
     journal.unlink()
