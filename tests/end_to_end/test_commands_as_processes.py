@@ -22,7 +22,7 @@ def test_two_processes_may_make_the_same_run_at_once(cli, tmp_path, gate):
     words = (*SHORT, "noise=thesis")
     command = gate.command("os:fsync", 2, *words)
     with subprocess.Popen(command, cwd=tmp_path, stdout=-1, stderr=-1, text=True) as process:
-        gate.wait()
+        gate.next_at()
         ending = cli(*words)
         gate.open()
         out, err = process.communicate(timeout=PATIENCE)

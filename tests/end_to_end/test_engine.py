@@ -54,7 +54,7 @@ def test_the_runs_of_a_worker_that_is_killed_are_made_by_others(sweep, cluster, 
     overrides = ("duration=0.1", "seed=range(0,6)")
 
     def kill():
-        at_work = {gate.wait() for _ in cluster.workers}
+        at_work = {gate.next_at() for _ in cluster.workers}
         cluster.end(doomed)
         gate.open()
         return at_work
@@ -160,7 +160,7 @@ def test_a_scheduler_that_is_lost_is_said(sweep, gate, threads, tmp_path):
     doomed = Cluster(tmp_path / "doomed", workers=1)
 
     def kill():
-        gate.wait()
+        gate.next_at()
         doomed.scheduler.kill()
 
     killed = threads.submit(kill)

@@ -24,7 +24,7 @@ def killed(tmp_path, gate):
         quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
         with subprocess.Popen(command, cwd=tmp_path, start_new_session=True, **quiet) as process:
             try:
-                gate.wait()
+                gate.next_at()
             finally:
                 os.killpg(process.pid, signal.SIGKILL)
                 process.wait(PATIENCE)
@@ -60,10 +60,10 @@ def test_a_worker_that_is_killed_and_its_command_after_it_lose_double_and_leave_
     stored = Stored(tmp_path / "outputs")
     with subprocess.Popen(command, cwd=tmp_path, start_new_session=True, **quiet) as process:
         try:
-            worker = gate.wait()
+            worker = gate.next_at()
             stored.look()
             os.kill(worker, signal.SIGKILL)
-            assert gate.wait() != worker
+            assert gate.next_at() != worker
         finally:
             os.killpg(process.pid, signal.SIGKILL)
             process.wait(PATIENCE)

@@ -58,7 +58,7 @@ def test_a_signal_ends_all_processes_and_says_how_to_go_on(tmp_path, gate, numbe
     command = [sys.executable, "-m", "runner", "--plugin", gate.metric(ROWS), "-m", *grid]
     process = subprocess.Popen(command, cwd=tmp_path, stdout=-1, stderr=-1, text=True, start_new_session=True)
     try:
-        output = Path(f"/proc/{gate.wait()}/fd/2").stat()
+        output = Path(f"/proc/{gate.next_at()}/fd/2").stat()
         os.killpg(process.pid, signal.Signals[number])  # as Ctrl-C does: to the workers, too
         pipe = os.fstat(process.stderr.fileno())
         out, err = process.communicate(timeout=PATIENCE)  # to the end of a pipe that its workers hold, too
@@ -78,7 +78,7 @@ def test_a_sweep_of_python_s_that_is_interrupted_leaves_whole_runs_and_goes_on(t
     words = {"robot": "macro", "plant": "rk4", "duration": [0.2, 0.1], "seed": [0, 1], "workers": 0}
 
     def interrupt():
-        gate.wait()
+        gate.next_at()
         os.kill(os.getpid(), signal.SIGINT)
 
     interrupted = threads.submit(interrupt)

@@ -4,6 +4,7 @@ import threading
 
 import numpy as np
 import pytest
+from support.patience import PATIENCE
 
 from runner.config.compose import compose
 from runner.config.validation import validate
@@ -49,7 +50,7 @@ def test_they_are_told_from_a_thread_that_ends_with_the_work(monkeypatch):
 
     with ticks.told(tell):
         ticks.add_ticks(3)
-        assert enough.wait(10.0)
+        assert enough.wait(PATIENCE)
     count, thread = told[-1]
     assert count == 3 or told[0][0] == 0
     assert thread is not threading.current_thread()

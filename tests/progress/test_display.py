@@ -12,6 +12,7 @@ import threading
 from types import SimpleNamespace
 
 import pytest
+from support.patience import PATIENCE
 
 from runner import progress
 from runner.progress import display
@@ -150,7 +151,7 @@ def test_its_thread_draws_and_ends_with_the_work(terminal, work, monkeypatch):
     monkeypatch.setattr(Display, "draw", lambda _: drawn.set())
     before = threading.active_count()
     with terminal, Display(work, terminal):
-        assert drawn.wait(10.0)
+        assert drawn.wait(PATIENCE)
     assert threading.active_count() == before
 
 
@@ -220,7 +221,9 @@ def test_a_terminal_that_does_not_tell_its_size_is_drawn_on(monkeypatch, work, s
         line.draw()
         stream.flush()
         text = ""
-        while "left" not in text and select.select([reader], [], [], 1.0)[0]:
-            text += os.read(reader, 4096).decode()
+        for _ in range(100):
+            if "left" not in text:
+                assert select.select([reader], [], [], PATIENCE)[0]
+                text += os.read(reader, 4096).decode()
     os.close(reader)
     assert "a, 10.0 of 20.0 k ticks |" in text

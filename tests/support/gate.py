@@ -94,7 +94,7 @@ class Gate:
         """
         return [sys.executable, "-c", self.source + dedent(_COMMAND), function, str(calls), *map(str, arguments)]
 
-    def wait(self) -> int:
+    def next_at(self) -> int:
         """Return the process that reports next.
 
         Raises:

@@ -10,6 +10,8 @@ from support.patience import PATIENCE
 
 from runner.sweeps.deadline import STUCK, TimeLimitError, deadline
 
+INSTANT = 0.01  # s
+
 
 class Alarm:
     """The clock of a test: the first limit passes when the test says so, and the next one when what it waits for ends.
@@ -51,8 +53,8 @@ def spin(before=lambda: None):
 def rest(before):
     before()
     pause = threading.Event()
-    for _ in range(int(PATIENCE / 0.01)):
-        pause.wait(0.01)
+    for _ in range(int(PATIENCE / INSTANT)):
+        pause.wait(INSTANT)
 
 
 @pytest.mark.parametrize("busy", [spin, rest])

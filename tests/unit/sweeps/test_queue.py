@@ -30,7 +30,7 @@ def drain(tmp_path, costs, seconds_per_tick, workers=2):
     """Return the cells of each chunk, as a worker of some speed would get them."""
     queue = queue_of(tmp_path, costs)
     chunks = []
-    while (chunk := queue.take(workers)) is not None:
+    for chunk in iter(lambda: queue.take(workers), None):
         cells = [int(name, 16) for name, _ in chunk.jobs]
         chunks.append(cells)
         ends = [Outcome(name, "", False) for name, _ in chunk.jobs]
