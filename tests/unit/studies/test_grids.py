@@ -132,3 +132,15 @@ def test_what_a_chapter_asks_for_is_there_or_refused_with_the_nearest_name(read)
     ):
         with pytest.raises(RunnerError, match=message):
             ask()
+
+
+@pytest.mark.parametrize(("place", "level"), [(0, 1), (2, 4), (-1, 4), (-3, 1)])
+def test_a_level_is_found_by_its_place_from_either_end(read, place, level):
+    assert read("grids: {rates: {over: {rate: [1, 2.5, 4]}}}").level("rates", "rate", place) == level
+
+
+@pytest.mark.parametrize("place", [3, 4, -4])
+def test_a_place_beyond_either_end_is_refused(read, place):
+    grids = read("grids: {rates: {over: {rate: [1, 2.5, 4]}}}")
+    with pytest.raises(RunnerError, match=rf"grid 'rates': axis 'rate' has 3 levels, no place {place}"):
+        grids.level("rates", "rate", place)
