@@ -2,9 +2,6 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from functools import partial
-
-import pytest
 
 from runner.reporting.document import Block, Curves, Notice, Section, Table, Text
 from runner.store import Run
@@ -22,13 +19,6 @@ def every_run(runs: Mapping[str, Run]) -> dict[str, Run]:
 
 def every_third(runs: Mapping[str, Run], offset: int) -> dict[str, Run]:
     return {name: failed(run) if i % 3 == offset else run for i, (name, run) in enumerate(runs.items())}
-
-
-whatever_has_failed = pytest.mark.parametrize(
-    "spoil",
-    [dict, every_run, *(partial(every_third, offset=offset) for offset in range(3))],
-    ids=["none", "all", "third 0", "third 1", "third 2"],
-)
 
 
 def blocks(section: Section) -> Iterator[Block]:

@@ -33,18 +33,17 @@ _NUMBER = re.compile(r"-?\d+(\.\d*)?(e-?\d+)?")
 _OPTIONS = ("experiment=", "preset=", "plant=", "robot=")
 
 
-def stand_ins(jobs: Mapping[str, Overrides], thin: bool, every: tuple[str, ...] = ()) -> dict[str, str]:
+def stand_ins(jobs: Mapping[str, Overrides], every: tuple[str, ...] = ()) -> dict[str, str]:
     """Return the name of the run that stands for each, by name.
 
     Args:
         jobs: Overrides by name.
-        thin: Whether any does; else each stands for itself.
         every: How the names begin of runs that stand for themselves in any case.
     """
     kinds: dict[Overrides, list[str]] = {}
     for name, overrides in jobs.items():
         kind = tuple(o if o.startswith(_OPTIONS) else _NUMBER.sub("0", o) for o in overrides)
-        kinds.setdefault(kind if thin and not name.startswith(every) else (name,), []).append(name)
+        kinds.setdefault((name,) if name.startswith(every) else kind, []).append(name)
     return {
         name: names[-1] if 2 * index >= len(names) else names[0]
         for names in kinds.values()

@@ -1,17 +1,19 @@
 """Which runs the tests of the works' reports make: those of the plans, with what takes long cut to a moment."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
-from support.thin_plans import Overrides
+from support.thin_plans import Overrides, stand_ins
 
-from runner.reporting.document import Section
 from runner.reporting.job import Job
-from runner.reporting.prose.trying import never_failing
-from runner.store import Calibration, Run
-from runner.works.work import Work, load_work
+from runner.works.precision.measure import PLANT
+from runner.works.work import load_work
 
+FULL_ALONE = ("late_and_limited.md", "halves.md")  # chapters of the benchmark's full profile alone
 MOMENT = 0.08  # s
+WORKS = ("thesis", "xarm7", "meca500", "engines", "benchmark", "precision")
+RECORDED = tuple(work for work in WORKS if work != "meca500")
+"""Works of which a thin plan is recorded; that of the other is made by each session of tests."""
 _ENGINES_ARM, _ENGINES_STEP = re.compile(r"^((?:open|reference|closed|least)/)(\w+)"), re.compile(r"^(wall/.*/)[^/]+$")
 _ENGINES_ARMS = {"combined": "mini", "macro_mini_mini": "mini", "xarm7_mini": "mini", "xarm7": "macro",
                  "meca500": "macro", "scara": "planar", "seven": "planar"}  # fmt: skip
@@ -83,24 +85,65 @@ def _stand_in(found: re.Match[str]) -> str:
     return found[1] + _ENGINES_ARMS.get(found[2], found[2])
 
 
+def benchmark_kind(name: str) -> str:
+    """Return the plan, arm and condition of a run of the benchmark, from its name."""
+    plan, arm, *_, condition, _ = [*name.split("/"), *(["untuned"] if "repeated" in name else [])]
+    return f"{plan}/{arm}/{condition}"
+
+
+def benchmark_kinds() -> dict[str, Overrides]:
+    """Return a moment's run of each plan, arm and condition of the benchmark, with one repetition."""
+    kinds: dict[str, Overrides] = {}
+    for profile in ("", "full"):
+        for name, job in load_work("benchmark", profile=profile).jobs().items():
+            kept = tuple(o for o in job.overrides if not o.startswith("repetitions="))
+            kinds.setdefault(benchmark_kind(name), (*cut(kept, 0.01), "repetitions=1"))
+    return kinds
+
+
+def precision_kinds() -> dict[str, Overrides]:
+    """Return a moment's run of each case and arm of the report on what precision costs, by these."""
+    kinds: dict[str, Overrides] = {}
+    for name, job in load_work("precision").jobs().items():
+        case, arm, plant, _ = name.split("/")
+        if plant == PLANT:
+            kinds.setdefault(f"{case}/{arm}", cut(job.overrides, 0.016 if case == "free" else 0.02))
+    return kinds
+
+
+def planned(work: str) -> dict[str, Overrides]:
+    """Return the runs of a work's plan, by name."""
+    return {name: job.overrides for name, job in load_work(work).jobs().items()}
+
+
+def stood_in(work: str) -> tuple[dict[str, Overrides], dict[str, str]]:
+    """Return the runs of a work's thin plan by name, and the name of the run that stands for each."""
+    jobs = planned(work)
+    match work:
+        case "thesis":
+            return thesis_moments(), stand_ins(thesis_moments())
+        case "xarm7":
+            studies = xarm7_moments()
+            own = {name: name for name in jobs if name not in studies}
+            return {**jobs, **studies}, own | stand_ins(studies, every=("payload/",))
+        case "engines":
+            return jobs, engines_stand_ins(jobs)
+        case "meca500":
+            jobs = meca500_jobs()
+            return jobs, stand_ins(jobs, every=("step/", "plants/", "rest/0"))
+    raise ValueError(work)
+
+
+def recorded_jobs(work: str) -> dict[str, Overrides]:
+    """Return the runs of a work that are recorded, by name."""
+    if work == "benchmark":
+        return benchmark_kinds()
+    if work == "precision":
+        return precision_kinds()
+    jobs, stands_for = stood_in(work)
+    return {name: jobs[name] for name in dict.fromkeys(stands_for.values())}
+
+
 def chapter_files(work: str) -> list[str]:
     """Return the files of a work's chapters."""
     return list(load_work(work).about.files())
-
-
-def chapter(work: str, file: str) -> Callable[..., Section]:
-    """Return what makes a chapter of a work from runs, and calibrations."""
-
-    def make(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration] = {}) -> Section:
-        return load_work(work).chapters(runs, calibrations).section(file)
-
-    make.__name__ = file
-    return make
-
-
-def conditions_that_never_fail(
-    work: str, file: str, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration] = {}
-) -> list[str]:
-    """Return the conditions of a chapter in Markdown that hold whatever is changed."""
-    made: Work = load_work(work)
-    return never_failing(file, made.chapters(runs, calibrations).reading(file.removesuffix(".md")))

@@ -1,21 +1,22 @@
 """The benchmark of laws: who is ahead, from errors that are known, and its report from runs with such errors."""
 
 import re
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.stats import spearmanr
-from support.study_sections import texts, unfinished_texts, whatever_has_failed
-from support.work_plans import chapter, chapter_files, conditions_that_never_fail
+from support.benchmark_runs import LAWS, SCATTER, SEEDS, SIZES, TUNINGS, benchmark_runs
+from support.recorded_runs import recorded
+from support.study_sections import texts
+from support.work_plans import FULL_ALONE
 
 from runner.commands.reproduce import _chosen, _Way
 from runner.errors import RunnerError
-from runner.execution import run
 from runner.reporting.findings import findings
 from runner.reporting.formulas import faulty
 from runner.reporting.job import LeftOutError
+from runner.reporting.prose.trying import never_failing
 from runner.works.benchmark import engines
 from runner.works.benchmark.cells import cells
 from runner.works.benchmark.halves import halves
@@ -24,34 +25,6 @@ from runner.works.benchmark.made import ARMS, CONDITIONS
 from runner.works.work import load_work
 
 WORK = load_work("benchmark")
-SEEDS = 32  # of halves of 16, Holm's correction leaves something
-SCATTER = np.random.default_rng(5).uniform(0.8, 1.25, SEEDS)  # what all laws of a seed have in common
-# Sizes of the errors as a whole plan had them, in mm, of the laws below.
-SIZES = {
-    "exact": (0.22, 0.221, 0.3, 4.4, 4.6, 0.28, 0.27, 0.25, 0.24, 4.5),
-    "masses": (1.0, 1.01, 0.6, 4.0, 4.2, 1.6, 0.9, 0.8, 0.5, 4.4),
-    "friction": (2.4, 2.4, 0.9, 3.6, 3.5, 1.0, 0.8, 0.7, 0.4, 3.4),
-    "encoders": (1.0, 1.02, 1.3, 2.0, 2.1, 1.03, 0.98, 1.5, 1.1, 2.2),
-    "limits_150": (0.22,) * 10,
-    "limits_110": (0.24,) * 10,
-    "limits_80": (0.9,) * 10,
-    "delay_2": (np.nan,) * 10,
-    "all": (1.9, 2.0, 1.5, 3.0, 2.9, 1.8, 1.7, 1.6, 1.0, 2.8),
-}
-LAWS = ("operational_space", "computed_torque", "with_integral", "joint_pd", "joint_pid", "passivity", "sliding_mode",
-        "adaptive", "observed", "observed_pd")  # fmt: skip
-NEEDS = {"macro": (234.0, 38.7, 8.74), "mini": (0.183, 0.222, 0.0868)}  # peak torques, N m
-FULL_ALONE = ("late_and_limited.md", "halves.md")  # chapters of the full profile alone
-LEARNED = {"macro": 1.9, "planar": 0.3, "xarm7": 0.3}  # errors of iterative learning
-TUNINGS = {
-    "1": 1.0,
-    "2": 1.02,
-    "3": 0.99,
-    "4": 1.01,
-    "5": 0.98,
-    "6": 1.0,
-    "untuned": 2.2,
-}  # what their errors are multiplied by
 
 
 def a_run(errors, period=0.01):
@@ -153,61 +126,35 @@ def test_halves_of_the_seeds_are_held_against_each_other():
         halves({name: one for name, one in alike.items() if not name.endswith("6")})
 
 
-@pytest.fixture(scope="module")
-def runs(tmp_path_factory):
+@pytest.fixture
+def runs(made):
     """Every run of the plan."""
-    return made_of(WORK.jobs(), tmp_path_factory.mktemp("outputs"))
-
-
-def made_of(jobs, outputs):
-    """Runs of a plan: one for each arm and condition, a moment long, with errors of the sizes above."""
-    real, made = {}, {}
-    for name, job in jobs.items():
-        plan, arm, law, *task, condition, gains = [*name.split("/"), *(["untuned"] if "repeated" in name else [])]
-        if (plan, arm, condition) not in real:
-            kept = [re.sub(r"^repetitions=.*", f"repetitions={SEEDS}", text) for text in job.overrides]
-            kept = [text for text in kept if not text.startswith("duration=")]
-            real[plan, arm, condition] = run(*kept, "duration=0.01", f"outputs={outputs}")
-        size = (
-            1e-3 * TUNINGS[gains] * (LEARNED[arm] if law == "iterative_learning" else SIZES[condition][LAWS.index(law)])
-        )
-        errors = (size * (SCATTER if condition in ("masses", "encoders", "all") else np.ones(1))).tolist()
-        if (law, task, gains) == ("joint_pd", ["circle"], "untuned"):
-            errors[: -(-len(errors) // 4)] = [None] * -(-len(errors) // 4)
-        record = real[plan, arm, condition].record
-        metrics = {
-            "rms_tracking_error": {"unit": "m", "values": errors},
-            "torque_chatter": {"unit": "N m", "median": 1e3 * size},
-            "rms_torque": {"unit": "N m", "median": 10.0},
-            "rms_tracking_error_last_period": {"unit": "m", "median": size},
-        }
-        metrics |= {f"peak_torque_q{joint}": {"median": need} for joint, need in enumerate(NEEDS.get(arm, ()), 1)}
-        made[name] = replace(real[plan, arm, condition], record={**record, "metrics": metrics})
-    return made
+    return made("benchmark").runs
 
 
 def test_it_is_not_made_with_all_works(tmp_path):
     assert "benchmark" not in {work.name for work in _chosen("all", _Way(tmp_path, (), "")) if work is not None}
 
 
-def test_all_findings_hold_of_such_errors(runs):
-    document = WORK.document(runs, {})
+@pytest.mark.costs(2)
+def test_all_findings_hold_of_such_errors(made):
+    document = made("benchmark").document
     told = [finding for _, finding in findings(document)]
     assert [each.title for each in told if not each.holds] == []
     assert len(told) == 6
     assert list(faulty(document)) == []
 
 
-def test_the_page_names_the_best_law_and_how_far_it_is_ahead(runs):
-    words = " | ".join(texts(chapter("benchmark", "which_law.md")(runs)))
+def test_the_page_names_the_best_law_and_how_far_it_is_ahead(made):
+    words = " | ".join(texts(made("benchmark").chapters.section("which_law.md")))
     best = "computed torque + observer, 1.75 times ahead of adaptive"
     assert f"unknown friction | {best} | {best} | {best}" in words
     tied = "operational space; tied with computed torque"
     assert f"nothing is wrong | {tied} | {tied} | {tied}" in words
 
 
-def test_every_arm_and_law_of_ours_has_its_section_and_words(runs):
-    arms, laws = (chapter("benchmark", file)(runs) for file in ("by_arm.py", "by_law.py"))
+def test_every_arm_and_law_of_ours_has_its_section_and_words(made):
+    arms, laws = (made("benchmark").chapters.section(file) for file in ("by_arm.py", "by_law.py"))
     assert [each.title for each in arms.sections] == ["Macro", "Planar arm", "xArm7"]
     assert len(laws.sections) == len(LAWS)
     told = texts(laws)
@@ -215,12 +162,6 @@ def test_every_arm_and_law_of_ours_has_its_section_and_words(runs):
     whole = load_work("benchmark", profile="full").jobs()
     assert {name.split("/")[1] for name in whole if name.startswith("laws/")} == set(ARMS)
     assert {name.split("/")[4] for name in whole if name.startswith("laws/")} == set(CONDITIONS)
-
-
-@whatever_has_failed
-@pytest.mark.parametrize("file", [file for file in chapter_files("benchmark") if file not in FULL_ALONE])
-def test_chapters_stand_whatever_has_failed(runs, spoil, file):
-    assert unfinished_texts(chapter("benchmark", file)(spoil(runs))) == []
 
 
 def test_a_delay_of_one_tick_bears_the_root_of_its_cubic():
@@ -245,6 +186,7 @@ def test_the_orders_on_two_plants_are_held_against_each_other(runs):
     assert engines.mean_correlation(swapped).value == pytest.approx(np.mean(expected), abs=0.02)
 
 
+@pytest.mark.costs(2)
 @pytest.mark.parametrize("file", FULL_ALONE)
 def test_what_the_full_profile_alone_shows(tmp_path, file):
     arms, condition, count = {
@@ -252,14 +194,9 @@ def test_what_the_full_profile_alone_shows(tmp_path, file):
         "halves.md": ("macro", "masses", 1),
     }[file]
     wanted = re.compile(rf"laws/({arms})/\w+/circle/{condition}/.*")
-    jobs = {name: job for name, job in load_work("benchmark", profile="full").jobs().items() if wanted.fullmatch(name)}
-    some = made_of(jobs, tmp_path)
-    told = [finding for _, finding in findings(SimpleNamespace(sections=[chapter("benchmark", file)(some)]))]
+    names = [name for name in load_work("benchmark", profile="full").jobs() if wanted.fullmatch(name)]
+    chapters = WORK.chapters(benchmark_runs(names, recorded("benchmark", tmp_path)), {})
+    told = [finding for _, finding in findings(SimpleNamespace(sections=[chapters.section(file)]))]
     assert [each.title for each in told if not each.holds] == []
     assert len(told) == count
-    assert conditions_that_never_fail("benchmark", file, some) == []
-
-
-@pytest.mark.parametrize("file", ["which_law.md", "repeated.md", "engines.md"])
-def test_every_condition_can_fail(runs, file):
-    assert conditions_that_never_fail("benchmark", file, runs) == []
+    assert never_failing(file, chapters.reading(file.removesuffix(".md"))) == []

@@ -1,30 +1,24 @@
-"""The report on three engines: its closed forms, and its chapters from runs of a thin plan."""
+"""The report on three engines: what it compares and concludes, against closed forms."""
 
 import math
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 import pytest
-from support.study_sections import unfinished_texts, whatever_has_failed
-from support.thin_plans import make_runs
-from support.work_plans import chapter, chapter_files, conditions_that_never_fail, engines_stand_ins
+from fixtures.studies import Made
 
 pytest.importorskip("pybullet", reason="PyBullet is not installed")
 
 from runner.commands.reproduce import _chosen, _Way
 from runner.reporting.figures import model_of
-from runner.reporting.findings import findings
 from runner.store import Run
 from runner.works.engines import contact, same_arm, side_by_side
-from runner.works.work import load_work
-
-WORK = load_work("engines")
 
 
-@pytest.fixture(scope="module")
-def runs(shared_store: Path) -> dict[str, Run]:
-    jobs = {name: job.overrides for name, job in WORK.jobs().items()}
-    return make_runs(shared_store, jobs, engines_stand_ins(jobs), WORK.config_dirs)
+@pytest.fixture
+def runs(made: Callable[[str], Made]) -> Mapping[str, Run]:
+    return made("engines").runs
 
 
 def test_it_is_not_made_with_all_works(tmp_path: Path) -> None:
@@ -32,18 +26,7 @@ def test_it_is_not_made_with_all_works(tmp_path: Path) -> None:
     assert names == {"thesis", "xarm7", "meca500"}
 
 
-@pytest.mark.parametrize("file", chapter_files("engines"))
-def test_each_condition_of_a_chapter_can_fail(runs: dict[str, Run], file: str) -> None:
-    assert conditions_that_never_fail("engines", file, runs) == []
-
-
-@whatever_has_failed
-@pytest.mark.parametrize("file", chapter_files("engines"))
-def test_a_chapter_bears_failed_runs(runs, file, spoil) -> None:
-    assert unfinished_texts(chapter("engines", file)(spoil(runs))) == []
-
-
-def test_the_textbooks_mass_matrix_is_that_of_its_kinetic_energy(runs: dict[str, Run]) -> None:
+def test_the_textbooks_mass_matrix_is_that_of_its_kinetic_energy(runs: Mapping[str, Run]) -> None:
     """The energy of the two cylinders, from the velocities of their middles."""
     rng = np.random.default_rng(3)
     for q, dq in rng.uniform(-1.0, 1.0, (10, 2, 2)):
@@ -55,7 +38,7 @@ def test_the_textbooks_mass_matrix_is_that_of_its_kinetic_energy(runs: dict[str,
         assert 0.5 * dq @ same_arm._two_links(q[1]) @ dq == pytest.approx(energy, rel=1e-12)
 
 
-def test_a_changed_arm_is_found_to_be_another(runs: dict[str, Run]) -> None:
+def test_a_changed_arm_is_found_to_be_another(runs: Mapping[str, Run]) -> None:
     """An engine that is given another mass is told from Pinocchio by what is compared."""
     run = runs["open/planar/MuJoCo Euler/0.001"]
     heavier = run.urdf.replace('<mass value="1"', '<mass value="1.001"', 1)
@@ -68,7 +51,7 @@ def test_a_changed_arm_is_found_to_be_another(runs: dict[str, Run]) -> None:
     assert max(own.mass, own.acceleration, own.torque) < 1e-12
 
 
-def test_the_closed_form_of_the_impact_is_the_solution_of_its_equation(runs: dict[str, Run]) -> None:
+def test_the_closed_form_of_the_impact_is_the_solution_of_its_equation(runs: Mapping[str, Run]) -> None:
     """A head of 1 kg under 10 N, from rest 0.05 m before the wall, by steps far below what any plant takes."""
     x, v, h, peak = -0.05, 0.0, 1e-6, 0.0
     while v >= 0.0:
@@ -76,11 +59,3 @@ def test_the_closed_form_of_the_impact_is_the_solution_of_its_equation(runs: dic
         x += h * v
         peak = max(peak, 1e4 * x)
     assert contact.closed_form_peak(runs["impact/PyBullet/0.001"]) == pytest.approx(peak, rel=1e-4)
-
-
-@pytest.mark.slow
-def test_every_finding_holds_with_the_whole_runs(shared_store: Path) -> None:
-    jobs = {name: job.overrides for name, job in WORK.jobs().items()}
-    held = [found for _, found in findings(WORK.document(make_runs(shared_store, jobs, None, WORK.config_dirs), {}))]
-    assert len(held) == 11
-    assert [found.text for found in held if not found.holds] == []

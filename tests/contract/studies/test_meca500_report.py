@@ -1,29 +1,19 @@
-"""The Meca500 report, from its plan with the runs cut short, and from one made thin."""
+"""The Meca500 report as a document, from real runs of its thin plan: tables, verdicts, commands, HTML and PDF."""
 
 import re
 
 import pytest
 from support.engines import DEFAULT_PLANT
-from support.thin_plans import make_calibrations, make_runs, stand_ins
-from support.work_plans import meca500_calibrations, meca500_jobs
 
 from runner.reporting import outline
 from runner.reporting.document import Curves, Notice, Playback, Table, Text
 from runner.reporting.formulas import faulty
 from runner.reporting.render import write_report
-from runner.works.work import load_work
 
 
-@pytest.fixture(scope="module")
-def runs(shared_store, thin):
-    return make_runs(
-        shared_store, meca500_jobs(), stand_ins(meca500_jobs(), thin, every=("step/", "plants/", "rest/0"))
-    )
-
-
-@pytest.fixture(scope="module")
-def document(runs, shared_store):
-    return load_work("meca500").document(runs, make_calibrations(shared_store, meca500_calibrations()))
+@pytest.fixture(scope="session")
+def document(made):
+    return made("meca500").document
 
 
 def blocks_of(document, *kinds):
@@ -74,7 +64,8 @@ def test_every_figure_has_its_command(document):
     assert all(re.match(r"runner (calibrate|experiment=meca500/)", figure.origin.command) for figure in figures)
 
 
-def test_nothing_has_failed(document, runs):
+def test_nothing_has_failed(document, made):
+    runs = made("meca500").runs
     assert [name for name, stored in runs.items() if stored.status != "ok"] == []
     assert not [notice for notice in blocks_of(document, Notice) if notice.kind == "failure"]
 
@@ -83,6 +74,7 @@ def test_every_formula_can_be_set(document):
     assert faulty(document) == []
 
 
+@pytest.mark.costs(3)
 def test_html_and_pdf_are_written(document, tmp_path):
     html, pdf = write_report(document, tmp_path)
     assert not re.findall(r"(?:src|href)=[\"']?(?:https?:)?//", html.read_text())

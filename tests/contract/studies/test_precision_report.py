@@ -1,29 +1,23 @@
 """The report on what precision costs: its solutions by closed forms, and its chapters from motions of known errors."""
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures.studies import Made
 from scipy.special import ellipk
-from support.study_sections import texts, unfinished_texts, whatever_has_failed
-from support.thin_plans import make_runs
-from support.work_plans import chapter, chapter_files, conditions_that_never_fail, cut
+from support.precision_runs import error
+from support.work_plans import cut
 
 from runner.commands.reproduce import _chosen, _Way
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.execution import run
 from runner.plants.rk4 import Rk4
-from runner.reporting.document import Document, Table
-from runner.reporting.findings import findings
-from runner.reporting.formulas import faulty
+from runner.reporting.document import Table
 from runner.reporting.job import MissingError
 from runner.robots.model import RobotModel
 from runner.store import Run
-from runner.store.atomic import write_atomically
-from runner.store.seal import sealed_json
 from runner.works.precision import measure, tried
 from runner.works.precision.exact import Adaptive, Collocation, energy_drift
 from runner.works.work import load_work
@@ -39,7 +33,6 @@ PENDULUM = f"""<robot name="pendulum">
     <limit lower="-10" upper="10" effort="100" velocity="100"/></joint>
   <joint name="end" type="fixed"><origin xyz="0 0 {-LENGTH}"/><parent link="bob"/><child link="tip"/></joint>
 </robot>"""
-FIRST, FOURTH, OFF = 0.1, 50.0, 1e-15  # errors by the step: rad/s, rad/s^4; how far both ways of one scheme are apart
 
 
 @pytest.fixture(scope="module")
@@ -47,45 +40,10 @@ def model() -> RobotModel:
     return RobotModel(PENDULUM, "tip")
 
 
-def error(plant: str, step: float) -> float:
-    return FOURTH * step**4 if plant == measure.PLANT else FIRST * step
-
-
-@pytest.fixture(scope="module")
-def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
-    """Every run of the plan: a moment's motion of each arm and case, put off by an error that follows from its step."""
-    outputs = tmp_path_factory.mktemp("outputs")
-    jobs = WORK.jobs()
-    first: dict[str, Run] = {}
-    made, cases = {}, {}
-    for name in jobs:
-        case, arm, plant, step = name.split("/")
-        base = f"{case}/{arm}"
-        if base not in first:
-            ours = next(own.overrides for each, own in jobs.items() if each.startswith(f"{base}/{measure.PLANT}/"))
-            first[base] = run(*cut(ours, 0.016 if case == "free" else 0.02), f"outputs={outputs}")
-        trace = first[base].trace.copy()
-        for column in ("q1", "tip_x"):
-            trace[column] += np.linspace(0.0, error(plant, float(step)), len(trace))
-        made[name] = replace(first[base])
-        made[name].__dict__["trace"] = trace
-    for base, exact in first.items():
-        steps = [name.rpartition("/")[2] for name in jobs if name.startswith(f"{base}/{measure.PLANT}/")]
-        errors = {step: error(measure.PLANT, float(step)) for step in steps}
-        cases[base] = {
-            "q": exact.trace.filter(regex=r"^q\d+$").to_numpy().tolist(),
-            "tip": exact.trace[["tip_x", "tip_y", "tip_z"]].to_numpy().tolist(),
-            "apart": {"tolerance": 2e-15, "collocation": 1e-15},
-            "energy": 1e-15 if base.startswith("free") else None,
-            "compiled_seconds": {step: 1e-6 / float(step) for step in steps},
-            "interpreted": {
-                step: {"joints": off + OFF, "tip": off + OFF, "seconds": 1e-4 / float(step)}
-                for step, off in errors.items()
-            },
-        }
-    of = {name: run.hash for name, run in made.items() if f"/{measure.PLANT}/" in name}
-    write_atomically(outputs / measure.FILE, sealed_json({"runs": of, "cases": cases}))
-    return made
+@pytest.fixture
+def runs(made: Callable[[str], Made]) -> Mapping[str, Run]:
+    """Every run of the plan, off by a known error."""
+    return made("precision").runs
 
 
 def test_it_is_not_made_with_all_works(tmp_path: Path) -> None:
@@ -178,49 +136,24 @@ def test_the_largest_step_that_does_is_found() -> None:
     assert tried.large_enough(tried_by({0.4: np.nan}), 1.0) is None
 
 
-def test_errors_are_those_of_the_motions(runs: dict[str, Run]) -> None:
+def test_errors_are_those_of_the_motions(runs: Mapping[str, Run]) -> None:
     for plant, own in (("PyBullet", "PyBullet"), (tried.COMPILED, measure.PLANT)):
         for one in tried.by_steps(runs, "control", "combined", plant):
             assert one.joints == pytest.approx(error(own, one.step), rel=1e-6, abs=1e-15)
             assert one.tip == pytest.approx(error(own, one.step), rel=1e-6, abs=1e-15)
 
 
-def test_the_orders_are_those_of_the_motions(runs: dict[str, Run]) -> None:
-    section = chapter("precision", "accuracy.md")(runs)
+def test_the_orders_are_those_of_the_motions(made: Callable[[str], Made]) -> None:
+    section = made("precision").chapters.section("accuracy.md")
     (table,) = (block for block in section.blocks if isinstance(block, Table))
     assert len(table.rows) == 6
     for row in table.rows:
         assert [float(cell) for cell in row[2:]] == pytest.approx([1.0, 1.0, 4.0, 4.0], abs=1e-2)
 
 
-def test_solutions_of_other_runs_are_refused(runs: dict[str, Run]) -> None:
+def test_solutions_of_other_runs_are_refused(runs: Mapping[str, Run]) -> None:
     others = dict(runs)
     name = "free/macro/Runge-Kutta/0.008"
     others[name] = runs["control/macro/Runge-Kutta/0.01"]
     with pytest.raises(MissingError, match="not worked out for these runs; runner reproduce precision does it"):
         tried.solutions(others)
-
-
-@pytest.mark.parametrize("file", chapter_files("precision"))
-def test_each_condition_of_a_chapter_can_fail(runs: dict[str, Run], file: str) -> None:
-    assert conditions_that_never_fail("precision", file, runs) == []
-
-
-@whatever_has_failed
-@pytest.mark.parametrize("file", chapter_files("precision"))
-def test_a_chapter_bears_failed_runs(runs, file, spoil) -> None:
-    section = chapter("precision", file)(spoil(runs))
-    assert unfinished_texts(section) == []
-    assert list(texts(section))
-    assert faulty(Document("", "", "", [section], "2026-01-01")) == []
-
-
-@pytest.mark.slow
-def test_every_finding_holds_with_the_whole_runs(shared_store: Path) -> None:
-    pytest.importorskip("pybullet", reason="PyBullet is not installed")
-    jobs = {name: job.overrides for name, job in WORK.jobs().items()}
-    made = make_runs(shared_store, jobs)
-    measure.measure(shared_store / "outputs")
-    held = [found for _, found in findings(WORK.document(made, {}))]
-    assert len(held) == 4
-    assert [found.text for found in held if not found.holds] == []

@@ -1,26 +1,16 @@
 """What the thesis' chapters conclude is refuted by runs and measurements that say otherwise."""
 
-from collections.abc import Mapping
-from pathlib import Path
+from collections.abc import Callable
 
-import numpy as np
 import pytest
+from fixtures.studies import Made, made_up_costs
 from support.study_sections import every_run
-from support.thin_plans import make_runs, stand_ins
-from support.work_plans import chapter, thesis_moments
 
 from runner.reporting.document import Document, Section
 from runner.reporting.findings import findings
 from runner.reporting.formulas import faulty
 from runner.reporting.measured import Measured
-from runner.store import Run
 from runner.works.thesis import dynamics_cost, figures, stage_sampling
-
-
-@pytest.fixture(scope="module")
-def runs(shared_store: Path, thin: bool) -> dict[str, Run]:
-    """Every run of the plan, cut to a moment."""
-    return make_runs(shared_store, thesis_moments(), stand_ins(thesis_moments(), thin))
 
 
 @pytest.mark.parametrize(("claim", "ends"), [(3, (0.1, 0.15)), (4, (0.007, 0.044))])
@@ -40,22 +30,21 @@ def test_the_closed_form_of_the_period_is_refuted_by_what_grows_and_decays(
 
 @pytest.mark.parametrize(("slower", "power", "holds"), [(1.0, 1.2, True), (300.0, 2.5, False)])
 def test_the_cost_of_the_dynamics_is_refuted_by_a_slow_machine(
-    runs: Mapping[str, Run], monkeypatch: pytest.MonkeyPatch, slower: float, power: float, holds: bool
+    made: Callable[[str], Made], monkeypatch: pytest.MonkeyPatch, slower: float, power: float, holds: bool
 ) -> None:
-    joints = np.arange(3, 31, 3)
-    rows = [{"joints": int(n), **dict.fromkeys(dynamics_cost.TERMS, slower * 1e-7 * float(n) ** power)} for n in joints]
-    monkeypatch.setattr(dynamics_cost, "load", lambda path: {"machine": "this one", "rows": rows})
-    section = chapter("thesis", "dynamics_cost.md")(runs)
+    monkeypatch.setattr(dynamics_cost, "load", lambda path: made_up_costs(slower * 1e-7, power))
+    thesis = made("thesis")
+    section = thesis.spoiled(dict).section("dynamics_cost.md")
     (found,) = (found for _, found in findings(_document(section)))
     assert [condition.holds for condition in found.conditions] == [holds] * 3
-    cost = dynamics_cost.measured_cost(runs, 12)
+    cost = dynamics_cost.measured_cost(thesis.runs, 12)
     assert cost.power.value == pytest.approx(power)
     assert cost.six.value == pytest.approx(slower * 0.3 * 6.0**power)
 
 
 @pytest.mark.parametrize("name", ["turns", "mass_ratio", "whole_body", "reference_velocity", "folding"])
-def test_a_finding_on_failed_runs_alone_no_longer_holds(runs: Mapping[str, Run], name: str) -> None:
-    document = _document(chapter("thesis", f"{name}.md")(every_run(runs)))
+def test_a_finding_on_failed_runs_alone_no_longer_holds(made: Callable[[str], Made], name: str) -> None:
+    document = _document(made("thesis").spoiled(every_run).section(f"{name}.md"))
     assert [found.claim for _, found in findings(document) if found.holds] == []
     assert faulty(document) == []
 

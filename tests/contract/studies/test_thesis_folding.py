@@ -1,13 +1,11 @@
 """What the thesis' section on folding tells of repetitions of which some diverge, and of two draws that part."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-from support.thin_plans import make_runs, stand_ins
-from support.work_plans import conditions_that_never_fail, thesis_moments
+from fixtures.studies import Made
 
 from runner.store import Run
 from runner.works.thesis import figures, folding
@@ -15,10 +13,9 @@ from runner.works.thesis import figures, folding
 NAME = "folding/sound/tip_goal/quintic"
 
 
-@pytest.fixture(scope="module")
-def runs(shared_store: Path, thin: bool) -> dict[str, Run]:
-    """Every run of the plan, cut to a moment."""
-    return make_runs(shared_store, thesis_moments(), stand_ins(thesis_moments(), thin))
+@pytest.fixture
+def runs(made: Callable[[str], Made]) -> Mapping[str, Run]:
+    return made("thesis").runs
 
 
 def ending(run: Run, errors: Sequence[float | None]) -> Run:
@@ -55,14 +52,11 @@ def test_repetitions_that_diverge_are_counted_and_the_others_told(
 
 def test_two_draws_part_when_their_joints_are_a_radian_apart(runs: Mapping[str, Run]) -> None:
     first, second = (replace(runs[NAME]) for _ in range(2))
-    second.__dict__["trace"] = first.trace.assign(q2=first.trace["q2"] + np.where(first.trace["t"] < 0.01, 1e-12, 2.0))
-    assert folding.parted_at(first, second) == pytest.approx(0.01)
+    parting = first.trace["t"][3]
+    apart = np.where(first.trace["t"] < parting, 1e-12, 2.0)
+    second.__dict__["trace"] = first.trace.assign(q2=first.trace["q2"] + apart)
+    assert folding.parted_at(first, second) == pytest.approx(parting)
     assert folding.largest_parting(first, second) == pytest.approx(2.0)
     assert folding.parted_at(first, first) is None
     second.__dict__["trace"] = second.trace[:3]  # diverged
     assert len(folding.parting(first, second)) == 3
-
-
-@pytest.mark.parametrize("file", ["folding.md", "mass_ratio.md", "whole_body.md"])
-def test_each_condition_on_chaotic_runs_can_fail(runs: Mapping[str, Run], file: str) -> None:
-    assert conditions_that_never_fail("thesis", file, runs) == []

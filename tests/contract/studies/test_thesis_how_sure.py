@@ -1,15 +1,13 @@
 """The thesis' claims judged by seeds: what one seed says, what medians of groups say, and by which interval."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from fixtures.studies import Made
 from scipy import stats
 from support.study_sections import every_run, texts, unfinished_texts
-from support.thin_plans import make_runs, stand_ins
-from support.work_plans import chapter, thesis_moments
 
 from runner.claims import load_claims
 from runner.execution import run
@@ -24,9 +22,9 @@ CLAIMS = load_claims("thesis")
 SEEDS, OWN = 400, 40
 
 
-@pytest.fixture(scope="module")
-def runs(shared_store: Path) -> dict[str, Run]:
-    return make_runs(shared_store, thesis_moments(), stand_ins(thesis_moments(), thin=True))
+@pytest.fixture
+def runs(made: Callable[[str], Made]) -> Mapping[str, Run]:
+    return made("thesis").runs
 
 
 @pytest.fixture(scope="module")
@@ -125,8 +123,8 @@ def test_every_claim_has_its_run_of_many_seeds(runs: Mapping[str, Run]) -> None:
     assert all(each.values.size for each in given)
 
 
-def test_the_chapter_bears_failed_runs_and_concludes_nothing_of_them(runs: Mapping[str, Run]) -> None:
-    section = chapter("thesis", "how_sure.md")(every_run(runs))
+def test_the_chapter_bears_failed_runs_and_concludes_nothing_of_them(made: Callable[[str], Made]) -> None:
+    section = made("thesis").spoiled(every_run).section("how_sure.md")
     assert not unfinished_texts(section)
     assert "failed" in texts(section)
     assert not any(block.holds for block in section.blocks if isinstance(block, Finding))

@@ -1,14 +1,10 @@
-"""The xArm7 report, from the real plan; the studies, which have tests of their own, stand in it as empty sections."""
+"""The xArm7 report as a document, from whole runs that are recorded; the studies stand in it as empty sections."""
 
 import re
 
 import numpy as np
 import pytest
-from support.engines import DEFAULT_PLANT
-from support.thin_plans import make_runs
-from support.work_plans import xarm7_studies
 
-from runner.engines import has_pybullet
 from runner.reporting import outline
 from runner.reporting.document import Curves, Notice, Picture, Playback, Section, Table, Text, Verdicts
 from runner.reporting.findings import findings
@@ -24,9 +20,8 @@ OWN_FIGURES = ("sketch of the motion", "Graphs of x, y and z", "Graphs of q1, q2
 
 
 @pytest.fixture(scope="module")
-def runs(shared_store):
-    studies, jobs = xarm7_studies(), load_work("xarm7").jobs()
-    return make_runs(shared_store, {name: job.overrides for name, job in jobs.items() if name not in studies})
+def runs(made):
+    return made("xarm7").runs
 
 
 @pytest.fixture(scope="module")
@@ -105,10 +100,10 @@ def test_both_values_of_x_are_reached_with_room_at_every_joint(document):
 
 
 def test_the_findings_that_need_no_study_hold(document):
-    """These runs are those of the plan; the studies' runs take longer. One is of two engines, PyBullet and MuJoCo."""
+    """These runs are whole ones of the plan; the studies' findings, and one on traces, are tried in whole plans."""
     held = [found for _, found in findings(document)]
     fallen = [found.claim for found in held if not found.holds]
-    assert fallen == ([] if has_pybullet() else ["The engines agree, the schemes do not"])
+    assert fallen == ["The engines agree, the schemes do not"]  # by digits that recorded traces lack
     assert len(held) == 9
 
 
@@ -129,12 +124,10 @@ def test_a_motion_is_shown_from_a_to_b_as_its_caption_says(document):
 
 
 def test_the_plants_disagreement_is_measured_and_shrinks_with_the_step(document):
-    (text,) = [
-        block.text for block in blocks_of(document, Text) if f"{DEFAULT_PLANT} is the plant, in steps of" in block.text
-    ]
+    (text,) = [block.text for block in blocks_of(document, Text) if "PyBullet is the plant, in steps of" in block.text]
     assert text.count("The integration step contributes") == len(PRESETS)
     distances = [float(re.sub("·10⁻⁶$", "e-6", row[2]).replace("·10⁻⁷", "e-7")) for row in
-                 table(document, f"{DEFAULT_PLANT}'s step against Runge-Kutta").rows]  # fmt: skip
+                 table(document, "PyBullet's step against Runge-Kutta").rows]  # fmt: skip
     for first in range(0, len(distances), 3):
         coarse, middle, fine = distances[first : first + 3]
         assert middle / coarse == pytest.approx(0.5, rel=0.05)  # first order
@@ -145,6 +138,7 @@ def test_every_formula_can_be_set(document):
     assert faulty(document) == []
 
 
+@pytest.mark.slow  # the Meca500 report is written each time; test_every_formula_can_be_set is what may fail here alone
 def test_html_and_pdf_are_written(document, tmp_path):
     html, pdf = write_report(document, tmp_path)
     page = html.read_text()

@@ -1,4 +1,4 @@
-"""The studies of the xArm7 report build from short runs and failed ones, and their closed forms are right."""
+"""Studies on the xArm7: runs of the plan against closed forms."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -6,54 +6,26 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.study_sections import every_run, texts, unfinished_texts, whatever_has_failed
-from support.thin_plans import make_runs, stand_ins
-from support.work_plans import chapter, chapter_files, xarm7_moments, xarm7_studies
+from support.thin_plans import make_runs
+from support.work_plans import xarm7_studies
 
 from runner.execution import run
-from runner.reporting import formulas
-from runner.reporting.document import Document
 from runner.reporting.prose.signals import largest_of
 from runner.store import Run
-from runner.works.work import load_work
 from runner.works.xarm7.figures import ROWS, first_saturation, lag, sag
 from runner.works.xarm7.null_space import between_commands, drifts, way
 from runner.works.xarm7.payload import largest_payloads, lost_when, stretched
 from runner.works.xarm7.printed_kinematics import random_postures
 from runner.works.xarm7.why_it_failed import invert, jacobians
 
-CHAPTERS = [chapter("xarm7", file) for file in chapter_files("xarm7")]
-STUDIES = ("why_it_failed", "null_space", "rates", "servo", "payload", "torque_level")
 NULL_SPACE_BOUND, TORQUE_BOUND = 1e-6, 1e-4  # m
 Make = Callable[[str], Run]
-
-
-@pytest.fixture(scope="module")
-def runs(shared_store: Path, thin: bool) -> dict[str, Run]:
-    """Every run of the plan, the studies' cut to a moment."""
-    studies = make_runs(shared_store, xarm7_moments(), stand_ins(xarm7_moments(), thin, every=("payload/",)))
-    others = {name: job.overrides for name, job in load_work("xarm7").jobs().items() if name not in studies}
-    return make_runs(shared_store, others) | studies
 
 
 @pytest.fixture(scope="module")
 def planned(shared_store: Path) -> Make:
     """Make a run of the plan, as it is planned."""
     return lambda name: make_runs(shared_store, {name: xarm7_studies()[name].overrides})[name]
-
-
-@whatever_has_failed
-def test_every_chapter_builds_whatever_has_failed(runs: dict[str, Run], spoil: Callable[..., dict[str, Run]]) -> None:
-    sections = [make(spoil(runs)) for make in CHAPTERS]
-    assert formulas.faulty(Document("Studies", "", "", sections, "2026-01-01")) == []
-    for section in sections:
-        assert section.blocks or section.sections
-        assert not unfinished_texts(section)
-
-
-@pytest.mark.parametrize("name", STUDIES)
-def test_a_failed_run_is_shown_with_its_failure(runs: dict[str, Run], name: str) -> None:
-    assert any("for this test" in text for text in texts(chapter("xarm7", f"{name}.md")(every_run(runs))))
 
 
 def test_the_printed_inverse_has_nothing_to_invert_and_the_right_one_is_right(xarm7: Any) -> None:
@@ -153,6 +125,7 @@ def test_stretched_out_the_shoulder_holds_what_balances_about_its_axis(planned: 
     assert own > heaviest
 
 
+@pytest.mark.costs(2)
 def test_the_printed_line_takes_3_kg_and_not_the_rated_payload(planned: Make) -> None:
     held, lost = (planned(f"payload/0.643/{mass}") for mass in ("3", "3.5"))
     assert (lost_when(held), first_saturation(held)) == ("not lost", None)

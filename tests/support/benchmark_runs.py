@@ -1,0 +1,57 @@
+"""Runs of the benchmark of laws with errors that are known: recorded runs with made-up metrics."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import numpy as np
+from support.work_plans import benchmark_kind
+
+from runner.store import Run
+
+SEEDS = 32  # of halves of 16, Holm's correction leaves something
+SCATTER = np.random.default_rng(5).uniform(0.8, 1.25, SEEDS)  # what all laws of a seed have in common
+# Sizes of the errors as a whole plan had them, in mm, of the laws below.
+SIZES = {
+    "exact": (0.22, 0.221, 0.3, 4.4, 4.6, 0.28, 0.27, 0.25, 0.24, 4.5),
+    "masses": (1.0, 1.01, 0.6, 4.0, 4.2, 1.6, 0.9, 0.8, 0.5, 4.4),
+    "friction": (2.4, 2.4, 0.9, 3.6, 3.5, 1.0, 0.8, 0.7, 0.4, 3.4),
+    "encoders": (1.0, 1.02, 1.3, 2.0, 2.1, 1.03, 0.98, 1.5, 1.1, 2.2),
+    "limits_150": (0.22,) * 10,
+    "limits_110": (0.24,) * 10,
+    "limits_80": (0.9,) * 10,
+    "delay_2": (np.nan,) * 10,
+    "all": (1.9, 2.0, 1.5, 3.0, 2.9, 1.8, 1.7, 1.6, 1.0, 2.8),
+}
+LAWS = ("operational_space", "computed_torque", "with_integral", "joint_pd", "joint_pid", "passivity", "sliding_mode",
+        "adaptive", "observed", "observed_pd")  # fmt: skip
+NEEDS = {"macro": (234.0, 38.7, 8.74), "mini": (0.183, 0.222, 0.0868)}  # peak torques, N m
+LEARNED = {"macro": 1.9, "planar": 0.3, "xarm7": 0.3}  # errors of iterative learning, mm
+TUNINGS = {"1": 1.0, "2": 1.02, "3": 0.99, "4": 1.01, "5": 0.98, "6": 1.0, "untuned": 2.2}  # factors of their errors
+_DRAWN = ("masses", "encoders", "all")  # conditions that differ from seed to seed
+
+
+def benchmark_runs(names: Iterable[str], kinds: Mapping[str, Run]) -> dict[str, Run]:
+    """Return runs of a plan by name, with errors of the sizes above.
+
+    Args:
+        names: Names of the runs.
+        kinds: A run of each plan, arm and condition, by these.
+    """
+    return {name: _with_errors(name, kinds[benchmark_kind(name)]) for name in names}
+
+
+def _with_errors(name: str, kind: Run) -> Run:
+    _, arm, law, *task, condition, gains = [*name.split("/"), *(["untuned"] if "repeated" in name else [])]
+    size = 1e-3 * TUNINGS[gains] * (LEARNED[arm] if law == "iterative_learning" else SIZES[condition][LAWS.index(law)])
+    errors = (size * (SCATTER if condition in _DRAWN else np.ones(1))).tolist()
+    if (law, task, gains) == ("joint_pd", ["circle"], "untuned"):
+        errors[: -(-len(errors) // 4)] = [None] * -(-len(errors) // 4)
+    metrics = {
+        "rms_tracking_error": {"unit": "m", "values": errors},
+        "torque_chatter": {"unit": "N m", "median": 1e3 * size},
+        "rms_torque": {"unit": "N m", "median": 10.0},
+        "rms_tracking_error_last_period": {"unit": "m", "median": size},
+    }
+    metrics |= {f"peak_torque_q{joint}": {"median": need} for joint, need in enumerate(NEEDS.get(arm, ()), 1)}
+    record = {**kind.record, "metrics": metrics, "repetitions": len(errors)}
+    return replace(kind, record=record, config={**kind.config, "repetitions": len(errors)})
