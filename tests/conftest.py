@@ -17,7 +17,19 @@ import numpy as np  # noqa: E402 - after the environment
 
 from runner.engines import has_pybullet  # noqa: E402
 
-_FIXTURES = ("cli", "cost", "installed", "own_parts", "processes", "robots", "runs", "stored", "studies", "sweeps", "tuning")
+_FIXTURES = [
+    "cli",
+    "cost",
+    "installed",
+    "own_parts",
+    "processes",
+    "robots",
+    "runs",
+    "stored",
+    "studies",
+    "sweeps",
+    "tuning",
+]
 pytest_plugins = ("support.engines", *(f"fixtures.{name}" for name in _FIXTURES))
 
 _LONGEST_ID = 60  # characters of a case's name
