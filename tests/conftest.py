@@ -56,7 +56,9 @@ def pytest_make_parametrize_id(val: Any, argname: str) -> str | None:
     """Name a case by its values, where pytest would show a bare number or the argument's name with a count."""
     if isinstance(val, bool | int | float):
         return f"{argname}={val}"
-    if isinstance(val, tuple | list | dict | set | np.ndarray):
+    if isinstance(val, set | frozenset):
+        val = sorted(map(str, val))  # the same order in every process
+    if isinstance(val, tuple | list | dict | np.ndarray):
         return re.sub(r"[\s'\[\](){}]+", " ", str(val)).strip()[:_LONGEST_ID] or f"no {argname}"
     name = getattr(val, "__name__", None)
     return None if name == "<lambda>" else name
