@@ -5,7 +5,8 @@ BIN := $(VENV)/bin
 # A .venv that is there may have any version, unless PYTHON asks for one.
 ANY_VERSION := $(if $(filter file,$(origin PYTHON)),--any-version)
 
-.PHONY: install reproduce test test-pages test-slow test-lowest test-wheel lint types docs release-notes bench clean
+.PHONY: install reproduce test test-pages test-study test-slow test-busy test-lowest test-wheel mutants coverage-map lint types docs
+.PHONY: release-notes bench clean
 
 install:
 	@$(PYTHON) .ci/install.py $(ANY_VERSION)
@@ -20,14 +21,31 @@ test: install
 test-pages: install
 	$(BIN)/python -m pytest -m slow tests/end_to_end/test_pages.py tests/end_to_end/test_scripts_of_pages.py
 
+# The slow tests of one study: its whole plan, made anew, against its findings and the recorded runs.
+test-study: install
+	$(BIN)/python -m pytest -m slow -k xarm7 tests/contract/studies
+
 test-slow: install
 	$(BIN)/python -m pytest -m slow
+
+# The tests in random order beside four busy loops, with a home folder that is empty and read-only.
+test-busy: install
+	$(BIN)/python -m bench.busy_tests $(SEED)
+
+# Small errors put into the package: SAMPLE of them drawn by SEED, or without SAMPLE those written by hand.
+mutants: install
+	$(BIN)/python -m bench.mutants $(if $(SAMPLE),--sample $(SAMPLE)) $(if $(SEED),--seed $(SEED))
+
+# Which tests run which lines, for `make mutants`, in .cache.
+coverage-map: install
+	$(BIN)/python -m bench.mutants --record --workers 2
 
 # The oldest versions that pyproject.toml allows of what the runner itself needs, in build/lowest.
 test-lowest: install
 	$(BIN)/uv venv --quiet --clear --python $(BIN)/python build/lowest
 	$(BIN)/uv pip install --quiet --python build/lowest/bin/python --resolution lowest-direct --editable '.[dev]'
-	build/lowest/bin/python -m pytest -W default tests/test_closed_forms.py tests/api tests/store tests/plants
+	build/lowest/bin/python -m pytest -W default tests/physics/simulation/test_closed_forms.py \
+		tests/contract/api tests/contract/store tests/physics/plants
 
 # The wheel in an environment of its own, build/wheel, away from the checkout.
 test-wheel: install
@@ -58,4 +76,4 @@ bench: install
 	$(BIN)/python -m bench
 
 clean:
-	rm -rf $(VENV) outputs dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) .cache outputs dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis
