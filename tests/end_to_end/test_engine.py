@@ -13,13 +13,12 @@ from runner.errors import RunnerError
 from runner.plugins import use_plugins
 from runner.store.identity import source_digest
 from runner.sweeps import engine
+from runner.sweeps.pace import Estimate
 from runner.sweeps.queue import Queue
 from runner.sweeps.run import Engine
 
 GRID = ("noise=thesis", "robot=macro,mini", "plant=rk4,default", "seed=0,1", "repetitions=2", "duration=0.2,0.1")
 ROWS = 11  # of a trace of 0.1 s; longer runs are made before it
-
-pytestmark = pytest.mark.usefixtures("own_plugins")
 
 
 def results(ended):
@@ -140,7 +139,7 @@ def test_a_worker_tells_how_far_a_long_run_is(sweep, cluster, pulls, gate, monke
             gate.open()
 
     monkeypatch.setattr(Queue, "tell", note)
-    monkeypatch.setattr("runner.sweeps.run.estimate", lambda *_: 1.0)  # which would wait, too
+    monkeypatch.setattr("runner.sweeps.run.estimate", lambda *_: Estimate(1.0))  # which would wait, too
     waits = "        if time > 0.495:\n            stop()\n        return np"
     source = gate.source + PULL.replace("        return np", waits)
     overrides = ("environment=long_pull", "duration=1.5", "controller.period=0.01")

@@ -90,7 +90,6 @@ def test_a_part_that_goes_wrong_is_told_with_its_place_and_the_sweep_goes_on(pla
     assert statuses == ["failed", "ok"]
 
 
-@pytest.mark.usefixtures("own_plugins")
 def test_a_part_that_never_ends_is_told_with_its_place_and_the_sweep_goes_on(tmp_path, cli, monkeypatch):
     """Its time limit passes once it is in its endless loop."""
     shutil.copytree(EXAMPLE, tmp_path / "mine", ignore=shutil.ignore_patterns("__pycache__", "outputs"))

@@ -72,7 +72,6 @@ def test_a_signal_ends_all_processes_and_says_how_to_go_on(tmp_path, gate, numbe
     assert not list(tmp_path.glob("outputs/sweeps/*/scratch"))
 
 
-@pytest.mark.usefixtures("own_plugins")
 def test_a_sweep_of_python_s_that_is_interrupted_leaves_whole_runs_and_goes_on(tmp_path, gate, threads, monkeypatch):
     monkeypatch.chdir(tmp_path)
     words = {"robot": "macro", "plant": "rk4", "duration": [0.2, 0.1], "seed": [0, 1], "workers": 0}

@@ -84,7 +84,6 @@ def test_own_config_folders(tmp_path):
         runner.run(config_dirs="none")
 
 
-@pytest.mark.usefixtures("own_plugins")
 def test_own_parts(tmp_path):
     (tmp_path / "span_of_time.py").write_text(
         'UNITS = {"span": "s"}\n\n\ndef evaluate(trace, context):\n    return {"span": float(trace.t[-1])}\n'
