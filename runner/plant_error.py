@@ -48,9 +48,10 @@ class PlantError:
     Attributes:
         step: Step of the Runge-Kutta plant, in s; None where it cannot make the run.
         reason: Why it cannot, in words; empty where it can.
-        largest: Largest distance between the tips at equal times, in m; None as above, and so are the others.
+        largest: Largest distance between the tips at equal times, in m, where both are finite; None as above, and so
+            are the others.
         at: When, in s.
-        end: Distance between the tips at the end, in m.
+        end: Distance between the tips at the end, likewise.
         parted: When the motions part, in s: the tips are farther apart than PARTED settling bands, or one of the runs
             fails where the other does not; None where they never do. From then on each goes a way of its own, and the
             difference of a metric is no longer an error of integration.
@@ -100,13 +101,14 @@ def compare(trace: Trace, metrics: Metrics, other: Trace, others: Metrics, band:
     """
     rows = min(len(trace.t), len(other.t))
     distance = np.linalg.norm(trace.tip[:rows] - other.tip[:rows], axis=1)
-    farthest = int(distance.argmax())
     parted = _parting(trace, other, distance, band)
+    finite = np.flatnonzero(np.isfinite(distance))  # a run that diverges may end in none
+    farthest = finite[distance[finite].argmax()]
     return PlantError(
         step=step,
         largest=float(distance[farthest]),
         at=float(trace.t[farthest]),
-        end=float(distance[-1]),
+        end=float(distance[finite[-1]]),
         parted=parted,
         failure="" if other.failure is None else other.failure.reason,
         metrics={name: _worth(value, others.get(name), parted is None) for name, value in metrics.items()},

@@ -49,7 +49,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def _names_bullet(value: Any) -> bool:
-    return isinstance(value, str | tuple | list) and re.search(r"\bbullet\b", str(value)) is not None
+    given = isinstance(value, str | tuple | list | dict)
+    return given and re.search(r"\bbullet(_flexible)?\b", str(value)) is not None
 
 
 def pytest_make_parametrize_id(val: Any, argname: str) -> str | None:

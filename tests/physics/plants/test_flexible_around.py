@@ -56,6 +56,7 @@ def test_a_sensed_tip_errs_by_the_acceleration_and_a_blind_one_as_its_macro(simu
     assert tip == pytest.approx(macro, rel=0.24)
 
 
+@pytest.mark.bullet
 @pytest.mark.parametrize(
     ("law", "expected"),
     [
@@ -87,11 +88,13 @@ def test_a_shaper_finds_the_modes(simulated, engine):
     assert left[1] < 0.5 * left[0]
 
 
+@pytest.mark.bullet
 def test_what_the_engine_holds_is_released(closed_loop):
     closed = closed_loop(*MACRO, "plant=bullet_flexible", "trajectory=goal")
     assert isinstance(innermost(closed.plant), FlexibleAround)
 
 
+@pytest.mark.bullet
 def test_undamped_joints_with_brakes_keep_their_energy(closed_loop):
     """To the second order of the step, for ever: the scheme is symplectic."""
     closed = closed_loop(*MACRO, "plant=bullet_flexible", "gravity=0", "plant.step=1e-3", "controller.period=0.001",

@@ -44,6 +44,18 @@ def test_half_the_step_is_worth_half(tmp_path, plant):
     assert len({error["metrics"]["rms_tracking_error"]["value"] for error in errors}) == 1
 
 
+def test_a_run_that_diverges_is_compared_where_both_tips_are_finite(simulated):
+    """A tip that leaves by 0.3 m, and then is not a number."""
+    trace, metrics = simulated
+    points = trace.end_points.copy()
+    points[:, -3, 0] += 0.3
+    points[:, -2:] = np.nan
+    diverged = replace(trace, end_points=points, failure=Failure("diverged", float(trace.t[-1]), "q1"))
+    error = compare(diverged, {}, trace, metrics, BAND, STEP)
+    assert (error.largest, error.end) == (pytest.approx(0.3), pytest.approx(0.3))
+    assert (error.at, error.parted) == (trace.t[-3], trace.t[-3])
+
+
 def test_what_is_compared_is_the_run_on_runge_kutta(tmp_path):
     noisy = ("noise=thesis", "repetitions=3")
     own = measured(tmp_path, f"plant={OTHER}", *noisy)
