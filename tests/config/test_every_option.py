@@ -16,9 +16,11 @@ def options_of(group):
     return [f"{group}={name}" for name in group_options(group)]
 
 
-OPTIONS = [option for group in groups() if group != "calibration" for option in options_of(group)]
+GROUPS = [group for group in groups() if group != "calibration"]
+OPTIONS = [option for group in GROUPS for option in options_of(group)]
 BESIDE = ("noise", "torque_limits", "mismatch", "wrist_sensor", "joint_torque_sensor", "endpoint_sensor",
           "disturbance_observer", "notch", "preset", "spec")  # fmt: skip
+LOOP = ("controller", "trajectory", "plant", "environment", "input_shaper")
 NEEDS = {  # what an option does not run without
     "controller=admittance": ("robot=meca500",),
     "controller=hybrid_force": ("robot=mini",),
@@ -47,11 +49,17 @@ NEEDS = {  # what an option does not run without
 }
 
 
+def free(group):
+    return [option for option in options_of(group) if option not in NEEDS]
+
+
 def lines():
-    """Return lines that choose each option once, with what it needs; options beside the loop share a line."""
-    beside = [options_of(group) for group in BESIDE]
-    yield from (tuple(filter(None, each)) for each in zip_longest(*beside))
-    yield from ((*NEEDS.get(each, ()), each) for each in OPTIONS if each.partition("=")[0] not in BESIDE)
+    """Return lines that choose each option, with what it needs; options that need nothing share lines."""
+    for sharing in (BESIDE, LOOP):
+        yield from (tuple(filter(None, each)) for each in zip_longest(*map(free, sharing)))
+    for option in OPTIONS:
+        if option in NEEDS or option.partition("=")[0] not in BESIDE + LOOP:
+            yield (*NEEDS.get(option, ()), option)
 
 
 @pytest.mark.parametrize("line", list(lines()), ids=" ".join)
@@ -60,8 +68,10 @@ def test_it_composes_and_runs(tmp_path, line):
     assert (made.status, made.provenance["warnings"]) == ("ok", [])
 
 
-@pytest.mark.parametrize("group", [group for group in groups() if group != "calibration"])
-def test_one_of_a_group_runs_from_the_command_line(cli, group):
-    option = f"{group}={list(group_options(group))[-1]}"
-    ending = cli(*NEEDS.get(option, ()), option, "duration=0.05", "repetitions=1")
+@pytest.mark.parametrize(
+    "groups", [BESIDE, LOOP, *((group,) for group in GROUPS if group not in BESIDE + LOOP)], ids=" ".join
+)
+def test_one_of_each_group_runs_from_the_command_line(cli, groups):
+    line = [free(group)[-1] for group in groups]
+    ending = cli(*line, "duration=0.05", "repetitions=1")
     assert (ending.code, without_caveats(without_results(ending.err))) == (0, "")

@@ -2,6 +2,7 @@
 
 import pytest
 import yaml
+from support import strangers
 from support.mjcf_arms import CHAIN, disagreement, written
 
 from runner.config.compose import compose
@@ -33,7 +34,8 @@ def test_an_mjcf_is_examined_as_a_urdf(tmp_path):
 def test_a_folder_takes_the_mjcf_with_its_files(tmp_path):
     text = CHAIN.replace("<worldbody>", '<include file="parts/more.xml"/><worldbody>')
     written(tmp_path, '<mujocoinclude><option timestep="0.001"/></mujocoinclude>', "parts/more.xml")
-    examination = examine(written(tmp_path, text), None)
+    with strangers.short_examination():
+        examination = examine(written(tmp_path, text), None)
     folder = tmp_path / "mine"
     files = write_folder(examination, folder)
     assert [file.relative_to(folder).as_posix() for file in files] == [
@@ -46,7 +48,8 @@ def test_a_folder_takes_the_mjcf_with_its_files(tmp_path):
 
 def test_joints_beside_the_tip_are_held_fixed_in_a_urdf(tmp_path):
     path = written(tmp_path, FINGERS)
-    examination = examine(path, "tcp")
+    with strangers.short_examination():
+        examination = examine(path, "tcp")
     (mended,) = [finding for finding in examination.findings if finding.mended]
     assert mended.place == "joint 'f'"
     folder = tmp_path / "mine"

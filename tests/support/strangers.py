@@ -3,6 +3,8 @@
 import functools
 import os
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -84,12 +86,6 @@ def folder() -> Path:
 _KEPT: list[tempfile.TemporaryDirectory] = []
 
 
-@functools.cache
-def examined(name):
-    """The doctor's examination of a stranger."""
-    return _examine(name)
-
-
 def _examine(name):
     if name in SHIPPED and _PACKAGE is None:
         pytest.skip("an arm of the pybullet package, which is not installed")
@@ -101,6 +97,15 @@ def _examine(name):
     return examination.examine(path, None)
 
 
+@contextmanager
+def short_examination() -> Iterator[None]:
+    """Let the doctor compare no engines and search no workspace, which takes 1 s and changes no config."""
+    with pytest.MonkeyPatch.context() as patch:
+        for left_out in ("compare_readings", "compare_engines", "describe_singular", "describe_workspace"):
+            patch.setattr(examination, left_out, lambda *_: [])
+        yield
+
+
 @functools.cache
 def robot(name) -> str:
     """The name under which a stranger stands in the config folder."""
@@ -110,10 +115,8 @@ def robot(name) -> str:
 
 @functools.cache
 def read(name):
-    """The examination without comparing engines and searching the workspace, which take 1 s and change no config."""
-    with pytest.MonkeyPatch.context() as patch:
-        for left_out in ("compare_readings", "compare_engines", "describe_singular", "describe_workspace"):
-            patch.setattr(examination, left_out, lambda *_: [])
+    """The doctor's examination of a stranger, the short one."""
+    with short_examination():
         return _examine(name)
 
 

@@ -22,7 +22,7 @@ def test_from_a_stranger_s_urdf_to_a_report_in_three_commands(cli, tmp_path):
 
 FILES = [path for path in sorted(strangers.DATA.rglob("*.urdf")) if not {"random_urdfs", "lego"} & set(path.parts)]
 TIPS = dict(strangers.SHIPPED.values())
-FEW = ("franka_panda/panda.urdf", "xarm/xarm6_robot.urdf", "cartpole.urdf", "cube_no_rotation.urdf")
+FEW = ("franka_panda/panda.urdf", "cartpole.urdf", "cube_no_rotation.urdf")
 
 
 def fits(cli, path, folder):
@@ -48,12 +48,12 @@ def fits(cli, path, folder):
 @pytest.mark.costs(3)
 def test_files_of_pybullet_run_with_what_was_written_or_are_refused(cli):
     assert [fits(cli, strangers.DATA / name, f"mine{number}") for number, name in enumerate(FEW)] == [
-        *3 * [True],
+        *2 * [True],
         False,
     ]
 
 
-# More than ninety files: `make test` takes three that fit and one that is refused.
+# More than ninety files: `make test` takes two that fit and one that is refused.
 @pytest.mark.slow
 @pytest.mark.bullet
 def test_every_file_of_pybullet_runs_or_is_refused_with_the_reason(cli):
@@ -76,8 +76,9 @@ def test_the_page_shows_robot_and_findings(cli, tmp_path):
 
 @pytest.mark.bullet
 def test_nothing_is_overwritten(cli):
-    cli("doctor", KUKA, "--write", "mine")
-    ending = cli("doctor", KUKA, "--write", "mine")
+    with strangers.short_examination():
+        cli("doctor", KUKA, "--write", "mine")
+        ending = cli("doctor", KUKA, "--write", "mine")
     assert ending.code == 2
     assert "is there already; choose another folder, or remove it" in ending.err
 
