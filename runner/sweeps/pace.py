@@ -26,7 +26,7 @@ _PROBES = 3  # cells that the first estimate is made from, of each power of ten 
 _PROBED_WITHIN = 2.0  # s, for the ticks of a probe
 _FIXED = 0.010  # s that a job takes beside its ticks
 _FIXED_TOGETHER = 0.0002  # s, of runs that are simulated together and keep no trace
-_TICKS_TOGETHER = 20_000  # of runs that are simulated together for the first estimate
+_TICKS_TOGETHER = 20_000  # at most, of runs that are simulated together for the first estimate
 
 
 Known = Literal["about", "more than", "up to"]
@@ -87,7 +87,8 @@ def estimate(plan: Plan, checked: Checked, cells: NDArray[np.intp], kept: float)
 def _estimate_alike(plan: Plan, checked: Checked, runs: NDArray[np.intp], kept: float) -> Estimate:
     """Return the CPU time of runs of about as many ticks, by the median of a few."""
     chosen = sorted({int(runs[len(runs) * part // _PROBES]) for part in range(_PROBES)})
-    probed = sorted(_probe(plan.composed(cell), int(checked.costs[cell])) for cell in chosen)
+    together = int(min(_TICKS_TOGETHER, checked.costs[runs].sum()))  # more would take longer than the runs themselves
+    probed = sorted(_probe(plan.composed(cell), int(checked.costs[cell]), together) for cell in chosen)
     per_tick, together, known = probed[len(probed) // 2]
     in_shards = (1.0 - kept) * len(runs) if together else 0.0
     fixed = _FIXED * (len(runs) - in_shards) + _FIXED_TOGETHER * in_shards
@@ -97,15 +98,15 @@ def _estimate_alike(plan: Plan, checked: Checked, runs: NDArray[np.intp], kept: 
     return Estimate(float(fixed + per_tick * checked.costs[runs].sum()), known)
 
 
-def _probe(composed: Composed, ticks: int) -> tuple[float, bool, Known]:
+def _probe(composed: Composed, ticks: int, ticks_together: int) -> tuple[float, bool, Known]:
     """Return the time for a tick of a run, in s, if it can be simulated together with others, and what is known of it.
 
     Whatever is assembled and compiled counts for nothing, as it is done once.
     """
     config = validate(composed.resolved, composed.config_dirs)
-    probed = max(ticks, _TICKS_TOGETHER)
+    probed = max(ticks, ticks_together)
     try:
-        per_tick = seconds_together((config, composed), _TICKS_TOGETHER, deadline(_PROBED_WITHIN))
+        per_tick = seconds_together((config, composed), ticks_together, deadline(_PROBED_WITHIN))
         if per_tick is not None:
             return per_tick, True, "about"
         probed = min(ticks, PROBED_TICKS)

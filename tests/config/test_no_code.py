@@ -28,20 +28,25 @@ def stranger(cli, tmp_path):
     return run
 
 
-@pytest.mark.parametrize("mode", [(), ("-m",)])
-@pytest.mark.parametrize(
-    ("text", "key"),
-    [
-        ("hydra: {callbacks: {a: MAKE}}", "callbacks"),
-        ("hydra: {sweeper: {params: {seed: MAKE}}}", "sweeper"),
-        ("hydra: {sweeper: {_recursive_: true}}", "sweeper"),
-        ("hydra: {job_logging: {handlers: {a: {'()': os.mkdir, path: done}}, root: {handlers: [a]}}}", "job_logging"),
-        ("hydra: {hydra_logging: {formatters: {a: {'()': os.getcwd}}}}", "hydra_logging"),
-        ("hydra: {job: {env_set: {RUNNER_PLUGINS: metric=trap.py}}}", "job.env_set"),
-        ("hydra: {job: {env_copy: [PATH]}}", "job.env_set"),
-        ("hydra: {sweeper: {params: {robot.name: '${x}{oc.env:HOME}'}}}\nx: $", "sweeper"),
-    ],
-)
+CODE = [
+    ("hydra: {callbacks: {a: MAKE}}", "callbacks"),
+    ("hydra: {sweeper: {params: {seed: MAKE}}}", "sweeper"),
+    ("hydra: {sweeper: {_recursive_: true}}", "sweeper"),
+    ("hydra: {job_logging: {handlers: {a: {'()': os.mkdir, path: done}}, root: {handlers: [a]}}}", "job_logging"),
+    ("hydra: {hydra_logging: {formatters: {a: {'()': os.getcwd}}}}", "hydra_logging"),
+    ("hydra: {job: {env_set: {RUNNER_PLUGINS: metric=trap.py}}}", "job.env_set"),
+    ("hydra: {job: {env_copy: [PATH]}}", "job.env_set"),
+    ("hydra: {sweeper: {params: {robot.name: '${x}{oc.env:HOME}'}}}\nx: $", "sweeper"),
+]
+# Both modes compose alike: what concerns the sweeper is tried as a sweep, the rest as a run; the other half is slow.
+MODES = [
+    pytest.param(text, key, mode, marks=() if (key == "sweeper") == (mode == ("-m",)) else pytest.mark.slow)
+    for text, key in CODE
+    for mode in ((), ("-m",))
+]
+
+
+@pytest.mark.parametrize(("text", "key", "mode"), MODES)
 def test_a_config_that_names_code_is_refused_before_it_runs(stranger, text, key, mode):
     ending = stranger(text, *mode)
     assert (ending.code, ending.out) == (2, "")

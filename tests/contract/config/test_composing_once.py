@@ -43,11 +43,14 @@ def outcome(way, *arguments):
     "overrides",
     [
         (),
-        ("robot=combined",),
-        ("experiment=thesis/figure_5_8", "preset=as_reported", "controller.period.macro=0.03", "repetitions=1"),
-        ("experiment=xarm7/three_joints", "plant=bullet", "plant.step=1e-3", "trajectory.goal=[0.3,0.1,0.2]"),
-        ("robot=meca500", "controller.mass=[2,2,2,1,1,1]", "robot.tool.mass=0.3", "outputs=/some/where else"),
-        ("robot=combined", "noise.position={macro: 1e-3, mini: 0}", "controller.period.mini=2e-3", "seed=7"),
+        ("experiment=thesis/figure_5_8", "preset=as_reported", "plant=bullet", "plant.step=1e-3", "repetitions=1"),
+        (
+            "robot=combined",
+            "noise.position={macro: 1e-3, mini: 0}",
+            "controller.period.mini=2e-3",
+            "trajectory.goal=[0.3,0.1,0.2]",
+            "outputs=/some/where else",
+        ),
         ("robot=macro", "controller.natural_frequency=${robot.torque_limit}", "noise.position='1e-3'"),
         ("robot=macro", "noise.positon=1", "nonsense=3", "controller.period=null"),
         ("robot=macro", "noise=thesis", "noise.position=1e-4", "noise.position=1e-5", "noise=none"),
@@ -90,8 +93,8 @@ def line():
     return st.lists(st.one_of(choice, value, value, gone), max_size=4)
 
 
-@pytest.mark.costs(3)
-@settings(max_examples=15)
+@pytest.mark.costs(2)
+@settings(max_examples=10)
 @given(line())
 def test_random_lines_give_what_hydra_gives(overrides):
     assert outcome(compose, overrides) == outcome(plain, overrides)

@@ -34,13 +34,19 @@ def estimated(monkeypatch):
             return told
 
         monkeypatch.setattr(pace, "validate", lambda resolved, _: resolved)
-        monkeypatch.setattr(pace, "seconds_together", lambda job, *_: found(job[0]) if together else None)
+
+        def found_together(job, ticks, _):
+            make.ticks.append(ticks)
+            return found(job[0]) if together else None
+
+        monkeypatch.setattr(pace, "seconds_together", found_together)
         monkeypatch.setattr(pace, "seconds_per_tick", found)
         checked = SimpleNamespace(
             costs=np.array(costs), calibrations=calibrations, settings=SimpleNamespace(time_limit=limit)
         )
         return estimate(Plan(), checked, np.arange(len(costs)), kept)
 
+    make.ticks = []  # that each probe was to make of runs together
     return make
 
 
@@ -102,6 +108,12 @@ def test_runs_of_other_powers_of_ten_of_ticks_have_a_pace_of_their_own(estimated
     found = estimated(1e-3, 1e-3, 1e-3, 1e-6, 1e-6, 1e-6, costs=costs)
     assert found.known == "about"
     assert of_ticks(found, estimated(0.0, costs=costs)) == pytest.approx(3 * TICKS * 1e-3 + 300 * TICKS * 1e-6)
+
+
+@pytest.mark.parametrize(("runs", "ticks"), [(2, 2 * TICKS), (100, 100 * TICKS), (101, 100 * TICKS)])
+def test_a_probe_of_runs_together_makes_no_more_ticks_than_they_have_nor_than_its_most(estimated, runs, ticks):
+    estimated(1e-6, together=True, costs=(TICKS,) * runs)
+    assert set(estimated.ticks) == {ticks}
 
 
 @pytest.mark.parametrize("together", [True, False])
