@@ -1,26 +1,35 @@
 """Chains of elementary transforms at many configurations at once, and derivatives by differences."""
 
 from collections.abc import Callable, Sequence
-from functools import reduce
+from functools import lru_cache, reduce
 
 import numpy as np
 
 from runner.audit.truth import FloatArray
 
 _STEP = 1e-3
+_IDENTITY = np.eye(3)
 
 
 def turn(axis: FloatArray, angles: FloatArray) -> FloatArray:
     """Return homogeneous rotations about an axis of length 1, shape (T, 4, 4), by Rodrigues' formula; angles in rad."""
-    x, y, z = axis
-    result, K = np.tile(np.eye(4), (len(angles), 1, 1)), np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    result[:, :3, :3] += np.sin(angles)[:, None, None] * K + (1 - np.cos(angles))[:, None, None] * (K @ K)
+    K, squared = _cross(*axis)
+    result = np.zeros((len(angles), 4, 4))
+    result[:, :3, :3] = _IDENTITY + (np.sin(angles)[:, None, None] * K + (1 - np.cos(angles))[:, None, None] * squared)
+    result[:, 3, 3] = 1.0
     return result
+
+
+@lru_cache(maxsize=64)  # a chain turns about few axes, very often
+def _cross(x: float, y: float, z: float) -> tuple[FloatArray, FloatArray]:
+    """Return the matrix of the cross product with an axis, and its square, shape (3, 3) each."""
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return K, K @ K
 
 
 def rotation(axis: str, angle: FloatArray | float) -> FloatArray:
     """Return homogeneous rotations about a coordinate axis, shape (T, 4, 4); angles of shape (T,) or one, in rad."""
-    return turn(np.eye(3)["xyz".index(axis)], np.atleast_1d(np.asarray(angle, dtype=float)))
+    return turn(_IDENTITY["xyz".index(axis)], np.atleast_1d(np.asarray(angle, dtype=float)))
 
 
 def translation(axis: str, length: float) -> FloatArray:
