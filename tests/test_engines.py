@@ -29,7 +29,7 @@ def plant_of(*overrides):
     return compose(overrides).resolved["plant"]
 
 
-@pytest.mark.parametrize("overrides", [(), ("plant=default",), ("experiment=thesis/figure_3_5",)])
+@pytest.mark.parametrize("overrides", [(), ("robot=xarm7", "plant=default"), ("experiment=thesis/figure_3_5",)])
 def test_the_default_plant_is_bullet_or_says_for_which_one_it_stands_in(installed, overrides):
     plant = plant_of(*overrides)
     if installed:
@@ -39,13 +39,14 @@ def test_the_default_plant_is_bullet_or_says_for_which_one_it_stands_in(installe
         assert plant == {**plant_of(*overrides, "plant=mujoco"), "in_place_of": "bullet"}
 
 
-def test_what_asks_for_another_plant_gets_it(installed):
+@pytest.mark.usefixtures("_missing")
+def test_what_asks_for_another_plant_gets_it():
     for name in ("rk4", "kinematic", "mujoco"):
         assert plant_of(f"plant={name}")["kind"] == name
     assert plant_of("plant=mujoco")["in_place_of"] is None
     assert plant_of("robot=xarm7")["kind"] == "kinematic"  # its controller does
-    assert plant_of("robot=xarm7", "plant=default")["kind"] == ("bullet" if installed else "mujoco")
-    assert plant_of("experiment=meca500/circle")["kind"] == ("bullet" if installed else "mujoco")
+    assert plant_of("robot=xarm7", "plant=default")["kind"] == "mujoco"
+    assert plant_of("experiment=meca500/circle")["kind"] == "mujoco"
 
 
 def test_overrides_reach_the_plant_that_is_there(installed):

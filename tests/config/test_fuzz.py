@@ -4,7 +4,7 @@ import pytest
 
 from bench import fuzz_configs, fuzz_lines
 
-SEED, CASES = 12, 100
+SEED, CASES = 12, 60
 
 
 @pytest.mark.costs(5)

@@ -105,9 +105,9 @@ def test_one_problem_is_said_in_one_line(cli, tmp_path, overrides, problem):
 
 def test_a_long_value_is_quoted_to_a_line(cli):
     for override in (
-        f"trajectory.goal=[{','.join(['1'] * 3000)}]",
-        f"noise.velocity={'x' * 15000}",
-        f"{'y' * 15000}=1",
+        f"trajectory.goal=[{','.join(['1'] * 1200)}]",
+        f"noise.velocity={'x' * 5000}",
+        f"{'y' * 5000}=1",
     ):
         ending = cli("robot=macro", override)
         assert ending.code == 2

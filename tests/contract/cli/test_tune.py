@@ -41,16 +41,6 @@ def test_the_best_trial_is_told_and_the_report_made_the_same_each_time(cli, tmp_
 
 
 @pytest.mark.usefixtures("no_report")
-def test_what_is_told_as_best_gives_the_same_run_again(cli, tmp_path):
-    best = cli(*TUNE).out.splitlines()[0]
-    told = float(best.split()[2])
-    before = {path.name for path in (tmp_path / "outputs" / "runs").iterdir()}
-    folder = cli(*shlex.split(best.partition(" with ")[2])).folder
-    assert folder.name in before
-    assert float(f"{open_run(folder).metrics['peak_torque']['median']:.5g}") == told
-
-
-@pytest.mark.usefixtures("no_report")
 def test_a_range_may_have_units(cli):
     ending = cli("tune", *SHORT, "controller.natural_frequency=interval(60rpm,600rpm)", *TUNE[-4:])
     assert ending.code == 0
@@ -59,8 +49,14 @@ def test_a_range_may_have_units(cli):
 
 
 @pytest.mark.usefixtures("no_report")
-def test_other_commands_take_a_tuning_for_a_sweep(cli, tmp_path):
-    assert cli(TUNE[0], ASKED, *TUNE[1:]).code == 0
+def test_the_best_is_the_same_run_again_and_other_commands_take_a_tuning_for_a_sweep(cli, tmp_path):
+    ending = cli(TUNE[0], ASKED, *TUNE[1:])
+    assert ending.code == 0
+    best = ending.out.splitlines()[0]
+    before = {path.name for path in (tmp_path / "outputs" / "runs").iterdir()}
+    run = cli(*shlex.split(best.partition(" with ")[2])).folder
+    assert run.name in before
+    assert float(f"{open_run(run).metrics['peak_torque']['median']:.5g}") == float(best.split()[2])
     (folder,) = (tmp_path / "outputs" / "tunings").iterdir()
     assert cli("status", folder).out == "4 runs: 4 done, 0 left\n"
     assert cli("table", folder).code == 0
