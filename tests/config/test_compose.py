@@ -138,7 +138,8 @@ def test_what_does_not_compose_is_said_in_one_line(cli, tmp_path, override, mess
         "odd",
     ],
 )
-@pytest.mark.parametrize("way", ["command line", "python"])
+# The command line prints what Python raises, which the next test shows: the same for each of these is slow.
+@pytest.mark.parametrize("way", [pytest.param("command line", marks=pytest.mark.slow), "python"])
 def test_an_own_file_that_is_no_config_is_named_with_its_line(cli, tmp_path, content, message, way):
     own = tmp_path / "own"
     (own / "noise").mkdir(parents=True)
@@ -153,6 +154,16 @@ def test_an_own_file_that_is_no_config_is_named_with_its_line(cli, tmp_path, con
         text = ending.err
     assert message in text
     assert [entry.name for entry in tmp_path.iterdir()] == ["own"]
+
+
+@pytest.mark.parametrize("content", ["position: 0.0\n  distribution: [\n", "- 3\n"], ids=["read", "checked"])
+def test_the_command_line_says_of_an_own_file_what_python_says(cli, tmp_path, content):
+    (tmp_path / "own" / "noise").mkdir(parents=True)
+    (tmp_path / "own" / "noise" / "own.yaml").write_text(content)
+    with pytest.raises(ConfigError) as raised:
+        validate(compose(["noise=own"], [tmp_path / "own"]).resolved)
+    ending = cli("--config-dir", tmp_path / "own", "noise=own")
+    assert (ending.code, ending.err) == (2, f"runner: {raised.value}\n")
 
 
 def test_an_own_config_folder_that_does_not_exist_is_named(cli, tmp_path):
