@@ -56,21 +56,24 @@ def test_it_is_refused_in_words_by_run_and_doctor(tmp_path, capsys, fault):
     assert said in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "said"),
-    [
-        ('lower="-2.8" upper="2.8"', 'lower="3" upper="-3"', "has limits from 3 to -3; lower must be below upper"),
-        ('lower="-2.8"', 'lower="low"', "has a limit lower='low'; allowed: a number"),
-        ('velocity="20"', 'velocity="nan"', "has a limit velocity='nan'; allowed: a number"),
-        ('effort="2000"', 'effort="-1"', "has effort limit -1; allowed: 0 or more"),
-    ],
-)
-def test_limits_that_the_doctor_mends_are_refused_by_a_run(tmp_path, old, new, said):
-    path = tmp_path / "arm.urdf"
-    path.write_text(changed(old, new))
-    with pytest.raises(ConfigError) as raised:
-        read_urdf(path, {})
-    assert f"robot.urdf: joint 'q1' in {path} {said}" in raised.value.problems
+LIMITS = {
+    'lower="-2.8" upper="2.8"': ('lower="3" upper="-3"', "has limits from 3 to -3; lower must be below upper"),
+    'lower="-2.8"': ('lower="low"', "has a limit lower='low'; allowed: a number"),
+    'velocity="20"': ('velocity="nan"', "has a limit velocity='nan'; allowed: a number"),
+    'effort="2000"': ('effort="-1"', "has effort limit -1; allowed: 0 or more"),
+}
+
+
+def test_limits_that_the_doctor_mends_are_refused_by_a_run(tmp_path):
+    path, all_of_them = tmp_path / "arm.urdf", ARM
+    for old, (new, said) in LIMITS.items():
+        path.write_text(changed(old, new))
+        with pytest.raises(ConfigError) as raised:
+            read_urdf(path, {})
+        assert f"robot.urdf: joint 'q1' in {path} {said}" in raised.value.problems
+        all_of_them = all_of_them.replace(old, new, 1)  # each at the first joint that still has it
+    path.write_text(all_of_them)
+    assert all(new in all_of_them for new, _ in LIMITS.values())
     assert doctor([str(path)]) == 1
 
 

@@ -136,9 +136,9 @@ def test_it_can_be_seen_from_elsewhere_and_stays_as_it_was(trajectory):
 
 
 @pytest.mark.parametrize(("robot", "kind"), [
-    pytest.param(robot, kind, marks=() if (place - number) % 3 == 0 else pytest.mark.slow)
+    pytest.param(robot, kind, marks=() if (place - number) % len(CONFIGS) == 0 else pytest.mark.slow)
     for number, robot in enumerate(ROBOTS) for place, kind in enumerate(sorted(CONFIGS))
-])  # fmt: skip  # a robot gives its start and size to all kinds alike: each session takes two for each robot
+])  # fmt: skip  # a robot gives its start and size to all kinds alike: each session takes one for each robot
 def test_every_kind_has_values_for_every_robot_and_starts_where_that_starts(robot, kind):
     resolved = compose([f"robot={robot}", f"trajectory={kind}"]).resolved
     config = TRAJECTORIES.config_model(kind).model_validate(resolved["trajectory"])

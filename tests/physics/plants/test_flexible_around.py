@@ -35,7 +35,7 @@ def test_the_error_halves_with_the_step(simulated, engine):
 def test_soft_springs_ask_for_heavy_motors(simulated, engine):
     """At 10 ms and K 300 the law by the motors is stable from B 1.7 on, and not at 1.6, with the Mini's mass."""
     heavy = (*MACRO, "gravity=0", "robot.payload.mass=0.2", "trajectory=goal", "trajectory.goal=[0.02,1,1]",
-             f"{KEY}.stiffness=300", "plant.step=1e-4", "duration=6")  # fmt: skip
+             f"{KEY}.stiffness=300", "plant.step=1e-4", "duration=3.5")  # fmt: skip
 
     def grows(motor):
         trace = simulated(*heavy, engine, f"{KEY}.motor_inertia={motor}")
@@ -66,7 +66,7 @@ def test_a_sensed_tip_errs_by_the_acceleration_and_a_blind_one_as_its_macro(simu
     ],
 )  # fmt: skip
 def test_a_mode_gains_and_loses_damping_as_on_runge_kutta(simulated, law, expected):
-    ring = ("experiment=thesis/flexible_ring", "plant=bullet_flexible", "plant.step=1e-4", "duration=3",
+    ring = ("experiment=thesis/flexible_ring", "plant=bullet_flexible", "plant.step=1e-4", "duration=2",
             f"{KEY}.stiffness={{macro: 1000, mini: null}}", f"{KEY}.motor_inertia={{macro: 2, mini: null}}",
             f"{KEY}.damping_ratio=0", f"{KEY}.braked={{macro: 0}}")  # fmt: skip
     trace = simulated(*ring, *law)

@@ -84,7 +84,7 @@ def test_without_noise_each_stage_gains_a_decade(moved, plant):
     assert tip < 0.3 * mini
 
 
-@pytest.mark.parametrize("coupling", ["one_way", "two_way"])
+@pytest.mark.parametrize("coupling", [pytest.param("one_way", marks=pytest.mark.slow), "two_way"])  # the richer one
 def test_where_bases_do_not_turn_three_stages_track_as_where_they_do(moved, coupling):
     apart = ("plant=rk4", "noise=none", "preset.dynamics=decoupled", f"controller.coupling={coupling}")
     turning = moved("experiment=staged/macro_mini_mini", *apart)
@@ -173,15 +173,27 @@ def test_each_carrier_has_its_metrics(moved, checked_config):
         assert name in units()
 
 
-@pytest.mark.parametrize("coupling", ["two_way", "independent", "independent_base", "mini_held"])
-@pytest.mark.parametrize("chain", CHAINS)
+def on_one_chain(cases):
+    """Return ways of control with the chain of each in a session: code is compiled for each; the others are slow."""
+    return [
+        pytest.param(chain, way, marks=() if chain == chosen else pytest.mark.slow)
+        for way, chosen in cases.items()
+        for chain in CHAINS
+    ]
+
+
+NINE, TEN = CHAINS
+COUPLINGS = {"two_way": TEN, "independent": NINE, "independent_base": NINE, "mini_held": NINE}
+WAYS = {("controller.schedule=turns",): NINE, ("controller=whole_body", "noise=none"): NINE}
+
+
+@pytest.mark.parametrize(("chain", "coupling"), on_one_chain(COUPLINGS))
 def test_every_coupling_runs(simulated, chain, coupling):
     overrides = (f"experiment=staged/{chain}", "plant=rk4", f"controller.coupling={coupling}", "duration=0.1")
     assert simulated(*overrides).failure is None
 
 
-@pytest.mark.parametrize("changes", [("controller.schedule=turns",), ("controller=whole_body", "noise=none")])
-@pytest.mark.parametrize("chain", CHAINS)
+@pytest.mark.parametrize(("chain", "changes"), on_one_chain(WAYS))
 def test_other_ways_of_control_run(simulated, chain, changes):
     assert simulated(f"experiment=staged/{chain}", "plant=rk4", *changes, "duration=0.1").failure is None
 
