@@ -135,7 +135,7 @@ def _random_chain(parts):
     return f'<mujoco><worldbody><body name="base">{text}</body></worldbody></mujoco>'
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(st.lists(bodies, min_size=1, max_size=6).filter(lambda parts: any(part[2] for part in parts)))
 def test_random_chains_move_as_mujocos_own_model(tmp_path_factory, parts):
     path = written(tmp_path_factory.mktemp("chain"), _random_chain(parts))

@@ -23,7 +23,7 @@ LINE = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "duration=
 PRESSED = (  # with a push of 5 N or so against a wall 2 mm away, in the direction x
     *("robot=meca500", "controller=operational_space", "controller.natural_frequency=20", "environment=wall"),
     *("environment.distance=0.002", "environment.stiffness=3000", "environment.damping=30"),
-    *("plant.step=1e-4", "trajectory=quintic", "trajectory.duration=0.5", "duration=1.6"),
+    *("plant.step=1e-4", "trajectory=quintic", "trajectory.duration=0.5", "duration=1.2"),
 )
 
 

@@ -36,7 +36,9 @@ def simulated_stranger():
     return make
 
 
-@pytest.mark.parametrize("name", ["crane", "planar_two", "mixed"])
+@pytest.mark.parametrize(
+    "name", ["mixed", *(pytest.param(name, marks=pytest.mark.slow) for name in ("crane", "planar_two"))]
+)  # the most kinds of joints
 def test_the_plants_agree_on_strangers(simulated_stranger, name):
     default, rk4 = (simulated_stranger(name, f"plant={plant}") for plant in ("default", "rk4"))
     np.testing.assert_allclose(default.tip, rk4.tip, rtol=0, atol=1e-5 * strangers.read(name).model.reach)

@@ -58,7 +58,7 @@ def test_a_series_of_goals_lags_behind_a_vibrating_base(simulated):
 
 
 def test_motor_friction_leaves_the_blind_tip_off_and_the_sensed_one_there(simulated):
-    still = (*FLEXIBLE, *MOVE, stiff(1000), "duration=8", "plant.friction.coulomb=[1,1,1,0,0,0]",
+    still = (*FLEXIBLE, *MOVE, stiff(1000), "duration=5", "plant.friction.coulomb=[1,1,1,0,0,0]",
              f"{KEY}.damping_ratio=0.1")  # fmt: skip
     blind, sensed = simulated(*still), simulated(*still, SENSED)
     assert np.linalg.norm(blind.error[-1]) > 2e-4
