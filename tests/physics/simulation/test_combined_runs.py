@@ -24,7 +24,7 @@ OPTIONS = {
     "controller.gravity_compensation": ("true", "false"),
     "controller.feedforward": ("true", "false"),
     "controller.schedule": ("both", "turns"),
-    "controller.reach": ("0.05", "0.2", "10"),
+    "controller.reach": ("0.05", "10"),
     "controller.beyond_reach": ("hold", "stretch"),
     "controller.payload": ("unknown", "known"),
     "controller.singularity_damping": ("0", "0.3"),
@@ -38,7 +38,7 @@ OPTIONS = {
     "gravity": ("0", "9.81"),
 }
 WHOLE_BODY = {
-    "controller.null_space_frequency": ("0", "30", "100"),
+    "controller.null_space_frequency": ("0", "100"),
     "controller.max_tip_speed": ("null", "0.5"),
     "controller.singularity_damping": ("0", "0.3"),
     "controller.gravity_compensation": ("true", "false"),
