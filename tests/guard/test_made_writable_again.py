@@ -264,7 +264,7 @@ def test_an_array_made_writable_again_reaches_nothing(mine, cli, group, module):
         plant = [] if group == "plant" else ["plant=rk4"]
         noise = [] if group == "noise" else ["noise=thesis"]
         read = {"wrist_sensor": ["environment=push"], "joint_torque_sensor": OBSERVER}.get(group, [])
-        given = ("repetitions=2", "duration=0.4", *noise, *path, *plant, *read, *choose)
+        given = ("repetitions=2", "duration=0.2", *noise, *path, *plant, *read, *choose)
         ending = cli("--config-dir", mine, "robot=macro", *given)
         assert ending.code == 0, ending.err
         found[spoils] = open_run(ending.folder)
