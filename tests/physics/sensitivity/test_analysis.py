@@ -20,9 +20,15 @@ HARD = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("overrides", [MACRO, TWO_RATES, SEVEN, INTEGRAL, HARD])
-def test_derivatives_agree_with_central_differences_to_1e_6(analysed, overrides):
-    found = analysed(*overrides, groups=OWN)
+FEWER = ("gains", "masses")
+SMALL = [(MACRO, OWN), (HARD, OWN), (TWO_RATES, ("gains", "lengths", "noise")), (SEVEN, FEWER), (INTEGRAL, FEWER)]
+# The cost is that of the parameters: the session has all groups on the Macro alone, slow tests on the other arms, too.
+LARGE = [pytest.param(overrides, OWN, marks=pytest.mark.slow) for overrides in (TWO_RATES, SEVEN, INTEGRAL)]
+
+
+@pytest.mark.parametrize(("overrides", "groups"), [*SMALL, *LARGE])
+def test_derivatives_agree_with_central_differences_to_1e_6(analysed, overrides, groups):
+    found = analysed(*overrides, groups=groups)
     sure = 0
     for name, by in differences(found, list(found.metrics)).items():
         gaps = np.abs(by.derivatives - found.derivatives[name])
@@ -49,8 +55,8 @@ def test_derivatives_of_torques_are_those_of_the_ticks_at_which_they_act(analyse
 
 def test_an_arm_that_is_heavier_in_all_links_moves_alike_with_larger_torques(analysed):
     """Law and plant are both proportional to the masses where nothing clips, so that the arm takes the same way."""
-    for overrides in (MACRO, SEVEN):
-        found = analysed(*overrides, groups=OWN)
+    for overrides, groups in ((MACRO, OWN), (SEVEN, FEWER)):
+        found = analysed(*overrides, groups=groups)
         masses = [place for place, parameter in enumerate(found.parameters) if parameter.group == "masses"]
         expected = {"rms_tracking_error": 0.0, "peak_joint_speed": 0.0, "peak_torque": 1.0, "energy": 1.0}
         for name, sum_ in (expected | {"control_effort": 2.0}).items():
