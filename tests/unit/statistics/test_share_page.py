@@ -20,7 +20,6 @@ def test_the_probabilities_that_the_page_tells_apart_have_disjoint_intervals():
     assert hundredth.low < 1e-5 < hundredth.high
 
 
-@pytest.mark.costs(3)
 def test_the_coverage_in_the_table_is_the_exact_one():
     table = [line for line in TEXT.splitlines() if line.startswith("| ") and "%" in line]
     rows = {int(row[1].replace(" ", "")): row[2:-1] for row in (line.split("|") for line in table)}
