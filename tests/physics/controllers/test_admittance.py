@@ -58,7 +58,8 @@ def test_a_moving_tool_is_felt_as_nothing_when_it_is_compensated_and_as_itself_w
 @pytest.mark.parametrize(
     ("stiffness", "plant", "tolerance"),
     [
-        *((stiffness, "kinematic", 1e-6) for stiffness in (1e3, 1e4, 1e5)),
+        *((stiffness, "kinematic", 1e-6) for stiffness in (1e3, 1e5)),
+        pytest.param(1e4, "kinematic", 1e-6, marks=pytest.mark.slow),  # between the other two
         *(pytest.param(stiffness, "bullet", 0.01, marks=pytest.mark.slow) for stiffness in (1e3, 1e4)),
         (1e5, "bullet", 0.01),
     ],
