@@ -57,14 +57,14 @@ def test_more_trials_add_to_those_that_are_there(tuned, simulated_runs):
 
 
 def test_trials_do_not_depend_on_where_a_tuning_was_interrupted(tuned):
-    whole = tuned(trials=14)
+    whole = tuned(trials=12)
     journal = journal_path(whole.folder)
     lines = journal.read_bytes().splitlines(keepends=True)
-    for kept in (0, 2, 9):
+    for kept in (2, 11):
         journal.write_bytes(b"".join(lines[:kept]))
-        assert tuned(trials=14).trials == whole.trials
+        assert tuned(trials=12).trials == whole.trials
     journal.unlink()
-    assert tuned(trials=14).trials == whole.trials
+    assert tuned(trials=12).trials == whole.trials
 
 
 def test_the_seed_decides_what_is_tried(tuned):
