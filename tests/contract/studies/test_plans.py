@@ -11,14 +11,18 @@ from runner.config.validation import validate
 from runner.works.work import load_work
 
 
+def parts(overrides: Overrides) -> set[str]:
+    """Return the robot and the keys of a run."""
+    return {text if text.startswith("robot=") else text.partition("=")[0] for text in overrides}
+
+
 def covering(jobs: dict[str, Overrides]) -> Iterator[Overrides]:
     """Yield runs so that each key, and each robot, stands in one of them; options are tested with the configs."""
-    seen: set[str] = set()
-    for overrides in sorted(jobs.values(), key=len, reverse=True):
-        parts = {text if text.startswith("robot=") else text.partition("=")[0] for text in overrides}
-        if not parts <= seen:
-            seen |= parts
-            yield overrides
+    left = set().union(*map(parts, jobs.values()))
+    while left:
+        overrides = max(jobs.values(), key=lambda run: len(parts(run) & left))
+        left -= parts(overrides)
+        yield overrides
 
 
 @pytest.mark.costs(3)
