@@ -65,6 +65,7 @@ def test_the_runs_of_a_worker_that_is_killed_are_made_by_others(sweep, cluster, 
     assert [worker.poll() for worker in cluster.workers] == [None, None]
 
 
+@pytest.mark.costs(2)
 def test_trials_of_a_tuning_do_not_depend_on_where_they_are_made(tuned, cluster, tmp_path):
     whole = tuned(trials=13)
     address = f"hydra.sweeper.address={cluster.address}"

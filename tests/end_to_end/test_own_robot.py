@@ -80,6 +80,7 @@ def test_a_sweep_tells_stiff_from_soft(place):
     assert errors[20.0] / errors[60.0] == pytest.approx(9.0, rel=0.1)
 
 
+@pytest.mark.costs(2)
 def test_a_part_that_goes_wrong_is_told_with_its_place_and_the_sweep_goes_on(place):
     write_faulty(place[0], "faulty", "return torque / 0.0 if self.config.natural_frequency > 50.0 else torque")
     parts = ("--plugin", "controller=faulty.py", *PARTS[2:], "duration=0.2", "hydra.sweeper.workers=0")

@@ -91,6 +91,7 @@ def test_the_command_of_a_run_names_the_part_that_it_uses(mine, part, monkeypatc
     assert work.options(("robot=macro", "controller=joint_pd")) == own
 
 
+@pytest.mark.costs(2)
 def test_the_law_stands_in_the_report_and_a_second_time_nothing_is_simulated(cli, mine):
     command = ("reproduce", "--plugin", f"controller=mine/{LAW}.py", "paper", "hydra.sweeper.workers=0")
     ending = cli(*command)

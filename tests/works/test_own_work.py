@@ -60,6 +60,7 @@ def read(folder, runs, **options):
     return work, work.chapters(runs, {}).sections()
 
 
+@pytest.mark.costs(5)
 def test_the_work_that_is_written_first_is_small_and_stands(tmp_path, capsys):
     folder = tmp_path / "paper"
     assert dispatch(["work", "new", str(folder)]) == 0

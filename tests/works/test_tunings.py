@@ -155,6 +155,7 @@ def test_a_law_of_the_reader_s_has_its_ranges_beside_its_module(paper, tmp_path)
         Grids(path, None, [part])
 
 
+@pytest.mark.costs(2)
 def test_a_tuning_asked_for_twice_is_found_stored(paper, tmp_path, capsys):
     work = paper()
     way = Way(tmp_path / "outputs", (HERE,))

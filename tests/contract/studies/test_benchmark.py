@@ -126,6 +126,12 @@ def test_halves_of_the_seeds_are_held_against_each_other():
         halves({name: one for name, one in alike.items() if not name.endswith("6")})
 
 
+@pytest.fixture(scope="module")
+def whole():
+    """The plan of the full profile."""
+    return load_work("benchmark", profile="full").jobs()
+
+
 @pytest.fixture
 def runs(made):
     """Every run of the plan."""
@@ -153,13 +159,12 @@ def test_the_page_names_the_best_law_and_how_far_it_is_ahead(made):
     assert f"nothing is wrong | {tied} | {tied} | {tied}" in words
 
 
-def test_every_arm_and_law_of_ours_has_its_section_and_words(made):
+def test_every_arm_and_law_of_ours_has_its_section_and_words(made, whole):
     arms, laws = (made("benchmark").chapters.section(file) for file in ("by_arm.py", "by_law.py"))
     assert [each.title for each in arms.sections] == ["Macro", "Planar arm", "xArm7"]
     assert len(laws.sections) == len(LAWS)
     told = texts(laws)
     assert not {"A law from outside.", "not told here"} & set(told)
-    whole = load_work("benchmark", profile="full").jobs()
     assert {name.split("/")[1] for name in whole if name.startswith("laws/")} == set(ARMS)
     assert {name.split("/")[4] for name in whole if name.startswith("laws/")} == set(CONDITIONS)
 
@@ -186,15 +191,14 @@ def test_the_orders_on_two_plants_are_held_against_each_other(runs):
     assert engines.mean_correlation(swapped).value == pytest.approx(np.mean(expected), abs=0.02)
 
 
-@pytest.mark.costs(2)
 @pytest.mark.parametrize("file", FULL_ALONE)
-def test_what_the_full_profile_alone_shows(tmp_path, file):
+def test_what_the_full_profile_alone_shows(tmp_path, whole, file):
     arms, condition, count = {
         "late_and_limited.md": ("macro|mini", "(exact|limits_.*|delay_2)", 3),
         "halves.md": ("macro", "masses", 1),
     }[file]
     wanted = re.compile(rf"laws/({arms})/\w+/circle/{condition}/.*")
-    names = [name for name in load_work("benchmark", profile="full").jobs() if wanted.fullmatch(name)]
+    names = [name for name in whole if wanted.fullmatch(name)]
     chapters = WORK.chapters(benchmark_runs(names, recorded("benchmark", tmp_path)), {})
     told = [finding for _, finding in findings(SimpleNamespace(sections=[chapters.section(file)]))]
     assert [each.title for each in told if not each.holds] == []

@@ -84,6 +84,7 @@ def test_a_failed_run_is_made_again_only_when_asked(sweep, simulated_runs):
     assert len(simulated_runs) == 3
 
 
+@pytest.mark.costs(2)
 def test_a_sweep_may_stop_at_the_first_failure_and_go_on_later(sweep, simulated_runs):
     overrides = (*DIVERGES, "controller.period=0.06", "controller.natural_frequency=30,5,6,7")  # the first one does
     ended = sweep(*overrides, "sweep.on_failure=stop")
@@ -163,6 +164,7 @@ def test_a_run_in_a_shard_counts_unless_its_trace_is_wanted(sweep, simulated_run
     assert all(len(run.trace) > 1 for run in runs(ended))
 
 
+@pytest.mark.costs(2)
 @pytest.mark.usefixtures("a_limit_of_ticks")
 def test_a_run_that_takes_too_long_is_cut_short(sweep, simulated_runs):
     ended = sweep("duration=1e4,0.05", "sweep.time_limit=30", "sweep.attempts=2")

@@ -57,6 +57,7 @@ def alone(chunk, outputs):
     )
 
 
+@pytest.mark.costs(2)
 def test_a_sweep_makes_its_runs_together(sweep, batches, simulated_runs):
     given = [*SHORT, "seed=range(0,30)", "controller.natural_frequency=8,10", "sweep.trace=never"]
     ended = sweep(*given)
@@ -98,6 +99,7 @@ def test_runs_that_cannot_be_stored_together_are_made_one_by_one(tmp_path, batch
     assert sorted(store.Finished(tmp_path).names.astype(str)) == sorted(chunk.names)
 
 
+@pytest.mark.costs(2)
 def test_a_failure_stops_the_sweep_after_the_runs_that_were_made_with_it(sweep, batches):
     ended = sweep(*FAILING[:-1], "controller.natural_frequency=5,30", "seed=range(0,20)", "sweep.on_failure=stop")
     assert 1 <= len(ended.failures) < 20

@@ -37,6 +37,7 @@ def test_a_tuning_is_a_sweep_to_other_commands(tuned):
     assert sweep.command == "runner tune ..."
 
 
+@pytest.mark.costs(2)
 def test_nothing_is_simulated_twice(tuned, simulated_runs):
     first = tuned()
     assert len(simulated_runs) == 8
@@ -56,6 +57,7 @@ def test_more_trials_add_to_those_that_are_there(tuned, simulated_runs):
     assert tuned(trials=3).trials == more.trials
 
 
+@pytest.mark.costs(2)
 def test_trials_do_not_depend_on_where_a_tuning_was_interrupted(tuned):
     whole = tuned(trials=12)
     journal = journal_path(whole.folder)
@@ -67,6 +69,7 @@ def test_trials_do_not_depend_on_where_a_tuning_was_interrupted(tuned):
     assert tuned(trials=12).trials == whole.trials
 
 
+@pytest.mark.costs(2)
 def test_the_seed_decides_what_is_tried(tuned):
     first = tuned()
     other = tuned("seed=1", FREQUENCY, DAMPING)
@@ -86,6 +89,7 @@ def test_how_it_is_made_is_no_part_of_a_tuning(tuned):
     assert tuned(FREQUENCY, *change, trials=1).folder == tuned(FREQUENCY, trials=1).folder
 
 
+@pytest.mark.costs(2)
 def test_a_failed_run_is_the_worst(tuned, simulated_runs):
     tuning = tuned(*DIVERGES, PERIOD, trials=20, objectives=(("peak_torque", "maximize"), ("rms_torque", "minimize")))
     failed = [trial for trial in tuning.trials if trial.failure]

@@ -57,6 +57,7 @@ def section(document, title):
     return document.sections[titles(document).index(title)]
 
 
+@pytest.mark.costs(2)
 def test_the_report_has_its_parts(tuning):
     made = document(tuning)
     assert titles(made) == [
