@@ -14,6 +14,8 @@ import runner
 from bench.make_docs_pictures import PICTURES
 
 pytest.importorskip("mkdocs")
+# Slow, as `make docs` builds the same site, as strictly; these look closer at what a second build gives.
+OF_THE_SITE = pytest.mark.slow
 LOADED = {"script": "src", "link": "href", "img": "src", "iframe": "src", "source": "src", "object": "data"}
 ELSEWHERE = re.compile(r"(https?:)?//")
 
@@ -65,12 +67,14 @@ def pages(site):
     return {path: read(path) for path in site.rglob("*.html") if path.name != "gallery_report.html"}
 
 
+@OF_THE_SITE
 def test_every_page_of_docs_is_in_it(site, pages):
     names = {path.relative_to(site).as_posix() for path in pages}
     assert {f"{page.stem}.html" for page in (ROOT / "docs").glob("*.md")} <= names
     assert {"index.html", "changelog.html", "contributing.html", "security.html"} <= names
 
 
+@OF_THE_SITE
 def test_every_link_leads_somewhere(pages):
     for path, page in pages.items():
         for link in page.links:
@@ -83,6 +87,7 @@ def test_every_link_leads_somewhere(pages):
                 assert anchor in pages[target].anchors, (path.name, link)
 
 
+@OF_THE_SITE
 def test_no_page_loads_anything_from_elsewhere(site, pages):
     for path, page in pages.items():
         assert not [each for each in page.loaded if ELSEWHERE.match(each)], path.name
@@ -92,6 +97,7 @@ def test_no_page_loads_anything_from_elsewhere(site, pages):
         assert not [each for each in found if ELSEWHERE.match(each)], path.name
 
 
+@OF_THE_SITE
 def test_search_works_without_a_server(site, pages):
     assert (site / "search" / "search_index.js").read_text().startswith("var __index = ")
     for path, page in pages.items():
@@ -99,12 +105,14 @@ def test_search_works_without_a_server(site, pages):
             assert {"assets/iframe-worker.js", "assets/scrolling.js"} <= set(page.loaded), path.name
 
 
+@OF_THE_SITE
 def test_all_that_import_runner_gives_is_on_the_page_of_the_api(site, pages):
     anchors = pages[site / "api.html"].anchors - {None}
     for name in runner.__all__:
         assert [each for each in anchors if each.startswith("runner.") and each.endswith(f".{name}")], name
 
 
+@OF_THE_SITE
 def test_a_file_of_the_source_is_shown_where_a_page_links_to_it(site):
     shown = re.sub(r"<[^>]+>", "", (site / "source" / "runner" / "trace.py.html").read_text())
     assert (ROOT / "runner" / "trace.py").read_text().splitlines()[0].strip('"')[:60] in shown

@@ -74,6 +74,8 @@ def test_every_formula_can_be_set(document):
     assert faulty(document) == []
 
 
+# Slow, as reports on a run, a sweep and a comparison are written with the same blocks.
+@pytest.mark.slow
 @pytest.mark.costs(3)
 def test_html_and_pdf_are_written(document, tmp_path):
     html, pdf = write_report(document, tmp_path)
