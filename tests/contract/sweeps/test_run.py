@@ -93,25 +93,25 @@ def test_a_sweep_may_stop_at_the_first_failure_and_go_on_later(sweep, simulated_
     assert (len(simulated_runs), len(ended.failures), ended.left) == (4, 1, 0)
 
 
-@pytest.mark.parametrize(("policy", "folders"), [("all", 3), ("failed", 1), ("never", 0)])
-def test_traces_are_kept_as_asked_and_metrics_always(sweep, tmp_path, policy, folders):
+@pytest.mark.costs(2)
+def test_traces_are_kept_as_asked_and_metrics_always(sweep, tmp_path):
     everything = runs(sweep(*DIVERGES, "controller.period=0.01,0.06,0.02"))
-    ended = sweep(*DIVERGES, "controller.period=0.01,0.06,0.02", f"sweep.trace={policy}", f"outputs={tmp_path}/other")
-    found = runs(ended)
-    assert len([*(tmp_path / "other" / "runs").iterdir()]) == folders
-    for run, whole in zip(found, everything, strict=True):
-        assert run.hash == whole.hash
-        assert run.metrics == whole.metrics
-        assert run.failure == whole.failure
-        assert run.urdf == whole.urdf
-        assert store.simulated_part(run.config) == store.simulated_part(whole.config)
-    without = [run for run in found if not run.folder.exists()]
-    for run in without:
-        with pytest.raises(StoreError, match=r"kept no trace \(sweep\.trace\); this simulates it again with one: "):
-            _ = run.trace
-    if policy == "never":
-        assert "more in" not in ended.failures[0][2].read_text()
-        assert "diverged" in ended.failures[0][2].read_text()
+    for policy, folders in (("all", 3), ("failed", 1), ("never", 0)):
+        asked = (f"sweep.trace={policy}", f"outputs={tmp_path}/{policy}")
+        ended = sweep(*DIVERGES, "controller.period=0.01,0.06,0.02", *asked)
+        found = runs(ended)
+        assert len([*(tmp_path / policy / "runs").iterdir()]) == folders, policy
+        for run, whole in zip(found, everything, strict=True):
+            assert run.hash == whole.hash
+            assert run.metrics == whole.metrics
+            assert run.failure == whole.failure
+            assert run.urdf == whole.urdf
+            assert store.simulated_part(run.config) == store.simulated_part(whole.config)
+        for run in [run for run in found if not run.folder.exists()]:
+            with pytest.raises(StoreError, match=r"kept no trace \(sweep\.trace\); this simulates it again with one: "):
+                _ = run.trace
+    assert "more in" not in ended.failures[0][2].read_text()  # that of the last policy, "never"
+    assert "diverged" in ended.failures[0][2].read_text()
 
 
 def test_one_in_a_hundred_is_sampled(tmp_path):
