@@ -17,9 +17,10 @@ reproduce: install
 test: install
 	$(BIN)/python -m pytest
 
-# The README and the pages of docs/, followed command by command in a shell, and the scripts that they show.
+# The README and the pages of docs/, followed command by command in a shell, the scripts that they show, and the built site.
 test-pages: install
-	$(BIN)/python -m pytest -m slow tests/end_to_end/test_pages.py tests/end_to_end/test_scripts_of_pages.py
+	$(BIN)/python -m pytest -m slow tests/end_to_end/test_pages.py tests/end_to_end/test_scripts_of_pages.py \
+		tests/end_to_end/test_docs_site.py
 
 # The slow tests of one study: its whole plan, made anew, against its findings and the recorded runs.
 test-study: install
