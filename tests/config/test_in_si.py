@@ -1,3 +1,5 @@
+"""Values with units: numbers in SI against the units typed, by stage, axis and file."""
+
 import copy
 import math
 

@@ -1,3 +1,5 @@
+"""References between keys: free ones pass; functions and references that multiply are refused with their line."""
+
 import pytest
 
 from runner.config.interpolation import check_references, refuse_functions

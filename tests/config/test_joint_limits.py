@@ -1,3 +1,5 @@
+"""Starting motions against the position and speed limits of joints: each joint beyond one is named."""
+
 import pytest
 
 from runner.config.compose import compose

@@ -1,3 +1,5 @@
+"""The unit of each key against a table by hand."""
+
 import pytest
 
 from runner.config.key_units import key_unit

@@ -1,3 +1,5 @@
+"""Bounds on absurd numbers: shipped configs pass, values beyond a bound are refused by key."""
+
 import pytest
 
 from runner.config.compose import compose

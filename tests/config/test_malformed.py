@@ -1,3 +1,5 @@
+"""Overrides that Hydra cannot parse: messages in words, without any text of the parser."""
+
 import pytest
 from hydra.core.override_parser.overrides_parser import OverridesParser
 

@@ -1,3 +1,5 @@
+"""Meanings of keys against the docstrings of their models."""
+
 from runner.config.meanings import meanings
 from runner.config.noise import NoiseConfig
 

@@ -1,3 +1,5 @@
+"""MJCF files as robots: every plant takes them, and a changed file is another run."""
+
 import pytest
 import yaml
 from support.mjcf_arms import CHAIN, written

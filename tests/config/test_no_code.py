@@ -1,3 +1,5 @@
+"""Configs that name code: refused from every kind of file, before anything runs."""
+
 import json
 import os
 

@@ -1,3 +1,5 @@
+"""Options of groups against the files in conf/ and in a folder of the user."""
+
 from runner.config.options import described_files, group_options, groups
 
 

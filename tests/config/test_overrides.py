@@ -1,3 +1,5 @@
+"""Overrides as they are handed to Hydra: keys are forced, options are not."""
+
 import pytest
 
 from runner.config.overrides import force

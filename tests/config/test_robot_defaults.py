@@ -1,3 +1,5 @@
+"""Robots of ten lines: defaults fill in what a file leaves out, and its own values win."""
+
 import pytest
 import yaml
 

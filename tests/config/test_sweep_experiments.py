@@ -1,3 +1,5 @@
+"""Ready-made sweeps: their corners compose, and axes lie on both sides of the line of theory."""
+
 import itertools
 
 import pytest

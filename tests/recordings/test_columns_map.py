@@ -1,3 +1,5 @@
+"""Maps from columns to signals: names, factors and units, and what does not fit."""
+
 import pytest
 
 from runner.errors import RunnerError

@@ -1,3 +1,5 @@
+"""Recordings read from CSV against arrays by hand: units, rates and times."""
+
 import numpy as np
 import pytest
 

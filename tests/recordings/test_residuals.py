@@ -1,3 +1,5 @@
+"""Residuals of a recording against sums by hand."""
+
 import numpy as np
 import pytest
 

@@ -1,3 +1,5 @@
+"""Factors that look like another unit, against motions of known size."""
+
 import math
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""Keys that differ beside the swept ones, against configs that differ by known keys."""
+
 import numpy as np
 import pytest
 

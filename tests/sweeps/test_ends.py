@@ -1,3 +1,5 @@
+"""Ends of runs in a store: by name, and in shards."""
+
 from runner.store import Finished, Outcome
 from runner.store.names import Names
 from runner.store.shards import ShardRun, write_shard

@@ -1,3 +1,5 @@
+"""Plans of listed runs: each composed as it is alone."""
+
 import pytest
 
 from runner.config.compose import compose

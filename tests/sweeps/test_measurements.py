@@ -1,3 +1,5 @@
+"""Axes and values of a sweep as arrays, against runs by hand."""
+
 from pathlib import Path
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""What a sweep states of its plant's step and of the way to the goal, against stored runs."""
+
 from dataclasses import replace
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""Axes of a command line: values, options and empty axes."""
+
 import pytest
 
 from runner.errors import ConfigError

@@ -1,3 +1,5 @@
+"""The table of a sweep against rows by hand: medians, lost and absent repetitions."""
+
 from dataclasses import replace
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""Journals of tunings: read as written, told when damaged, and continued wherever they were cut."""
+
 import json
 import math
 

@@ -1,3 +1,5 @@
+"""Ranges of tuned keys: read, refused, and values kept on their grid."""
+
 import pytest
 from hydra.core.override_parser.overrides_parser import OverridesParser
 

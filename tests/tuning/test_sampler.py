@@ -1,3 +1,5 @@
+"""Proposed trials: reproducible, in range, and nearer to the least than chance."""
+
 import math
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""The best trials and the front against a search over all pairs."""
+
 import itertools
 
 import numpy as np

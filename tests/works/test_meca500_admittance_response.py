@@ -1,3 +1,5 @@
+"""Closed forms of the admittance response against SciPy and their limits."""
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp

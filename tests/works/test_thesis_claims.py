@@ -1,3 +1,5 @@
+"""The thesis' claims: listed in order, each with a metric that exists, its place and its reason."""
+
 import pytest
 from pydantic import ValidationError
 

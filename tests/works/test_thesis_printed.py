@@ -1,3 +1,5 @@
+"""Printed matrices and determinants of the thesis against the robots' models."""
+
 import numpy as np
 import pytest
 
