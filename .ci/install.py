@@ -93,7 +93,8 @@ def candidates(version: tuple) -> list:
     name = "python" + dotted(version)
     on_path = [Path(folder) / name for folder in os.environ.get("PATH", "").split(os.pathsep) if folder]
     pyenv = Path(os.environ.get("PYENV_ROOT") or os.path.expanduser("~/.pyenv")) / "versions"  # noqa: PTH111
-    kept = sorted(pyenv.glob(dotted(version) + ".*/bin/" + name), key=lambda path: patch(path.parts[-3]), reverse=True)
+    found = pyenv.glob(dotted(version) + ".*/bin/" + name) if os.access(str(pyenv), os.R_OK | os.X_OK) else ()
+    kept = sorted(found, key=lambda path: patch(path.parts[-3]), reverse=True)
     running = [Path(sys.executable)] if sys.version_info[:2] == version else []
     return [*running, *(path for path in on_path if path.is_file()), *kept]
 
