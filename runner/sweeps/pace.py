@@ -87,8 +87,8 @@ def estimate(plan: Plan, checked: Checked, cells: NDArray[np.intp], kept: float)
 def _estimate_alike(plan: Plan, checked: Checked, runs: NDArray[np.intp], kept: float) -> Estimate:
     """Return the CPU time of runs of about as many ticks, by the median of a few."""
     chosen = sorted({int(runs[len(runs) * part // _PROBES]) for part in range(_PROBES)})
-    together = int(min(_TICKS_TOGETHER, checked.costs[runs].sum()))  # more would take longer than the runs themselves
-    probed = sorted(_probe(plan.composed(cell), int(checked.costs[cell]), together) for cell in chosen)
+    most = int(min(_TICKS_TOGETHER, checked.costs[runs].sum()))  # more would take longer than the runs themselves
+    probed = sorted(_probe(plan.composed(cell), int(checked.costs[cell]), most) for cell in chosen)
     per_tick, together, known = probed[len(probed) // 2]
     in_shards = (1.0 - kept) * len(runs) if together else 0.0
     fixed = _FIXED * (len(runs) - in_shards) + _FIXED_TOGETHER * in_shards
