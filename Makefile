@@ -22,7 +22,7 @@ test-pages: install
 	$(BIN)/python -m pytest -m slow tests/end_to_end/test_pages.py tests/end_to_end/test_scripts_of_pages.py \
 		tests/end_to_end/test_docs_site.py
 
-# The slow tests of one study: its whole plan, made anew, against its findings and the recorded runs.
+# The slow tests of one study: its whole plan, simulated again, against its findings and the recorded runs.
 test-study: install
 	$(BIN)/python -m pytest -m slow -k xarm7 tests/contract/studies
 
