@@ -33,7 +33,7 @@ class RunnerSweeper(Sweeper):
         self._task.sweep(lambda: self._make(arguments))
 
     def _make(self, arguments: list[str]) -> Any:
-        from runner.sweeps.typed import sweep_typed
+        from runner.sweeps.run import sweep_typed
 
         self.hydra = self._loader
         sources = self._config.hydra.runtime.config_sources

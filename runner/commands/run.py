@@ -92,7 +92,7 @@ class _Task:
             own: Config folders of the user.
         """
         from runner.sweeps.loading import Loader
-        from runner.sweeps.typed import sweep_typed
+        from runner.sweeps.run import sweep_typed
 
         loader = Loader(own)
         sweeper = loader.sweeper(overrides)

@@ -24,7 +24,7 @@ from runner.engines import default_plant
 from runner.errors import ConfigError
 from runner.paths import conf_dir
 
-_KEPT = 128  # combinations of options
+_KEPT = 512  # combinations of options, some 30 kB each
 _MOST = 1000  # files and folders in the config folders; where there are more, Hydra composes each time
 
 Files = tuple[tuple[str, int, int], ...]  # path, time of change in ns, size
@@ -59,7 +59,7 @@ def parse(overrides: Sequence[str]) -> list[Override]:
     return [_parse(text) for text in overrides]
 
 
-@lru_cache(maxsize=8 * _KEPT)
+@lru_cache(maxsize=2 * _KEPT)
 def _parse(text: str) -> Override:
     return OverridesParser.create().parse_overrides([text])[0]
 
@@ -73,6 +73,7 @@ def _with_values(
         parsed = [each for each in parsed if not each.is_sweep_override() or each.is_hydra_override()]
     known = groups(config_dirs)
     options = [each for each in parsed if _chooses_option(each, known)]
+    options.sort(key=lambda each: each.key_or_group)  # of one group the last counts; of several the order does not
     values = [each for each in parsed if not _chooses_option(each, known)]
     files = _files(conf_dir(), *config_dirs)
     if files is None or any(each.is_sweep_override() for each in parsed) or not all(map(_is_put, values)):

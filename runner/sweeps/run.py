@@ -4,12 +4,14 @@ import contextlib
 import os
 import shutil
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from omegaconf import DictConfig
 
 from runner import progress, store
 from runner.config.limits import check_cpu_time
@@ -23,6 +25,8 @@ from runner.store.names import Names
 from runner.sweeps.differing import Resolved
 from runner.sweeps.ends import Ends
 from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
+from runner.sweeps.grid import Grid
+from runner.sweeps.loading import ConfigSource
 from runner.sweeps.lock import at_work
 from runner.sweeps.pace import START_UP, Estimate, Pace, estimate
 from runner.sweeps.plan import Checked, Plan, check
@@ -74,6 +78,26 @@ class Ended:
     left: int
     stored: int = field(compare=False)
     resolved: Resolved = field(compare=False)
+
+
+def sweep_typed(
+    arguments: Sequence[str], sweeper: DictConfig | Mapping[str, Any], source: ConfigSource, command: str
+) -> Ended:
+    """Make the runs of a command line that are missing.
+
+    Args:
+        arguments: Overrides as `force` leaves them, Hydra's own left out.
+        sweeper: Values of hydra.sweeper: workers, address, and params, the values by key that a file gives; those of
+            the command line come after and win.
+        source: Composes the configs.
+        command: The command line, kept with the sweep.
+    """
+    params = [f"{key}={value}" for key, value in (sweeper["params"] or {}).items()]
+    plan = Grid([*params, *arguments], source)
+    if len(plan) == 1:
+        text = "nothing is swept, and a single run is made: no key has several values, as seed=0,1 has"
+        print(f"runner: {text}", file=sys.stderr)
+    return run_sweep(plan, Engine(sweeper["workers"], sweeper["address"]), command)
 
 
 def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool = True) -> Ended:
