@@ -20,9 +20,8 @@ HARD = (
 )  # fmt: skip
 
 
-FEWER = ("gains", "masses")
-SMALL = [(MACRO, OWN), (HARD, OWN), (TWO_RATES, ("gains", "lengths", "noise")), (SEVEN, FEWER), (INTEGRAL, FEWER)]
-# The cost is that of the parameters: the session has all groups on the Macro alone, slow tests on the other arms, too.
+# The cost is that of the parameters: all groups on the Macro alone in a short run, on the other arms in slow tests.
+SMALL = [(MACRO, OWN), (HARD, OWN), (INTEGRAL, ("gains", "masses")), (TWO_RATES, ("lengths",)), (SEVEN, ("masses",))]
 LARGE = [pytest.param(overrides, OWN, marks=pytest.mark.slow) for overrides in (TWO_RATES, SEVEN, INTEGRAL)]
 
 
@@ -55,7 +54,7 @@ def test_derivatives_of_torques_are_those_of_the_ticks_at_which_they_act(analyse
 
 def test_an_arm_that_is_heavier_in_all_links_moves_alike_with_larger_torques(analysed):
     """Law and plant are both proportional to the masses where nothing clips, so that the arm takes the same way."""
-    for overrides, groups in ((MACRO, OWN), (SEVEN, FEWER)):
+    for overrides, groups in ((MACRO, OWN), (SEVEN, ("masses",))):
         found = analysed(*overrides, groups=groups)
         masses = [place for place, parameter in enumerate(found.parameters) if parameter.group == "masses"]
         expected = {"rms_tracking_error": 0.0, "peak_joint_speed": 0.0, "peak_torque": 1.0, "energy": 1.0}
