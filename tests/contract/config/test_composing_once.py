@@ -14,7 +14,7 @@ from runner.config.hydra_config import hydra_config
 from runner.config.no_code import code_refused
 from runner.config.overrides import force
 from runner.errors import ConfigError
-from runner.sweeps import typed
+from runner.sweeps import run as sweeps
 
 SHORT = ("robot=macro", "plant=rk4", "duration=0.05")
 
@@ -225,7 +225,7 @@ def test_a_file_may_ask_for_a_sweep(cli, own, monkeypatch):
     text = "# @package _global_\nhydra: {mode: MULTIRUN, sweeper: {workers: 0, params: {seed: '0,1'}}}\n"
     (own / "experiment/many.yaml").write_text(text)
     planned = []
-    monkeypatch.setattr(typed, "run_sweep", lambda plan, *_: planned.append(len(plan)))
+    monkeypatch.setattr(sweeps, "run_sweep", lambda plan, *_: planned.append(len(plan)))
     for more in ((), ("noise.position=0,1e-3",)):
         assert cli("--config-dir", own, "experiment=many", *SHORT, *more).code == 0
     assert planned == [2, 4]
