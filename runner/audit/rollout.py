@@ -4,11 +4,11 @@ The words stand beside the function's module, in a YAML file of the same name, u
 
     line:
       title: The line by the printed inverse
-      text: The tip misses the line by {max[as printed]:.1f} cm at worst, at the end by {last[as printed]:.1f} cm.
+      text: The tip misses the line by {{ "%.1f" % max["as printed"] }} cm at worst.
       x_label: time (s)
       y_label: distance (cm)
 
-Numbers are `max`, `min` and `last` of each curve, and those that the run gives besides.
+Numbers are `max`, `min` and `last` of each curve by its name, and those that the run gives besides.
 """
 
 from collections.abc import Callable, Mapping
@@ -20,7 +20,9 @@ import numpy as np
 from runner.audit.sources import Where, rollout_of, source_of
 from runner.audit.truth import FloatArray
 from runner.data_file import read_data
-from runner.errors import RunnerError
+from runner.errors import RunnerError, nearest
+from runner.expressions.evaluator import Budget, ExpressionError, Scope
+from runner.expressions.insertions import fill
 from runner.registry import StrictModel
 
 
@@ -66,7 +68,10 @@ def run_rollout(where: Where, name: str) -> tuple[Words, Run]:
     ends: Mapping[str, Callable[[FloatArray], float]]
     ends = {"max": np.nanmax, "min": np.nanmin, "last": itemgetter(-1)}
     told = {end: {name: of(values) for name, values in run.curves.items()} for end, of in ends.items()}
+    if own not in words:
+        raise RunnerError(f"{path}: {own}: no words{nearest(own, words)}")
     try:
-        return words[own].model_copy(update={"text": words[own].text.format(**told, **run.numbers)}), run
-    except (KeyError, ValueError) as error:
-        raise RunnerError(f"{path}: {own}: no words, or no such number: {error}") from error
+        text = fill(words[own].text, Scope({}, {**told, **run.numbers}), Budget())
+    except ExpressionError as error:
+        raise RunnerError(f"{path}: {own}: {error.reason}") from error
+    return words[own].model_copy(update={"text": text}), run

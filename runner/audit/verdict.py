@@ -13,7 +13,8 @@ from runner.audit.model_truths import AuditedArm, audited_arm, sample
 from runner.audit.sources import Source, truth_of
 from runner.audit.truth import Elements, FloatArray, Symbols, Truth
 from runner.errors import ConfigError, RunnerError
-from runner.expressions.parser import ExpressionError, parse
+from runner.expressions.evaluator import ExpressionError
+from runner.expressions.parser import parse
 
 SAMPLES = 1000
 Verdict = Literal["correct", "correct after repair", "wrong as printed", "unreadable", "definition"]
@@ -49,7 +50,6 @@ class Judged:
         verdict: What the samples say.
         measured: Error of the form as printed (after repair where there is one); None where it has none.
         second: The same against the second way to the truth.
-        unread: Why the printed form cannot be read, or "".
         ways: The two ways to what it claims to equal, in words; empty texts where it claims nothing.
     """
 
@@ -58,7 +58,6 @@ class Judged:
     verdict: Verdict
     measured: Measured | None
     second: Measured | None
-    unread: str
     ways: tuple[str, str]
 
 
@@ -100,16 +99,16 @@ class Judge:
             raise AuditError(f"{self._part.path}: {entry.id}: {what}") from error
 
     def _judge(self, entry: Entry) -> Judged:
-        unread = _unread(entry.printed)
+        unread = not _can_be_read(entry.printed)
         if unread and entry.repair is None:
-            return self._judged(entry, "unreadable", None, unread)
+            return self._judged(entry, "unreadable", None)
         if not (unread or entry.truth):
-            return self._judged(entry, "definition", None, "")
+            return self._judged(entry, "definition", None)
         if entry.repair and not unread and self._measure(entry, entry.printed).worst <= entry.tolerance:
             raise AuditError("is repaired, but holds as it stands")
         measured = self._measure(entry, entry.repair or entry.printed)
         if measured.worst <= entry.tolerance:
-            return self._judged(entry, "correct after repair" if entry.repair else "correct", measured, unread)
+            return self._judged(entry, "correct after repair" if entry.repair else "correct", measured)
         if min(measured.first.largest, measured.second.largest) <= entry.tolerance:
             raise AuditError("the two ways to the truth disagree")
         if entry.corrected is None:
@@ -117,14 +116,14 @@ class Judge:
         right = self._measure(entry, entry.corrected)
         if right.worst > entry.tolerance:
             raise AuditError(f"the correction is wrong by {right.first.largest:.3g} {entry.unit}")
-        return self._judged(entry, "wrong as printed", measured, unread)
+        return self._judged(entry, "wrong as printed", measured)
 
-    def _judged(self, entry: Entry, verdict: Verdict, found: "_Both | None", unread: str) -> Judged:
+    def _judged(self, entry: Entry, verdict: Verdict, found: "_Both | None") -> Judged:
         if entry.corrected is not None and verdict != "wrong as printed":
             raise AuditError(f"is corrected, but its verdict is '{verdict}'")
         first, second = (found.first, found.second) if found else (None, None)
         ways = self.truth(entry).ways if entry.truth else ("", "")
-        return Judged(self._part.source.name, entry, verdict, first, second, unread, ways)
+        return Judged(self._part.source.name, entry, verdict, first, second, ways)
 
     def _measure(self, entry: Entry, form: Form) -> "_Both":
         found, truth = self._evaluate(form), self.truth(entry)
@@ -158,14 +157,11 @@ class _Both(NamedTuple):
         return max(each.largest for each in self)
 
 
-def _unread(form: Form) -> str:
-    """Return why a form cannot be read, or "" when it can."""
+def _can_be_read(form: Form) -> bool:
     try:
-        for text in form.elements.values():
-            parse(text)
-    except ExpressionError as error:
-        return error.reason
-    return ""
+        return all(map(parse, form.elements.values()))
+    except ExpressionError:
+        return False
 
 
 @lru_cache(maxsize=8)

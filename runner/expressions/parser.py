@@ -1,24 +1,19 @@
-"""Arithmetic as people print it, read safely: never evaluated as code, every refusal with its position.
+"""Arithmetic as people print it, read by the evaluator's grammar into a tree for those who draw and compare it.
 
-Grammar, from loosest to tightest binding:
-
-    sum     = ("+" | "-")? product (("+" | "-") product)*
-    product = factor (("*" | "/") factor)*
-    factor  = ("+" | "-") factor | power
-    power   = atom (("^" | "**") factor)?
-    atom    = number | name | function "(" sum ("," sum)* ")" | "(" sum ")"
-
-A power binds tighter than the sign before it, so that `-s1^2` is `-(s1^2)`, and is grouped from the right. A name is
-a letter followed by letters, digits and underscores, and primes (`s2'`); what it stands for is up to the evaluation.
-A product always has its sign: `2 s1` and `c1(q2)` are refused, since a lost sign and a lost bracket look alike.
+A power is written `^` or `**`, and a name may end in primes (`s2'`); what it stands for is up to the evaluation. A
+product always has its sign: `2 s1` and `c1(q2)` are refused, since a lost sign and a lost bracket look alike.
 """
 
+import ast
 import re
-from collections.abc import Callable
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import NoReturn
 
-from runner.errors import RunnerError, nearest
+from runner.errors import nearest
+from runner.expressions import evaluator
+from runner.expressions.evaluator import ExpressionError
 from runner.expressions.tree import Call, Name, Node, Number, Power, Product, Sum
 
 FUNCTIONS = {
@@ -27,27 +22,16 @@ FUNCTIONS = {
 }
 """The functions that an expression may call, with their number of arguments."""
 
-_DEEPEST = 60
-_LONGEST = 100_000
-_TOKEN = re.compile(r"\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)|([^\W\d]\w*'*)|(\*\*|[-+*/^(),])|(\S))")
-_EXCERPT = 30
-
-
-class ExpressionError(RunnerError):
-    """An expression that cannot be read or evaluated.
-
-    Attributes:
-        reason: What is wrong.
-        position: Where, counted from 1.
-    """
-
-    def __init__(self, text: str, index: int, reason: str) -> None:
-        self.reason, self.position = reason, index + 1
-        first, last = max(0, index - _EXCERPT), index + _EXCERPT
-        before, after = "... " if first else "", " ..." if last < len(text) else ""
-        excerpt = before + re.sub(r"\s", " ", text[first:last]) + after
-        mark = " " * (len(before) + index - first) + "^"
-        super().__init__(f"position {self.position}: {reason}\n    {excerpt}\n    {mark}")
+PRIME = "\N{MODIFIER LETTER PRIME}"
+"""A prime as Python takes it for a letter."""
+_TO_PYTHON = {"^": "**", "'": PRIME}
+_FAULT = re.compile(r"(?P<lost>…|\.{3})|(?<=[\w')])\s+(?P<apart>\w+)|(?P<sign>[^\w\s'.+\-*/^(),]|(?<![\w'])')")
+_TOLD = {
+    "lost": "the text is lost here",
+    "apart": "'{}' follows without a sign; a product needs its '*'",
+    "sign": "'{}' is no sign of arithmetic; signs: + - * / ^ ** ( ) ,",
+}
+_NUMBER = re.compile(r"(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(?![\w.])")
 
 
 @dataclass(frozen=True)
@@ -57,10 +41,14 @@ class Expression:
     Attributes:
         text: As it is written.
         root: Its structure.
+        python: As the evaluator reads it.
+        places: Where each byte of that, in UTF-8, is in the text; and the text's end.
     """
 
     text: str
     root: Node
+    python: str
+    places: Sequence[int]
 
 
 def parse(text: str) -> Expression:
@@ -69,140 +57,94 @@ def parse(text: str) -> Expression:
     Raises:
         ExpressionError: With the position of what cannot be read.
     """
-    return Expression(text, _Reader(text).read())
+    if fault := _FAULT.search(text):
+        kind = fault.lastgroup or ""
+        raise ExpressionError(text, fault.start(kind), _TOLD[kind].format(fault[kind]))
+    start = len(text) - len(text.lstrip())
+    letters = [" " if each.isspace() else _TO_PYTHON.get(each, each) for each in text[start:]]
+    python = "".join(letters).rstrip()
+    places = [start + index for index, each in enumerate(letters) for _ in each.encode()] + [len(text)]
+    with as_written(text, python, places):
+        return Expression(text, _Reader(python, places).sum(evaluator.parse(python)), python, places)
+
+
+@contextmanager
+def as_written(text: str, python: str, places: Sequence[int]) -> Iterator[None]:
+    """Raise the evaluator's errors with their place in an expression as it is written; see Expression."""
+    try:
+        yield
+    except ExpressionError as error:
+        place = places[len(python[: error.position - 1].encode())]
+        raise ExpressionError(text, place, error.reason) from None
 
 
 class _Reader:
-    """The parser: one method for each line of the grammar; `_next` is the word or sign that stands next."""
+    """Makes our tree of Python's, which has no brackets: what stands in some begins right behind one.
 
-    def __init__(self, text: str) -> None:
-        self._text, self._place, self._depth = text, 0, 0
-        if len(text) > _LONGEST:
-            self._refuse(_LONGEST, f"the expression has {len(text)} characters; at most {_LONGEST} are read")
-        self._advance()
+    Args:
+        python: The expression.
+        places: Where each byte of it is in the text.
+    """
 
-    def read(self) -> Node:
-        if not self._next:
-            self._refuse(self._index, "the expression is empty")
-        root = self._sum()
-        if self._next == ")":
-            self._refuse(self._index, "this ')' has no '(' before it")
-        if self._next:
-            self._refuse(self._index, self._unexpected())
-        return root
+    def __init__(self, python: str, places: Sequence[int]) -> None:
+        self._python, self._bytes, self._places = python, python.encode(), places
+        self._inside = {match.end() for match in re.finditer(rb"\( *", self._bytes)}
 
-    def _sum(self) -> Node:
-        index = self._index
-        negative = self._next in ("+", "-") and self._take() == "-"
-        terms = [(negative, self._product())]
-        while self._next in ("+", "-"):
-            minus = self._take() == "-"
-            terms.append((minus, self._product()))
-        return Sum(tuple(terms), index) if negative or len(terms) > 1 else terms[0][1]
+    def sum(self, node: ast.expr) -> Node:
+        """Return what stands alone, in brackets or as an argument; the sign before its first factor is its own."""
+        first, row = evaluator.chain(node, ast.Add, ast.Sub)
+        factor, _ = evaluator.chain(first, ast.Mult, ast.Div)
+        sign = factor.op if isinstance(factor, ast.UnaryOp) and factor.col_offset == node.col_offset else None
+        negative = isinstance(sign, ast.USub)
+        bracketed = first.col_offset != node.col_offset
+        terms = [(negative, self.sum(first) if bracketed else self._product(first, sign is not None))]
+        for each in row:
+            bracketed = each.right.col_offset in self._inside
+            terms.append((isinstance(each.op, ast.Sub), (self.sum if bracketed else self._product)(each.right)))
+        return Sum(tuple(terms), self._places[node.col_offset]) if negative or row else terms[0][1]
 
-    def _product(self) -> Node:
-        index, factors = self._index, [(False, self._factor())]
-        while self._next in ("*", "/"):
-            over = self._take() == "/"
-            factors.append((over, self._factor()))
-        return factors[0][1] if len(factors) == 1 else Product(tuple(factors), index)
+    def _product(self, node: ast.expr, signed: bool = False) -> Node:
+        first, row = evaluator.chain(node, ast.Mult, ast.Div)
+        start = node.col_offset
+        if signed and isinstance(first, ast.UnaryOp):
+            start, first = self._behind(rb"[+-] *", start), first.operand
+        factors = [(False, self._factor(first))]
+        factors += [(isinstance(each.op, ast.Div), self._factor(each.right)) for each in row]
+        return Product(tuple(factors), self._places[start]) if row else factors[0][1]
 
-    def _factor(self) -> Node:
-        index = self._index
-        if self._next not in ("+", "-"):
-            return self._power()
-        minus = self._take() == "-"
-        with_sign = self._deeper(self._factor)
-        return Sum(((True, with_sign),), index) if minus else with_sign
+    def _factor(self, node: ast.expr) -> Node:
+        index = self._places[node.col_offset]
+        match node:
+            case ast.UnaryOp(op=ast.USub()):
+                return Sum(((True, self._factor(node.operand)),), index)
+            case ast.UnaryOp(op=ast.UAdd()):
+                return self._factor(node.operand)
+            case ast.BinOp(op=ast.Pow()):
+                sign = self._places[self._behind(rb"[) ]*", node.left.end_col_offset or 0)]
+                return Power(self._factor(node.left), self._factor(node.right), sign)
+            case ast.BinOp(op=ast.Add() | ast.Sub() | ast.Mult() | ast.Div()):
+                return self.sum(node)
+            case ast.Call(func=ast.Name(id=function), keywords=[]):
+                return self._call(node, function, index)
+            case ast.Name() if node.id not in FUNCTIONS:
+                return Name(node.id.replace(PRIME, "'"), index)
+            case ast.Constant() if number := _NUMBER.match(self._python, evaluator.index_of(node, self._python)):
+                if float(number[0]) == float("inf"):
+                    self._refuse(node, f"the number {number[0]} is too large")
+                return Number(number[0], index)
+        return self._refuse(node, "is no arithmetic: numbers, names, + - * / ^ ( ) and functions with their arguments")
 
-    def _power(self) -> Node:
-        base, index = self._atom(), self._index
-        if self._next not in ("^", "**"):
-            return base
-        self._take()
-        return Power(base, self._deeper(self._factor), index)
-
-    def _atom(self) -> Node:
-        index, kind, word = self._index, self._kind, self._next
-        if kind == "number":
-            if float(word) == float("inf"):
-                self._refuse(index, f"the number {word} is too large")
-            self._take()
-            return Number(word, index)
-        if kind == "name":
-            self._take()
-            return self._call(word, index) if self._next == "(" else Name(word, index)
-        if word == "(":
-            return self._bracket(index)
-        if not word:
-            self._refuse(index, "the expression ends where a number, a name or a '(' should follow")
-        if word == ")":
-            self._refuse(index, "a number, a name or a '(' should stand before this ')'")
-        return self._refuse(index, self._unexpected())
-
-    def _call(self, function: str, index: int) -> Node:
+    def _call(self, node: ast.Call, function: str, index: int) -> Node:
         if function not in FUNCTIONS:
-            listed = ", ".join(FUNCTIONS)
-            self._refuse(
-                index,
-                f"'{function}' is no function that can be called{nearest(function, FUNCTIONS)}; functions: {listed}; "
-                "a product needs its '*'",
-            )
-        opening = self._index
-        self._take()
-        arguments = [self._deeper(self._sum)]
-        while self._next == ",":
-            self._take()
-            arguments.append(self._deeper(self._sum))
-        self._close(opening)
-        if len(arguments) != FUNCTIONS[function]:
-            self._refuse(index, f"{function} takes {FUNCTIONS[function]} argument(s), not {len(arguments)}")
-        return Call(function, tuple(arguments), index)
+            told = f"'{function}' is no function that can be called{nearest(function, FUNCTIONS)}"
+            self._refuse(node, f"{told}; functions: {', '.join(FUNCTIONS)}; a product needs its '*'")
+        if len(node.args) != FUNCTIONS[function]:
+            self._refuse(node, f"{function} takes {FUNCTIONS[function]} argument(s), not {len(node.args)}")
+        return Call(function, tuple(map(self.sum, node.args)), index)
 
-    def _bracket(self, index: int) -> Node:
-        self._take()
-        inner = self._deeper(self._sum)
-        self._close(index)
-        return inner
+    def _behind(self, pattern: bytes, start: int) -> int:
+        match = re.compile(pattern).match(self._bytes, start)
+        return match.end() if match else start
 
-    def _close(self, opening: int) -> None:
-        if not self._next:
-            self._refuse(opening, "this '(' is never closed")
-        if self._next != ")":
-            self._refuse(self._index, self._unexpected())
-        self._take()
-
-    def _deeper(self, read: Callable[[], Node]) -> Node:
-        self._depth += 1
-        if self._depth > _DEEPEST:
-            self._refuse(self._index, f"brackets, signs or powers nested more than {_DEEPEST} deep")
-        node = read()
-        self._depth -= 1
-        return node
-
-    def _take(self) -> str:
-        taken = self._next
-        self._advance()
-        return taken
-
-    def _advance(self) -> None:
-        match = _TOKEN.match(self._text, self._place)
-        if match is None or match.lastindex is None:
-            self._kind, self._next, self._index = "end", "", len(self._text)
-            return
-        self._kind = ("", "number", "name", "sign", "other")[match.lastindex]
-        self._next, self._index, self._place = match[match.lastindex], match.start(match.lastindex), match.end()
-
-    def _unexpected(self) -> str:
-        if self._next == "…":
-            return "the text is lost here"
-        if self._next == ".":
-            return "attribute access is no arithmetic: a '.' stands in decimal numbers alone"
-        if self._kind in ("number", "name") or self._next == "(":
-            return f"'{self._next}' follows without a sign; a product needs its '*'"
-        if self._kind == "sign":
-            return f"'{self._next}' cannot stand here"
-        return f"'{self._next}' is no sign of arithmetic; signs: + - * / ^ ** ( ) ,"
-
-    def _refuse(self, index: int, reason: str) -> NoReturn:
-        raise ExpressionError(self._text, index, reason)
+    def _refuse(self, node: ast.expr, reason: str) -> NoReturn:
+        raise ExpressionError(self._python, evaluator.index_of(node, self._python), reason)

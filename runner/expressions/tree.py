@@ -11,11 +11,6 @@ class Number:
     text: str
     index: int
 
-    @property
-    def value(self) -> float:
-        """Its value."""
-        return float(self.text)
-
 
 @dataclass(frozen=True)
 class Name:
@@ -93,10 +88,3 @@ def symbols(node: Node) -> Iterator[str]:
 def size(node: Node) -> int:
     """Return how many symbols an expression has."""
     return sum(1 for _ in symbols(node))
-
-
-def names(node: Node) -> list[Name]:
-    """Return the symbols of an expression in the order in which they stand."""
-    if isinstance(node, Name):
-        return [node]
-    return [name for part in parts(node) for name in names(part)]

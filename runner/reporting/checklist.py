@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from string import Formatter
 from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
 from runner.data_file import read_data
+from runner.expressions.evaluator import Budget, ExpressionError, Scope
+from runner.expressions.insertions import fill
 from runner.paths import works_dir
 from runner.registry import StrictModel
 from runner.reporting import outline
@@ -41,11 +42,11 @@ class Checklist(StrictModel):
 
     Attributes:
         title: Title of the section.
-        text: What is to be said of the source. In braces: `figures` and `tables`, how many items are called so;
+        text: What is to be said of the source. In double braces: `figures` and `tables`, how many items are called so;
             `expected`, how many items are to be in the report; `here`, how many of these are; `missing`, the sentence
             on those that are not.
         complete: What stands for `missing` where nothing is.
-        incomplete: What stands for it otherwise; in braces `names`, those of the items.
+        incomplete: What stands for it otherwise; in double braces `names`, those of the items.
         caption: Caption of the table.
         columns: Headers of the items' names and of what they are about.
         items: The items in the order of the source.
@@ -61,13 +62,14 @@ class Checklist(StrictModel):
 
     @model_validator(mode="after")
     def _check_braces(self) -> Self:
-        for key, text, known in (
+        for key, text, names in (
             ("text", self.text, ("figures", "tables", "expected", "here", "missing")),
             ("incomplete", self.incomplete, ("names",)),
         ):
-            for name in _in_braces(key, text):
-                if name not in known:
-                    raise ValueError(f"{key}: {{{name}}} is unknown; known in braces: {', '.join(known)}")
+            try:
+                _filled(text, **dict.fromkeys(names, ""))
+            except ExpressionError as error:
+                raise ValueError(f"{key}: {error.reason}") from None
         return self
 
     def section(self, sections: Sequence[Section]) -> Section:
@@ -81,21 +83,20 @@ class Checklist(StrictModel):
         rows = [_row(item, place) for item, place in zip(self.items, places, strict=True)]
         missing = [name for name, _, state, _ in rows if state == _MISSING]
         expected = sum(not item.absent for item in self.items)
-        text = self.text.format(
+        told = _filled(self.incomplete, names=", ".join(missing)) if missing else self.complete
+        text = _filled(
+            self.text,
             figures=sum(item.name.startswith("Figure ") for item in self.items),
             tables=sum(item.name.startswith("Table ") for item in self.items),
             expected=expected,
             here=expected - len(missing),
-            missing=self.incomplete.format(names=", ".join(missing)) if missing else self.complete,
+            missing=told,
         )
         return Section(self.title, (Text(text), Table(self.caption, [*self.columns, "state", "where"], rows)))
 
 
-def _in_braces(key: str, text: str) -> list[str]:
-    try:
-        return [name for _, name, _, _ in Formatter().parse(text) if name is not None]
-    except ValueError as error:
-        raise ValueError(f"{key}: {error}") from None
+def _filled(text: str, **values: str | int) -> str:
+    return fill(text, Scope({}, values), Budget())
 
 
 def load_checklist(work: str | Path) -> Checklist | None:

@@ -90,7 +90,10 @@ class Chapters:
         """
         if stem not in self._readings:
             file = f"{stem}.md"
-            self._readings[stem] = read_chapter(f"{self._folder.name}/{file}", self._text(file), self.names(stem))
+            values = self._code.values(_FIGURES) + self._code.values(stem)
+            self._readings[stem] = read_chapter(
+                f"{self._folder.name}/{file}", self._text(file), self.names(stem), values
+            )
         return self._readings[stem]
 
     def names(self, stem: str) -> dict[str, Any]:

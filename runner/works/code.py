@@ -3,7 +3,8 @@
 import ast
 import hashlib
 from collections.abc import Callable
-from inspect import getmembers, isfunction
+from dataclasses import is_dataclass
+from inspect import getmembers, isclass, isfunction
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NoReturn
@@ -43,6 +44,17 @@ class Code:
         if not self.runs:
             return {name: _not_run(path) for name in _defined(path)}
         return public_functions(folder_module(self._folder, stem, self._package))
+
+    def values(self, stem: str) -> tuple[type, ...]:
+        """Return the frozen dataclasses of the folder that a module uses: chapters hand their values on as they are."""
+        if not self.runs or not (self._folder / f"{stem}.py").is_file():
+            return ()
+        module = folder_module(self._folder, stem, self._package)
+        return tuple(
+            each
+            for _, each in getmembers(module, isclass)
+            if is_dataclass(each) and each.__module__.rpartition(".")[0] == module.__name__.rpartition(".")[0]
+        )
 
     def about(self) -> str:
         """Return a digest of all Python in the folder, and whether it was run; nothing where there is none."""

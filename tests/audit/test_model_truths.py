@@ -139,7 +139,7 @@ def test_a_robot_of_the_folder_by_its_config(paper):
         ("robot: two.urdf", "robot: macr", r"1.yaml: paper-3: no robot 'macr' \(did you mean macro\?\); robots: comb"),
         ("robot: two.urdf", "robot: macro", "1.yaml: paper-3: joints: 2 names; robot macro has 3 joints"),
         ("model.position", "mine.position", "'mine.position' is Python of .*, which may not run"),
-        ("l1: 0.5", "l1: l0", "1.yaml: paper-3: l1, position 1: unknown name 'l0'"),
+        ("l1: 0.5", "l1: l0", "1.yaml: paper-3: l1, position 1: no name 'l0'"),
         ("J_62: 1", "J_72: 1", "1.yaml: paper-3: no truth for J_72"),
     ],
 )  # fmt: skip

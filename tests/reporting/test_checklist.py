@@ -9,9 +9,9 @@ from runner.reporting.document import Curves, Origin, Section
 
 CONTENT = {
     "title": "Checklist",
-    "text": "Its images are lost. {missing}",
+    "text": "Its images are lost. {{ missing }}",
     "complete": "All is here.",
-    "incomplete": "Missing here: {names}.",
+    "incomplete": "Missing here: {{ names }}.",
     "caption": "Formulas.",
     "columns": ["what it is", "chapter"],
     "items": [
@@ -20,7 +20,7 @@ CONTENT = {
     ],
 }
 NUMBERED = CONTENT | {
-    "text": "{figures} figures, {tables} table, {here} of {expected}: {missing}",
+    "text": "{{ figures }} figures, {{ tables }} table, {{ here }} of {{ expected }}: {{ missing }}",
     "items": [
         {"name": "Figure 1.1", "about": "A bridge", "state": "of others", "absent": "a photograph"},
         {"name": "Figure 1.2", "about": "Torques", "state": "reproduced"},
@@ -78,8 +78,9 @@ def test_every_checklist_names_each_thing_once(work):
     [
         ({"items": []}, "items\n.* at least 1 item"),
         ({"columns": ["what it is"]}, "columns\n.* at least 2 items"),
-        ({"text": "{missing} and {more}"}, r"text: \{more\} is unknown; known in braces: figures, tables, expected"),
-        ({"incomplete": "not {"}, "incomplete: Single '{' encountered"),
+        ({"text": "{{ missing }} and {{ more }}"}, "text: no name 'more' .*names: figures, tables, expected"),
+        ({"incomplete": "not {{"}, "incomplete: {{ is not closed"),
+        ({"incomplete": "{{ names.upper() }}"}, "incomplete: .* has no 'upper'"),
     ],
 )
 def test_a_checklist_that_cannot_be_shown_is_refused(changes, told):

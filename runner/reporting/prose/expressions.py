@@ -1,22 +1,27 @@
-"""Expressions in a chapter, `{{ ... }}`: evaluated in a sandbox, their values kept apart from the Markdown around them.
+"""Expressions in a chapter, `{{ ... }}`: their values are kept apart from the Markdown around them.
 
 Each value gives way to a placeholder before Markdown is read, so that nothing it holds can become markup, a block or
 another expression.
 """
 
+import ast
 import re
-import traceback
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections import ChainMap
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, get_args
 
-import jinja2
-from jinja2 import nodes
-from jinja2.exceptions import SecurityError
-from jinja2.sandbox import ImmutableSandboxedEnvironment
+import numpy as np
 
-from runner.errors import RunnerError, nearest
+from runner.errors import RunnerError
+from runner.expressions.evaluator import Budget, ExpressionError, Scope, parse
+from runner.expressions.insertions import insertions
+from runner.reporting.claim import Claim
+from runner.reporting.document import Block, Panel, Section, Series
 from runner.reporting.job import MissingError
+from runner.reporting.measured import Condition, Measured
 from runner.reporting.prose.problem import ProseError
+from runner.reporting.prose.tables import Column
 
 OPEN, CLOSE = "\uf000", "\uf001"
 """Characters around the number of a value that stands elsewhere."""
@@ -25,19 +30,9 @@ PLACEHOLDER = re.compile(f"{OPEN}(\\d+){CLOSE}")
 PRIVATE = re.compile("[\ue000-\uf8ff]")
 _STATEMENT = re.compile(r"\{%|%\}|\{#")
 _SET = re.compile(r"^\{% set (\w+) = (.*?) %\}$", re.MULTILINE | re.DOTALL)
-_BRANCHES = (nodes.CondExpr, nodes.And, nodes.Or, nodes.Not)
-_LONGEST = 10_000  # of a text or list that an expression makes
-
-
-class _Sandbox(ImmutableSandboxedEnvironment):
-    """A sandbox in which no expression makes something huge."""
-
-    intercepted_binops = frozenset(["*", "**"])
-
-    def call_binop(self, context: jinja2.runtime.Context, operator: str, left: Any, right: Any) -> Any:
-        if operator == "**" or any(isinstance(side, str | list | tuple) for side in (left, right)):
-            raise SecurityError(f"{operator} of {type(left).__name__} and {type(right).__name__} is not allowed here")
-        return super().call_binop(context, operator, left, right)
+_BRANCHES = (ast.IfExp, ast.BoolOp, ast.Not)
+_MEMBERS = {Measured: ("value", "shown", "near"), Condition: ("holds",)}
+_HANDED = (*get_args(Block), Section, Column, Panel, Series, Claim, np.ndarray)
 
 
 class Values:
@@ -46,18 +41,18 @@ class Values:
     Args:
         file: Name of the chapter's file.
         names: What expressions may call and read, by name.
+        handed: Further classes whose values they hand on as they are.
     """
 
-    def __init__(self, file: str, names: Mapping[str, Any]) -> None:
-        self._file, self._names = file, dict(names)
-        self._set: list[str] = []
+    def __init__(self, file: str, names: Mapping[str, Any], handed: tuple[type, ...] = ()) -> None:
+        functions = {name: value for name, value in names.items() if callable(value)}
+        self.named: dict[str, Any] = {}
+        """The values that the chapter itself gives a name, by that."""
+        given = {name: value for name, value in names.items() if name not in functions}
+        self._scope = Scope(functions, ChainMap(self.named, given), _MEMBERS, (*_HANDED, *handed))
+        self._file, self._budget = file, Budget()
         self.found: list[tuple[Any, int]] = []
         self._lines = [1]
-        self._compiled: dict[str, Callable[..., Any]] = {}  # by expression
-        self._environment = _Sandbox(undefined=jinja2.StrictUndefined, autoescape=False)
-        self._environment.filters = {}
-        self._environment.tests = {}
-        self._environment.globals = {}
 
     def put_away(self, text: str) -> str:
         """Return a chapter with a placeholder for each of its expressions; `line_of` tells where its lines were.
@@ -71,11 +66,14 @@ class Values:
         text = self._without_names(text)
         parts: list[str] = []
         end, line = 0, 1
-        for start, stop in _braces(text, self._file):
-            line = self._keep(text[end:start], line, parts)
-            parts.append(self.put(self.value(text[start + 2 : stop - 2], line), line))
-            line += text.count("\n", start, stop)
-            end = stop
+        try:
+            for start, stop in insertions(text):
+                line = self._keep(text[end:start], line, parts)
+                parts.append(self.put(self.value(text[start + 2 : stop - 2], line), line))
+                line += text.count("\n", start, stop)
+                end = stop
+        except ExpressionError as error:
+            raise ProseError(self._file, text.count("\n", 0, error.position) + 1, error.reason) from None
         self._keep(text[end:], line, parts)
         rest = "".join(parts)
         if found := _STATEMENT.search(rest):
@@ -87,10 +85,9 @@ class Values:
         """Give names to the values of `{% set name = EXPRESSION %}`; return the text with these left empty."""
         for found in _SET.finditer(text):
             line = text.count("\n", 0, found.start()) + 1
-            if found[1] in self._set:
+            if found[1] in self.named:
                 raise ProseError(self._file, line, f"set {found[1]}: the name is taken above; choose another")
-            self._names[found[1]] = self.value(found[2], line)
-            self._set.append(found[1])
+            self.named[found[1]] = self.value(found[2], line)
         return _SET.sub(lambda found: "\n" * found[0].count("\n"), text)
 
     def line_of(self, number: int) -> int:
@@ -110,11 +107,6 @@ class Values:
         self.found.append((value, line))
         return f"{OPEN}{len(self.found) - 1}{CLOSE}"
 
-    @property
-    def named(self) -> dict[str, Any]:
-        """The values that the chapter itself gives a name, by that."""
-        return {name: self._names[name] for name in self._set}
-
     def value(self, expression: str, line: int, instead: Mapping[str, Any] | None = None) -> Any:
         """Return the value of an expression.
 
@@ -127,48 +119,14 @@ class Values:
             ProseError: if it has none; names the place.
         """
         source = " ".join(expression.split())
+        scope = replace(self._scope, values={**self._scope.values, **instead}) if instead else self._scope
         try:
-            if source not in self._compiled:
-                self._compiled[source] = self._compile(source, line)
-            value = self._compiled[source](**self._names | dict(instead or {}))
-            if isinstance(value, jinja2.Undefined):
-                str(value)  # raises, and says what is not there
-            return value
+            if any(isinstance(node, _BRANCHES) for node in ast.walk(parse(source))):
+                told = "chooses between words; a chapter has one branch: state a condition in a finding"
+                raise ProseError(self._file, line, f"{source}: {told}")
+            return scope.evaluate(source, self._budget)
         except (ProseError, MissingError):  # what a run that was not made is needed for is left out of the report
             raise
         except RunnerError as error:
-            raise ProseError(self._file, line, f"{source}: {error}") from error
-        except jinja2.UndefinedError as error:
-            name = re.sub(r"^'(\w+)' is undefined$", r"\1", str(error))
-            told = f"no name '{name}'{nearest(name, self._names)}" if name.isidentifier() else str(error)
+            told = error.reason if isinstance(error, ExpressionError) else str(error)
             raise ProseError(self._file, line, f"{source}: {told}") from error
-        except jinja2.TemplateSyntaxError as error:
-            raise ProseError(self._file, line, f"{source}: is no expression: {error.message}") from error
-        except Exception as error:
-            told = traceback.format_exception_only(error)[-1].strip()
-            raise ProseError(self._file, line, f"{source}: {told}") from error
-
-    def _compile(self, source: str, line: int) -> Callable[..., Any]:
-        """Return a function of the names that gives the value of an expression."""
-        tree = self._environment.parse("{{ " + source + " }}")
-        for node in tree.find_all((*_BRANCHES, nodes.Filter, nodes.Test)):
-            raise ProseError(self._file, line, f"{source}: {_refused(node)}")
-        return self._environment.compile_expression(source, undefined_to_none=False)
-
-
-def _refused(node: nodes.Node) -> str:
-    if isinstance(node, _BRANCHES):
-        return "chooses between words; a chapter has one branch: state a condition in a finding"
-    return "filters and tests are not used here; call a function"
-
-
-def _braces(text: str, file: str) -> list[tuple[int, int]]:
-    """Return begin and end of each expression in a text, braces included."""
-    found, place = [], 0
-    while (start := text.find("{{", place)) >= 0:
-        stop = text.find("}}", start)
-        if stop < 0:
-            raise ProseError(file, text.count("\n", 0, start) + 1, "{{ is not closed; write }} behind the expression")
-        found.append((start, stop + 2))
-        place = stop + 2
-    return found

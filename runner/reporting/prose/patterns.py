@@ -14,6 +14,7 @@ from runner.store import Run
 
 _BRACES = re.compile(r"\{(\w+)(?:=([^{}]+))?\}")
 _WHOLE = re.compile(r"^(-?\d+)\.0$")
+_MOST_AXES = 3  # between two slashes: with many, a long name may be taken apart in too many ways
 
 
 @dataclass(frozen=True)
@@ -93,6 +94,8 @@ def called(text: str, levels: Mapping[str, str], words: Mapping[str, str]) -> st
 
 
 def _matches(names: Iterable[str], pattern: str) -> Iterator[tuple[str, dict[str, str]]]:
+    if (most := max(part.count("{") for part in _BRACES.sub("{", pattern).split("/"))) > _MOST_AXES:
+        raise RunnerError(f"'{pattern}': {most} axes between two slashes; allowed: up to {_MOST_AXES}")
     expression, end = "", 0
     for brace in _BRACES.finditer(pattern):
         axis, chosen = brace.groups()

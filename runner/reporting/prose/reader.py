@@ -58,7 +58,7 @@ class _Container:
     conditions: list[Stated] = field(default_factory=list)
 
 
-def read_chapter(file: str, text: str, names: Mapping[str, Any]) -> Reading:
+def read_chapter(file: str, text: str, names: Mapping[str, Any], handed: tuple[type, ...] = ()) -> Reading:
     """Return what a chapter's file makes.
 
     Its first line is its title, `# Title`; `## Title` begins a section of it. `{{ CALL }}` in a paragraph of its own is
@@ -74,11 +74,12 @@ def read_chapter(file: str, text: str, names: Mapping[str, Any]) -> Reading:
         file: Name of the file, for messages.
         text: Its content.
         names: What expressions may call and read, by name.
+        handed: Further classes whose values they hand on as they are.
 
     Raises:
         ProseError: if it cannot be read; names the line, and what to write.
     """
-    values = Values(file, names)
+    values = Values(file, names, handed)
     stated: list[Stated] = []
     pieces = list(_pieces(file, values.put_away(text), values, stated))
     if not pieces or not isinstance(pieces[0], Heading) or pieces[0].level != 1:

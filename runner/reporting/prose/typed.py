@@ -3,8 +3,9 @@
 import re
 from collections.abc import Iterable, Iterator, Set
 
+from runner.expressions.insertions import insertions
+
 _BOX = re.compile(r"^::: finding (.*?)^:::$", re.MULTILINE | re.DOTALL)
-_INSERTED = re.compile(r"\{\{.*?\}\}", re.DOTALL)
 _MATHEMATICS = re.compile(r"\$[^$]*\$")
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?: [a-zA-Z%]+)?")
 _PARTS = re.compile(r"[/,] ?")
@@ -44,4 +45,6 @@ def typed_in(words: str, levels: Set[str]) -> set[str]:
 
 def _blank(box: str) -> str:
     """Return a box with each insertion in it left out, its lines kept."""
-    return _INSERTED.sub(lambda found: "…" + "\n" * found[0].count("\n"), box)
+    for start, stop in reversed(list(insertions(box))):
+        box = box[:start] + "…" + "\n" * box.count("\n", start, stop) + box[stop:]
+    return box

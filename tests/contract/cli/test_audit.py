@@ -35,7 +35,7 @@ def test_fewer_samples_and_a_wide_tolerance(cli, tmp_path):
 def test_bad_input_ends_with_2_and_says_what_is_allowed(cli, tmp_path):
     (tmp_path / "own.yaml").write_text("elements: {P_x: s1*(c2}")
     for arguments, message in (
-        (("--position", "own.yaml"), "this '(' is never closed"),
+        (("--position", "own.yaml"), "'(' was never closed"),
         ((), "nothing to compare: give one of --position, --jacobian, --mass-matrix, --gravity"),
         (("--position", "own.yaml", "--samples", "0"), "--samples is 0; allowed: 1 to 100000"),
         (("--position", "own.yaml", "--tolerance", "-1"), "--tolerance is -1; allowed: above 0"),

@@ -21,7 +21,7 @@ def entry(printed, corrected=None, repair=None, name="J_11"):
 
 
 def forms(given, *others):
-    judged = [Judged("paper", each, "wrong as printed", None, None, "", ("", "")) for each in (given, *others)]
+    judged = [Judged("paper", each, "wrong as printed", None, None, ("", "")) for each in (given, *others)]
     return forms_of(given, Likeness(judged))
 
 

@@ -1,0 +1,446 @@
+"""What a text of a file may compute: an expression in Python's grammar over plain values, each step with a limit.
+
+An expression reaches the names that it is given and nothing else. It works with numbers, texts, truth values and None,
+with lists, tuples and mappings of these, and with values of listed classes, of which it reads the listed fields and
+calls the listed methods; of a mapping `x.key` is `x["key"]`. The functions that it is given it calls, or hands on to
+another function as a measure. No attribute is read by Python's own rule, so that what lies behind a value stays out of
+reach.
+"""
+
+import ast
+import operator
+import re
+import traceback
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import lru_cache
+from itertools import pairwise
+from numbers import Real
+from typing import Any, NoReturn
+
+import numpy as np
+
+from runner.errors import RunnerError, nearest
+
+LONGEST = 10_000  # characters of a text, items of a list and of those in it
+_BITS = 63  # of a whole number
+_WHOLE = 2**_BITS
+_DEEPEST = 60
+_LONGEST_ROW = 1000  # operations; Python's own parser ends at some 3000
+_EXCERPT = 30
+_LISTED = 40  # names
+_FEW = 20  # numbers of a list that a text shows
+_TOO_DEEP = f"is nested more than {_DEEPEST} deep, or has more than {_LONGEST_ROW} operations in a row"
+_ONE_LINE = str.maketrans("\n\r\f\t", "    ")
+_FORM = re.compile(r"%(?:%|[-+]?\d{0,2}(?:\.\d{1,2})?([sdfge]))")
+_ARITHMETIC: Mapping[type[ast.AST], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+}
+_COMPARISONS: Mapping[type[ast.AST], Callable[[Any, Any], Any]] = {
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+}
+_WORDS: Mapping[type[ast.AST], str] = {
+    ast.Lambda: "a function",
+    ast.ListComp: "a loop",
+    ast.SetComp: "a loop",
+    ast.DictComp: "a loop",
+    ast.GeneratorExp: "a loop",
+    ast.JoinedStr: "a text with braces",
+    ast.NamedExpr: "an assignment",
+    ast.Slice: "a range",
+}
+
+
+class ExpressionError(RunnerError):
+    """An expression that cannot be read or evaluated.
+
+    Args:
+        text: The expression.
+        index: Where it is wrong, counted from 0.
+        reason: What is wrong.
+
+    Attributes:
+        reason: What is wrong.
+        position: Where, counted from 1.
+    """
+
+    def __init__(self, text: str, index: int, reason: str) -> None:
+        self.reason, self.position = reason, index + 1
+        first, last = max(0, index - _EXCERPT), index + _EXCERPT
+        before, after = "... " if first else "", " ..." if last < len(text) else ""
+        excerpt = before + re.sub(r"\s", " ", text[first:last]) + after
+        mark = " " * (len(before) + index - first) + "^"
+        super().__init__(f"position {self.position}: {reason}\n    {excerpt}\n    {mark}")
+
+
+class Budget:
+    """The operations that are left to the expressions of a file; counted, so that all machines read a file alike.
+
+    Args:
+        operations: How many there are.
+    """
+
+    def __init__(self, operations: int = 100_000) -> None:
+        self._allowed = self._left = operations
+
+    def spend(self, operations: int) -> None:
+        """Take some.
+
+        Raises:
+            OverflowError: if fewer are left.
+        """
+        self._left -= operations
+        if self._left < 0:
+            raise OverflowError(f"the expressions of a file take more than {self._allowed} operations")
+
+
+@dataclass(frozen=True)
+class Scope:
+    """What an expression reaches.
+
+    Attributes:
+        functions: What it calls, and hands on as a measure, by name.
+        values: What it reads, by name; a name may have dots, as "robot.mass".
+        members: Fields that are read and methods that are called, by class; values of these take part in arithmetic.
+        handed: Further classes whose values are handed on as they are.
+        number: Gives the value that a number as written stands for.
+    """
+
+    functions: Mapping[str, Callable[..., Any]]
+    values: Mapping[str, Any]
+    members: Mapping[type, Sequence[str]] = field(default_factory=dict)
+    handed: tuple[type, ...] = ()
+    number: Callable[[Any], Any] = operator.pos
+
+    def evaluate(self, text: str, budget: Budget) -> Any:
+        """Return the value of an expression.
+
+        Args:
+            text: The expression.
+            budget: What it may spend.
+
+        Raises:
+            ExpressionError: for what is no expression, a name that is not there, a value that is of the wrong kind or
+                too large, and where the budget is spent.
+            RunnerError: as a function raises it.
+        """
+        return _Evaluation(self, text, budget).of(parse(text))
+
+
+@lru_cache(maxsize=32)  # a long one takes megabytes
+def parse(text: str) -> ast.expr:
+    """Return the syntax tree of an expression, which must not be changed; its lines are one.
+
+    Raises:
+        ExpressionError: for what is no expression, too long or nested too deep.
+    """
+    if len(text) > LONGEST:
+        raise ExpressionError(text, LONGEST, f"has {len(text)} characters; allowed: up to {LONGEST}")
+    text = text.translate(_ONE_LINE)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what Python would rather have otherwise
+            tree = ast.parse(text, mode="eval").body
+    except SyntaxError as error:
+        early = error.msg == "invalid syntax" and not error.offset
+        told = "it ends too early" if early else re.split(r"[.;] ", error.msg)[0]
+        raise ExpressionError(text, (error.offset or len(text) + 1) - 1, f"is no expression: {told}") from None
+    except ValueError:
+        raise ExpressionError(text, 0, "holds what is no text") from None
+    except (MemoryError, RecursionError):
+        raise ExpressionError(text, 0, _TOO_DEEP) from None
+    if behind := text.encode()[tree.end_col_offset :].decode().strip(" )"):
+        raise ExpressionError(text, text.rindex(behind), "a comment is not allowed in an expression")
+    _check(tree, text)
+    return tree
+
+
+def index_of(node: ast.expr, text: str) -> int:
+    """Return where in an expression a part of it begins; Python counts bytes of UTF-8."""
+    return len(text.encode()[: node.col_offset].decode(errors="ignore"))
+
+
+def dotted(node: ast.expr) -> str:
+    """Return the name that a node is, dots included, or an empty text."""
+    if isinstance(node, ast.Attribute):
+        owner = dotted(node.value)
+        return f"{owner}.{node.attr}" if owner else ""
+    return node.id if isinstance(node, ast.Name) else ""
+
+
+def chain(node: ast.expr, *signs: type[ast.operator]) -> tuple[ast.expr, list[ast.BinOp]]:
+    """Return the first operand of a row of operations such as a + b - c, and these from left to right.
+
+    The operations are of the signs given, or of all. What is in brackets begins later than its row: it is an operand.
+    """
+    row: list[ast.BinOp] = []
+    start = node.col_offset
+    while isinstance(node, ast.BinOp) and node.col_offset == start and isinstance(node.op, signs or ast.operator):
+        row.append(node)
+        node = node.left
+    return node, row[::-1]
+
+
+def _check(tree: ast.expr, text: str) -> None:
+    """Refuse what is nested too deep, and loops and the like; a row of operations has a limit of its own."""
+    left: list[tuple[ast.AST, int]] = [(tree, 0)]
+    while left:
+        node, depth = left.pop()
+        first, row = chain(node) if isinstance(node, ast.BinOp) else (node, [])
+        told = f"{_WORDS[type(node)]} is not allowed in an expression" if type(node) in _WORDS else ""
+        if depth > _DEEPEST or len(row) > _LONGEST_ROW:
+            told = _TOO_DEEP
+        if told:
+            raise ExpressionError(text, index_of(node, text) if isinstance(node, ast.expr) else 0, told)
+        inner = [first, *(each.right for each in row)] if row else ast.iter_child_nodes(node)
+        left += [(each, depth + 1) for each in inner if each._fields]
+
+
+class _Evaluation:
+    """One expression at work: `of` gives the value of a part of it."""
+
+    def __init__(self, scope: Scope, text: str, budget: Budget) -> None:
+        self._scope, self._text, self._budget = scope, text, budget
+        self._kinds = tuple(scope.members)
+
+    def of(self, node: ast.expr) -> Any:
+        with self._placed(node):
+            self._budget.spend(1)
+            value = self._of(node)
+            self._budget.spend(self._sized(value, node))
+            return value
+
+    @contextmanager
+    def _placed(self, node: ast.expr) -> Iterator[None]:
+        try:
+            yield
+        except (ArithmeticError, ValueError, TypeError) as error:
+            told = error.args[-1] if error.args else type(error).__name__
+            raise self._refused(node, f"has no value: {told}") from None
+
+    def _of(self, node: ast.expr) -> Any:
+        match node:
+            case ast.Constant():
+                return self._scope.number(node.value) if _is_number(node.value) else node.value
+            case ast.Name() | ast.Attribute() if (name := dotted(node)) in self._scope.values:
+                return self._scope.values[name]
+            case ast.Name():
+                return self._function(node, node.id)
+            case ast.Attribute():
+                return self._member(node)
+            case ast.List() | ast.Tuple():
+                items = list(self._spread(node.elts))
+                return items if isinstance(node, ast.List) else tuple(items)
+            case ast.Dict():
+                return {self._key(key, node): self.of(value) for key, value in zip(node.keys, node.values, strict=True)}
+            case ast.Subscript():
+                return self._item(node)
+            case ast.Call():
+                return self._call(node)
+            case ast.BinOp():
+                first, row = chain(node)
+                value = self.of(first)
+                for each in row:
+                    right = self.of(each.right)
+                    with self._placed(each.right):
+                        value = self._worked_out(each, value, right)
+                return value
+            case ast.UnaryOp(op=ast.USub() | ast.UAdd()):
+                value = self.of(node.operand)
+                if not self._has_arithmetic(value):
+                    self._refuse(node, f"a sign before {type(value).__name__}")
+                return -value if isinstance(node.op, ast.USub) else value
+            case ast.UnaryOp() if isinstance(node.op, ast.Not):
+                return not self._truth(node.operand)
+            case ast.BoolOp():
+                wanted = isinstance(node.op, ast.Or)
+                return wanted if any(self._truth(each) is wanted for each in node.values) else not wanted
+            case ast.IfExp():
+                return self.of(node.body if self._truth(node.test) else node.orelse)
+            case ast.Compare():
+                return self._compared(node)
+        place = index_of(node, self._text)
+        return self._refuse(node, f"'{self._text[place : place + _EXCERPT]}' is not allowed in an expression")
+
+    def _function(self, node: ast.expr, name: str) -> Callable[..., Any]:
+        if name not in self._scope.functions:
+            known = (*self._scope.functions, *self._scope.values)
+            listed = f"; names: {', '.join(known)}" if len(known) <= _LISTED else ""
+            self._refuse(node, f"no name '{name}'{nearest(name, known)}{listed}")
+        return self._scope.functions[name]
+
+    def _member(self, node: ast.Attribute) -> Any:
+        name = dotted(node)
+        if name and not {name.partition(".")[0]} & {*self._scope.functions, *self._scope.values}:
+            self._function(node, name)  # raises
+        owner = self.of(node.value)
+        if isinstance(owner, dict):
+            return self._of_mapping(owner, node.attr, node)
+        known = self._scope.members.get(type(owner), ())
+        if node.attr not in known:
+            of = f"a value of kind {type(owner).__name__}"
+            there = f"{nearest(node.attr, known)}; there are: {', '.join(known)}" if known else ""
+            self._refuse(node, f"{of} has no '{node.attr}' to be read{there}")
+        return getattr(owner, node.attr)
+
+    def _call(self, node: ast.Call) -> Any:
+        if isinstance(node.func, ast.Name):
+            function = self._function(node.func, node.func.id)
+        elif isinstance(node.func, ast.Attribute):
+            function = self._member(node.func)
+        else:
+            self._refuse(node, "only a function with a name is called")
+        arguments = list(self._spread(node.args))
+        options = {each.arg: self.of(each.value) for each in node.keywords if each.arg is not None}
+        if len(options) < len(node.keywords) or not callable(function):
+            told = "two stars, or a name twice, are not allowed here"
+            self._refuse(node, told if callable(function) else "this is no function")
+        try:
+            return function(*arguments, **options)
+        except (RunnerError, ArithmeticError):
+            raise
+        except Exception as error:
+            told = traceback.format_exception_only(error)[-1].strip()
+            raise self._refused(node, told) from error
+
+    def _spread(self, nodes: Sequence[ast.expr]) -> Iterator[Any]:
+        for node in nodes:
+            if not isinstance(node, ast.Starred):
+                yield self.of(node)
+                continue
+            items = self.of(node.value)
+            if not isinstance(items, list | tuple):
+                self._refuse(node, f"a star stands before a list, not before {type(items).__name__}")
+            yield from items
+
+    def _key(self, node: ast.expr | None, inside: ast.expr) -> Any:
+        value = None if node is None else self.of(node)
+        if not isinstance(value, str | int | float):
+            self._refuse(node or inside, "a key of a mapping is a text or a number")
+        return value
+
+    def _item(self, node: ast.Subscript) -> Any:
+        owner, key = self.of(node.value), self._key(node.slice, node)
+        if isinstance(owner, dict):
+            return self._of_mapping(owner, key, node)
+        if not isinstance(owner, list | tuple | np.ndarray) or type(key) is not int:
+            self._refuse(node, f"no item {key!r} of a value of kind {type(owner).__name__}")
+        if not -len(owner) <= key < len(owner):
+            self._refuse(node, f"no item {key} of {len(owner)}")
+        return owner[key]
+
+    def _of_mapping(self, owner: Mapping[Any, Any], key: Any, node: ast.expr) -> Any:
+        if key not in owner:
+            texts = [str(each) for each in owner][:_LISTED]
+            self._refuse(node, f"has no '{key}'{nearest(str(key), texts)}; there are: {', '.join(texts)}")
+        return owner[key]
+
+    def _worked_out(self, node: ast.BinOp, left: Any, right: Any) -> Any:
+        """Return the value of one operation of a row."""
+        work = _ARITHMETIC.get(type(node.op))
+        if isinstance(node.op, ast.Mod) and isinstance(left, str):
+            return self._formatted(left, right if isinstance(right, tuple) else (right,), node.right)
+        if work is operator.add and any(isinstance(left, kind) and isinstance(right, kind) for kind in (str, list)):
+            if len(left) + len(right) > LONGEST:
+                raise OverflowError(f"a text or list of {len(left) + len(right)}; allowed: up to {LONGEST}")
+            return left + right
+        if work is None or not self._has_arithmetic(left, right):
+            sides = f"{type(left).__name__} and {type(right).__name__}"
+            self._refuse(node.right, f"this is not worked out with {sides}")
+        if work is operator.pow and type(left) is type(right) is int and abs(left) > 1 and right > _BITS:
+            raise OverflowError(f"a whole number of more than {_BITS} bits")
+        value = self._answer(work(left, right), node.right)
+        self._sized(value, node.right)
+        return value
+
+    def _compared(self, node: ast.Compare) -> Any:
+        sides = [self.of(each) for each in (node.left, *node.comparators)]
+        found = [self._pair(kind, *pair, node) for kind, pair in zip(node.ops, pairwise(sides), strict=True)]
+        if len(found) > 1 and not all(isinstance(each, bool) for each in found):
+            self._refuse(node, "measured values are compared in pairs; write a list of two conditions")
+        return found[0] if len(found) == 1 else all(found)
+
+    def _pair(self, kind: ast.cmpop, left: Any, right: Any, node: ast.expr) -> Any:
+        alike = self._has_arithmetic(left, right) or (isinstance(left, str) and isinstance(right, str))
+        if type(kind) in _COMPARISONS and alike:
+            found = _COMPARISONS[type(kind)](left, right)
+            return found if isinstance(found, self._kinds) else bool(found)
+        plain = all(side is None or isinstance(side, str | Real) for side in (left, right))
+        if isinstance(kind, ast.Eq | ast.NotEq | ast.Is | ast.IsNot) and plain:
+            return bool(left == right) is isinstance(kind, ast.Eq | ast.Is)
+        if isinstance(kind, ast.In | ast.NotIn) and isinstance(left, str) and isinstance(right, str | list | tuple):
+            return (left in right) is isinstance(kind, ast.In)
+        return self._refuse(node, f"{type(left).__name__} and {type(right).__name__} are not compared so")
+
+    def _answer(self, value: Any, node: ast.expr) -> Any:
+        if value is NotImplemented or isinstance(value, complex):
+            self._refuse(node, "has no value: no real number")
+        return value
+
+    def _formatted(self, form: str, values: tuple[Any, ...], node: ast.expr) -> str:
+        """Return a text with values in place of %s, %d, %.3f and the like."""
+        kinds = [kind for kind in _FORM.findall(form) if kind]
+        if "%" in _FORM.sub("", form) or len(kinds) != len(values):
+            self._refuse(node, f"{len(kinds)} of the forms %s, %d, %.3f, %g, %e for {len(values)} value(s); %% is a %")
+        shown: list[Any] = []
+        for kind, value in zip(kinds, values, strict=True):
+            if not (_is_number(value) or (kind == "s" and self._is_shown(value))):
+                self._refuse(node, f"%{kind} does not show {type(value).__name__}")
+            shown.append(str(value) if kind == "s" else value)
+        if len(form) + sum(len(each) if isinstance(each, str) else _EXCERPT for each in shown) > LONGEST:
+            raise OverflowError(f"a text of more than {LONGEST} characters")
+        return form % tuple(shown)
+
+    def _is_shown(self, value: Any) -> bool:
+        few = isinstance(value, list | tuple) and len(value) <= _FEW and all(map(_is_number, value))
+        return few or isinstance(value, (str, bool, *self._kinds))
+
+    def _has_arithmetic(self, *values: Any) -> bool:
+        return all(_is_number(value) or isinstance(value, self._kinds) for value in values)
+
+    def _truth(self, node: ast.expr) -> bool:
+        value = self.of(node)
+        return value if isinstance(value, bool) else self._refuse(node, f"{type(value).__name__} is not true or false")
+
+    def _sized(self, value: Any, node: ast.expr) -> int:
+        """Return how many items a value has in all, after a look at each: none may be of a class that is not listed."""
+        left, count = [value], 0
+        while left:
+            each = left.pop()
+            if each is None or type(each) is float or (type(each) is int and -_WHOLE < each < _WHOLE):
+                continue
+            if isinstance(each, list | tuple | dict):
+                count += len(each)
+                left += [] if count > LONGEST else each.values() if isinstance(each, dict) else each
+            elif isinstance(each, str):
+                count = max(count, len(each) // _EXCERPT)
+                if len(each) > LONGEST:
+                    raise OverflowError(f"a text of {len(each)} characters; allowed: up to {LONGEST}")
+            elif type(each) is int:
+                raise OverflowError(f"a whole number of more than {_BITS} bits")
+            elif not (isinstance(each, (Real, *self._kinds, *self._scope.handed)) or callable(each)):
+                self._refuse(node, f"a value of kind {type(each).__name__} is nothing for an expression")
+            if count > LONGEST:
+                raise OverflowError(f"more than {LONGEST} items; allowed: up to {LONGEST}")
+        return count
+
+    def _refused(self, node: ast.expr, reason: str) -> ExpressionError:
+        return ExpressionError(self._text, index_of(node, self._text), reason)
+
+    def _refuse(self, node: ast.expr, reason: str) -> NoReturn:
+        raise self._refused(node, reason)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)
