@@ -11,9 +11,7 @@ from runner.plants.plant import (
     innermost,
 )
 
-PLANTS = Plants(
-    {name: f"runner.plants.{name}" for name in ("bullet", "kinematic", "mujoco", "rk4", "rk4_flexible_links")}
-)
+PLANTS = Plants({name: f"{__name__}.{name}" for name in ("bullet", "kinematic", "mujoco", "rk4", "rk4_flexible_links")})
 
 __all__ = [
     "PLANTS",

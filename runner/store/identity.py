@@ -3,36 +3,21 @@
 import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cache, lru_cache
+from functools import lru_cache
 from typing import Any
 
 from runner.compiled.engine import evaluator
 from runner.config.data_files import has_data_file, unnamed
 from runner.config.memory import Memory
 from runner.engines import installed
-from runner.paths import package_dir
 from runner.plugins import GROUPS, added, source_files
 from runner.store.names import Names
+from runner.store.physics import content_digest, physics_digest
 
 # These say where and under which name a run is kept, and what is told of it, not what is simulated.
 _LEFT_OUT = ("caveats", "limits", "outputs", "preset", "spec", "sweep")
-# The rooms and modules of the physics: what a run's result follows from. All others leave it as it is.
-_PHYSICS = (
-    "assembly.py", "batch.py", "batch_blocks.py", "batch_jobs.py", "calibration", "calibration_job.py", "compiled",
-    "config", "controllers", "environments", "execution.py", "feasibility.py", "guard", "interaction.py", "job.py",
-    "loop", "metrics", "plant_error.py", "plants", "pushed_links.py", "registry.py", "robots", "sensing",
-    "simulation.py", "trace.py", "trajectories", "walls.py",
-)  # fmt: skip
-
-_ENGINES = {
-    "bullet": ("pybullet",),
-    "mujoco": ("mujoco",),
-    "kinematic": (),
-    "rk4": (),
-    "rk4_flexible_links": (),
-    "none": (),
-}  # of our plants
-
+_OWN = ("kinematic", "none", "rk4", "rk4_flexible_links")  # our plants that need no engine
+_ENGINES = {"bullet": ("pybullet",), "mujoco": ("mujoco",), **dict.fromkeys(_OWN, ())}
 
 _MEMORY = Memory(4096)  # what the groups of configs give: texts, and the kinds that they name
 _PLACES = 12  # bytes of a digest that make a name
@@ -42,7 +27,7 @@ def run_hash(resolved: Mapping[str, Any], urdf: str) -> str:
     """Return the name of a run's folder: SHA-256 over all that its result follows from.
 
     That is the resolved config (without outputs, sweep, limits, caveats, spec, and preset, whose values the groups have
-    taken), the URDF's text, the source of the physics and of the user's parts that it uses, and the versions of the
+    taken), the URDF's text, the content of the physics and of the user's parts that it uses, and the versions of the
     plant's engine, Pinocchio and what evaluates compiled laws. It is hashed as JSON with sorted keys; the text of a
     group is kept for others that share it, which must not be changed.
     """
@@ -74,7 +59,7 @@ def _content(resolved: Mapping[str, Any], urdf: str) -> Iterator[str]:
     yield "}" if config else f"{before}}}"
     parts = _parts_digest(tuple(sorted(_parts(resolved))))
     engines = _engines(str(resolved.get("plant", {}).get("kind", "none")))
-    yield f', "engines": {json_text(engines)}, "parts": "{parts}", "source": "{source_digest()}"'
+    yield f', "engines": {json_text(engines)}, "parts": "{parts}", "source": "{physics_digest()}"'
     yield f', "urdf": {_MEMORY.recall(_sorted_text, urdf)}}}'
 
 
@@ -93,8 +78,8 @@ def simulated_part(resolved: Mapping[str, Any]) -> dict[str, Any]:
     return kept | {"trajectory": _MEMORY.recall(unnamed, kept["trajectory"])} if has_data_file(kept) else kept
 
 
-def _parts(resolved: Mapping[str, Any]) -> set[str]:
-    """Return the modules of the user's parts that a run uses: those whose kinds its config names, and all metrics."""
+def _parts(resolved: Mapping[str, Any]) -> set[tuple[str, str]]:
+    """Return name and module of the user's parts that a run uses: whose kinds its config names, and all metrics."""
     points = [(group, point) for group in GROUPS for point in added(group)]
     if not points:
         return set()
@@ -102,7 +87,7 @@ def _parts(resolved: Mapping[str, Any]) -> set[str]:
     for value in resolved.values():
         if isinstance(value, Mapping):
             kinds |= _MEMORY.recall(_kinds, value)
-    return {point.value for group, point in points if group == "metric" or point.name in kinds}
+    return {(point.name, point.value) for group, point in points if group == "metric" or point.name in kinds}
 
 
 def _kinds(group: Mapping[str, Any]) -> frozenset[str]:
@@ -118,22 +103,9 @@ def _engines(plant: str) -> dict[str, str]:
     return installed((*used, "pin")) | evaluator()
 
 
-@cache
-def source_digest() -> str:
-    """Return a digest of the source of the physics, ours."""
-    digest = hashlib.sha256()
-    root = package_dir()
-    for path in sorted(root.rglob("*.py")):
-        if path.relative_to(root).parts[0] in _PHYSICS:
-            digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
-    return digest.hexdigest()
-
-
 @lru_cache(maxsize=16)
-def _parts_digest(modules: tuple[str, ...]) -> str:
-    """Return a digest of the source of the user's parts, as it is when they are first used."""
-    digest = hashlib.sha256()
-    for module in modules:
-        for path in source_files(module):
-            digest.update(f"{module} {path.name}".encode() + b"\0" + path.read_bytes() + b"\0")
-    return digest.hexdigest()
+def _parts_digest(parts: tuple[tuple[str, str], ...]) -> str:
+    """Return a digest of the content of parts, given by name and module, as it is when they are first used."""
+    files = [(name, path) for name, module in parts for path in source_files(module)]
+    sources = {f"{number} {name} {path.name}": path.read_bytes() for number, (name, path) in enumerate(files)}
+    return content_digest(sources, {name: name for name in sources})

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from runner.errors import RunnerError
-from runner.store.identity import source_digest
+from runner.store.physics import physics_digest
 from runner.sweeps.deadline import STUCK
 from runner.sweeps.queue import Queue
 from runner.sweeps.work import Chunk, Report, give_up, work
@@ -238,9 +238,9 @@ def remote_client(address: str) -> Iterator[Any]:
 def _check_versions(client: Any) -> None:
     same = "; install the same version of the runner for the command, the scheduler and all workers"
     try:
-        found = {"the scheduler": client.run_on_scheduler(source_digest), **client.run(source_digest)}
+        found = {"the scheduler": client.run_on_scheduler(physics_digest), **client.run(physics_digest)}
     except (ImportError, AttributeError) as error:
         raise RunnerError(f"the cluster cannot make runs: {error}{same}") from error
-    other = [place for place, digest in found.items() if digest != source_digest()]
+    other = [place for place, digest in found.items() if digest != physics_digest()]
     if other:
         raise RunnerError(f"the cluster has other source code at {', '.join(other)}{same}")

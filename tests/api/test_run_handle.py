@@ -129,7 +129,7 @@ def test_no_other_repetitions(run, repetition):
 
 
 def test_changed_code_gives_no_other_repetition(run, monkeypatch):
-    monkeypatch.setattr("runner.store.identity.source_digest", lambda: "other")
+    monkeypatch.setattr("runner.store.identity.physics_digest", lambda: "other")
     assert len(run.trace()) == 11
     with pytest.raises(runner.RunnerError, match="the code has changed since the run"):
         run.trace(1)

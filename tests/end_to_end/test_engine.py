@@ -11,7 +11,6 @@ from support.short_runs import DAMPING, FREQUENCY
 from runner import store
 from runner.errors import RunnerError
 from runner.plugins import use_plugins
-from runner.store.identity import source_digest
 from runner.sweeps import engine
 from runner.sweeps.pace import Estimate
 from runner.sweeps.queue import Queue
@@ -216,9 +215,7 @@ def deadly_metric(tmp_path, monkeypatch):
         (tmp_path / "site" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "site" / name).write_text(text)
     monkeypatch.syspath_prepend(tmp_path / "site")
-    source_digest.cache_clear()
     yield
-    source_digest.cache_clear()
     sys.modules.pop("deadly", None)
 
 

@@ -8,18 +8,10 @@ import pytest
 from support.engines import ASKED
 
 from runner.config.compose import compose
-from runner.paths import package_dir
 from runner.plugins import source_files
 from runner.store import identity, run_hash, run_hashes, simulated_part
 
 CONFIG = {"seed": 0, "controller": {"period": 0.01, "kind": "a"}, "outputs": "x", "preset": {"feedforward": True}}
-
-
-@pytest.fixture(autouse=True)
-def _fresh_digest():
-    identity.source_digest.cache_clear()
-    yield
-    identity.source_digest.cache_clear()
 
 
 def changed(**keys):
@@ -66,7 +58,7 @@ def test_what_is_hashed_is_json_with_sorted_keys(monkeypatch):
     assert name == make(texts[-1]).hexdigest()[:24]
     assert set(content) == {"config", "engines", "parts", "source", "urdf"}
     assert (content["config"], content["urdf"]) == (simulated_part(config), urdf)
-    assert content["source"] == identity.source_digest()
+    assert content["source"] == identity.physics_digest()
     assert "pin" in content["engines"]
 
 
@@ -91,60 +83,10 @@ def test_the_engines_versions_count(monkeypatch):
     assert run_hash({"plant": {"kind": "of a third"}}, "<robot/>") != alone
 
 
-def test_the_source_counts_but_not_that_of_reports_and_commands(monkeypatch, tmp_path):
-    others = ("reporting/page.py", "commands/run.py", "cli.py", "a_new_room/part.py")
-    for name in ("simulation.py", "controllers/law.py", *others):
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text("1")
-    monkeypatch.setattr(identity, "package_dir", lambda: tmp_path)
-
-    def digest():
-        identity.source_digest.cache_clear()
-        return identity.source_digest()
-
-    before = digest()
-    for name in others:
-        (tmp_path / name).write_text("2")
-    assert digest() == before
-    (tmp_path / "controllers/law.py").write_text("2")
-    assert digest() != before
-    before = digest()
-    (tmp_path / "controllers/law.py").rename(tmp_path / "controllers/rule.py")
-    assert digest() != before
-
-
-def test_every_room_is_physics_or_known_not_to_be(monkeypatch, tmp_path):
-    """A new room belongs to one of the two lists; what decides about results must count in the hash."""
-    after_the_run = {
-        "api", "audit", "caveats", "claims", "cli.py", "commands", "comparison", "data_file.py", "doctor",
-        "engine_output.py", "engines.py", "errors.py", "export", "folder_code.py",
-        "completion", "drawing", "expressions", "latest.py", "paths.py", "plugins.py", "progress", "provenance.py",
-        "quantities.py", "quiet.py", "recall", "recordings", "references", "reporting", "sensitivity",
-        "servo_contact.py", "spec", "statistics", "store", "sweeps", "texts.py", "tuning",
-        "works",
-        "__init__.py", "__main__.py",
-    }  # fmt: skip
-    rooms = {path.name for path in package_dir().iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()}
-    assert rooms_that_count(monkeypatch, tmp_path, rooms) == rooms - after_the_run
-    assert after_the_run <= rooms
-
-
-def rooms_that_count(monkeypatch, package, rooms):
-    """Return the rooms whose source changes the digest."""
-    files = {room: package / room if room.endswith(".py") else package / room / "part.py" for room in rooms}
-    for file in files.values():
-        file.parent.mkdir(exist_ok=True)
-        file.write_text("1")
-    monkeypatch.setattr(identity, "package_dir", lambda: package)
-    digests = {}
-    for room, file in [("", None), *files.items()]:
-        if file:
-            file.write_text("2")
-        identity.source_digest.cache_clear()
-        digests[room] = identity.source_digest()
-        if file:
-            file.write_text("1")
-    return {room for room, digest in digests.items() if digest != digests[""]}
+def test_the_physics_counts(monkeypatch):
+    before = changed()
+    monkeypatch.setattr(identity, "physics_digest", lambda: "other")
+    assert changed() != before
 
 
 def test_the_simulated_part_leaves_out_what_does_not_count():
@@ -158,6 +100,30 @@ def test_a_part_counts_in_the_runs_that_use_it(monkeypatch):
     monkeypatch.setattr(identity, "added", lambda group: (point,) if group == "controller" else ())
     assert changed() != before[0]
     assert changed(**other) == before[1]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "same"),
+    [
+        ("A part.", "Another text.", True),
+        ("2.0", "2.0  # text", True),
+        ("2.0", "2.5", False),
+        ("def build", "def make", False),
+    ],
+)
+def test_of_a_part_the_content_counts(monkeypatch, tmp_path, old, new, same):
+    text = '"""A part."""\nGAIN = 2.0\ndef build(): return GAIN\n'
+    monkeypatch.setattr(identity, "added", lambda group: (EntryPoint("a", "part", group),) if group == "plant" else ())
+    names = []
+    for place, source in enumerate((text, text.replace(old, new))):
+        path = tmp_path / str(place) / "part.py"
+        path.parent.mkdir()
+        path.write_text(source)
+        monkeypatch.setattr(identity, "source_files", lambda _, path=path: [path])
+        identity._parts_digest.cache_clear()
+        names.append(changed())
+    identity._parts_digest.cache_clear()
+    assert (names[0] == names[1]) == same
 
 
 def test_of_a_part_of_our_works_the_source_is_its_folder():

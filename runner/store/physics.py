@@ -1,0 +1,137 @@
+"""The modules of the physics, whose content is part of the hash of each run.
+
+They are all that makes numbers of a resolved config and a URDF: what reads these (`config`), builds robot, path, law,
+plant and sensors, simulates, calibrates and measures. Left out are the modules that make the resolved config
+(composition, units, defaults), as the hash has what they make; those that only refuse, tell or keep something; and all
+that works on finished runs (caveats, statistics, store, reports, commands), as no stored number follows from it.
+
+Each module counts under an id. Where it moves, change its place in the table and keep its id: no hash changes.
+"""
+
+import ast
+import hashlib
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+
+from runner.paths import package_dir
+from runner.recall.answers import keep, recall
+from runner.store import syntax
+
+# Folders and their modules. A module's id stands behind "=", or is its name.
+_TABLE = """
+    .: assembly batch batch_blocks batch_jobs calibration_job execution feasibility interaction job plant_error
+        pushed_links registry simulation trace walls
+    calibration: __init__=calibration.__init__ compensation consistency gravity=calibration.gravity orientations
+        repeatability tool tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
+    calibration/procedures: __init__=procedures.__init__ bench gravity=procedures.gravity procedure
+        tool_centre_point=procedures.tool_centre_point tool_direction=procedures.tool_direction touching
+    compiled: algebra arm closed_loop=compiled.closed_loop code commands compile directed elementary
+        end_points=compiled.end_points engine expression flexible law maths=compiled.maths motion=compiled.motion
+        places program regressor structure tangent vectors=compiled.vectors
+    config: arms by_joint calibration computation=config.computation
+        disturbance_observer=config.disturbance_observer endpoint_sensor flexible_joints=config.flexible_joints
+        flexible_links=config.flexible_links force_reading=config.force_reading groups input_shaper joint_limits noise
+        notch=config.notch parsing payload per_joint per_stage plugged reach repeats robot=config.robot
+        rotors=config.rotors run settings start timing torque_limits validation
+    controllers: __init__=controllers.__init__ adaptive admittance admittance_filter admittance_stability approach
+        computed_torque computed_torque_graph controller=controllers.controller differential_inverse_kinematics
+        disturbance_observer=controllers.disturbance_observer force_reading=controllers.force_reading force_stability
+        graph hybrid_force impedance inertial_damping iterative_learning joint_law
+        joint_motion=controllers.joint_motion joint_pd joint_pid kinds=controllers.kinds late_stability limited_motion
+        macro_mini macro_mini_graph maths=controllers.maths motor_pd notch=controllers.notch notch_config null_space
+        operational_space operational_space_graph passivity resolved_rate sampled_stability sliding_mode stage_law
+        stage_loops tip_force tip_task torque_law whole_body whole_body_graph whole_body_posture wrist
+    environments: __init__=environments.__init__ environment=environments.environment free hand push wall
+    guard: __init__=guard.__init__ belief controller=guard.controller environment=guard.environment faults metrics
+        plant=guard.plant read_only sensing trajectory=guard.trajectory
+    loop: acting closed_loop=loop.closed_loop command compiled_loop contact=loop.contact drive
+        endpoint=loop.endpoint failures joint_torques recorder sensors
+    metrics: __init__=metrics.__init__ contact=metrics.contact context effort family positioning reaching summary
+        tracking
+    plants: __init__=plants.__init__ bullet bullet_reading bullet_servers computation=plants.computation decoupled
+        end_points=plants.end_points flexible_around flexible_config flexible_joints=plants.flexible_joints
+        flexible_links=plants.flexible_links friction kinds=plants.kinds kinematic load motion=plants.motion
+        motor_friction mujoco mujoco_model payload_changes plant=plants.plant rk4 rk4_flexible_links servo set_points
+        touched
+    robots: __init__=robots.__init__ beams cantilever chain denavit_hartenberg description effective_mass
+        inertials inverse_kinematics mismatch mjcf mjcf_efforts mjcf_files mjcf_losses mjcf_urdf model modes
+        motors=robots.motors mounting robot=robots.robot rotors=robots.rotors task_space tool_link tree urdf_values
+        workspace
+    sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
+        kinds=sensing.kinds motors=sensing.motors streams velocity wrench
+    trajectories: __init__=trajectories.__init__ blend circle closed_figure from_file goal impulses interpolation
+        joint_motion=trajectories.joint_motion joint_quintic joint_sinusoids joint_waypoints kinds=trajectories.kinds
+        line lissajous nearest posture quintic sampled_curve segment shaped shifted square table
+        trajectory=trajectories.trajectory vectors=trajectories.vectors waypoints
+"""  # fmt: skip
+
+
+def module_ids() -> dict[str, str]:
+    """Return the id of each module of the physics, by its file in the package, such as "robots/chain.py"."""
+    ids, folder = {}, ""
+    for word in _TABLE.split():
+        if word.endswith(":"):
+            folder = word[:-1].replace(".", "") + "/"
+        else:
+            name, _, own = word.partition("=")
+            ids[f"{folder}{name}.py".removeprefix("/")] = own or name
+    return ids
+
+
+@cache
+def physics_digest() -> str:
+    """Return a digest of the content of the physics, the same on each Python."""
+    ids, root = module_ids(), package_dir()
+    sources = {_dotted(file): (root / file).read_bytes() for file in ids}
+    return content_digest(sources, {_dotted(file): own for file, own in ids.items()})
+
+
+def content_digest(sources: Mapping[str, bytes], ids: Mapping[str, str]) -> str:
+    """Return a digest of the content of modules, which is worked out once and kept in the user's cache folder.
+
+    Args:
+        sources: Source of each, by the name under which others import it.
+        ids: Id of each, by the same name.
+    """
+    state = hashlib.sha256(Path(__file__).read_bytes() + Path(syntax.__file__).read_bytes())
+    for name, source in sources.items():
+        state.update(b"%b\0%d\0%b" % (f"{name} {ids[name]}".encode(), len(source), source))
+    key = f"content-{state.hexdigest()}"
+    found = recall(key)
+    if not isinstance(found, str):
+        found = _digest({name: _parsed(source) for name, source in sources.items()}, ids)
+        keep(key, found)
+    return found
+
+
+def _digest(trees: Mapping[str, ast.Module], ids: Mapping[str, str]) -> str:
+    bound = {own: {name: (module, of) for name, module, of in syntax.imports(tree)} for own, tree in trees.items()}
+
+    def resolve(module: str, name: str) -> str:
+        """Resolve a name to the id of the module that defines it, and its name there."""
+        whole = f"{module}.{name}" if name else module
+        if whole in ids:
+            return ids[whole]
+        if module not in ids:
+            return name or module
+        return resolve(*bound[module][name]) if name in bound[module] else f"{ids[module]}:{name}"
+
+    digest = hashlib.sha256()
+    for name in sorted(trees, key=ids.__getitem__):
+        text = syntax.content(trees[name], resolve)
+        if text:  # else it only hands on what it imports
+            digest.update(f"{ids[name]}\0{len(text)}\0{text}".encode())
+    return digest.hexdigest()
+
+
+def _parsed(source: bytes) -> ast.Module:
+    """Return the syntax tree of a module; of what this Python cannot read, one that holds all its text."""
+    try:
+        return ast.parse(source)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return ast.Module([ast.Expr(ast.Constant(source))], [])
+
+
+def _dotted(file: str) -> str:
+    return f"runner/{file}".removesuffix(".py").removesuffix("/__init__").replace("/", ".")

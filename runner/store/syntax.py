@@ -1,0 +1,124 @@
+"""The content of Python source as text that edits of its prose leave as it is: listed fields of the syntax tree.
+
+Comments, formatting, docstrings, `pass`, `__all__`, what only a type checker reads, the arguments of `raise` and the
+message of `assert` are left out. So are imports: a name that one binds is written as what it stands for. A field
+that a version of Python lacks is written as an empty one, so that the text is the same on all that read the source.
+"""
+
+import ast
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+_OURS = "runner"
+_END = object()  # of a node or list
+
+# The fields that count of each kind of node that has some; `_fields` has those of names, constants, f-strings, raise.
+_TABLE = """
+    Expr value; Return value; Delete targets; Assign targets value; AugAssign target op value;
+    FunctionDef name type_params args returns decorator_list body; Await value; Yield value; YieldFrom value;
+    AsyncFunctionDef name type_params args returns decorator_list body; Lambda args body;
+    ClassDef name type_params bases keywords decorator_list body; AnnAssign target annotation value;
+    TypeAlias name type_params value; TypeVar name bound default_value; ParamSpec name default_value;
+    TypeVarTuple name default_value; For target iter body orelse; AsyncFor target iter body orelse;
+    While test body orelse; If test body orelse; With items body; AsyncWith items body;
+    withitem context_expr optional_vars; Match subject cases; match_case pattern guard body; MatchValue value;
+    MatchSingleton value; MatchSequence patterns; MatchMapping keys patterns rest; MatchStar name;
+    MatchClass cls patterns kwd_attrs kwd_patterns; MatchAs pattern name; MatchOr patterns; Assert test;
+    Try body handlers orelse finalbody; TryStar body handlers orelse finalbody; ExceptHandler type name body;
+    ImportFrom module level; Global names; Nonlocal names; BoolOp op values; NamedExpr target value;
+    BinOp left op right; UnaryOp op operand; IfExp test body orelse; Dict keys values; Set elts;
+    ListComp elt generators; SetComp elt generators; GeneratorExp elt generators; DictComp key value generators;
+    comprehension target iter ifs is_async; Compare left ops comparators; Call func args keywords;
+    FormattedValue value conversion format_spec; Attribute value attr; Subscript value slice; Starred value; List elts;
+    Tuple elts; Slice lower upper step; keyword arg value; arg arg annotation;
+    arguments posonlyargs args vararg kwonlyargs kw_defaults kwarg defaults
+"""
+_FIELDS = {kind: fields for kind, *fields in map(str.split, _TABLE.strip().split(";"))}
+
+Resolve = Callable[[str, str], str]
+"""Gives what stands for a name of a module of this package, both given, or without a name for the module."""
+
+
+def content(tree: ast.Module, resolve: Resolve) -> str:
+    """Return the content of a module; nothing where it only hands on what it imports.
+
+    Args:
+        tree: Its syntax tree.
+        resolve: Resolves what it imports from this package.
+    """
+    found: dict[str, set[str]] = {}
+    for bound, module, name in imports(tree):
+        ours = module.partition(".")[0] == _OURS
+        found.setdefault(bound, set()).add(resolve(module, name) if ours else f"{module}:{name}")
+    meanings = {bound: " ".join(sorted(names)) for bound, names in found.items()}
+    out: list[str] = []
+    left: list[object] = [statement for statement in reversed(tree.body) if _counts(statement)]
+    while left:
+        value = left.pop()
+        if value is _END:
+            out.append(")")
+        elif isinstance(value, list) and (kept := [each for each in value if _counts(each)]):
+            out.append("(")
+            left += [_END, *reversed(kept)]
+        elif value is None or isinstance(value, list):  # a field that some version of Python lacks may be either
+            out.append("-")
+        elif isinstance(value, ast.AST):
+            out.append(f"({type(value).__name__} ")
+            left += [_END, *reversed(_fields(value, meanings, resolve))]
+        else:
+            out.append(f"{value!a} ")
+    return "".join(out)
+
+
+def imports(tree: ast.Module) -> Iterator[tuple[str, str, str]]:
+    """Yield each name that an import binds, its module, and its name there; "" where it stands for the module."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                top = alias.name.partition(".")[0]
+                yield alias.asname or top, alias.name if alias.asname else top, ""
+        elif isinstance(node, ast.ImportFrom):
+            for alias in node.names:
+                yield alias.asname or alias.name, "." * node.level + (node.module or ""), alias.name
+
+
+def _counts(node: object) -> bool:
+    """Tell whether an element of a list counts."""
+    match node:
+        case ast.Expr(ast.Constant(str())) | ast.Pass() | ast.Import() | ast.Assign([ast.Name("__all__")]):
+            return False
+        case ast.If(ast.Name("TYPE_CHECKING"), orelse=[]):
+            return False
+        case ast.ImportFrom(names=[ast.alias(name)]):
+            return name == "*"
+        case ast.ImportFrom():
+            return False
+    return True
+
+
+def _fields(node: ast.AST, meanings: Mapping[str, str], resolve: Resolve) -> list[object]:
+    """Return what counts of a node: nodes, lists of these, texts, numbers or None."""
+    match node:
+        case ast.Name(name):
+            return [meanings.get(name, name), name in meanings]
+        case ast.Constant(str() as text):
+            return [resolve(text, "") if text.startswith(f"{_OURS}.") else text]
+        case ast.Constant(value):
+            return [type(value).__name__, hex(value) if type(value) is int else repr(value)]
+        case ast.JoinedStr(parts):
+            return _joined(parts)
+        case ast.Raise(ast.Call(error), cause) | ast.Raise(error, cause):
+            return [error, cause]
+    return [getattr(node, field, None) for field in _FIELDS.get(type(node).__name__, node._fields)]
+
+
+def _joined(parts: Sequence[ast.expr]) -> list[object]:
+    """Return the parts of an f-string, texts side by side as one: versions of Python cut them in different places."""
+    found: list[object] = []
+    for part in parts:
+        if not (isinstance(part, ast.Constant) and isinstance(part.value, str)):
+            found.append(part)
+        elif found and isinstance(found[-1], str):
+            found[-1] += part.value
+        elif part.value:
+            found.append(part.value)
+    return found

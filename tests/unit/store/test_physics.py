@@ -1,0 +1,138 @@
+"""The table of the physics is complete; moves and texts leave its digest, what computes changes it."""
+
+import ast
+
+import pytest
+
+from runner.paths import package_dir
+from runner.store import physics, syntax
+
+# What works on finished runs, tells or keeps something, or makes the resolved config, which the hash has itself.
+OTHERS = {
+    "api", "audit", "caveats", "claims", "cli.py", "commands", "comparison", "compiled/cache.py", "completion",
+    "config/bounded_yaml.py", "config/caveats.py", "config/compose.py", "config/composition_errors.py",
+    "config/data_files.py", "config/hydra_config.py", "config/in_si.py", "config/interpolation.py",
+    "config/key_units.py", "config/limits.py", "config/magnitudes.py", "config/malformed.py", "config/meanings.py",
+    "config/memory.py", "config/messages.py", "config/no_code.py", "config/options.py", "config/overrides.py",
+    "config/preset.py", "config/problems.py", "config/robot_defaults.py", "config/spec.py", "config/stage_defaults.py",
+    "config/sweep.py", "config/units.py", "config/work_folder.py", "data_file.py", "doctor", "drawing",
+    "engine_output.py", "engines.py", "errors.py", "export", "expressions", "folder_code.py", "latest.py",
+    "paths.py", "plugins.py", "progress", "provenance.py", "quantities.py", "quiet.py", "recall", "recordings",
+    "references", "reporting", "sensitivity", "servo_contact.py", "spec", "statistics", "store", "sweeps", "texts.py",
+    "tuning", "works", "__init__.py", "__main__.py",
+}  # fmt: skip
+TREE = {
+    "laws/__init__.py": 'from runner.laws.pd import Law\nKINDS = {"pd": "runner.laws.pd"}\n',
+    "laws/pd.py": '"""A law."""\nfrom runner.errors import Told\nGAIN = 2.0\nclass Law:\n    gain = GAIN\n',
+    "laws/pid.py": "from runner.laws.pd import GAIN\nclass Law:\n    gain = GAIN + 1.0\n",
+    "loop.py": "from runner.laws import KINDS, Law\nfrom runner.laws.pid import GAIN\nmade = Law(), KINDS, GAIN\n",
+}
+TABLE = ".: loop laws: __init__=kinds pd pid"
+
+
+@pytest.fixture
+def digest(tmp_path, monkeypatch):
+    """Return the digest of files under a table."""
+    monkeypatch.setattr(physics, "package_dir", lambda: tmp_path)
+
+    def of(files, table=TABLE):
+        for name, text in files.items():
+            (tmp_path / name).parent.mkdir(exist_ok=True, parents=True)
+            (tmp_path / name).write_text(text)
+        monkeypatch.setattr(physics, "_TABLE", table)
+        return physics.physics_digest.__wrapped__()
+
+    return of
+
+
+def test_every_module_is_in_the_table_or_known_to_be_none_of_the_physics():
+    files = {path.relative_to(package_dir()).as_posix(): path for path in package_dir().rglob("*.py")}
+    others = {name for name in files if name in OTHERS or name.partition("/")[0] in OTHERS}
+    inits = {name: path for name, path in files.items() if name.endswith("__init__.py")}
+    empty = {name for name, path in inits.items() if len(ast.parse(path.read_text()).body) == 1}  # a docstring
+    table = set(physics.module_ids())
+    assert table - set(files) == set()
+    assert set(files) - table - others - empty == set()
+    assert table & others == set()
+    assert {name for name in OTHERS if not (package_dir() / name).exists()} == set()
+
+
+def test_each_module_has_an_id_of_its_own():
+    ids = physics.module_ids()
+    assert len(ids) == len(physics._TABLE.split()) - physics._TABLE.count(":")
+    assert len(set(ids.values())) == len(ids)
+
+
+def test_a_move_changes_nothing(digest):
+    before = digest(TREE)
+    moved = {
+        "laws/__init__.py": "",
+        "control/__init__.py": '"""Laws."""\nfrom runner.control.joint.spring import Law\n__all__ = ["Law"]\n',
+        "control/kinds.py": 'from runner.control import Law\nKINDS = {"pd": "runner.control.joint.spring"}\n',
+        "control/joint/spring.py": TREE["laws/pd.py"].replace("runner.errors", "runner.base.errors"),
+        "control/pid.py": TREE["laws/pid.py"].replace("laws.pd", "control.joint.spring"),
+        "loops/loop.py": "from runner.control.kinds import KINDS\nfrom runner.control.pid import GAIN\n"
+        "from runner.control.joint import spring\nfrom runner.control import Law\nmade = Law(), KINDS, GAIN\n",
+    }
+    table = "laws: __init__=none control: __init__=new kinds pid control/joint: spring=pd loops: loop"
+    assert digest(moved, table) == before
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        ("laws/pd.py", "A law.", "Another text."),
+        ("laws/pd.py", "2.0", "2.0  # N m"),
+        ("laws/pd.py", "    gain = GAIN", '    """Text."""\n\n    gain = (GAIN)'),
+        ("laws/pd.py", "from runner.errors import Told\n", ""),
+        (
+            "loop.py",
+            "from runner.laws import KINDS, Law",
+            "from runner.laws.pd import Law\nfrom runner.laws import KINDS",
+        ),
+        ("loop.py", "from runner.laws.pid import GAIN", "from runner.laws.pd import GAIN"),
+    ],
+)
+def test_texts_and_ways_of_an_import_change_nothing(digest, file, old, new):
+    assert old in TREE[file]
+    assert digest({**TREE, file: TREE[file].replace(old, new)}) == digest(TREE)
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        ("laws/pd.py", "2.0", "2.5"),
+        ("laws/pid.py", "+ 1.0", "- 1.0"),
+        (
+            "loop.py",
+            "from runner.laws import KINDS, Law",
+            "from runner.laws import KINDS\nfrom runner.laws.pid import Law",
+        ),
+        ("laws/__init__.py", "laws.pd import Law", "laws.pid import Law"),
+        ("laws/__init__.py", '"runner.laws.pd"', '"runner.laws.pid"'),
+        ("loop.py", "from runner.laws.pid import GAIN", "from runner.laws.pid import GAIN as KINDS"),
+    ],
+)
+def test_what_computes_counts(digest, file, old, new):
+    assert old in TREE[file]
+    assert digest({**TREE, file: TREE[file].replace(old, new)}) != digest(TREE)
+
+
+def test_two_modules_that_change_their_ids_count(digest):
+    assert digest(TREE, TABLE.replace("pd pid", "pd=pid pid=pd")) != digest(TREE)
+
+
+def test_it_is_worked_out_once_for_each_state_of_the_source(digest, monkeypatch):
+    files = {**TREE, "laws/pid.py": TREE["laws/pid.py"] + "ONCE = 1\n"}
+    before, write, written = digest(files), syntax.content, []
+    monkeypatch.setattr(syntax, "content", lambda *given: written.append(given) or write(*given))
+    assert digest(files) == before
+    assert not written
+    assert digest({**files, "loop.py": files["loop.py"] + "# text\n"}) == before
+    assert len(written) == len(files)
+
+
+@pytest.mark.parametrize("source", [b"def broken(:\n", b"x = '\xff'\n", b"x\x00"])
+def test_what_python_cannot_read_counts_with_all_its_text(source):
+    digests = [physics.content_digest({"part": text}, {"part": "part"}) for text in (source, source + b"#", b"")]
+    assert len(set(digests)) == 3
