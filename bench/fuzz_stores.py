@@ -74,7 +74,7 @@ def _things(outputs: Path) -> Iterator[tuple[str, object]]:
 
 
 def _run(run: store.Run | store.Calibration) -> object:
-    return run.config, {key: run.record[key] for key in run.record if key != "digest"}, run.sealed
+    return run.config, {key: run.record[key] for key in run.record if key != "digest"}
 
 
 def _trace(run: store.Run) -> object:
@@ -92,7 +92,7 @@ def _shard(path: Path) -> object:
 
 def _sweep(folder: Path) -> object:
     sweep = store.open_sweep(folder)
-    return sweep.overrides, sweep.hashes, sweep.command, sweep.sealed
+    return sweep.overrides, sweep.hashes, sweep.command
 
 
 def files_of(outputs: Path) -> list[Path]:

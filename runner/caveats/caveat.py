@@ -13,13 +13,11 @@ class Caveat:
         rule: Name of the rule, and of the group of its threshold.
         text: What it found, in words.
         value: What it measured, the worst over joints and repetitions; above the rule's threshold.
-        repetitions: Number of repetitions in which it was sprung.
     """
 
     rule: str
     text: str
     value: float
-    repetitions: int
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,7 @@ def caveat_of(error: PlantError, own: PlantStep, threshold: float) -> Caveat | N
         threshold: The share of a metric that the step may be worth.
     """
     if error.parted is not None:
-        return Caveat(NAME, _parted(error, own), 1.0, 1) if threshold < 1.0 else None
+        return Caveat(NAME, _parted(error, own), 1.0) if threshold < 1.0 else None
     shares = {
         name: worth.share
         for name, worth in error.metrics.items()
@@ -49,7 +49,7 @@ def caveat_of(error: PlantError, own: PlantStep, threshold: float) -> Caveat | N
     worst = max(shares, key=shares.__getitem__, default=None)
     if worst is None or shares[worst] <= threshold:
         return None
-    return Caveat(NAME, _told(worst, shares[worst], own, threshold), shares[worst], 1)
+    return Caveat(NAME, _told(worst, shares[worst], own, threshold), shares[worst])
 
 
 def _told(metric: str, share: float, own: PlantStep, threshold: float) -> str:

@@ -17,13 +17,13 @@ def changes_since(rules: Mapping[str, Any] | None, today: Thresholds | None = No
     """Return with what else than today a run's caveats were looked for, a text for each; none where nothing differs.
 
     Args:
-        rules: Digest and thresholds as stored with the caveats; None of a run from before there were caveats.
+        rules: Digest and thresholds as stored with the caveats; None of a run that was cut short, which has none.
         today: The thresholds to compare with; None for those of `conf/`.
     """
     if rules is None:
-        return ["no rules, as the run is from before there were any"]
-    changes = [] if rules.get("digest") == rules_digest() else ["other rules"]
-    now, stored = _flat(our_thresholds() if today is None else today), _flat(rules.get("thresholds", {}))
+        return []
+    changes = [] if rules["digest"] == rules_digest() else ["other rules"]
+    now, stored = _flat(our_thresholds() if today is None else today), _flat(rules["thresholds"])
     for key in sorted(now.keys() | stored.keys()):
         then, new = stored.get(key), now.get(key)
         if then != new:

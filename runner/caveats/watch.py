@@ -71,7 +71,7 @@ class Watch:
             step: That step.
         """
         caveats = [
-            Caveat(rule.name, self._told(rule, worst), worst.value, worst.sprung)
+            Caveat(rule.name, self._told(rule, worst), worst.value)
             for rule in TRACE_RULES
             if (worst := self._worst.get(rule.name))
         ]
@@ -101,7 +101,7 @@ def _of_setting(setting: Setting, thresholds: Mapping[str, Mapping[str, float]])
     for rule in SETTING_RULES:
         value = rule.measure(setting)
         if value is not None and value > thresholds[rule.name][rule.key]:
-            caveats.append(Caveat(rule.name, rule.tell(value, setting), value, setting.repetitions))
+            caveats.append(Caveat(rule.name, rule.tell(value, setting), value))
     return caveats
 
 

@@ -52,7 +52,7 @@ def _print_two(a: "Run", b: "Run", name: str, metrics: Sequence[str], end: str) 
 
 
 def _headline(run: "Run") -> str:
-    return f"{run.folder}  {run.failure_text or run.status}{'' if run.sealed else '  unsealed: no digests'}"
+    return f"{run.folder}  {run.failure_text or run.status}"
 
 
 def _differing(what: str, a: Mapping[str, Any], b: Mapping[str, Any], name: str) -> str:

@@ -12,16 +12,11 @@ from typing import Literal
 
 from runner import progress
 from runner.commands.arguments import Parser
-from runner.errors import RunnerError, StoreError
+from runner.errors import RunnerError
 from runner.quiet import quiet_environment
 
-State = Literal["good", "unsealed", "unfinished", "damaged"]
-_WORDS: Mapping[State, str] = {
-    "good": "as written",
-    "unsealed": "without digests",
-    "unfinished": "unfinished",
-    "damaged": "damaged",
-}
+State = Literal["good", "unfinished", "damaged"]
+_WORDS: Mapping[State, str] = {"good": "as written", "unfinished": "unfinished", "damaged": "damaged"}
 
 
 @dataclass(frozen=True)
@@ -30,7 +25,7 @@ class Found:
 
     Attributes:
         kind: The folder that it lies in, such as "runs".
-        state: Whether all its digests are right; unsealed where it has none, unfinished where its writer was killed.
+        state: Whether all its digests are right; unfinished where its writer was killed.
         problem: What is damaged and what makes it anew, in words; empty where nothing is.
     """
 
@@ -71,77 +66,72 @@ def verify(outputs: Path) -> Iterator[Found]:
 
     Args:
         outputs: The outputs folder.
+
+    Raises:
+        SchemaError: at the first thing of another schema.
     """
-    for kind, (pattern, look) in _KINDS.items():
+    from runner.store import DamagedError
+
+    for kind, (pattern, needed, read) in _KINDS.items():
         for path in sorted((outputs / kind).glob(pattern)):
+            if not all((path / name).exists() for name in needed):
+                yield Found(kind, "unfinished")
+                continue
             try:
-                yield Found(kind, look(path))
-            except StoreError as error:
+                read(path)
+                yield Found(kind, "good")
+            except DamagedError as error:
                 yield Found(kind, "damaged", str(error))
 
 
-def _run(folder: Path) -> State:
+def _run(folder: Path) -> None:
     from runner.store import open_run
 
-    if not (folder / "metrics.json").exists():
-        return "unfinished"
     run = open_run(folder)
     # Reads their files, and compares them with their digests.
     _ = run.urdf, run.units, [run.values(metric) for metric in run.metrics]
-    return _state(run.sealed)
 
 
-def _calibration(folder: Path) -> State:
+def _calibration(folder: Path) -> None:
     from runner.store import open_calibration
 
-    if not (folder / "result.json").exists():
-        return "unfinished"
-    calibration = open_calibration(folder)
-    _ = calibration.urdf  # reads its file, and compares it with its digest
-    return _state(calibration.sealed)
+    _ = open_calibration(folder).urdf  # reads its file, and compares it with its digest
 
 
-def _shard(path: Path) -> State:
-    from runner.store.shards import is_sealed_shard, open_row, read_outcomes
+def _shard(path: Path) -> None:
+    from runner.store.shards import open_row, read_outcomes
 
     for row in range(len(read_outcomes(path))):
         open_row(path, row)
-    return _state(is_sealed_shard(path))
 
 
-def _sweep(folder: Path) -> State:
+def _sweep(folder: Path) -> None:
     from runner.store import open_sweep
     from runner.sweeps.status import read_pace
 
-    if not (folder / "sweep.json").exists():
-        return "unfinished"
     read_pace(folder)
-    return _state(open_sweep(folder).sealed)
+    open_sweep(folder)
 
 
-def _tuning(folder: Path) -> State:
-    from runner.tuning.study import is_tuning, journal_path, open_tuning
+def _tuning(folder: Path) -> None:
+    from runner.tuning.study import open_tuning
 
-    if not (is_tuning(folder) and journal_path(folder).exists()):
-        return "unfinished"
-    return _state(open_tuning(folder).sealed and _sweep(folder) == "good")
-
-
-def _benchmark(path: Path) -> State:
-    from runner.store.seal import is_sealed, read_json
-
-    return _state(is_sealed(read_json(path, "its command measures it again")))
+    open_tuning(folder)
+    _sweep(folder)
 
 
-def _state(sealed: bool) -> State:
-    return "good" if sealed else "unsealed"
+def _benchmark(path: Path) -> None:
+    from runner.store.seal import read_json
+
+    read_json(path, "its command measures it again")
 
 
-_KINDS: dict[str, tuple[str, Callable[[Path], State]]] = {
-    "runs": ("[!.]*", _run),
-    "shards": ("[!.]*.parquet", _shard),
-    "sweeps": ("[!.]*", _sweep),
-    "tunings": ("[!.]*", _tuning),
-    "calibrations": ("[!.]*", _calibration),
-    "benchmarks": ("[!.]*.json", _benchmark),
+# Of each folder what lies in it, the files without which that is unfinished, and what reads it.
+_KINDS: dict[str, tuple[str, Sequence[str], Callable[[Path], None]]] = {
+    "runs": ("[!.]*", ["metrics.json"], _run),
+    "shards": ("[!.]*.parquet", [], _shard),
+    "sweeps": ("[!.]*", ["sweep.json"], _sweep),
+    "tunings": ("[!.]*", ["tuning.json", "journal.log", "sweep.json"], _tuning),
+    "calibrations": ("[!.]*", ["result.json"], _calibration),
+    "benchmarks": ("[!.]*.json", [], _benchmark),
 }

@@ -263,9 +263,6 @@ def provenance(runs: Sequence[Run]) -> Provenance:
         ("software", ", ".join(versions)),
         ("made on", join(sorted(str(r["date"]) for r in record))),
     ]
-    unsealed = sum(not run.sealed for run in runs)
-    if unsealed:
-        rows.append(("unsealed", f"{unsealed} of {len(runs)} runs have no digests: damage to them is not found"))
     if len(runs) == 1:
         rows += [("command", str(record[0]["command"])), ("run", runs[0].hash)]
     return Provenance(rows)

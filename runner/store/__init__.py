@@ -5,7 +5,7 @@ from runner.store.finished import Finished, find_outcome, find_run
 from runner.store.identity import run_hash, run_hashes, simulated_part
 from runner.store.judging import judged
 from runner.store.run import Run, is_run, open_run
-from runner.store.seal import DamagedError
+from runner.store.seal import DamagedError, SchemaError
 from runner.store.shards import Outcome
 from runner.store.sweep import Sweep, is_sweep, open_runs, open_sweep, write_grid, write_sweep
 from runner.store.writing import RunResult, prepare, write_run
@@ -17,6 +17,7 @@ __all__ = [
     "Outcome",
     "Run",
     "RunResult",
+    "SchemaError",
     "Sweep",
     "find_calibration",
     "find_outcome",

@@ -37,8 +37,7 @@ def find_outcome(outputs: Path, name: str) -> Outcome | None:
     if not os.path.exists(f"{outputs}/runs/{name}/metrics.json"):  # noqa: PTH110 - asked of each run of a sweep
         return None
     folder = outputs / "runs" / name
-    run = Run(folder, {}, check_job(folder, "metrics.json"))
-    return outcome(run if run.sealed else open_run(folder))
+    return outcome(Run(folder, {}, check_job(folder, "metrics.json")))
 
 
 class Finished:

@@ -20,9 +20,7 @@ def judged(run: Run, bounds: Mapping[str, Bound]) -> Run:
     if not bounds or (before is not None and before.config == bounds):
         return run
     found = run.judged_by(bounds)
-    if found.sealed:  # one from before there were digests is left as it is
-        record = {key: value for key, value in found.record.items() if key != "schema"}
-        write_job(run.folder, "metrics.json", record, {})
+    write_job(run.folder, "metrics.json", {key: value for key, value in found.record.items() if key != "schema"}, {})
     what = "without a spec" if before is None else "with another spec"
     print(f"runner: stored before {what}; the shares are worked out from its stored values", file=sys.stderr)
     return found

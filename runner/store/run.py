@@ -12,9 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.errors import StoreError
-from runner.store.record import find_faults
-from runner.store.seal import DamagedError
-from runner.store.stored import MEND, Stored, read_job
+from runner.store.stored import Stored, read_job
 from runner.store.values import VALUES_FILE, open_parquet, read_column, read_table
 
 if TYPE_CHECKING:
@@ -85,8 +83,8 @@ class Run(Stored):
 
     @property
     def caveats(self) -> Sequence[Mapping[str, Any]]:
-        """Why its metrics may not be what they seem: rule, text, value and number of repetitions of each."""
-        caveats: Sequence[Mapping[str, Any]] = self.record.get("caveats", ())
+        """Why its metrics may not be what they seem: rule, text and value of each."""
+        caveats: Sequence[Mapping[str, Any]] = self.record["caveats"]
         return caveats
 
     @property
@@ -97,7 +95,7 @@ class Run(Stored):
 
     @property
     def caveat_rules(self) -> Mapping[str, Any] | None:
-        """Digest of the rules, and thresholds, that found its caveats; None where none has looked for any."""
+        """Digest of the rules, and thresholds, that found its caveats; None of a run that was cut short."""
         rules: Mapping[str, Any] | None = self.record.get("caveat_rules")
         return rules
 
@@ -169,16 +167,11 @@ def open_run(folder: Path) -> Run:
     """
     if not folder.is_dir():
         raise StoreError(f"no folder {folder}")
-    record_path = folder / "metrics.json"
-    if not record_path.exists():
+    if not (folder / "metrics.json").exists():
         what = "a run that did not finish" if is_run(folder) else "no stored run"
         what = "a sweep, not a single run" if (folder / "sweep.json").exists() else what
         raise StoreError(
             f"{folder} is {what}: it has no metrics.json; `runner OVERRIDES` makes a run and prints its folder"
         )
     record, config = read_job(folder, "metrics.json")
-    run = Run(folder, config, record)
-    faults = "" if run.sealed else find_faults(record)
-    if faults:
-        raise DamagedError(f"cannot read {record_path}: it is no run's record: {faults}; {MEND}")
-    return run
+    return Run(folder, config, record)

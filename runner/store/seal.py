@@ -1,7 +1,6 @@
 """Digests of stored files: damage is found when a file is read, and never used.
 
-A digest finds accidents: a flipped bit, half a file, an edit. It does not find forgery, as anyone can make one anew. A
-file of schema 1, from before there were digests, is read as it is and called unsealed.
+A digest finds accidents: a flipped bit, half a file, an edit. It does not find forgery, as anyone can make one anew.
 """
 
 import hashlib
@@ -13,10 +12,9 @@ from typing import Any
 
 from runner.errors import StoreError
 
-SCHEMA = 2
-"""Of all that is stored: what has it, has digests."""
+SCHEMA = 3
+"""Of all that is stored; no other is read."""
 
-_UNSEALED = 1  # the schema before that
 _BLANK = "0" * 64
 _DIGEST = re.compile(rb'"digest": "([0-9a-f]{64})"')
 _LINE_HEX = 32
@@ -24,6 +22,21 @@ _LINE_HEX = 32
 
 class DamagedError(StoreError):
     """A stored file that is not as it was written."""
+
+
+class SchemaError(StoreError):
+    """A stored file of another schema, written by another version.
+
+    Args:
+        path: The file.
+        schema: Its schema.
+    """
+
+    def __init__(self, path: Path, schema: object) -> None:
+        super().__init__(
+            f"cannot read {path}: it has schema {schema}, and this version reads schema {SCHEMA}; make it again in "
+            "another folder, as in outputs=FOLDER"
+        )
 
 
 def digest(content: bytes) -> str:
@@ -55,7 +68,8 @@ def read_json(path: Path, mend: str) -> dict[str, Any]:
         mend: What makes it anew, in words.
 
     Raises:
-        DamagedError: if it is not as it was written, or of another schema; names the file and what makes it anew.
+        DamagedError: if it is not as it was written; names the file and what makes it anew.
+        SchemaError: if it is of another schema.
     """
     try:
         content = path.read_bytes()
@@ -65,29 +79,22 @@ def read_json(path: Path, mend: str) -> dict[str, Any]:
     except (ValueError, RecursionError) as error:
         raise DamagedError(f"cannot read {path}: it is damaged: {_short(error)}; {mend}") from error
     schema = record.get("schema") if isinstance(record, dict) else None
-    if schema == _UNSEALED and type(schema) is int and "digest" not in record:
-        return dict(record)
     if type(schema) is not int:
         raise DamagedError(f"cannot read {path}: it is damaged: it names no schema; {mend}")
-    if schema > SCHEMA:
-        raise DamagedError(f"cannot read {path}: it has schema {schema}; this version reads 1 and {SCHEMA}; {mend}")
+    if schema != SCHEMA:
+        raise SchemaError(path, schema)
     if not _is_whole(content):
         raise DamagedError(f"cannot read {path}: it is damaged: its content has another digest than it says; {mend}")
     del record["digest"]
     return dict(record)
 
 
-def is_sealed(record: Mapping[str, Any]) -> bool:
-    """Tell whether a record that was read has digests."""
-    return record.get("schema") != _UNSEALED
-
-
-def read_file(path: Path, files: Mapping[str, str] | None, mend: str) -> bytes:
+def read_file(path: Path, files: Mapping[str, str], mend: str) -> bytes:
     """Return the content of a file whose digest stands in the record beside it.
 
     Args:
         path: The file.
-        files: Digests by file name; None for a record of schema 1.
+        files: Digests by file name.
         mend: What makes it anew, in words.
 
     Raises:
@@ -97,7 +104,7 @@ def read_file(path: Path, files: Mapping[str, str] | None, mend: str) -> bytes:
         content = path.read_bytes()
     except OSError as error:
         raise DamagedError(f"cannot read {path}: {error.strerror}; {mend}") from error
-    if files is not None and files.get(path.name) != digest(content):
+    if files.get(path.name) != digest(content):
         raise DamagedError(f"cannot read {path}: it is damaged: its content has another digest than stored; {mend}")
     return content
 
@@ -123,20 +130,11 @@ class Lines:
         Raises:
             ValueError: at the first line that is not as it was written.
         """
-        lines = content.decode().split("\n")[:-1]
-        if lines and not is_sealed_line(lines[0]):
-            yield from lines
-            return
-        for number, line in enumerate(lines, start=1):
+        for number, line in enumerate(content.decode().split("\n")[:-1], start=1):
             own = line.partition(" ")[2]
             if self.seal(own) != line:
                 raise ValueError(f"line {number} has another digest than it says")
             yield own
-
-
-def is_sealed_line(line: str) -> bool:
-    """Tell whether a line begins with a digest, or, as in a file of schema 1, with its own text."""
-    return not line.startswith("{")
 
 
 def _is_whole(content: bytes) -> bool:

@@ -22,18 +22,16 @@ from runner.store.arrow_columns import list_column, text_column, truth_column, w
 from runner.store.atomic import write_atomically
 from runner.store.json_texts import encode_finite
 from runner.store.names import Names
-from runner.store.record import find_faults
 from runner.store.run import Run, describe_failure
-from runner.store.seal import SCHEMA, DamagedError, digest
+from runner.store.seal import SCHEMA, DamagedError, SchemaError, digest
 
 FloatArray = NDArray[np.float64]
 
-_COLUMNS = ("run", "failure", "cut_short", "config", "urdf", "record")
+_COLUMNS = ("run", "failure", "cut_short", "config", "urdf", "record", "caveats")
 _SHARED = ["failure", "urdf"]  # columns of which many rows are the same
-_CAVEATS = "caveats"  # a column that shards from before there were any lack
 _CUT_SHORT = 2  # the rank of that
 METRIC = "metric "
-"""What the name of a metric's column begins with; shards from before there were any lack them."""
+"""What the name of a metric's column begins with."""
 
 _HEX = 24  # digits of the digest in a name
 _MEND = "remove it, and the sweep's command makes its runs again"
@@ -47,7 +45,7 @@ class Outcome:
         name: Its hash.
         failure: When, where and why it failed, in words; empty for a good run.
         cut_short: Whether something else than its physics ended it, as its time limit.
-        caveats: Number of reasons why its result may not be what it seems; 0 where none has looked for any.
+        caveats: Number of reasons why its result may not be what it seems.
     """
 
     name: str
@@ -67,18 +65,11 @@ class ShardRun(Run):
 
     Attributes:
         text: The URDF's text.
-        whole: Whether its shard has a digest.
         beside: Gives the values of a metric, of so many repetitions that its record does not list them.
     """
 
     text: str
-    whole: bool = True
     beside: Callable[[str], FloatArray] | None = field(default=None, compare=False)
-
-    @property
-    def sealed(self) -> bool:
-        """Whether its shard has a digest; see Stored."""
-        return self.whole
 
     @cached_property
     def urdf(self) -> str:
@@ -169,7 +160,7 @@ def write_shard(outputs: Path, name: str, runs: Sequence[ShardRun | ShardRow]) -
         "config": text_column([row.config for row in rows]),
         "urdf": text_column([row.urdf for row in rows]),
         "record": text_column([row.record for row in rows]),
-        _CAVEATS: whole_column([end.caveats for end in ends]),
+        "caveats": whole_column([end.caveats for end in ends]),
     }
     fields = [pyarrow.field(name, column.type) for name, column in columns.items()]
     measured = list(metric_columns([(row.metrics, row.values) for row in rows]))
@@ -225,12 +216,12 @@ def read_outcomes(path: Path) -> Outcomes:
 
     Raises:
         DamagedError: if it cannot be read, or is not as it was written.
+        SchemaError: if it is of another schema.
     """
-    table = _read(path, _COLUMNS[:3], _CAVEATS)
-    counts = table[_CAVEATS].to_pylist() if _CAVEATS in table.column_names else [0] * len(table)
-    names, failures, cut_short = (table[name].to_pylist() for name in _COLUMNS[:3])
+    columns = ("run", "failure", "cut_short", "caveats")
+    table = _read(path, columns)
     try:
-        return Outcomes(names, failures, cut_short, counts)
+        return Outcomes(*(table[name].to_pylist() for name in columns))
     except (AttributeError, TypeError, ValueError) as error:
         raise DamagedError(f"cannot read {path}: it is no shard: {error}; {_MEND}") from error
 
@@ -240,18 +231,15 @@ def open_row(path: Path, row: int) -> ShardRun:
 
     Raises:
         DamagedError: if it cannot be read, or is not as it was written.
+        SchemaError: if it is of another schema.
     """
     values = _read_rows(path)
     try:
         config, record = (json.loads(values[column][row].as_py()) for column in ("config", "record"))
-        fault = "" if is_sealed_shard(path) else find_faults(record)
     except (ValueError, TypeError, RecursionError) as error:
-        fault = str(error)
-    if fault:
-        raise DamagedError(f"cannot read {path}: row {row} is no run: {fault}; {_MEND}")
+        raise DamagedError(f"cannot read {path}: row {row} is no run: {error}; {_MEND}") from error
     folder = path.parent.parent / "runs" / values["run"][row].as_py()
-    urdf, beside = values["urdf"][row].as_py(), partial(_values_in, path, row)
-    return ShardRun(folder, config, record, urdf, whole=is_sealed_shard(path), beside=beside)
+    return ShardRun(folder, config, record, values["urdf"][row].as_py(), beside=partial(_values_in, path, row))
 
 
 def _values_in(path: Path, row: int, metric: str) -> FloatArray:
@@ -259,11 +247,6 @@ def _values_in(path: Path, row: int, metric: str) -> FloatArray:
     column = _read(path, [METRIC + metric])[METRIC + metric]
     values: FloatArray = column[row].values.to_numpy(zero_copy_only=False).astype(np.float64, copy=False)
     return values
-
-
-def is_sealed_shard(path: Path) -> bool:
-    """Tell whether a shard's name holds a digest; those of schema 1 do not."""
-    return path.name.count(".") > 1
 
 
 def metric_columns(runs: Sequence[tuple[tuple[tuple[str, str], ...], FloatArray]]) -> Iterator[tuple[Any, Any]]:
@@ -292,10 +275,11 @@ def metric_columns(runs: Sequence[tuple[tuple[tuple[str, str], ...], FloatArray]
 
 
 def read_columns(path: Path, columns: Sequence[str]) -> Any:
-    """Return some columns of a shard, and those of the metrics where it has them, as a pyarrow.Table.
+    """Return some columns of a shard, and those of the metrics, as a pyarrow.Table.
 
     Raises:
         DamagedError: if it cannot be read, or is not as it was written.
+        SchemaError: if it is of another schema.
     """
     return _read(path, columns, METRIC)
 
@@ -305,19 +289,20 @@ def _read_rows(path: Path) -> Any:
     return _read(path, _COLUMNS)
 
 
-def _read(path: Path, columns: Sequence[str], newer: str | None = None) -> Any:
-    """Return columns of a shard, and those, beginning with a text, that older shards lack where they are there."""
+def _read(path: Path, columns: Sequence[str], start: str | None = None) -> Any:
+    """Return columns of a shard, and all whose names begin with a text."""
     import pyarrow
     import pyarrow.parquet
 
     try:
         content = path.read_bytes()
-        if is_sealed_shard(path) and digest(content)[:_HEX] != path.name.split(".")[1]:
+        if digest(content)[:_HEX] != path.name.split(".")[1]:
             raise DamagedError(f"cannot read {path}: it is damaged: its content has another digest than named; {_MEND}")
         file = pyarrow.parquet.ParquetFile(pyarrow.BufferReader(content))
-        if not is_sealed_shard(path) and b"schema" in (file.schema_arrow.metadata or {}):
-            raise DamagedError(f"cannot read {path}: its name has lost its digest; {_MEND}")
-        wanted = [*columns, *(name for name in file.schema_arrow.names if newer and name.startswith(newer))]
+        schema = (file.schema_arrow.metadata or {}).get(b"schema", b"none").decode(errors="replace")
+        if schema != str(SCHEMA):
+            raise SchemaError(path, schema)
+        wanted = [*columns, *(name for name in file.schema_arrow.names if start and name.startswith(start))]
         table = file.read(wanted)
     except (OSError, pyarrow.ArrowException) as error:
         raise DamagedError(f"cannot read {path}: {str(error).splitlines()[0]}; {_MEND}") from error

@@ -8,9 +8,8 @@ from typing import Any
 
 import yaml
 
-from runner.config.bounded_yaml import YamlError, read_yaml
 from runner.store.atomic import write_atomically
-from runner.store.seal import SCHEMA, DamagedError, digest, is_sealed, read_file, read_json, sealed_json
+from runner.store.seal import SCHEMA, DamagedError, digest, read_file, read_json, sealed_json
 
 MEND = "run it again to mend it"
 
@@ -35,11 +34,6 @@ class Stored:
         return self.folder.name
 
     @property
-    def sealed(self) -> bool:
-        """Whether its files have digests; those of schema 1 have none, and damage to them is not found."""
-        return is_sealed(self.record)
-
-    @property
     def provenance(self) -> Mapping[str, Any]:
         """Commit, versions, machine, seed, command, warnings, and what more its kind of job tells."""
         provenance: Mapping[str, Any] = self.record["provenance"]
@@ -60,7 +54,7 @@ class Stored:
         Raises:
             DamagedError: if the file is missing or damaged.
         """
-        return read_file(self.folder / name, _files(self.record), MEND)
+        return read_file(self.folder / name, self.record["files"], MEND)
 
 
 def write_job(
@@ -97,10 +91,10 @@ def read_job(folder: Path, record_name: str) -> tuple[dict[str, Any], dict[str, 
     """
     record = _read_record(folder / record_name)
     path = folder / "config.yaml"
-    text = decoded(path, read_file(path, _files(record), MEND))
-    try:  # what is as it was written needs no bounds, and no time for them
-        config = yaml.load(text, yaml.CSafeLoader) if is_sealed(record) else read_yaml(text, path)
-    except (yaml.YAMLError, YamlError) as error:
+    text = decoded(path, read_file(path, record["files"], MEND))
+    try:
+        config = yaml.load(text, yaml.CSafeLoader)
+    except yaml.YAMLError as error:
         raise DamagedError(f"cannot read {path}: it is damaged: {' '.join(str(error).split())}; {MEND}") from error
     if not isinstance(config, dict):
         raise DamagedError(f"cannot read {path}: it is damaged: it holds no config; {MEND}")
@@ -114,23 +108,16 @@ def check_job(folder: Path, record_name: str) -> dict[str, Any]:
         DamagedError: if one of the files is missing or damaged.
     """
     record = _read_record(folder / record_name)
-    files = _files(record)
-    for name in files or ():
-        read_file(folder / name, files, MEND)
+    for name in record["files"]:
+        read_file(folder / name, record["files"], MEND)
     return record
 
 
 def _read_record(path: Path) -> dict[str, Any]:
     record = read_json(path, MEND)
-    if is_sealed(record) and not isinstance(record.get("files"), dict):
+    if not isinstance(record.get("files"), dict):
         raise DamagedError(f"cannot read {path}: it is no record of a job: it has no digests of its files; {MEND}")
     return record
-
-
-def _files(record: Mapping[str, Any]) -> Mapping[str, str] | None:
-    """Return the digests of a job's files by name; None where it has none."""
-    files: Mapping[str, str] | None = record.get("files")
-    return files
 
 
 def decoded(path: Path, content: bytes) -> str:

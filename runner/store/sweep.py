@@ -19,7 +19,7 @@ from runner.store.axes import Counted, GridOverrides, read_axes
 from runner.store.finished import Finished
 from runner.store.names import Names
 from runner.store.run import Run, open_run
-from runner.store.seal import DamagedError, digest, head, is_sealed, read_file, read_json, sealed
+from runner.store.seal import DamagedError, digest, head, read_file, read_json, sealed
 
 _FILE = "sweep.json"
 _RUNS = "runs.bin"  # of a grid: the hash of each cell's run, 12 bytes each
@@ -37,7 +37,6 @@ class Sweep:
         overrides: Overrides of each job, in order.
         hashes: Hash of each job's run.
         command: The command that makes it and goes on with it.
-        sealed: Whether its file has a digest; one of schema 1 has none.
         spec: Bounds on metrics, by which its runs are judged, whatever they were made with; none for none.
     """
 
@@ -45,7 +44,6 @@ class Sweep:
     overrides: Sequence[Sequence[str]]
     hashes: Sequence[str]
     command: str
-    sealed: bool = True
     spec: Mapping[str, Bound] = field(default_factory=dict)
 
     @property
@@ -231,7 +229,7 @@ def open_sweep(folder: Path) -> Sweep:
     place = folder.resolve()
     if place.parent.name == "sweeps" and _name(rows) != place.name:
         raise DamagedError(f"cannot read {path}: it is of another sweep than its folder is named after; {_MEND}")
-    return Sweep(folder, overrides, hashes, command, is_sealed(content), _read_spec(path, content))
+    return Sweep(folder, overrides, hashes, command, _read_spec(path, content))
 
 
 def _read_spec(path: Path, content: Mapping[str, Any]) -> dict[str, Bound]:

@@ -179,6 +179,7 @@ def cut_short_record(reason: str, repetitions: int, provenance: Mapping[str, Any
         "status": "failed",
         "repetitions": repetitions,
         "failure": failure,
+        "caveats": [],
         "metrics": {},
         "timing": {},
         "provenance": dict(provenance),

@@ -109,8 +109,6 @@ class Gathered:
             *((name, str(version)) for name, version in record["versions"].items()),
             ("made on", str(record["date"])),
         ]
-        if not run.sealed:
-            pairs.append(("unsealed", "runs without digests: damage to them is not found"))
         for key, text in pairs:
             self.provenance.setdefault(key, {})[text] = None
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.store.shards import METRIC, is_sealed_shard, read_columns
+from runner.store.shards import METRIC, read_columns
 
 _SEED = '"seed": '
 
@@ -52,19 +52,15 @@ def read_shard(path: Path, rows: NDArray[np.intp]) -> Columns | None:
     """
     import pyarrow
 
-    if not is_sealed_shard(path):
-        return None
     table = read_columns(path, ("run", "failure", "config", "record")).take(rows)
     of_metrics = [name for name in table.column_names if name.startswith(METRIC)]
-    records = table["record"].to_pylist()
     try:
-        record = _parsed([_without_metrics(text) for text in records] if of_metrics else records)
+        record = _parsed([_without_metrics(text) for text in table["record"].to_pylist()])
         provenance = record.field("provenance")
         seeds = provenance.field("seed").to_numpy()
         rules = _rules(record)
         caveats = _caveats(record)
-        found = _stored_metrics(table.select(of_metrics)) if of_metrics else _metrics(record)
-        metrics = {name: (unit, *_rows(values)) for name, unit, values in found}
+        metrics = {name: (unit, *_rows(values)) for name, unit, values in _metrics(table.select(of_metrics))}
         made_by = dict(_made_by(provenance))
     except (pyarrow.ArrowException, KeyError):
         return None  # of two kinds of values in one place
@@ -82,7 +78,7 @@ def _parsed(records: Sequence[str]) -> Any:
 
     content = "\n".join(records).encode()
     text, number = pyarrow.string(), pyarrow.float64()
-    caveat = pyarrow.struct({"rule": text, "text": text, "value": number, "repetitions": pyarrow.int64()})
+    caveat = pyarrow.struct({"rule": text, "text": text, "value": number})
     known = pyarrow.schema({
         "caveats": pyarrow.list_(caveat),
         "provenance": pyarrow.struct({"date": text, "commit": text, "machine": text, "command": text}),
@@ -161,22 +157,11 @@ def _without_metrics(record: str) -> str:
     return record if not 0 <= start < stop else record[:start] + record[stop:]
 
 
-def _stored_metrics(table: Any) -> Iterator[tuple[str, str, Any]]:
-    """Yield name, unit and values of each metric that stands in columns of its own."""
+def _metrics(table: Any) -> Iterator[tuple[str, str, Any]]:
+    """Yield name, unit and values of each metric from its column."""
     for field in table.schema:
         unit = (field.metadata or {}).get(b"unit", b"").decode()
         yield field.name.removeprefix(METRIC), unit, table[field.name].combine_chunks()
-
-
-def _metrics(record: Any) -> Iterator[tuple[str, str, Any]]:
-    """Yield name, unit and values of each metric of records."""
-    import pyarrow
-
-    metrics = _inner(record, "metrics")
-    for field in metrics.type:
-        metric = _inner(metrics, field.name)
-        values = _inner(metric, "values").cast(pyarrow.list_(pyarrow.float64()))
-        yield field.name, str(_inner(metric, "unit").drop_null()[0]), values
 
 
 def _rows(values: Any) -> tuple[NDArray[np.intp], NDArray[np.float64]]:

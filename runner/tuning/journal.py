@@ -12,7 +12,7 @@ from optuna.storages.journal import BaseJournalBackend
 from optuna.trial import FrozenTrial
 
 from runner.errors import StoreError
-from runner.store.seal import DamagedError, Lines, is_sealed_line
+from runner.store.seal import DamagedError, Lines
 from runner.tuning.key import Key
 from runner.tuning.objective import Objective
 from runner.tuning.sampler import ended, read_ended
@@ -76,12 +76,6 @@ def read_trials(path: Path) -> list[Trial]:
     if not path.exists():
         raise StoreError(f"cannot read {path}: no such file")
     return [read_ended(frozen) for frozen in _load(path).get_trials(deepcopy=False)]
-
-
-def is_sealed_journal(path: Path) -> bool:
-    """Tell whether a journal has digests; one of schema 1 has none."""
-    with path.open(errors="replace") as lines:
-        return is_sealed_line(next(lines, ""))
 
 
 class _SealedLines(BaseJournalBackend):

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from runner.store.atomic import write_atomically
-from runner.store.seal import DamagedError, is_sealed, read_json, sealed_json
+from runner.store.seal import DamagedError, read_json, sealed_json
 from runner.store.sweep import write_jobs
 from runner.tuning.key import Key
 from runner.tuning.objective import Objective
@@ -69,13 +69,11 @@ class Tuning:
         folder: Its folder.
         study: What is tuned.
         trials: The trials that ended.
-        sealed: Whether its files have digests; those of schema 1 have none.
     """
 
     folder: Path
     study: Study
     trials: Sequence[Trial]
-    sealed: bool = True
 
 
 def journal_path(folder: Path) -> Path:
@@ -94,7 +92,7 @@ def open_tuning(folder: Path) -> Tuning:
     Raises:
         DamagedError: if the folder is no tuning or damaged.
     """
-    from runner.tuning.journal import is_sealed_journal, read_trials  # Optuna, which `is_tuning` answers without
+    from runner.tuning.journal import read_trials  # Optuna, which `is_tuning` answers without
 
     path, journal = folder / _FILE, journal_path(folder)
     try:
@@ -106,11 +104,12 @@ def open_tuning(folder: Path) -> Tuning:
             at_once=content["at_once"],
             command=content["command"],
         )
+        ended = content["trials"]
     except (KeyError, TypeError) as error:
         raise DamagedError(
             f"cannot read {path}: it is no tuning's: {type(error).__name__}: {error}; {_MEND}"
         ) from error
-    trials, ended = read_trials(journal), content.get("trials", 0)
+    trials = read_trials(journal)
     if len(trials) < ended:
         raise DamagedError(f"cannot read {journal}: it has {len(trials)} of the {ended} trials that ended; {_MEND}")
-    return Tuning(folder, study, trials, is_sealed(content) and is_sealed_journal(journal))
+    return Tuning(folder, study, trials)

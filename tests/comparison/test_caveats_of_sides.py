@@ -9,7 +9,7 @@ from runner.comparison.caveats import SideCaveat, caveats_of
 
 def test_each_rule_is_counted_and_its_worst_is_told():
     def caveat(rule, value):
-        return {"rule": rule, "text": f"{rule} {value}", "value": value, "repetitions": 1}
+        return {"rule": rule, "text": f"{rule} {value}", "value": value}
 
     one = side("A", LAWS, lambda *_: 1.0)
     found = [

@@ -2,15 +2,26 @@
 
 import re
 
+import numpy as np
 import pyarrow
 import pyarrow.parquet
 import pytest
 
 from runner.errors import StoreError
-from runner.store import Finished, Outcome
-from runner.store.shards import ShardRun, find_shards, next_number, open_row, read_outcomes, shard_name, write_shard
+from runner.store import DamagedError, Finished, Outcome, SchemaError, shards
+from runner.store.shards import (
+    ShardRow,
+    ShardRun,
+    find_shards,
+    next_number,
+    open_row,
+    read_outcomes,
+    shard_name,
+    write_shard,
+)
 
-RECORD = {"status": "ok", "repetitions": 1, "metrics": {"energy": {"unit": "J", "values": [0.1], "median": 0.1}}}
+ENERGY = {"unit": "J", "values": [0.1], "median": 0.1}
+RECORD = {"status": "ok", "repetitions": 1, "caveats": [], "metrics": {"energy": ENERGY}}
 FAILURE = {"reason": "diverged", "time": 0.0, "joint": "q1", "repetition": 2}
 CUT_SHORT = {"reason": "too long", "time": None, "joint": None, "repetition": None}
 
@@ -29,7 +40,6 @@ def test_what_goes_in_comes_out(tmp_path):
         found = finished.open(run.hash)
         assert (found.hash, found.config, found.record, found.urdf) == (run.hash, run.config, run.record, run.urdf)
         assert found.folder == tmp_path / "runs" / run.hash
-        assert found.sealed
     assert [finished.outcome(name) for name in "abcd"] == [
         Outcome("a", "", False),
         Outcome("b", "failed in repetition 2 at t = 0 s (q1): diverged", False),
@@ -96,15 +106,22 @@ def test_a_damaged_shard_is_named_with_the_way_out_and_counts_as_none(tmp_path, 
 
 def test_a_shard_whose_name_lost_its_digest_is_damaged(tmp_path):
     path = write_shard(tmp_path, "s", [make(tmp_path, "a")])
-    with pytest.raises(StoreError, match="its name has lost its digest"):
+    with pytest.raises(DamagedError, match="its content has another digest than named"):
         read_outcomes(path.rename(path.with_name("s.parquet")))
 
 
-@pytest.mark.parametrize("record", ["{", "[" * 100_000, '{"status": "ok"}', "3"])
-def test_a_row_of_an_unsealed_shard_that_is_no_run_is_named(tmp_path, record):
-    columns = {"run": ["a"], "failure": [""], "cut_short": [False], "config": ["{}"], "urdf": [""], "record": [record]}
-    path = tmp_path / "shards" / "s.parquet"
-    path.parent.mkdir()
-    pyarrow.parquet.write_table(pyarrow.table(columns), path)
-    with pytest.raises(StoreError, match=r"s\.parquet: row 0 is no run: "):
-        open_row(path, 0)
+def test_a_shard_of_another_schema_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(shards, "SCHEMA", 2)
+    write_shard(tmp_path, "s", [make(tmp_path, "a")])
+    monkeypatch.undo()
+    with pytest.raises(
+        SchemaError, match=r"s\..*\.parquet: it has schema 2, and this version reads schema 3; make it "
+    ):
+        Finished(tmp_path)
+
+
+@pytest.mark.parametrize("record", ["{", "[" * 100_000])
+def test_a_row_that_is_no_run_is_named(tmp_path, record):
+    row = ShardRow(Outcome("a", "", False), "{}", "<robot/>", record, (), np.zeros((0, 0)))
+    with pytest.raises(DamagedError, match=r"\.parquet: row 0 is no run: "):
+        open_row(write_shard(tmp_path, "s", [row]), 0)

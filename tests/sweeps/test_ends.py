@@ -25,7 +25,12 @@ def test_ends_are_found_by_name_and_cells_of_one_run_are_counted_together():
 def test_ends_of_shards_are_taken_whole(tmp_path):
     failure = {"reason": "diverged", "time": 0.5, "joint": "q1", "repetition": 0}
     runs = [
-        ShardRun(tmp_path / "runs" / (letter * 24), {}, {"status": "failed", "metrics": {}, "failure": found}, "")
+        ShardRun(
+            tmp_path / "runs" / (letter * 24),
+            {},
+            {"status": "failed", "caveats": [], "metrics": {}, "failure": found},
+            "",
+        )
         for letter, found in (("a", None), ("b", failure), ("d", failure))
     ]
     write_shard(tmp_path, "1-1", runs)

@@ -1,14 +1,11 @@
 """Runs that are read a shard at once measure what they do one by one."""
 
 import numpy as np
-import pyarrow
-import pyarrow.parquet
 import pytest
 
 from runner import store
 from runner.errors import StoreError
 from runner.store import simulated_part
-from runner.store.seal import digest
 from runner.sweeps import gathering
 from runner.sweeps.measurements import Measurements, measure, measure_sweep
 
@@ -52,19 +49,6 @@ def test_shards_give_what_their_runs_do(sweep, monkeypatch, trace, axes):
     same(measure_sweep(opened), one_by_one)
     assert all(run.folder.exists() for run in given)  # of a shard none is opened by itself
     assert len(given) == (len(ended.failures) if trace == "failed" else 0)
-
-
-def test_shards_without_columns_of_metrics_are_read_from_their_records(sweep):
-    ended = sweep(*MIXED, "duration=0.05,0.1", "sweep.trace=never")
-    opened = store.open_sweep(ended.folder)
-    whole = measure_sweep(opened)
-    for path in (opened.outputs / "shards").iterdir():
-        table = pyarrow.parquet.read_table(path)
-        kept = table.select([name for name in table.column_names if not name.startswith("metric ")])
-        path.unlink()
-        pyarrow.parquet.write_table(kept, path)
-        path.rename(path.with_name(f"{path.name.partition('.')[0]}.{digest(path.read_bytes())[:24]}.parquet"))
-    same(measure_sweep(opened), whole)
 
 
 def test_a_seed_that_nobody_swept_is_told(sweep):

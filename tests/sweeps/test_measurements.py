@@ -15,6 +15,7 @@ def stored(name, metrics, status="ok"):
         "status": status,
         "repetitions": 2,
         "metrics": {metric: {"unit": "m", "values": values} for metric, values in metrics.items()},
+        "caveats": [],
         "provenance": {"plant_step": 0.001, "commit": None, "seed": 0, "machine": name, "versions": {"numpy": "2"},
                        "date": "2026-11-21"},
     }  # fmt: skip

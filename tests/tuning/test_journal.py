@@ -41,12 +41,6 @@ def test_trials_are_read_as_they_were_written(written):
     assert all(isinstance(json.loads(line[33:]), dict) for line in content.splitlines())
 
 
-def test_a_journal_without_digests_is_read(written):
-    lines = [line[33:] for line in written.read_bytes().splitlines()]
-    written.write_bytes(b"\n".join([*lines, b""]))
-    assert read_trials(written) == TRIALS
-
-
 @pytest.mark.parametrize("change", ["swap", "drop", "edit", "unseal"])
 def test_a_line_that_is_not_as_it_was_written_is_told(written, change):
     lines = written.read_bytes().splitlines()

@@ -1,6 +1,5 @@
 """A calibration as a job: stored once, whole or not at all, and read back."""
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +11,7 @@ from runner.calibration_job import calibrate
 from runner.config.compose import compose
 from runner.errors import StoreError
 from runner.store import open_calibration
+from runner.store.seal import sealed_json
 
 
 @pytest.fixture
@@ -107,7 +107,7 @@ def test_another_arm_is_calibrated_with_a_tool_on_it(tmp_path):
 def test_what_is_no_calibration_is_refused(tmp_path, job):
     with pytest.raises(StoreError, match=r"cannot read .*result\.json: No such file"):
         open_calibration(tmp_path)
-    folder = job().folder
-    (folder / "result.json").write_text(json.dumps({"schema": 1}))
+    done = job()
+    (done.folder / "result.json").write_bytes(sealed_json({"files": done.record["files"]}))
     with pytest.raises(StoreError, match=r"it is no calibration's result: estimates, truth, .* missing"):
-        open_calibration(folder)
+        open_calibration(done.folder)

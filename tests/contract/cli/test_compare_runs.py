@@ -52,7 +52,7 @@ def test_config_keys_and_metrics_that_differ(cli, copy_run):
 def test_caveats_of_either(cli, copy_run):
     a, b = copy_run("goal"), copy_run("other seed")
     change(a, lambda record: record.update(caveats=[]))
-    caveat = {"rule": "saturation", "text": "joint q1 is at its torque limit", "value": 0.5, "repetitions": 1}
+    caveat = {"rule": "saturation", "text": "joint q1 is at its torque limit", "value": 0.5}
     assert "\nno caveats\n" in cli("compare", a, a).out
     change(b, lambda record: record.update(caveats=[caveat]))
     assert "\ncaveats:\n  B  saturation  joint q1 is at its torque limit\n" in cli("compare", a, b).out

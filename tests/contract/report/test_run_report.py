@@ -71,7 +71,7 @@ def test_a_shaper_and_a_notch_stand_below_the_title(tmp_path):
 def test_steps_of_a_plant_stand_together_and_seeds_in_a_row_are_a_range(finished):
     def with_seed(seed, step):
         config, record = finished.config, {**finished.provenance, "seed": seed, "plant_step": step}
-        return SimpleNamespace(config=config, provenance=record, sealed=True, hash=str(seed))
+        return SimpleNamespace(config=config, provenance=record, hash=str(seed))
 
     rows = dict(
         provenance([with_seed(seed, step) for seed, step in ((2, 1e-3), (0, 2.5e-4), (1, 1e-3), (7, 1e-3))]).rows

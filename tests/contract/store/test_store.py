@@ -4,6 +4,7 @@ import errno
 import json
 import os
 import pathlib
+import re
 import shutil
 
 import numpy as np
@@ -13,7 +14,6 @@ from fixtures.stored import RUNS, SHORT
 
 import runner
 from runner.errors import StoreError
-from runner.reporting.run_report import provenance
 from runner.store import DamagedError, Run, find_run, open_run, prepare
 from runner.store.atomic import write_atomically
 
@@ -36,7 +36,7 @@ def test_the_record_follows_its_schema(run):
     record = json.loads((run.folder / "metrics.json").read_text())
     of_result = ["status", "repetitions", "caveats", "caveat_rules", "metrics", "timing", "provenance"]
     assert list(record) == ["schema", "digest", "files", *of_result]
-    assert (record["schema"], record["status"], record["repetitions"]) == (2, "ok", 2)
+    assert (record["schema"], record["status"], record["repetitions"]) == (3, "ok", 2)
     for metric in record["metrics"].values():
         assert set(metric) == {"unit", "values", "median", "min", "max"}
         assert len(metric["values"]) == 2
@@ -71,15 +71,13 @@ def test_a_copied_run_is_read_elsewhere(run, tmp_path):
     [
         ("metrics.json", None, "is a run that did not finish: it has no metrics.json"),
         ("metrics.json", b"", "metrics.json: it is damaged: Expecting value"),
-        ("metrics.json", b'{"schema": 2, "sta', "metrics.json: it is damaged: Unterminated string"),
+        ("metrics.json", b'{"schema": 3, "sta', "metrics.json: it is damaged: Unterminated string"),
         ("metrics.json", b"\xff\xfe\x00\x01", "metrics.json: it is damaged: "),
         ("metrics.json", b"[" * 100_000, "metrics.json: it is damaged: maximum recursion depth"),
         ("metrics.json", b"1" * 6000, "metrics.json: it is damaged: Exceeds the limit"),
         ("metrics.json", b"[]", "metrics.json: it is damaged: it names no schema"),
         ("metrics.json", b"{}", "metrics.json: it is damaged: it names no schema"),
-        ("metrics.json", b'{"schema": 1}', "metrics.json: it is no run's record: status: Field required"),
-        ("metrics.json", b'{"schema": 2}', "metrics.json: it is damaged: its content has another digest than it says"),
-        ("metrics.json", b'{"schema": 3}', "metrics.json: it has schema 3; this version reads 1 and 2"),
+        ("metrics.json", b'{"schema": 3}', "metrics.json: it is damaged: its content has another digest than it says"),
         ("config.yaml", None, "config.yaml: No such file or directory; run it again to mend it"),
         ("config.yaml", b"a: [\n", "config.yaml: it is damaged: its content has another digest than stored"),
         ("config.yaml", b"3", "config.yaml: it is damaged: its content has another digest than stored"),
@@ -102,61 +100,18 @@ def test_a_damaged_run_is_said_by_every_command_and_made_again(cli, run, name, c
     assert open_run(run.folder).metrics == run.metrics
 
 
-@pytest.mark.parametrize(
-    "edit",
-    [
-        {"metrics": 3},
-        {"metrics": {"energy": 3}},
-        {"metrics": {"energy": {}}},
-        {"provenance": []},
-        {"provenance": {}},
-        {"status": "failed"},
-        {"status": "fine"},
-        {"repetitions": None},
-        {"timing": {"wall_s": "long"}},
-    ],
-)
-def test_an_unsealed_record_of_another_shape_is_no_record(run, edit):
-    unseal(run)
-    record = json.loads((run.folder / "metrics.json").read_text())
-    assert open_run(run.folder).metrics == run.metrics
-    (run.folder / "metrics.json").write_text(json.dumps({**record, **edit}))
-    with pytest.raises(StoreError, match="it is no run's record: "):
-        open_run(run.folder)
-
-
-def unseal(run):
-    """Make of a stored run what the version before digests wrote."""
-    record = {key: value for key, value in run.record.items() if key not in ("digest", "files")}
-    (run.folder / "metrics.json").write_text(json.dumps({**record, "schema": 1}, indent=1) + "\n")
-
-
-def test_a_run_of_schema_1_is_read_and_marked(cli, run):
-    assert run.sealed
-    unseal(run)
-    old = open_run(run.folder)
-    assert not old.sealed
-    assert old.metrics == run.metrics
-    assert len(old.trace) == 6
-    assert "unsealed: no digests" in cli("diff", run.folder, run.folder).out
-    assert provenance([old]).rows[-3] == ("unsealed", "1 of 1 runs have no digests: damage to them is not found")
-
-
-@pytest.mark.parametrize(
-    "content", ["[" * 50_000, "a: [", "3", "a: &a [1]\nb: &b [*a,*a]\n" + "c: [" + "*b," * 60_000 + "]"]
-)
-def test_a_config_of_schema_1_is_bounded(run, content):
-    unseal(run)
-    (run.folder / "config.yaml").write_text(content)
-    with pytest.raises(DamagedError, match=r"config\.yaml: it is damaged: "):
-        open_run(run.folder)
-
-
-def test_a_run_of_schema_1_that_has_a_digest_is_damaged(run):
-    record = json.loads((run.folder / "metrics.json").read_text())
-    (run.folder / "metrics.json").write_text(json.dumps({**record, "schema": 1}))
-    with pytest.raises(StoreError, match="its content has another digest than it says"):
-        open_run(run.folder)
+@pytest.mark.parametrize("schema", [1, 2, 4])
+def test_a_run_of_another_schema_is_refused_by_every_command(cli, run, schema):
+    record = {**json.loads((run.folder / "metrics.json").read_text()), "schema": schema}
+    (run.folder / "metrics.json").write_text(json.dumps(record))
+    for command in (("check", run.folder), ("compare", run.folder, run.folder), ("report", run.folder), ("verify",)):
+        ending = cli(*command)
+        assert (ending.code, ending.out) == (2, "")
+        assert re.fullmatch(
+            rf"runner: cannot read \S+/metrics\.json: it has schema {schema}, and this version reads schema 3; "
+            r"make it again in another folder, as in outputs=FOLDER\n",
+            ending.err,
+        )
 
 
 @pytest.mark.parametrize("content", [None, b"", b"\xff\xfe", b"cut"], ids=["missing", "empty", "binary", "truncated"])

@@ -7,6 +7,7 @@ from fixtures.stored import RUNS
 
 from runner.errors import StoreError
 from runner.store import is_run, is_sweep, open_runs, open_sweep, write_sweep
+from runner.store.seal import sealed_json
 from runner.store.shards import ShardRun, write_shard
 from runner.store.stored import write_job
 
@@ -42,7 +43,7 @@ def test_the_same_jobs_are_the_same_sweep(tmp_path):
     assert write_sweep(tmp_path, jobs, "runner -m seed=0,1 hydra.sweeper.workers=0") == folder
     assert write_sweep(tmp_path, jobs[::-1], "") != folder
     assert open_sweep(folder).command == "runner -m seed=0,1 hydra.sweeper.workers=0"
-    assert json.loads((folder / "sweep.json").read_text())["schema"] == 2
+    assert json.loads((folder / "sweep.json").read_text())["schema"] == 3
 
 
 @pytest.mark.parametrize(
@@ -53,13 +54,13 @@ def test_the_same_jobs_are_the_same_sweep(tmp_path):
         (b"\xff\xfe", "sweep.json: it is damaged: "),
         (b"{}", "sweep.json: it is damaged: it names no schema"),
         (b"[]", "sweep.json: it is damaged: it names no schema"),
-        (b'{"schema": 99, "jobs": []}', "it has schema 99; this version reads 1 and 2"),
-        (b'{"schema": 2, "jobs": []}', "its content has another digest than it says"),
-        (b'{"schema": 1}', "it is no sweep's: it needs jobs with overrides and run each"),
-        (b'{"schema": 1, "jobs": [{"overrides": []}]}', "it is no sweep's"),
-        (b'{"schema": 1, "jobs": [{"overrides": [3], "run": "a"}]}', "it is no sweep's"),
-        (b'{"schema": 1, "jobs": 3}', "it is no sweep's"),
-        (b'{"schema": 1, "jobs": [{"overrides": ["a=1"], "run": "a"}]}', "it is of another sweep than its folder is"),
+        (b'{"schema": 2, "jobs": []}', "it has schema 2, and this version reads schema 3; make it again in another"),
+        (b'{"schema": 3, "jobs": []}', "its content has another digest than it says"),
+        (sealed_json({}), "it is no sweep's: it needs jobs with overrides and run each"),
+        (sealed_json({"jobs": [{"overrides": []}]}), "it is no sweep's"),
+        (sealed_json({"jobs": [{"overrides": [3], "run": "a"}]}), "it is no sweep's"),
+        (sealed_json({"jobs": 3}), "it is no sweep's"),
+        (sealed_json({"jobs": [{"overrides": ["a=1"], "run": "a"}]}), "it is of another sweep than its folder is"),
     ],
 )
 def test_a_damaged_sweep_is_said(sweep, content, message):

@@ -1,13 +1,13 @@
 """A whole tuning: what is stored, what is made again, and what its trials depend on."""
 
-import json
-
 import numpy as np
 import pytest
 from support.short_runs import DAMPING, FREQUENCY
 
 from runner import store
 from runner.errors import ConfigError, RunnerError, StoreError
+from runner.store import SchemaError
+from runner.store.seal import sealed_json
 from runner.sweeps import lock
 from runner.sweeps.lock import at_work
 from runner.tuning.study import journal_path, open_tuning
@@ -191,6 +191,9 @@ def test_two_at_once_in_one_folder(tuned, tmp_path, monkeypatch):
 
 def test_a_damaged_tuning_is_told(tuned):
     folder = tuned(trials=1).folder
-    (folder / "tuning.json").write_text(json.dumps({"schema": 1}))
+    (folder / "tuning.json").write_bytes(sealed_json({}))
     with pytest.raises(StoreError, match=r"tuning\.json: it is no tuning's: KeyError: 'overrides'"):
+        open_tuning(folder)
+    (folder / "tuning.json").write_text('{"schema": 2}')
+    with pytest.raises(SchemaError, match=r"tuning\.json: it has schema 2, and this version reads schema 3; make it "):
         open_tuning(folder)
