@@ -229,10 +229,6 @@ def _of_step(worth: Mapping[str, Any], metric: str) -> list[str]:
     return ["not comparable" if share is None else percent(share)]
 
 
-def _config_sections(run: Run) -> list[Section]:
-    return [Section("Config", _config(run))]
-
-
 def _config(run: Run) -> list[Block]:
     """Return the keys that were changed, and then all of them; of a config that no group here makes all alone."""
     changed = changed_keys(run)

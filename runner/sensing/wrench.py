@@ -5,8 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.errors import ConfigError, nearest
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import FloatArray
 
 
 def cross(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
@@ -42,28 +41,3 @@ def wrench_transform(pose: FloatArray) -> FloatArray:
     transform[:3, :3] = transform[3:, 3:] = R
     transform[3:, :3] = cross_matrix(p) @ R
     return transform
-
-
-def wrench_seen_from(model: RobotModel, q: FloatArray, wrench: FloatArray, source: str, target: str) -> FloatArray:
-    """Return a wrench given in one frame of the arm as another frame sees it.
-
-    Args:
-        model: The arm.
-        q: Joint positions, shape (nq,), in rad.
-        wrench: Force in N and moment about the source's origin in N m, along its axes, shape (6,).
-        source: Name of the frame in which the wrench is given.
-        target: Name of the frame from which it is seen.
-
-    Raises:
-        ConfigError: if the arm has no such frame; names the frames it has.
-    """
-    frames = [frame.name for frame in model.pin_model.frames]
-    unknown = [name for name in (source, target) if name not in frames]
-    if unknown:
-        raise ConfigError(
-            f"wrench frame '{name}' does not exist{nearest(name, frames)}; frames: {', '.join(frames)}"
-            for name in unknown
-        )
-    source_pose, target_pose = model.frame_poses(q, (source, target))
-    seen: FloatArray = wrench_transform(np.linalg.solve(target_pose, source_pose)) @ wrench
-    return seen

@@ -7,10 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
-from support.arms import model_of
 
-from runner.errors import ConfigError
-from runner.sensing.wrench import cross, cross_matrix, wrench_seen_from, wrench_transform
+from runner.sensing.wrench import cross, cross_matrix, wrench_transform
 
 vectors = st.lists(st.floats(-2.0, 2.0), min_size=3, max_size=3).map(np.array)
 wrenches = st.lists(st.floats(-10.0, 10.0), min_size=6, max_size=6).map(np.array)
@@ -63,37 +61,6 @@ def test_a_force_is_seen_with_the_moment_of_its_lever(point, force, pose):
     np.testing.assert_allclose(
         wrench_transform(pose) @ wrench, np.concatenate([turned, np.cross(moved, turned)]), atol=1e-13
     )
-
-
-@pytest.fixture(scope="module")
-def meca500():
-    return model_of("meca500", "flange")
-
-
-Q = np.array([0.3, 0.2, -0.4, 0.7, 0.9, -1.1])
-
-
-def test_joint_torques_are_the_same_from_every_frame(meca500):
-    # J' w of a frame on the last link, by its own Jacobian: the virtual work of a wrench has no frame.
-    wrench = np.array([1.0, -2.0, 3.0, 0.1, 0.2, -0.3])
-    in_base = wrench_seen_from(meca500, Q, wrench, "flange", "base_link")
-    at_flange = in_base[3:] - np.cross(meca500.tip_position(Q), in_base[:3])  # base axes, about the flange's origin
-    expected = meca500.tip_jacobian(Q).T @ np.concatenate([in_base[:3], at_flange])
-    turned = np.kron(np.eye(2), meca500.tip_pose(Q)[:3, :3]) @ wrench
-    np.testing.assert_allclose(meca500.tip_jacobian(Q).T @ turned, expected, atol=1e-14)
-
-
-def test_there_and_back_again(meca500):
-    wrench = np.array([1.0, -2.0, 3.0, 0.1, 0.2, -0.3])
-    there = wrench_seen_from(meca500, Q, wrench, "link3", "flange")
-    np.testing.assert_allclose(wrench_seen_from(meca500, Q, there, "flange", "link3"), wrench, atol=1e-14)
-
-
-def test_frames_that_do_not_exist_are_named(meca500):
-    with pytest.raises(ConfigError) as refusal:
-        wrench_seen_from(meca500, Q, np.zeros(6), "flang", "tool")
-    assert "'flang' does not exist (did you mean flange?); frames: " in refusal.value.problems[0]
-    assert "'tool' does not exist" in refusal.value.problems[1]
 
 
 def test_the_cross_product_is_numpy_s_of_any_scalars():

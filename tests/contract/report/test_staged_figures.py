@@ -13,7 +13,7 @@ from runner.controllers.whole_body_graph import whole_body_graph
 from runner.drawing import block_diagram, frame_assignment
 from runner.drawing.control_steps import control_steps, steps
 from runner.drawing.stills import draw
-from runner.reporting.figures_staged import macro_mini_targets, staged_torque_and_error
+from runner.reporting.figures_staged import macro_mini_targets
 
 SCHEDULES = [(schedule, beyond) for schedule in ("both", "turns") for beyond in ("hold", "stretch")]
 GRAPH = ("two_way", "minus_home", "full", "real", True, True, True, False, "turns")
@@ -140,19 +140,6 @@ def test_an_unknown_schedule_has_no_steps():
         steps("never", "hold")
 
 
-def test_torques_and_errors_stand_in_panels_by_stage(run):
-    figure = staged_torque_and_error(run, "caption", "figure 5.12")
-    assert [[series.name for series in panel.series] for panel in figure.panels] == [
-        ["1", "2", "3"], ["4", "5", "6"], ["x_E", "y_E", "z_E"], ["x_T", "y_T", "z_T"],
-    ]  # fmt: skip
-    trace = run.trace
-    np.testing.assert_array_equal(figure.panels[1].series[0].y, trace["tau4"])
-    np.testing.assert_array_equal(figure.panels[2].series[1].y, trace["macro_error_y"])
-    np.testing.assert_array_equal(figure.panels[3].series[2].y, trace["error_z"])
-    assert figure.origin.number == "figure 5.12"
-    assert "<svg" in draw(figure)
-
-
 def test_the_shares_add_up_to_the_way(run):
     figure = macro_mini_targets(run, "figure 5.3")
     tip, end_point, desired = (series.y for series in figure.panels[0].series)
@@ -165,5 +152,5 @@ def test_the_shares_add_up_to_the_way(run):
 
 
 def test_figures_can_end_early(run):
-    for figure in (staged_torque_and_error(run, "", until=0.05), macro_mini_targets(run, until=0.05)):
-        assert all(series.x[-1] == pytest.approx(0.05) for panel in figure.panels for series in panel.series)
+    figure = macro_mini_targets(run, until=0.05)
+    assert all(series.x[-1] == pytest.approx(0.05) for panel in figure.panels for series in panel.series)
