@@ -17,8 +17,8 @@ _WALL = 120.0  # s
 _PLAIN = ("robot=macro", "duration=0.05")
 _COMMANDS = (
     "list",
-    "diff",
     "check",
+    "compare",
     "table",
     "status",
     "report",

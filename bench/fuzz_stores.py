@@ -191,7 +191,7 @@ def _crashes(outputs: Path) -> Iterator[str]:
     """Yield what commands that read a store end with, where that is no ending of theirs."""
     runs, sweeps = sorted((outputs / "runs").iterdir()), sorted((outputs / "sweeps").iterdir())
     tunings = sorted((outputs / "tunings").iterdir())
-    lines = [("verify", outputs), ("diff", runs[0], runs[1]), ("check", runs[0])]
+    lines = [("verify", outputs), ("compare", runs[0], runs[1]), ("check", runs[0])]
     lines += [(command, folder) for command in ("status", "table", "check") for folder in (*sweeps, *tunings)]
     for line in lines:
         try:

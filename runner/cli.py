@@ -34,8 +34,7 @@ runner: config-driven experiments for robot-arm control, with reports
   runner verify [DIR]                            is all in an outputs folder as it was written?
   runner check DIR [--reference FILE]            is every metric inside its reference band? --learn a sweep's
   runner compare A B...                          runs or sweeps side by side: what differs, every metric in pairs;
-                                                 compare SWEEP --by controller: the levels of an axis;
-                                                 runner diff is its former name
+                                                 compare SWEEP --by controller: the levels of an axis
   runner sensitivity RUN [--metric NAME] [--of gains|masses|lengths|...] [--check]
                                                  which parameter a run's metrics depend on most, by exact derivatives
   runner work new FOLDER                         write a first work of your own, to reproduce another paper;
@@ -75,7 +74,7 @@ All commands: runner --help. All keys of a run: runner --cfg job. The pages are 
 first.
 """
 COMMANDS = (
-    "reproduce", "report", "table", "figures", "status", "tune", "verify", "check", "compare", "diff", "sensitivity",
+    "reproduce", "report", "table", "figures", "status", "tune", "verify", "check", "compare", "sensitivity",
     "calibrate", "audit",
     "doctor", "list", "work", "example",
 )  # fmt: skip

@@ -103,7 +103,7 @@ def test_a_copied_run_is_checked_elsewhere(cli, copy_run, reference, tmp_path):
     copy = shutil.copytree(copy_run("goal"), tmp_path / "elsewhere" / "copy")
     shutil.rmtree(tmp_path / "outputs")
     assert cli("check", copy, "--reference", reference(GOOD)).code == 0
-    assert cli("diff", copy, copy).code == 0
+    assert cli("compare", copy, copy).code == 0
 
 
 def test_folders_and_files_that_cannot_be_read(cli, copy_run, reference, tmp_path):

@@ -260,7 +260,7 @@ def test_hydra_s_own_help(cli, tmp_path, capsys):
 
 LIGHT = [
     ["--help"], ["list", "robots"], ["nosuch"], ["report", "nosuch"], ["table", "nosuch"], ["status", "nosuch"],
-    ["check", "nosuch"], ["diff", "nosuch", "nosuch"], ["verify", "nosuch"], ["doctor", "nosuch"],
+    ["check", "nosuch"], ["compare", "nosuch", "nosuch"], ["verify", "nosuch"], ["doctor", "nosuch"],
     ["report", "latest"], ["table", "--nosuch"], ["tune", "robot=macro"],
     ["reproduce", "nosuch"], ["work", "check", "nosuch"],
 ]  # fmt: skip

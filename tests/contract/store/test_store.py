@@ -87,7 +87,7 @@ def test_a_damaged_run_is_said_by_every_command_and_made_again(cli, run, name, c
     path = run.folder / name
     good = path.read_bytes()
     path.unlink() if content is None else path.write_bytes(content)
-    for command in (("check", run.folder), ("diff", run.folder, run.folder), ("report", run.folder)):
+    for command in (("check", run.folder), ("compare", run.folder, run.folder), ("report", run.folder)):
         ending = cli(*command)
         assert (ending.code, ending.out) == (2, "")
         assert message in ending.err
