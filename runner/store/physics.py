@@ -71,11 +71,11 @@ def module_ids() -> dict[str, str]:
     """Return the id of each module of the physics, by its file in the package, such as "robots/chain.py"."""
     ids, folder = {}, ""
     for word in _TABLE.split():
+        name, _, own = word.partition("=")
         if word.endswith(":"):
-            folder = word[:-1].replace(".", "") + "/"
+            folder = "" if word == ".:" else f"{word[:-1]}/"
         else:
-            name, _, own = word.partition("=")
-            ids[f"{folder}{name}.py".removeprefix("/")] = own or name
+            ids[f"{folder}{name}.py"] = own or name
     return ids
 
 

@@ -7,6 +7,7 @@ that a version of Python lacks is written as an empty one, so that the text is t
 
 import ast
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import groupby
 
 _OURS = "runner"
 _END = object()  # of a node or list
@@ -114,11 +115,7 @@ def _fields(node: ast.AST, meanings: Mapping[str, str], resolve: Resolve) -> lis
 def _joined(parts: Sequence[ast.expr]) -> list[object]:
     """Return the parts of an f-string, texts side by side as one: versions of Python cut them in different places."""
     found: list[object] = []
-    for part in parts:
-        if not (isinstance(part, ast.Constant) and isinstance(part.value, str)):
-            found.append(part)
-        elif found and isinstance(found[-1], str):
-            found[-1] += part.value
-        elif part.value:
-            found.append(part.value)
-    return found
+    for text, some in groupby(parts, lambda part: isinstance(part, ast.Constant)):
+        same = list(some)
+        found += ["".join(str(part.value) for part in same if isinstance(part, ast.Constant))] if text else same
+    return [part for part in found if part != ""]
