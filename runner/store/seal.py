@@ -81,10 +81,10 @@ def read_json(path: Path, mend: str) -> dict[str, Any]:
     schema = record.get("schema") if isinstance(record, dict) else None
     if type(schema) is not int:
         raise DamagedError(f"cannot read {path}: it is damaged: it names no schema; {mend}")
+    if not _is_whole(content) and (schema == SCHEMA or "digest" in record):
+        raise DamagedError(f"cannot read {path}: it is damaged: its content has another digest than it says; {mend}")
     if schema != SCHEMA:
         raise SchemaError(path, schema)
-    if not _is_whole(content):
-        raise DamagedError(f"cannot read {path}: it is damaged: its content has another digest than it says; {mend}")
     del record["digest"]
     return dict(record)
 

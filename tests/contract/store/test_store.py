@@ -14,7 +14,7 @@ from fixtures.stored import RUNS, SHORT
 
 import runner
 from runner.errors import StoreError
-from runner.store import DamagedError, Run, find_run, open_run, prepare
+from runner.store import DamagedError, Run, find_run, open_run, prepare, seal
 from runner.store.atomic import write_atomically
 
 
@@ -77,6 +77,7 @@ def test_a_copied_run_is_read_elsewhere(run, tmp_path):
         ("metrics.json", b"1" * 6000, "metrics.json: it is damaged: Exceeds the limit"),
         ("metrics.json", b"[]", "metrics.json: it is damaged: it names no schema"),
         ("metrics.json", b"{}", "metrics.json: it is damaged: it names no schema"),
+        ("metrics.json", b'{"schema": 2, "digest": ""}', "its content has another digest than it says"),
         ("metrics.json", b'{"schema": 3}', "metrics.json: it is damaged: its content has another digest than it says"),
         ("config.yaml", None, "config.yaml: No such file or directory; run it again to mend it"),
         ("config.yaml", b"a: [\n", "config.yaml: it is damaged: its content has another digest than stored"),
@@ -101,9 +102,11 @@ def test_a_damaged_run_is_said_by_every_command_and_made_again(cli, run, name, c
 
 
 @pytest.mark.parametrize("schema", [1, 2, 4])
-def test_a_run_of_another_schema_is_refused_by_every_command(cli, run, schema):
-    record = {**json.loads((run.folder / "metrics.json").read_text()), "schema": schema}
-    (run.folder / "metrics.json").write_text(json.dumps(record))
+def test_a_run_of_another_schema_is_refused_by_every_command(cli, run, monkeypatch, schema):
+    record = {key: value for key, value in run.record.items() if key != "schema"}
+    with monkeypatch.context() as patch:
+        patch.setattr(seal, "SCHEMA", schema)
+        (run.folder / "metrics.json").write_bytes(seal.sealed_json(record))
     for command in (("check", run.folder), ("compare", run.folder, run.folder), ("report", run.folder), ("verify",)):
         ending = cli(*command)
         assert (ending.code, ending.out) == (2, "")
