@@ -35,16 +35,13 @@ _TABLE = """
 """
 _FIELDS = {kind: fields for kind, *fields in map(str.split, _TABLE.strip().split(";"))}
 
-Resolve = Callable[[str, str], str]
-"""Gives what stands for a name of a module of this package, both given, or without a name for the module."""
 
-
-def content(tree: ast.Module, resolve: Resolve) -> str:
+def content(tree: ast.Module, resolve: Callable[[str, str], str]) -> str:
     """Return the content of a module; nothing where it only hands on what it imports.
 
     Args:
         tree: Its syntax tree.
-        resolve: Resolves what it imports from this package.
+        resolve: Gives what stands for a module of this package and a name in it, or "" for the module itself.
     """
     found: dict[str, set[str]] = {}
     for bound, module, name in imports(tree):
@@ -96,7 +93,7 @@ def _counts(node: object) -> bool:
     return True
 
 
-def _fields(node: ast.AST, meanings: Mapping[str, str], resolve: Resolve) -> list[object]:
+def _fields(node: ast.AST, meanings: Mapping[str, str], resolve: Callable[[str, str], str]) -> list[object]:
     """Return what counts of a node: nodes, lists of these, texts, numbers or None."""
     match node:
         case ast.Name(name):
