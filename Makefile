@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 ANY_VERSION := $(if $(filter file,$(origin PYTHON)),--any-version)
 
 .PHONY: install reproduce test test-pages test-study test-slow test-busy test-lowest test-wheel mutants coverage-map lint types docs
-.PHONY: release-notes bench clean
+.PHONY: pins release-notes bench clean
 
 install:
 	@$(PYTHON) .ci/install.py $(ANY_VERSION)
@@ -56,6 +56,12 @@ test-wheel: install
 	$(BIN)/uv pip install --quiet --python build/wheel/venv/bin/python --constraint constraints.txt build/wheel/*.whl
 	cd build/wheel && PATH="$$PWD/venv/bin:$$PATH" sh -ec 'runner --version; runner robot=macro duration=0.1; \
 		runner example examples; ./examples/own_robot/check.sh'
+
+# The pins of `make install` with the digests of their files: the newest versions, or of PIN alone.
+pins: install
+	printf 'setuptools\nuv\n' | $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
+		--no-annotate --custom-compile-command 'make pins' --extra dev --extra docs --extra bench \
+		$(if $(PIN),--upgrade-package $(PIN),--upgrade) --output-file constraints.txt pyproject.toml -
 
 lint: install
 	$(BIN)/ruff check .

@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent
 NEEDED = (3, 11)
 SUPPORTED = ((3, 11), (3, 13), (3, 12))  # in the order in which one is looked for
 WHEELS_OF_PYBULLET = (3, 11)  # up to this version
+HASHED = ("--require-hashes", "--no-build-isolation", "--requirement")
 _NO_NETWORK = re.compile(
     "name resolution|Name or service not known|establish a new connection|dns error|error sending request|client error|"
     "Network is unreachable|Connection refused|timed out|Could not fetch URL|Failed to fetch"
@@ -137,19 +138,34 @@ def require(version: tuple, python: str) -> None:
 
 
 def fetch(root: Path, venv: Path) -> None:
-    """Install the pinned packages and the checkout itself, by uv, or by pip where uv cannot be had."""
-    python, pins = str(venv / "bin" / "python"), "constraints.txt"
-    pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--retries", "1"]
+    """Install the pinned packages and then the checkout itself, by uv, or by pip where uv cannot be had.
+
+    Every file that is fetched must have a digest that constraints.txt lists. What comes as source, and the checkout, is
+    built by packages that were installed before.
+    """
+    python = str(venv / "bin" / "python")
+    install = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--retries", "1"]
+    run([*install, *HASHED, pinned(root, venv, "setuptools")], root)
     try:
-        run([*pip, "--constraint", pins, "uv"], root)
+        run([*install, *HASHED, pinned(root, venv, "uv")], root)
     except InstallError as failure:
         if "network" in str(failure):
             raise
-        run([*pip, "--constraint", pins, "--editable", ".[dev,docs]"], root)
-        return
-    uv = [str(venv / "bin" / "uv"), "pip", "install", "--quiet", "--system-certs", "--python", python]
-    uv += [] if can_cache() else ["--no-cache"]
-    run([*uv, "--constraint", pins, "--build-constraint", pins, "--editable", ".[dev,docs]"], root)
+    else:
+        install = [str(venv / "bin" / "uv"), "pip", "install", "--quiet", "--system-certs", "--python", python]
+        install += [] if can_cache() else ["--no-cache"]
+    run([*install, *HASHED, "constraints.txt"], root)
+    run([*install, "--no-deps", "--no-build-isolation", "--editable", "."], root)
+
+
+def pinned(root: Path, venv: Path, name: str) -> str:
+    """Return a file in .venv with the pin of one package, as pip takes digests from files alone."""
+    found = re.search("^" + name + r"==(.*\\\n)*.*\n", (root / "constraints.txt").read_text(), re.M)
+    if found is None:
+        raise InstallError(f"constraints.txt pins no {name}; `make pins` writes it anew")
+    file = venv / (name + ".txt")
+    file.write_text(found.group())
+    return str(file)
 
 
 def can_cache() -> bool:
@@ -162,10 +178,7 @@ def can_cache() -> bool:
 
 def run(command: list, root: Path) -> None:
     """Run a command in the checkout; what it prints is shown where it fails."""
-    pins = {"PIP_CONSTRAINT": "constraints.txt", "PIP_BUILD_CONSTRAINT": "constraints.txt"}  # of what pip builds with
-    ended = subprocess.run(
-        command, cwd=str(root), env={**os.environ, **pins}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
-    )
+    ended = subprocess.run(command, cwd=str(root), stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if ended.returncode:
         printed = ended.stdout.decode(errors="replace")
         print(printed.rstrip(), file=sys.stderr)

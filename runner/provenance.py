@@ -4,7 +4,6 @@ import os
 import platform
 import shlex
 import subprocess
-import time
 from collections.abc import Mapping, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
@@ -14,6 +13,7 @@ from runner import plugins
 from runner.compiled.engine import evaluator
 from runner.engines import STAND_IN, installed
 from runner.paths import package_dir
+from runner.spec.history import today
 
 if TYPE_CHECKING:
     from runner.config.compose import Composed
@@ -30,7 +30,7 @@ def made(composed: "Composed", *subcommand: str) -> dict[str, Any]:
         subcommand: The words behind `runner`; none for a run.
     """
     return {
-        "date": time.strftime("%Y-%m-%d", time.gmtime()),
+        "date": today(),
         "command": command(composed, *subcommand),
         "plugins": plugins.digests(),
         "commit": commit(),

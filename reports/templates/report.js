@@ -20,14 +20,11 @@ async function play(figure) {
   const stage = figure.querySelector(".stage");
   stage.classList.add("loading");
   player ??= inflate("player");
-  const scene = JSON.stringify(figure.querySelector("script").textContent.trim());
-  const start = "<script>window.__VISER_EMBED_DATA__=" + scene + ";window.__VISER_EMBED_CONFIG__={darkMode:"
-    + isDark() + "};</" + "script>";
-  const page = await player;
-  const head = page.indexOf("</head>");
   const frame = document.createElement("iframe");
   frame.title = stage.querySelector("img").alt;
-  frame.srcdoc = page.slice(0, head) + start + page.slice(head);
+  frame.dataset.scene = figure.querySelector("script").textContent.trim();
+  frame.dataset.dark = isDark();
+  frame.srcdoc = await player;
   stage.append(frame);
   stage.classList.remove("loading");
   stage.classList.add("playing");

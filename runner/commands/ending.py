@@ -118,7 +118,7 @@ def _tell_cells(ended: "Ended") -> None:
         if sweep.spec:
             from runner.reporting.sweep.spec import summary  # imports what draws, which takes long
 
-            kept = summary(subject, sweep.spec)
+            kept = summary(subject, sweep)
     if best is not None:
         metric, value, cell = best
         text += f"; least {metric}: {value} (median), {cell}"

@@ -10,7 +10,7 @@ import json
 import shlex
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -162,7 +162,9 @@ def _write_conclusions(made: Mapping[str, _Reproduced], path: Path) -> None:
 
 def _reproduce_work(work: "Work", way: _Way) -> _Reproduced:
     """Make what a work needs, and its document."""
+    from runner.reporting.markup import literal
     from runner.works.check import formulas_at
+    from runner.works.late_claims import late_claims
     from runner.works.making import make_all
 
     progress.plan(of_work(len(work.jobs()) + len(work.calibrations())))
@@ -170,6 +172,10 @@ def _reproduce_work(work: "Work", way: _Way) -> _Reproduced:
     runs, calibrations = make_all(work, way.outputs, way.overrides, way.command)
     missing = runs.missing | calibrations.missing
     document = work.document(runs, calibrations)
+    late = late_claims(way.outputs, work, runs)
+    document = replace(document, notes=[*document.notes, *map(literal, late)])
+    for line in late:
+        print(f"runner: {work.name}: {line}", file=sys.stderr)
     for line in formulas_at(work, document):
         print(f"runner: {line}", file=sys.stderr)
     return _Reproduced(document, runs, missing, work.expected, calibrations)

@@ -134,4 +134,5 @@ _KINDS: dict[str, tuple[str, Sequence[str], Callable[[Path], None]]] = {
     "tunings": ("[!.]*", ["tuning.json", "journal.log", "sweep.json"], _tuning),
     "calibrations": ("[!.]*", ["result.json"], _calibration),
     "benchmarks": ("[!.]*.json", [], _benchmark),
+    "claims": ("[!.]*.json", [], _benchmark),
 }

@@ -1,9 +1,11 @@
 """Compiled code kept in the user's cache folder, where it can be trusted: machine code is loaded as it is."""
 
+import functools
 import hashlib
 import json
 import os
 import stat
+import sys
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,7 +15,7 @@ _LARGEST = 64 * 2**20  # bytes of one file
 
 
 def folder() -> Path | None:
-    """Return the folder of compiled code, made where it is missing; None where it cannot be trusted.
+    """Return the folder of compiled code, made where it is missing; None where it cannot be trusted; that is told.
 
     It is `arm-control-runner/compiled` within XDG_CACHE_HOME or ~/.cache, open to the user alone. It is not used where
     it, or a folder that leads to it, belongs to somebody else than the user or root, or can be written by others.
@@ -23,10 +25,18 @@ def folder() -> Path | None:
         place = (Path(base) if base else Path.home() / ".cache") / "arm-control-runner" / "compiled"
         place.mkdir(mode=0o700, parents=True, exist_ok=True)
         place = place.resolve(strict=True)
-        own = _is_safe(place, {os.getuid()}, 0)
-        return place if own and all(_is_safe(p, {0, os.getuid()}, stat.S_ISVTX) for p in place.parents) else None
+        own, others = {os.getuid()}, {0, os.getuid()}
+        if _is_safe(place, own, 0) and all(_is_safe(path, others, stat.S_ISVTX) for path in place.parents):
+            return place
     except (OSError, RuntimeError):
         return None
+    _tell(f"runner: compiled code is not kept: {place}, or a folder above it, can be changed by other users")
+    return None
+
+
+@functools.lru_cache(maxsize=4)
+def _tell(text: str) -> None:
+    print(text, file=sys.stderr)
 
 
 def _is_safe(path: Path, owners: set[int], allowed: int) -> bool:
@@ -47,14 +57,15 @@ def read(key: str) -> tuple[bytes, dict[str, Any]] | None:
     try:
         with (place / key).open("rb") as file:
             status = os.fstat(file.fileno())
-            if status.st_uid != os.getuid() or status.st_size > _LARGEST:
+            others = status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+            if status.st_uid != os.getuid() or others or status.st_size > _LARGEST:
                 return None
             header = json.loads(file.readline(2**16))
             code = file.read()
         about, digest = header["about"], header["sha256"]
     except (OSError, ValueError, KeyError, TypeError):
         return None
-    if not isinstance(about, dict) or _digest(code, about) != digest:
+    if not isinstance(about, dict) or _digest(key, code, about) != digest:
         return None
     return code, about
 
@@ -64,7 +75,7 @@ def write(key: str, code: bytes, about: Mapping[str, Any]) -> None:
     place = folder()
     if place is None:
         return
-    header = json.dumps({"about": about, "sha256": _digest(code, about)})
+    header = json.dumps({"about": about, "sha256": _digest(key, code, about)})
     try:
         with tempfile.NamedTemporaryFile(dir=place, delete=False) as file:
             file.write(header.encode() + b"\n" + code)
@@ -73,5 +84,5 @@ def write(key: str, code: bytes, about: Mapping[str, Any]) -> None:
         return
 
 
-def _digest(code: bytes, about: Mapping[str, Any]) -> str:
-    return hashlib.sha256(json.dumps(about).encode() + b"\0" + code).hexdigest()
+def _digest(key: str, code: bytes, about: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps([key, about]).encode() + b"\0" + code).hexdigest()

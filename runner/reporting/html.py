@@ -2,7 +2,10 @@
 
 import base64
 import gzip
+import hashlib
 import json
+import re
+from collections.abc import Sequence
 from functools import cache, lru_cache
 from importlib import resources
 from urllib.parse import quote
@@ -21,6 +24,8 @@ from runner.reporting.run_list import run_list_spec
 from runner.reporting.tally import tallies
 from runner.reporting.templating import Code, html_environment
 
+_SCRIPT = re.compile(r"<script\b[^>]*>(.*?)</script>", re.DOTALL)
+_OF_PLAYER = ("blob:", "'wasm-unsafe-eval'")  # it unpacks its code by WebAssembly, and runs it from an address
 _OF_PLOTS = ("plot_keys", "curves")
 _SCRIPTS = ("report", *_OF_PLOTS, "figure_tools")
 
@@ -30,9 +35,12 @@ def render(document: Document) -> str:
     progress.begin(HTML)
     displayed, inline = outline.formulas(document)
     images = {True: formulas.draw(displayed, displayed=True), False: formulas.draw(inline, displayed=False)}
-    stage, sheet = _Stage(), FormulaSheet()
-    has_plots = any(isinstance(block, Curves | Maps | RunList) for block in outline.blocks(document))
-    has_run_list = any(isinstance(block, RunList) for block in outline.blocks(document))
+    sheet = FormulaSheet()
+    has_plots, has_run_list, has_playback = (
+        any(isinstance(block, kinds) for block in outline.blocks(document))
+        for kinds in ((Curves, Maps, RunList), RunList, Playback)
+    )
+    library, player = _plotly() if has_plots else "", playback.player() if has_playback else ""
     return (
         html_environment()
         .get_template("report.html.j2")
@@ -50,9 +58,10 @@ def render(document: Document) -> str:
             places=Places(document),
             plots=_Pack(),
             pictures=_Pack(),
-            scene=stage.scene,
-            player=stage.player,
-            plotly=_plotly() if has_plots else "",
+            scene=playback.record,
+            player=packed(player) if player else "",
+            plotly=packed(library) if library else "",
+            script_sources=lambda own: _script_sources([*own, *([library] if library else [])], player),
             palette={"light": palette.LIGHT, "dark": palette.DARK},
             style=_asset("style.css"),
             scripts=[_asset(f"{name}.js") for name in _SCRIPTS if has_plots or name not in _OF_PLOTS],
@@ -82,21 +91,6 @@ class _Pack:
         return packed(json.dumps(self._items, separators=(",", ":"))) if self._items else ""
 
 
-class _Stage:
-    """The recordings of one page, and the player they share."""
-
-    def __init__(self) -> None:
-        self._player = ""
-
-    def scene(self, block: Playback) -> str:
-        recording = playback.record(block)
-        self._player = recording.player
-        return recording.scene
-
-    def player(self) -> str:
-        return packed(self._player) if self._player else ""
-
-
 @lru_cache(maxsize=16)
 def packed(text: str) -> str:
     """Return a text as base64 of its gzip, the same each time; `inflate` in report.js undoes it."""
@@ -105,8 +99,17 @@ def packed(text: str) -> str:
 
 @cache
 def _plotly() -> str:
-    source = resources.files("plotly").joinpath("package_data", "plotly.min.js").read_text(encoding="utf-8")
-    return packed(source)
+    return resources.files("plotly").joinpath("package_data", "plotly.min.js").read_text(encoding="utf-8")
+
+
+def _script_sources(scripts: Sequence[str], player: str) -> Code:
+    """Return what a policy calls some scripts, and those of a player's page, which unpacks its code itself."""
+    known = [f"'sha256-{_sha256(script)}'" for script in (*scripts, *_SCRIPT.findall(player))]
+    return Code(" ".join([*known, *(_OF_PLAYER if player else ())]))
+
+
+def _sha256(text: str) -> str:
+    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
 
 
 def _asset(name: str) -> Code:

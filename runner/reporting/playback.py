@@ -1,7 +1,9 @@
 """A motion as an offline viser recording: the player's page, which all playbacks share, and the scene it plays."""
 
+import base64
 import re
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,20 +21,14 @@ FRAMES = 150
 _FIELD_OF_VIEW = np.radians(40.0)
 _PATH_COLOR = 1
 _PIECES = 400
-_EMBEDDED = re.compile(r'<script>window\.__VISER_EMBED_DATA__="([^"]*)";.*?</script>', re.DOTALL)
-
-
-@dataclass(frozen=True)
-class Recording:
-    """A recorded motion.
-
-    Attributes:
-        player: The player's page without a scene; the same for all recordings.
-        scene: The scene and its motion, base64, as the player's `window.__VISER_EMBED_DATA__`.
-    """
-
-    player: str
-    scene: str
+_EMBEDDED = re.compile(r'<script>window\.__VISER_EMBED_DATA__="[^"]*";.*?</script>', re.DOTALL)
+# One script for all scenes, and one code from an address, so that a policy can list the player's scripts.
+_START = (
+    "<script>window.__VISER_EMBED_DATA__=frameElement.dataset.scene;"
+    'window.__VISER_EMBED_CONFIG__={darkMode:frameElement.dataset.dark==="true"};</script>'
+)
+_INLINE = "e.textContent=code;"
+_BY_ADDRESS = 'e.src=URL.createObjectURL(new Blob([code],{type:"text/javascript"}));'
 
 
 @dataclass(frozen=True)
@@ -51,12 +47,23 @@ class _Extent:
         return max(float(np.linalg.norm(self.high - self.low)) / 2, 1e-3)
 
 
-def record(playback: Playback) -> Recording:
-    """Return the motion as a recording that needs no server.
+@cache
+def player() -> str:
+    """Return the page of the player; it takes its scene from the frame that it stands in, as `data-scene`.
 
     Raises:
         RuntimeError: If viser writes its page in another form than this project knows.
     """
+    with recorder() as stage:
+        page = stage.recording.as_html()
+    whole, found = _EMBEDDED.subn(_START, page)
+    if found != 1 or whole.count(_INLINE) != 1:
+        raise RuntimeError("viser's as_html() no longer embeds its scene, or no longer runs its code, as it did")
+    return whole.replace(_INLINE, _BY_ADDRESS)
+
+
+def record(playback: Playback) -> str:
+    """Return the scene and its motion as the player takes it, base64: a recording that needs no server."""
     chosen = frames(playback)
     with recorder() as stage:
         _set_stage(stage, playback, chosen)
@@ -67,11 +74,8 @@ def record(playback: Playback) -> Recording:
             for node, body in zip(nodes, playback.bodies, strict=True):
                 node.position = body.positions[frame]
                 node.wxyz = body.rotations[frame]
-        page = stage.recording.as_html()
-    found = _EMBEDDED.search(page)
-    if found is None:
-        raise RuntimeError("viser's as_html() no longer embeds its scene as window.__VISER_EMBED_DATA__")
-    return Recording(player=page[: found.start()] + page[found.end() :], scene=found[1])
+        scene = stage.recording.serialize()
+    return base64.b64encode(scene).decode("ascii")
 
 
 def frames(playback: Playback) -> list[int]:

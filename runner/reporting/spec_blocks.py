@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 
 from runner.reporting.document import Block, Notice, Table
 from runner.reporting.markup import literal, literals
-from runner.reporting.spec_words import HEADER, interval_text, lacking_text, probability, spec_rows
+from runner.reporting.metric_titles import title
+from runner.reporting.spec_words import HEADER, interval_text, lacking_text, late_text, probability, spec_rows
 from runner.store import Run
 
 if TYPE_CHECKING:
@@ -40,9 +41,11 @@ def spec_abstract(spec: "Spec") -> str:
         return "The run lacks a metric of its spec."
     failing, several = spec.whole.rest, len(spec.bounds) > 1
     what = f"all {len(spec.bounds)} bounds" if several else "the bound"
+    late = [title(one.metric) for one in spec.bounds if late_text(one.metric, one.bound, one.history)]
     return (
         f"{spec.whole.kept} of {spec.whole.of} repetitions keep {what} of the spec: the probability of failing is "
         f"{probability(failing.share)} (95 % interval {interval_text(failing)})."
+        + (f" Set after the result was known: {', '.join(late)}." if late else "")
     )
 
 

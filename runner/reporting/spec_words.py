@@ -8,6 +8,7 @@ from runner.errors import nearest
 from runner.metrics import unit_of
 from runner.quantities import number, quantity, ranged
 from runner.reporting.metric_titles import title
+from runner.spec.history import History, ends_of, set_after
 
 if TYPE_CHECKING:
     from runner.spec import Spec
@@ -20,7 +21,10 @@ _DIGITS = 6  # of a bound, which is given, not measured
 
 def spec_rows(spec: "Spec") -> list[tuple[str, str, str, str]]:
     """Return a row of HEADER for each bound, and one for all where there are several."""
-    rows = [(bound_text(one.metric, one.bound), *share_texts(one.share)) for one in spec.bounds]
+    rows = [
+        (bound_text(one.metric, one.bound) + late_text(one.metric, one.bound, one.history), *share_texts(one.share))
+        for one in spec.bounds
+    ]
     if len(rows) > 1:
         rows.append((_ALL, "–", "–", "–") if spec.whole is None else (_ALL, *share_texts(spec.whole)))
     return rows
@@ -28,12 +32,21 @@ def spec_rows(spec: "Spec") -> list[tuple[str, str, str, str]]:
 
 def bound_text(metric: str, bound: Bound) -> str:
     """Return what a bound demands, such as "settling time at most 1.6 s"."""
-    unit, name = unit_of(metric) or "1", title(metric)
-    if bound.min is None:
-        return f"{name} at most {quantity(bound.max, unit, _DIGITS)}"
-    if bound.max is None:
-        return f"{name} at least {quantity(bound.min, unit, _DIGITS)}"
-    return f"{name} {ranged(bound.min, bound.max, unit)}"
+    return f"{title(metric)} {_ends_text(metric, bound.min, bound.max)}"
+
+
+def late_text(metric: str, bound: Bound, history: History) -> str:
+    """Return, to be appended, that a bound was set after the result was known, and what stood before; else nothing."""
+    date, before = set_after(history, ends_of(bound))
+    told = ", then ".join(_ends_text(metric, *ends) for ends in before)
+    return f", set after the result was known ({date}; before: {told})" if date else ""
+
+
+def _ends_text(metric: str, low: float | None, high: float | None) -> str:
+    unit = unit_of(metric) or "1"
+    if low is None:
+        return "none" if high is None else f"at most {quantity(high, unit, _DIGITS)}"
+    return f"at least {quantity(low, unit, _DIGITS)}" if high is None else ranged(low, high, unit)
 
 
 def share_texts(share: "Share | None") -> tuple[str, str, str]:

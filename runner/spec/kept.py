@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.config.spec import Bound
+from runner.spec.history import History
 
 if TYPE_CHECKING:
     from runner.statistics.share import Share
@@ -23,11 +24,13 @@ class Kept:
         metric: Name of the metric.
         bound: Where it has to lie.
         share: The repetitions that keep it; None where the run has no such metric.
+        history: The bounds of this metric over time; empty where it is that with which the run was made.
     """
 
     metric: str
     bound: Bound
     share: "Share | None"
+    history: History = ()
 
     @property
     def failing(self) -> "Share | None":
@@ -112,7 +115,7 @@ def read_spec(record: Mapping[str, Any]) -> Spec:
     bounds = []
     for metric, stored in record["bounds"].items():
         bound = Bound(min=stored["min"], max=stored["max"], reason=stored["reason"])
-        bounds.append(Kept(metric, bound, _share(stored)))
+        bounds.append(Kept(metric, bound, _share(stored), record.get("history", {}).get(metric, ())))
     return Spec(tuple(bounds), _share(record["all"]))
 
 

@@ -35,7 +35,7 @@ _TABLE = """
         notch=config.notch parsing payload per_joint per_stage plugged reach repeats robot=config.robot
         rotors=config.rotors run settings start timing torque_limits validation
     controllers: __init__=controllers.__init__ adaptive admittance admittance_filter admittance_stability approach
-        computed_torque computed_torque_graph controller=controllers.controller differential_inverse_kinematics
+        computed_torque controller=controllers.controller differential_inverse_kinematics
         disturbance_observer=controllers.disturbance_observer force_reading=controllers.force_reading force_stability
         graph hybrid_force impedance inertial_damping iterative_learning joint_law
         joint_motion=controllers.joint_motion joint_pd joint_pid kinds=controllers.kinds late_stability limited_motion

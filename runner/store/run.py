@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.errors import StoreError
-from runner.store.stored import Stored, read_job
+from runner.store.record import find_faults
+from runner.store.seal import DamagedError
+from runner.store.stored import MEND, Stored, read_job
 from runner.store.values import VALUES_FILE, open_parquet, read_column, read_table
 
 if TYPE_CHECKING:
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
 
     from runner.config.spec import Bound
     from runner.spec import Spec
+    from runner.spec.history import Histories
 
 FloatArray = NDArray[np.float64]
 
@@ -107,20 +110,32 @@ class Run(Stored):
         stored = self.record.get("spec")
         return None if stored is None else read_spec(stored)
 
-    def judged_by(self, bounds: "Mapping[str, Bound]") -> "Run":
-        """Return this run with other bounds on its metrics, one or more, and how many repetitions keep them."""
-        from runner.spec import judge
+    def judged_by(self, bounds: "Mapping[str, Bound]", later: "Histories") -> "Run":
+        """Return this run with other bounds on its metrics, and how many repetitions keep them.
+
+        Args:
+            bounds: The bounds, one or more.
+            later: When bounds were set; those that it was made with were set before.
+        """
+        from runner.spec import bounds_of, judge
+        from runner.spec.history import merged, settings
 
         spec = judge(bounds, self.record["repetitions"], self.metrics, self.values)
-        return replace(self, record={**self.record, "spec": spec.record()})
+        made_with = settings({**dict.fromkeys(later), **bounds_of(self.config)}, self.provenance["date"])
+        history = merged(made_with, self.record.get("spec", {}).get("history", {}), later)
+        return replace(self, record={**self.record, "spec": {**spec.record(), "history": history}})
 
-    @cached_property
+    @property
     def trace(self) -> "pd.DataFrame":
-        """Signals of repetition 0, a row per tick; `units` tells the columns' units.
+        """Signals of repetition 0, a row per tick; `units` tells the columns' units. What is changed in it stays there.
 
         Raises:
             DamagedError: if the file is missing or damaged.
         """
+        return self._frame.copy(deep=False)  # of which pandas copies what is written to
+
+    @cached_property
+    def _frame(self) -> "pd.DataFrame":
         frame: pd.DataFrame = self._table.to_pandas()
         return frame
 
@@ -174,4 +189,7 @@ def open_run(folder: Path) -> Run:
             f"{folder} is {what}: it has no metrics.json; `runner OVERRIDES` makes a run and prints its folder"
         )
     record, config = read_job(folder, "metrics.json")
+    faults = find_faults(record)
+    if faults:
+        raise DamagedError(f"cannot read {folder / 'metrics.json'}: it is no run's record: {faults}; {MEND}")
     return Run(folder, config, record)

@@ -22,6 +22,7 @@ from runner.store.arrow_columns import list_column, text_column, truth_column, w
 from runner.store.atomic import write_atomically
 from runner.store.json_texts import encode_finite
 from runner.store.names import Names
+from runner.store.record import find_faults
 from runner.store.run import Run, describe_failure
 from runner.store.seal import SCHEMA, DamagedError, SchemaError, digest
 
@@ -236,8 +237,11 @@ def open_row(path: Path, row: int) -> ShardRun:
     values = _read_rows(path)
     try:
         config, record = (json.loads(values[column][row].as_py()) for column in ("config", "record"))
+        fault = find_faults(record)
     except (ValueError, TypeError, RecursionError) as error:
-        raise DamagedError(f"cannot read {path}: row {row} is no run: {error}; {_MEND}") from error
+        fault = str(error)
+    if fault:
+        raise DamagedError(f"cannot read {path}: row {row} is no run: {fault}; {_MEND}")
     folder = path.parent.parent / "runs" / values["run"][row].as_py()
     return ShardRun(folder, config, record, values["urdf"][row].as_py(), beside=partial(_values_in, path, row))
 

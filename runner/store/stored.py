@@ -12,6 +12,7 @@ from runner.store.atomic import write_atomically
 from runner.store.seal import SCHEMA, DamagedError, digest, read_file, read_json, sealed_json
 
 MEND = "run it again to mend it"
+_NAMED = ("runs", "calibrations")  # folders in which a job's folder bears its name; a copy elsewhere may bear any
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,8 @@ def write_job(
     """
     for name, content in files.items():
         write_atomically(folder / name, content, flush=name in flushed)
-    whole = {"files": {name: digest(content) for name, content in files.items()}, **record}
+    digests = {name: digest(content) for name, content in files.items()}
+    whole = {"name": folder.name, "files": digests, **record}
     write_atomically(folder / record_name, sealed_json(whole))
     return {"schema": SCHEMA, **whole}
 
@@ -117,6 +119,9 @@ def _read_record(path: Path) -> dict[str, Any]:
     record = read_json(path, MEND)
     if not isinstance(record.get("files"), dict):
         raise DamagedError(f"cannot read {path}: it is no record of a job: it has no digests of its files; {MEND}")
+    folder = path.parent.absolute()
+    if folder.parent.name in _NAMED and record.get("name", folder.name) != folder.name:
+        raise DamagedError(f"cannot read {path}: it is the record of another job, {record['name']}; {MEND}")
     return record
 
 

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ValidationError
 
 from runner.config.spec import Bound
 from runner.errors import StoreError
+from runner.spec.history import Histories, merged, settings, today
 from runner.store.atomic import write_atomically
 from runner.store.axes import Counted, GridOverrides, read_axes
 from runner.store.finished import Finished
@@ -38,6 +38,7 @@ class Sweep:
         hashes: Hash of each job's run.
         command: The command that makes it and goes on with it.
         spec: Bounds on metrics, by which its runs are judged, whatever they were made with; none for none.
+        history: The bounds that its commands had, each with the date of the first that had it.
     """
 
     folder: Path
@@ -45,6 +46,7 @@ class Sweep:
     hashes: Sequence[str]
     command: str
     spec: Mapping[str, Bound] = field(default_factory=dict)
+    history: Histories = field(default_factory=dict)
 
     @property
     def outputs(self) -> Path:
@@ -84,7 +86,7 @@ class Sweep:
             run = finished.open(name)
         except StoreError as error:
             raise StoreError(f"{error}; `runner status {self.folder}` says what is left of the sweep") from error
-        return run.judged_by(self.spec) if self.spec else run
+        return run.judged_by(self.spec, self.history) if self.spec else run
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,11 @@ class InShard:
 
 
 def write_sweep(
-    outputs: Path, jobs: Sequence[tuple[Sequence[str], str]], command: str, spec: Mapping[str, Bound] = _NO_SPEC
+    outputs: Path,
+    jobs: Sequence[tuple[Sequence[str], str]],
+    command: str,
+    spec: Mapping[str, Bound] = _NO_SPEC,
+    date: str = "",
 ) -> Path:
     """Store which overrides lead to which run, job by job, and return the sweep's folder.
 
@@ -112,13 +118,14 @@ def write_sweep(
         jobs: Overrides and hash of each run.
         command: The command that makes the sweep; no part of its name.
         spec: Bounds on metrics; no part of its name either.
+        date: The date on which they are set; empty for today.
 
     Raises:
         StoreError: if the disk does not take it.
     """
     rows = list(_rows(jobs))
     folder = outputs / "sweeps" / _name(rows)
-    write_atomically(folder / _FILE, _sealed_sweep(rows, command, spec))
+    write_atomically(folder / _FILE, _sealed_sweep(rows, _head(folder, command, spec, date)))
     return folder
 
 
@@ -140,24 +147,31 @@ def write_grid(
     folder = outputs / "sweeps" / _name(_grid_rows(axes, names))
     runs = names.packed()
     write_atomically(folder / _RUNS, runs)
-    content = {**_head(command, spec), "axes": axes.content(), "cells": len(names), "runs": digest(runs)}
+    content = {**_head(folder, command, spec), "axes": axes.content(), "cells": len(names), "runs": digest(runs)}
     write_atomically(folder / _FILE, sealed(json.dumps(content, indent=1) + "\n"))
     return folder
 
 
 def write_jobs(folder: Path, jobs: Sequence[tuple[Sequence[str], str]], command: str) -> None:
     """Store which overrides lead to which run in a folder of another kind, such as a tuning's: see write_sweep."""
-    write_atomically(folder / _FILE, _sealed_sweep(list(_rows(jobs)), command, _NO_SPEC))
+    write_atomically(folder / _FILE, _sealed_sweep(list(_rows(jobs)), _head(folder, command, _NO_SPEC)))
 
 
-def _head(command: str, spec: Mapping[str, Bound]) -> dict[str, Any]:
-    """Return what the file of a sweep begins with."""
-    bounds = {metric: bound.model_dump() for metric, bound in spec.items()}
-    return {**head(), "command": command, **({"spec": bounds} if bounds else {})}
+def _head(folder: Path, command: str, spec: Mapping[str, Bound], date: str = "") -> dict[str, Any]:
+    """Return what the file of a sweep begins with; it remembers the bounds of the file that it replaces."""
+    try:
+        known = read_json(folder / _FILE, _MEND).get("history", {})
+    except DamagedError:
+        known = {}
+    told = {
+        "spec": {metric: bound.model_dump() for metric, bound in spec.items()},
+        "history": merged(known, settings(spec, date or today())),
+    }
+    return {**head(), "command": command, **{key: value for key, value in told.items() if value}}
 
 
-def _sealed_sweep(rows: Sequence[str], command: str, spec: Mapping[str, Bound]) -> bytes:
-    start = json.dumps(_head(command, spec))[:-1]
+def _sealed_sweep(rows: Sequence[str], begin: Mapping[str, Any]) -> bytes:
+    start = json.dumps(begin)[:-1]
     return sealed(f'{start}, "jobs": [\n' + ",\n".join(rows) + "\n]}\n")
 
 
@@ -229,13 +243,14 @@ def open_sweep(folder: Path) -> Sweep:
     place = folder.resolve()
     if place.parent.name == "sweeps" and _name(rows) != place.name:
         raise DamagedError(f"cannot read {path}: it is of another sweep than its folder is named after; {_MEND}")
-    return Sweep(folder, overrides, hashes, command, _read_spec(path, content))
+    return Sweep(folder, overrides, hashes, command, *_read_spec(path, content))
 
 
-def _read_spec(path: Path, content: Mapping[str, Any]) -> dict[str, Bound]:
+def _read_spec(path: Path, content: Mapping[str, Any]) -> tuple[dict[str, Bound], Histories]:
     try:
-        return {metric: Bound.model_validate(bound) for metric, bound in content.get("spec", {}).items()}
-    except (AttributeError, ValidationError) as error:
+        bounds = {metric: Bound.model_validate(bound) for metric, bound in content.get("spec", {}).items()}
+        return bounds, merged(dict.fromkeys(bounds, ()), content.get("history", {}))
+    except (AttributeError, TypeError, ValueError) as error:  # of pydantic, too
         raise DamagedError(f"cannot read {path}: its spec holds no bounds; {_MEND}") from error
 
 

@@ -132,7 +132,8 @@ def _hush() -> None:
 def local_client(workers: int, scratch: Path) -> Iterator[Any]:
     """Start a cluster of single-threaded processes on this machine; yield its `distributed.Client`.
 
-    Its parts know each other by a key made for it, so that no other user of the machine can make it run code.
+    Its parts know each other by a key made for it, kept in memory: nobody else can make it run code. No part of it
+    answers HTTP.
 
     Args:
         workers: Number of processes.
@@ -152,6 +153,8 @@ def local_client(workers: int, scratch: Path) -> Iterator[Any]:
         "distributed.deploy.lost-worker-timeout": "1000 days",
         "distributed.worker.memory.terminate": False,
         "distributed.admin.system-monitor.gil.enabled": False,
+        "distributed.scheduler.http.routes": [],
+        "distributed.worker.http.routes": [],
         "distributed.nanny.environ": {"OMP_NUM_THREADS": 1, "TMPDIR": str(scratch)},
         **{f"distributed.nanny.pre-spawn-environ.{name}": value for name, value in _MEMORY.items()},
     }
@@ -186,19 +189,25 @@ def _undisturbed() -> Iterator[None]:
 
 
 def _start_cluster(workers: int, scratch: Path) -> Any:
-    from distributed import LocalCluster, Security
+    from distributed import Nanny, Security, SpecCluster
 
+    from runner.sweeps.closed_nodes import ClosedScheduler, ClosedWorker
+
+    security = Security.temporary()
+    shared = {"host": "127.0.0.1", "protocol": "tls://", "security": security, "dashboard": False}
+    own = {
+        "worker_class": ClosedWorker,
+        "nthreads": 1,
+        "memory_limit": 0,
+        "local_directory": str(scratch),
+        "preload": "runner.sweeps.work",  # for its dask_setup
+        "silence_logs": logging.CRITICAL,
+    }
     try:
-        return LocalCluster(
-            n_workers=workers,
-            threads_per_worker=1,
-            protocol="tls://",
-            security=Security.temporary(),
-            host="127.0.0.1",
-            dashboard_address="127.0.0.1:0",  # none is installed, but its port is opened
-            memory_limit=0,
-            local_directory=str(scratch),
-            preload="runner.sweeps.work",  # for its dask_setup
+        return SpecCluster(
+            scheduler={"cls": ClosedScheduler, "options": shared},
+            workers={number: {"cls": Nanny, "options": {**shared, **own}} for number in range(workers)},
+            security=security,
             silence_logs=logging.CRITICAL,
         )
     except (RuntimeError, OSError) as error:

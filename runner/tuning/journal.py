@@ -18,8 +18,6 @@ from runner.tuning.objective import Objective
 from runner.tuning.sampler import ended, read_ended
 from runner.tuning.trial import Trial
 
-_STUDY = "tuning"
-
 
 class Journal:
     """The journal of a tuning at work. Only one may write: the lock of the outputs folder sees to it.
@@ -40,17 +38,19 @@ class Journal:
 
     def __init__(self, path: Path, keys: Sequence[Key], objectives: Sequence[Objective]) -> None:
         self._path, self._keys = path, keys
+        self.history: list[FrozenTrial] = []
+        self.trials: list[Trial] = []
         try:
             _mend(path)
             if path.exists():
-                self._study = _load(path)
+                self._study, self.history, self.trials = _load(path)
             else:
                 directions = [objective.direction for objective in objectives]
-                self._study = optuna.create_study(storage=_open(path), study_name=_STUDY, directions=directions)
+                self._study = optuna.create_study(
+                    storage=_open(path), study_name=path.parent.name, directions=directions
+                )
         except OSError as error:
             raise StoreError(f"cannot write {path}: {error.strerror}") from error
-        self.history: list[FrozenTrial] = self._study.get_trials(deepcopy=False)
-        self.trials = [read_ended(frozen) for frozen in self.history]
 
     def append(self, trial: Trial) -> None:
         """Add a trial that ended.
@@ -75,7 +75,7 @@ def read_trials(path: Path) -> list[Trial]:
     """
     if not path.exists():
         raise StoreError(f"cannot read {path}: no such file")
-    return [read_ended(frozen) for frozen in _load(path).get_trials(deepcopy=False)]
+    return _load(path)[2]
 
 
 class _SealedLines(BaseJournalBackend):
@@ -112,10 +112,14 @@ def _open(path: Path) -> JournalStorage:
     return JournalStorage(_SealedLines(path))
 
 
-def _load(path: Path) -> optuna.Study:
+def _load(path: Path) -> tuple[optuna.Study, list[FrozenTrial], list[Trial]]:
     try:
-        return optuna.load_study(study_name=_STUDY, storage=_open(path))
-    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        # A folder among the tunings bears the name of its own; a copy elsewhere may bear any.
+        name = path.parent.name if path.absolute().parent.parent.name == "tunings" else None
+        study = optuna.load_study(study_name=name, storage=_open(path))
+        history = study.get_trials(deepcopy=False)
+        return study, history, [read_ended(frozen) for frozen in history]
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, AssertionError, RecursionError) as error:
         raise DamagedError(
             f"cannot read {path}: it is damaged: {error}; remove it to begin the tuning anew (its runs are found again)"
         ) from error

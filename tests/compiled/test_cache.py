@@ -88,6 +88,29 @@ def test_a_folder_that_others_can_write_is_not_used(place, mode):
     assert list(place.iterdir()) == []
 
 
+def test_a_folder_that_others_can_write_is_told_once(place, capsys):
+    place.chmod(0o770)
+    for _ in range(2):
+        assert cache.read("any") is None
+    told = f"runner: compiled code is not kept: {place}, or a folder above it, can be changed by other users\n"
+    assert capsys.readouterr().err == told
+
+
+@pytest.mark.parametrize("mode", [0o620, 0o602])
+def test_a_file_that_others_can_write_is_not_used(place, mode):
+    cache.write("key", b"code", {})
+    (place / "key").chmod(mode)
+    assert cache.read("key") is None
+    (place / "key").chmod(0o644)
+    assert cache.read("key") == (b"code", {})
+
+
+def test_code_under_the_name_of_other_code_is_not_used(place):
+    cache.write("one", b"code of one", {})
+    (place / "one").rename(place / "two")
+    assert cache.read("two") is None
+
+
 def test_a_folder_or_a_file_of_somebody_else_is_not_used(place, monkeypatch):
     cache.write("key", b"code", {"errors": ["text"]})
     assert cache.read("key") == (b"code", {"errors": ["text"]})

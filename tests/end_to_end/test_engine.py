@@ -1,8 +1,12 @@
 """One result, wherever the runs are made: in this process, on processes of this machine, on a Dask cluster."""
 
+import contextlib
+import socket
+import ssl
 import subprocess
 import sys
 
+import psutil
 import pytest
 from support.clusters import Cluster
 from support.patience import PATIENCE
@@ -171,6 +175,34 @@ def test_a_scheduler_that_is_lost_is_said(sweep, gate, threads, tmp_path):
     killed.result(PATIENCE)
     (stored,) = (tmp_path / "outputs/runs").glob("*/metrics.json")
     assert store.open_run(stored.parent).config["duration"] == 0.2
+
+
+def answers(address, context=None):
+    """Return what a stranger gets who asks at an address in HTTP, as it is or through TLS without a certificate."""
+    with contextlib.suppress(OSError), contextlib.ExitStack() as stack:
+        asked = stack.enter_context(socket.create_connection(address, PATIENCE))
+        asked = asked if context is None else stack.enter_context(context.wrap_socket(asked))
+        asked.sendall(b"GET /health HTTP/1.0\r\n\r\n")
+        return asked.recv(100)
+    return b""
+
+
+@pytest.mark.costs(5)
+def test_processes_of_this_machine_listen_to_each_other_alone(tmp_path):
+    stranger = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    stranger.check_hostname, stranger.verify_mode = False, ssl.CERT_NONE
+    ours = psutil.Process()
+    before = {each.laddr for each in ours.net_connections() if each.status == psutil.CONN_LISTEN}
+    with engine.local_client(2, tmp_path / "scratch") as client:
+        places = [each for process in (ours, *ours.children(recursive=True)) for each in process.net_connections()]
+        ports = {each.laddr for each in places if each.status == psutil.CONN_LISTEN} - before
+        known = client.scheduler_info()
+        workers = [place for worker, told in known["workers"].items() for place in (worker, told["nanny"])]
+        assert {f"tls://{ip}:{port}" for ip, port in ports} == {known["address"], *workers}
+        assert len(ports) == 5
+        assert {ip for ip, _ in ports} == {"127.0.0.1"}
+        assert {answers(port) for port in ports} == {answers(port, stranger) for port in ports} == {b""}
+        assert client.submit(sum, [1, 2]).result() == 3
 
 
 # It does not guard itself by `if __name__ == "__main__"`, and a process that began it again would be seen.

@@ -2,11 +2,26 @@
 
 import importlib.util
 import os
+import re
 import subprocess
 import sys
+import tomllib
+from pathlib import Path
 
 import pytest
 from support.pages import ROOT
+
+PINS = """\
+numpy==2.1 ; python_full_version < '3.12' \\
+    --hash=sha256:00
+setuptools==84.2 \\
+    --hash=sha256:01 \\
+    --hash=sha256:02
+uv==0.13 \\
+    --hash=sha256:03
+uv-build==1.0 \\
+    --hash=sha256:04
+"""
 
 
 @pytest.fixture(scope="module")
@@ -22,8 +37,8 @@ def checkout(tmp_path):
     """A checkout with a .venv of this Python, its scripts naming where it is."""
     root = tmp_path / "check out"
     root.mkdir()
-    for name in ("pyproject.toml", "constraints.txt"):
-        (root / name).write_text(name)
+    (root / "pyproject.toml").write_text("pyproject.toml")
+    (root / "constraints.txt").write_text(PINS)
     venv = root / ".venv"
     (venv / "bin").mkdir(parents=True)
     (venv / "bin" / "python").symlink_to(sys.executable)
@@ -56,23 +71,56 @@ def another_python(venv, version):
 
 def test_a_sound_venv_is_installed_into_once(install, checkout, commands):
     install.install(checkout, any_version=True)
-    assert [command[:3] for command in commands] == [["-m", "pip", "install"], ["pip", "install", "--quiet"]]
-    install.install(checkout, any_version=True)
-    assert len(commands) == 2
-    (checkout / "constraints.txt").write_text("newer")
+    pip, uv = ["-m", "pip", "install"], ["pip", "install", "--quiet"]
+    assert [command[:3] for command in commands] == [pip, pip, uv, uv]
     install.install(checkout, any_version=True)
     assert len(commands) == 4
-
-
-def test_uv_and_what_builds_are_pinned(install, checkout, commands):
+    (checkout / "constraints.txt").write_text(PINS + "# newer\n")
     install.install(checkout, any_version=True)
-    pip, uv = commands
-    assert pip[-3:] == ["--constraint", "constraints.txt", "uv"]
-    assert "--system-certs" in uv  # as pip does, where a proxy has a certificate of its own
-    assert uv[uv.index("--build-constraint") :][:2] == ["--build-constraint", "constraints.txt"]
+    assert len(commands) == 8
+
+
+def test_every_package_needs_a_known_digest_and_the_checkout_brings_none(install, checkout, commands):
+    install.install(checkout, any_version=True)
+    *packages, own = commands
+    hashed = ["--require-hashes", "--no-build-isolation", "--requirement"]
+    assert [command[-4:-1] for command in packages] == [hashed] * 3
+    files = [Path(command[-1]).read_text() for command in packages[:2]]
+    assert files == [PINS[PINS.index("setup") : PINS.index("uv==")], PINS[PINS.index("uv==") : PINS.index("uv-build")]]
+    assert packages[2][-1] == "constraints.txt"
+    assert own[-4:] == ["--no-deps", "--no-build-isolation", "--editable", "."]
+    assert "--system-certs" in own  # as pip does, where a proxy has a certificate of its own
+
+
+def test_without_uv_pip_installs_the_same(install, checkout, monkeypatch):
+    given = []
+
+    def run(command, root):
+        given.append(command[1:])
+        if command[-1].endswith("uv.txt"):
+            raise install.InstallError("no wheel of uv")
+
+    monkeypatch.setattr(install, "run", run)
+    install.install(checkout, any_version=True)
+    assert [command[:3] for command in given] == [["-m", "pip", "install"]] * 4
+
+
+def test_pins_without_what_builds_are_refused(install, checkout, commands):
+    (checkout / "constraints.txt").write_text("uv==0.13\n")
+    with pytest.raises(install.InstallError, match="pins no setuptools; `make pins` writes it anew"):
+        install.install(checkout, any_version=True)
+
+
+def test_every_pin_has_a_digest():
     pins = (ROOT / "constraints.txt").read_text()
-    assert "\nuv==" in pins
-    assert "\nhatchling==" in pins
+    entries = re.split(r"^(?=[a-z])", pins, flags=re.M)[1:]
+    assert len(entries) > 100
+    assert all(re.match(r"[\w.-]+==\S+ .*\\\n(    --hash=sha256:[0-9a-f]{64}( \\)?\n)+$", entry) for entry in entries)
+    names = {entry.partition("==")[0] for entry in entries}
+    wanted = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    extras = wanted["project"]["optional-dependencies"]
+    texts = [*wanted["project"]["dependencies"], *extras["dev"], *extras["docs"], *extras["bench"], "uv", "setuptools"]
+    assert {re.match(r"[\w.-]+", text)[0].lower() for text in texts} <= names
 
 
 @pytest.mark.parametrize(
@@ -88,7 +136,7 @@ def test_uv_keeps_what_it_fetched_if_it_can(install, checkout, commands, tmp_pat
     for writable in (True, False):
         asked = []
         monkeypatch.setattr(install.os, "access", lambda path, mode, a=asked, w=writable: (a.append(path), w)[1])
-        (checkout / "constraints.txt").write_text(f"newer {writable}")
+        (checkout / "constraints.txt").write_text(f"{PINS}# {writable}\n")
         install.install(checkout, any_version=True)
         assert asked == [str(tmp_path / place)]
         assert ("--no-cache" in commands[-1]) is not writable

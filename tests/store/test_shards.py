@@ -20,15 +20,18 @@ from runner.store.shards import (
     write_shard,
 )
 
-ENERGY = {"unit": "J", "values": [0.1], "median": 0.1}
-RECORD = {"status": "ok", "repetitions": 1, "caveats": [], "metrics": {"energy": ENERGY}}
+ENERGY = {"unit": "J", "values": [0.1], "median": 0.1, "min": 0.1, "max": 0.1}
+RECORD = {"status": "ok", "repetitions": 1, "caveats": [], "metrics": {"energy": ENERGY}, "timing": {}}
+MADE_BY = {
+    "date": "2026-01-02", "commit": None, "versions": {}, "machine": "m", "seed": 3, "plant_step": 0.01, "warnings": [],
+}  # fmt: skip
 FAILURE = {"reason": "diverged", "time": 0.0, "joint": "q1", "repetition": 2}
 CUT_SHORT = {"reason": "too long", "time": None, "joint": None, "repetition": None}
 
 
 def make(outputs, name, failure=None, **record):
     more = {"status": "failed", "failure": failure} if failure else {}
-    content = {**RECORD, **more, **record, "provenance": {"command": f"runner {name}"}}
+    content = {**RECORD, **more, **record, "provenance": {**MADE_BY, "command": f"runner {name}"}}
     return ShardRun(outputs / "runs" / name, {"seed": 3, "noise": {"position": 1e-4}}, content, "<robot/>")
 
 

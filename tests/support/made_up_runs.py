@@ -35,5 +35,5 @@ def made_up_run(
         "provenance": {"commit": "", "command": "runner", **provenance},
     }
     run = Run(Path("run"), config or {}, record)
-    run.__dict__["trace"] = pd.DataFrame(trace or {})
+    run.__dict__["_frame"] = pd.DataFrame(trace or {})
     return run

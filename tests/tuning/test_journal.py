@@ -2,10 +2,12 @@
 
 import json
 import math
+import shutil
 
 import pytest
 
 from runner.errors import StoreError
+from runner.store.seal import Lines
 from runner.tuning.journal import Journal, read_trials
 from runner.tuning.key import Key
 from runner.tuning.objective import Objective
@@ -39,6 +41,40 @@ def test_trials_are_read_as_they_were_written(written):
     assert Journal(written, KEYS, GOALS).trials == TRIALS
     assert written.read_bytes() == content
     assert all(isinstance(json.loads(line[33:]), dict) for line in content.splitlines())
+
+
+def test_the_journal_of_another_tuning_is_told(tmp_path):
+    one, other = (tmp_path / "tunings" / name / "journal.log" for name in ("one", "other"))
+    for path in (one, other):
+        path.parent.mkdir(parents=True)
+        Journal(path, KEYS, GOALS)
+    Journal(one, KEYS, GOALS).append(TRIALS[0])
+    shutil.copy(one, other)
+    for read in (read_trials, lambda path: Journal(path, KEYS, GOALS)):
+        with pytest.raises(StoreError, match=r"other/journal\.log: it is damaged: .*; remove it to begin"):
+            read(other)
+    kept = shutil.copytree(one.parent, tmp_path / "kept")  # a copy elsewhere may bear any name
+    assert read_trials(kept / "journal.log") == TRIALS[:1]
+
+
+@pytest.mark.parametrize(
+    ("line", "change"),
+    [
+        (0, {"op_code": 99}),
+        (1, {"values": None}),
+        (1, {"params": [3]}),
+        (2, {"user_attrs": {"failure": "none"}}),
+        (3, {"distributions": "eval"}),
+    ],
+)
+def test_a_journal_that_somebody_made_up_is_told_though_its_digests_are_right(written, line, change):
+    logs = [json.loads(text) for text in Lines().read(written.read_bytes())]
+    logs[line] |= change
+    sealed = Lines()
+    written.write_text("".join(f"{sealed.seal(json.dumps(log))}\n" for log in logs))
+    for read in (read_trials, lambda path: Journal(path, KEYS, GOALS)):
+        with pytest.raises(StoreError, match=r"journal\.log: it is damaged: "):
+            read(written)
 
 
 @pytest.mark.parametrize("change", ["swap", "drop", "edit", "unseal"])

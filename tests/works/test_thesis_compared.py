@@ -42,7 +42,7 @@ def run(error=1.0, ticks=400, settling=1.5, rest=0.008, plant="bullet", caveats=
         },
     )
     chatter = 50.0 * np.where(np.arange(ticks + 1) % 2, 1.0, -1.0)
-    made.__dict__["trace"] = pd.DataFrame({"t": t, "tau1": chatter} | decaying | tips)
+    made.__dict__["_frame"] = pd.DataFrame({"t": t, "tau1": chatter} | decaying | tips)
     return made
 
 

@@ -49,7 +49,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     doubts = [caveats.section(subject)] if caveats.is_needed(subject) else []
     sections = [*doubts, axes.section(subject, sweep.command)]
     if sweep.spec:
-        sections.append(spec.section(subject, sweep.spec))
+        sections.append(spec.section(subject, sweep))
     ranked = subject.ranked
     if subject.metrics and subject.axes:
         sections.append(effects.section(subject))
@@ -105,7 +105,7 @@ def _abstract(subject: Subject, sweep: Sweep) -> str:
         texts.append(f"{doubted} of {cells} cells have caveats.")
     ranked = subject.ranked
     if sweep.spec:
-        texts.append(spec.summary(subject, sweep.spec))
+        texts.append(spec.summary(subject, sweep))
     if ranked and subject.axes:
         metric = subject.metrics[0]
         texts.append(f"Least {title(metric)}: {subject.cell_name(ranked[0])}; most: {subject.cell_name(ranked[-1])}.")

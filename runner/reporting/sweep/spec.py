@@ -1,5 +1,6 @@
 """The spec of a sweep over its axes: the probability of failing each bound, its interval, and where it tells little."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -8,13 +9,16 @@ from numpy.typing import NDArray
 
 from runner.config.spec import Bound
 from runner.drawing.thinning import spaced
-from runner.reporting.document import Block, Curves, Map, Maps, Panel, Section, Series, Table, Text
+from runner.reporting.document import Block, Curves, Map, Maps, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.spec_blocks import RULE
-from runner.reporting.spec_words import bound_text, probability
+from runner.reporting.spec_words import bound_text, late_text, probability
 from runner.reporting.sweep import maps
 from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_names
+from runner.spec import bounds_of
+from runner.spec.history import merged, settings
 from runner.spec.kept import within
+from runner.store import Sweep
 from runner.sweeps.measurements import Axis, FloatArray
 
 _WIDE = 10.0  # times the lower end: of a probability with a higher upper end not even the magnitude is known
@@ -86,11 +90,14 @@ def find_failing(subject: Subject, spec: Mapping[str, Bound]) -> list[Failing]:
     return found
 
 
-def section(subject: Subject, spec: Mapping[str, Bound]) -> Section:
+def section(subject: Subject, sweep: Sweep) -> Section:
     """Return what a sweep says of its spec, one or more bounds."""
-    failing = find_failing(subject, spec)
+    failing = find_failing(subject, sweep.spec)
     axes = [axis for axis in subject.axes if axis.name != maps.POOLED]
     blocks: list[Block] = [Text(literal(f"{RULE} {_TOLD}"))]
+    late = _late(subject, sweep)
+    if late:
+        blocks.append(Notice("warning", "Bounds that were set after the result was known", literal(late)))
     for one in failing:
         if not one.of.any():
             blocks.append(Text(literal(f"No run of the sweep has the metric of the bound: {one.name}.")))
@@ -101,11 +108,23 @@ def section(subject: Subject, spec: Mapping[str, Bound]) -> Section:
     return Section("Spec", [*blocks, _table(subject, failing)])
 
 
-def summary(subject: Subject, spec: Mapping[str, Bound]) -> str:
-    """Return in a sentence how many cells keep the whole spec in every repetition."""
-    whole = find_failing(subject, spec)[-1]
+def summary(subject: Subject, sweep: Sweep) -> str:
+    """Return how many cells keep the whole spec in every repetition, and which bounds were set late."""
+    whole = find_failing(subject, sweep.spec)[-1]
     kept = int(np.count_nonzero((whole.failed == 0) & (whole.of > 0)))
-    return f"{kept} of {len(whole.of)} cells keep the spec in every repetition."
+    return f"{kept} of {len(whole.of)} cells keep the spec in every repetition.{_late(subject, sweep)}"
+
+
+def _late(subject: Subject, sweep: Sweep) -> str:
+    """Return in sentences which bounds were set after the result of some cells was known."""
+    texts: Counter[str] = Counter()
+    for config, cells in subject.measurements.configs:
+        history = merged(settings({**dict.fromkeys(sweep.spec), **bounds_of(config)}, ""), sweep.history)
+        for metric, bound in sweep.spec.items():
+            late = late_text(metric, bound, history[metric])
+            texts.update({bound_text(metric, bound) + late: len(cells)} if late else {})
+    cells_in_all = len(subject.measurements.hashes)
+    return "".join(f" {text}: {count} of {cells_in_all} cells." for text, count in texts.items())
 
 
 def _curve(one: Failing, axis: Axis) -> Curves:

@@ -1,5 +1,7 @@
 """`runner check` of what has a spec, and what a run tells of it at its end."""
 
+import re
+
 import numpy as np
 import pytest
 from fixtures.stored import DRAWN
@@ -23,7 +25,9 @@ def test_a_run_tells_how_often_it_keeps_each_bound(cli, cut):
     cells = [[cell.strip() for cell in row if cell.strip()] for row in table]
     assert [row[1] for row in cells] == ["36 of 40", "40 of 40", "36 of 40"]
     assert cells[0][2:] == ["0.1", "0.0279 to 0.237"]
-    assert [row[0] for row in cells[1:]] == ["largest torque at most 5000 N m", "all of them"]
+    late = r"largest torque at most 5000 N m, set after the result was known \(\S+; before: none\)"
+    assert re.fullmatch(late, cells[1][0])  # the run was stored without
+    assert cells[2][0] == "all of them"
 
 
 def test_a_run_tells_of_a_metric_that_it_lacks(cli):
@@ -104,6 +108,8 @@ def test_a_sweep_is_checked_cell_by_cell(cli, cut):
     # The same cells, found stored, are judged by the spec of the line that asks.
     again = cli("-m", *DRAWN, "noise.position=0,1e-3", f"{BOUND}=1", "hydra.sweeper.workers=0")
     assert again.folder == swept.folder
+    for before in ("", "none, then "):  # one cell was stored without
+        assert re.search(rf"result was known \(\S+; before: {before}at most \S+ mm\): 1 of 2 cells\.", again.err)
     assert cli("check", again.folder).code == 0
 
 
@@ -112,4 +118,6 @@ def test_runs_in_shards_are_judged_as_those_in_folders(cli, cut):
     shards = cli("check", cli(*line, "sweep.trace=never", "outputs=shards").folder)
     folders = cli("check", cli(*line, "outputs=folders").folder)
     assert shards.out == folders.out
+    again = cli(*line, f"{BOUND}=1", "sweep.trace=never", "outputs=shards")
+    assert re.search(r"set after the result was known \(\S+; before: at most .*\): 2 of 2 cells\.", again.err)
     assert shards.out.splitlines()[-1] == "broken: 1 of 2 bounds of 2 runs"

@@ -68,7 +68,7 @@ def test_the_page_shows_robot_and_findings(cli, tmp_path):
     ending = cli("doctor", KUKA, "--html", tmp_path / "page")
     assert ending.out.splitlines()[-1] == str(tmp_path / "page")
     page = (tmp_path / "page/report.html").read_text()
-    assert "__VISER_EMBED_DATA__" in page
+    assert '<figure class="playback' in page
     assert "inertia but no mass" in page
     assert 'class="badge note"' in page
     assert ">0 s<" not in page

@@ -15,6 +15,7 @@ def test_the_work_that_is_written_is_the_example_and_stands(cli, tmp_path):
         assert (tmp_path / "mine" / path.name).read_bytes() == path.read_bytes()
     ending = cli("reproduce", "mine", "--check", "hydra.sweeper.workers=0")
     assert (ending.code, ending.out) == (0, "outputs/reports/mine\n"), ending.err
+    assert (tmp_path / "outputs" / "claims" / "mine.json").is_file()
     page = (tmp_path / "outputs" / "reports" / "mine" / "report.html").read_text()
     assert "Half the natural frequency more than doubles the settling time" in page
     assert "runner --config-dir mine robot=macro" in page

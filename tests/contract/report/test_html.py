@@ -2,6 +2,7 @@
 
 import base64
 import gzip
+import hashlib
 import json
 import re
 from dataclasses import replace
@@ -66,6 +67,31 @@ def test_texts_add_no_tag_and_are_shown_literally(quiet, text):
     if not any(span.math for span in spans(text)):
         literal = " ".join(plain(text).replace("$$", "$").split())
         assert literal in " ".join(page.shown.split())
+
+
+def sources(page):
+    """Return what the page's policy says of scripts."""
+    policies = [value for name, value in page.attributes if name == "content" and value.startswith("default-src")]
+    (scripts,) = re.findall(r"script-src ([^;]*);", *policies)
+    return scripts.split()
+
+
+def sha256(text):
+    return "'sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() + "'"
+
+
+@pytest.mark.parametrize("moving", [False, True])
+def test_the_policy_lists_the_page_s_own_scripts_and_no_others(moving):
+    blocks = [curves(), playback()] if moving else [curves()]
+    page = Page(html.render(replace(document("words"), cover=None, sections=[Section("One", blocks)])))
+    allowed = sources(page)
+    scripts = [content for attributes, content in page.scripts if attributes.get("type") in (None, "module")]
+    (library,) = [content for attributes, content in page.scripts if attributes.get("id") == "plotly"]
+    players = [content for attributes, content in page.scripts if attributes.get("id") == "player"]
+    unpacked = [gzip.decompress(base64.b64decode(text)).decode() for text in (library, *players)]
+    scripts += [unpacked[0], *(content for text in unpacked[1:] for _, content in Page(text).scripts)]
+    assert allowed == [*map(sha256, scripts), *(["blob:", "'wasm-unsafe-eval'"] if moving else [])]
+    assert not any(value.startswith("javascript:") or name.startswith("on") for name, value in page.attributes if value)
 
 
 def test_no_text_can_end_a_script():

@@ -16,8 +16,8 @@ def made(runs):
     """Two runs with specs of their own, one of which lacks the metric, and one without."""
     torque = Bound(max=1.0, reason="gear <b>2</b>")
     return [
-        runs["rk4"].judged_by({"peak_torque": torque, "cross_track_error": Bound(max=1.0)}),
-        runs["goal"].judged_by({"max_tracking_error": Bound(max=1.0)}),
+        runs["rk4"].judged_by({"peak_torque": torque, "cross_track_error": Bound(max=1.0)}, {}),
+        runs["goal"].judged_by({"max_tracking_error": Bound(max=1.0)}, {}),
         runs["noise"],
     ]
 

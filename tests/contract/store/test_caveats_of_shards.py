@@ -3,7 +3,11 @@
 from runner.store import Finished
 from runner.store.shards import ShardRun, read_outcomes, shard_name, write_shard
 
-RECORD = {"status": "ok", "repetitions": 1, "caveats": [], "metrics": {}, "provenance": {"command": "runner a"}}
+MADE_BY = {
+    "date": "2026-01-02", "command": "runner a", "commit": None, "versions": {}, "machine": "m", "seed": 3,
+    "plant_step": 0.01, "warnings": [],
+}  # fmt: skip
+RECORD = {"status": "ok", "repetitions": 1, "caveats": [], "metrics": {}, "timing": {}, "provenance": MADE_BY}
 CAVEAT = {"rule": "chatter", "text": "it chatters", "value": 0.5}
 
 

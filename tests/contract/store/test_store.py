@@ -16,6 +16,7 @@ import runner
 from runner.errors import StoreError
 from runner.store import DamagedError, Run, find_run, open_run, prepare, seal
 from runner.store.atomic import write_atomically
+from runner.store.seal import sealed_json
 
 
 @pytest.fixture
@@ -35,7 +36,7 @@ def refuse(code):
 def test_the_record_follows_its_schema(run):
     record = json.loads((run.folder / "metrics.json").read_text())
     of_result = ["status", "repetitions", "caveats", "caveat_rules", "metrics", "timing", "provenance"]
-    assert list(record) == ["schema", "digest", "files", *of_result]
+    assert list(record) == ["schema", "digest", "name", "files", *of_result]
     assert (record["schema"], record["status"], record["repetitions"]) == (3, "ok", 2)
     for metric in record["metrics"].values():
         assert set(metric) == {"unit", "values", "median", "min", "max"}
@@ -139,6 +140,54 @@ def test_a_damaged_urdf_is_said(run, content):
     path.unlink() if content is None else path.write_bytes(content)
     with pytest.raises(StoreError, match=r"cannot read .*robot\.urdf: "):
         _ = open_run(run.folder).urdf
+
+
+def test_a_run_under_the_name_of_another_is_told_and_made_again(cli, run, copy_run, tmp_path):
+    other = copy_run("goal")
+    shutil.rmtree(run.folder)
+    shutil.copytree(other, run.folder)
+    ending = cli("report", run.folder)
+    assert (ending.code, ending.out) == (2, "")
+    assert f"metrics.json: it is the record of another job, {other.name}; run it again to mend it" in ending.err
+    assert cli("verify").code == 1
+    assert cli(*RUNS["noise"]).folder == run.folder
+    assert open_run(run.folder).metrics == run.metrics
+    assert open_run(shutil.copytree(other, tmp_path / "mine")).hash == "mine"  # a copy elsewhere may bear any name
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "found"),
+    [
+        (("status",), "fine", "status: Input should be 'ok' or 'failed'"),
+        (("metrics", "peak_torque", "median"), ["x"], "metrics.peak_torque.median: Input should be a valid number"),
+        (("metrics", "peak_torque", "values"), [{}], "metrics.peak_torque.values.0: Input should be a valid number"),
+        (("caveats",), [{"rule": "<b>"}], "caveats.0.text: Field required"),
+        (("spec",), {"bounds": [], "all": 3}, "spec.bounds: Input should be a valid dictionary"),
+        (("provenance", "command"), None, "provenance.command: Input should be a valid string"),
+    ],
+)
+def test_a_record_that_somebody_made_up_is_told_though_its_digests_are_right(cli, run, key, value, found):
+    record = json.loads((run.folder / "metrics.json").read_text())
+    *groups, last = key
+    place = record
+    for group in groups:
+        place = place[group]
+    place[last] = value
+    made_up = {name: each for name, each in record.items() if name not in ("schema", "digest")}
+    (run.folder / "metrics.json").write_bytes(sealed_json(made_up))
+    ending = cli("report", run.folder)
+    assert (ending.code, ending.out) == (2, "")
+    assert f"metrics.json: it is no run's record: {found}" in ending.err
+    assert ending.err.endswith("; run it again to mend it\n")
+
+
+def test_who_changes_a_trace_changes_a_copy(run):
+    before = run.trace.copy()
+    changed = run.trace
+    changed["q1"] = 0.0
+    changed.loc[:, "q2"] += 1.0
+    assert run.trace.equals(before)
+    assert not changed.equals(before)
 
 
 def test_a_failed_run_says_why_in_words(run):

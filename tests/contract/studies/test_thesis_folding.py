@@ -54,9 +54,9 @@ def test_two_draws_part_when_their_joints_are_a_radian_apart(runs: Mapping[str, 
     first, second = (replace(runs[NAME]) for _ in range(2))
     parting = first.trace["t"][3]
     apart = np.where(first.trace["t"] < parting, 1e-12, 2.0)
-    second.__dict__["trace"] = first.trace.assign(q2=first.trace["q2"] + apart)
+    second.__dict__["_frame"] = first.trace.assign(q2=first.trace["q2"] + apart)
     assert folding.parted_at(first, second) == pytest.approx(parting)
     assert folding.largest_parting(first, second) == pytest.approx(2.0)
     assert folding.parted_at(first, first) is None
-    second.__dict__["trace"] = second.trace[:3]  # diverged
+    second.__dict__["_frame"] = second.trace[:3]  # diverged
     assert len(folding.parting(first, second)) == 3
