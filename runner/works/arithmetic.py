@@ -5,8 +5,10 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from runner.errors import RunnerError
 from runner.expressions import insertions
 from runner.expressions.evaluator import Budget, ExpressionError, Scope
+from runner.texts import quoted
 
 Level = str | int | float
 """What a name stands for: a number or a text."""
@@ -23,15 +25,16 @@ def fill(text: str, scope: Mapping[str, Level]) -> str:
         scope: What each name stands for.
 
     Raises:
-        ExpressionError: if an expression is none, or has a name that stands for nothing.
+        RunnerError: if an expression is none, or has no value that can be put in.
     """
     if "{{" not in text:
         return text
     if len(text) > _LONGEST:
-        raise ExpressionError(text, _LONGEST, f"has {len(text)} characters; allowed: up to {_LONGEST}")
-    return insertions.fill(
-        text, Scope({"round": _rounded}, scope), Budget(_OPERATIONS), lambda value: _shown(text, value)
-    )
+        raise RunnerError(f"{quoted(text)}: has {len(text)} characters; allowed: up to {_LONGEST}")
+    try:
+        return insertions.fill(text, Scope({"round": _rounded}, scope), Budget(_OPERATIONS), _shown)
+    except ExpressionError as error:
+        raise RunnerError(f"{quoted(text)}: {error.reason}") from None
 
 
 def alone(text: str) -> str | None:
@@ -50,9 +53,9 @@ def _rounded(value: float, digits: float | None = None) -> float:
     return round(value) if digits is None else round(float(value), int(digits))  # of an int Python works out 10**digits
 
 
-def _shown(text: str, value: Any) -> str:
+def _shown(value: Any) -> str:
     if isinstance(value, str):
         return value
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ExpressionError(text, 0, f"gives {value}; only a finite number or a text is put in")
+        raise RunnerError(f"gives {quoted(value)}; only a finite number or a text is put in")
     return f"{value:.9g}"

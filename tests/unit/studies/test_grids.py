@@ -100,7 +100,7 @@ values: {parts: 9, twice: 2}
         ("grids: {g: {}, h: {name: g}}", "grids.h: the name 'g' is that of another run"),
         ("values: {a: b}", "values.a: must be a number"),
         ("grids: {g: {}, g: {}}", "line 1: the key 'g' stands twice"),
-        ("grids: {g: {with: ['m={{ mas / 2 }}'], over: {mass: [1]}}}", r"grids.g: 'mas' is neither .*mean mass\?"),
+        ("grids: {g: {with: ['m={{ mas / 2 }}'], over: {mass: [1]}}}", r"grids.g: .*no name 'mas' .*mean mass\?"),
         ("grids: {g: {over: {a: {x: '{{ b }}'}, b: {x: '{{ a }}'}}, with: ['{{ a }}']}}", "'a' is put into itself"),
         ("grids: {g: {with: [}}", "runs.yaml, line 1"),
     ],
