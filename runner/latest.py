@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
+from runner.config.user_settings import outputs_dir
 from runner.errors import RunnerError, StoreError
 
 Kind = Literal["run", "sweep", "tuning", "calibration", "report"]
@@ -66,7 +67,7 @@ def find_folder(text: str | Path, kinds: Sequence[Kind]) -> Path:
     """
     path = Path(text)
     if path.name == WORD and not path.exists():
-        return _newest(Path("outputs") if str(text) == WORD else path.parent, kinds)
+        return _newest(outputs_dir() if str(text) == WORD else path.parent, kinds)
     if not path.is_dir():
         raise RunnerError(f"no folder {path}; needed: {_needed(kinds)}")
     kind = kind_of(path)

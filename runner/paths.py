@@ -22,6 +22,11 @@ def conf_dir() -> Path:
     return _root() / "conf"
 
 
+def ships(path: Path) -> bool:
+    """Tell whether a file is one of our configs, which may set what no file from outside may."""
+    return conf_dir() in path.resolve().parents
+
+
 def robots_dir() -> Path:
     """Return the folder of our own URDFs."""
     return _root() / "robots"

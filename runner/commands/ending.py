@@ -2,9 +2,9 @@
 
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from runner.config.user_settings import outputs_dir
 from runner.latest import WORD
 from runner.texts import one_line
 
@@ -125,7 +125,7 @@ def _tell_cells(ended: "Ended") -> None:
     print(one_line(f"runner: {text}"), file=sys.stderr)
     if kept:
         print(f"runner: {kept}", file=sys.stderr)
-    here = ended.outputs.resolve() == Path("outputs").resolve()
+    here = ended.outputs.resolve() == outputs_dir().resolve()
     name = WORD if here else str(ended.folder)
     compared = next((axis.name for axis in _axes(ended) if axis.name != "seed"), None)
     compare = f", `runner compare {name} --by {compared}`" if compared else ""

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.commands.arguments import Parser, Stored
+from runner.config.user_settings import outputs_dir
 from runner.errors import RunnerError
 from runner.quiet import quiet_environment
 from runner.works.names import work_names
@@ -74,7 +75,7 @@ def _work_of(path: Path) -> tuple[str, Path] | None:
     if path.name not in work_names():
         return None
     if not path.is_dir() and path == Path(path.name):
-        return path.name, Path("outputs")
+        return path.name, outputs_dir()
     return (path.name, path.parent.parent) if path.resolve().parent.name == "reports" else None
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from runner import progress
 from runner.commands.arguments import Parser, stored
+from runner.config.user_settings import outputs_dir
 from runner.errors import RunnerError
 from runner.latest import note
 from runner.progress.stages import READING, SOON, of_report
@@ -125,4 +126,4 @@ def _of_tuning(folders: Sequence[Path], _: Sequence[str], reports: Path) -> "tup
 def _outputs(folder: Path) -> Path:
     """Return the outputs folder that a run or sweep lies in; ./outputs for a copy that lies elsewhere."""
     place = folder.resolve().parent
-    return folder.parent.parent if place.name in ("runs", "sweeps", "tunings") else Path("outputs")
+    return folder.parent.parent if place.name in ("runs", "sweeps", "tunings") else outputs_dir()

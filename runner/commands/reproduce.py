@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from runner import progress
 from runner.commands.arguments import Parser
+from runner.config.user_settings import outputs_dir
 from runner.errors import RunnerError
 from runner.latest import note
 from runner.plugins import in_use, named
@@ -64,7 +65,7 @@ def main(arguments: Sequence[str]) -> int:
     parser = Parser("reproduce", __doc__)
     parser.add_argument("work", nargs="?", default="all", metavar="NAME", help=f"{', '.join(works)}, all or a folder")
     parser.add_argument("overrides", nargs="*", metavar="OVERRIDE", help="such as hydra.sweeper.workers=1")
-    parser.add_argument("--outputs", type=Path, default=Path("outputs"), help="folder of runs and reports")
+    parser.add_argument("--outputs", type=Path, default=outputs_dir(), help="folder of runs and reports")
     parser.add_argument("--check", action="store_true", help="exit 1 where a finding fell or a caveat is unexpected")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write verdicts, findings, caveats, numbers")
     parser.add_argument("--profile", default="", metavar="P", help="a smaller or larger making that work.yaml names")

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 import hydra
 from hydra.core.hydra_config import HydraConfig
-from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
 from runner.commands.ending import tell_run, tell_sweep
@@ -23,6 +22,7 @@ from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.hydra_config import hydra_config, parse
 from runner.config.no_code import code_refused
 from runner.config.overrides import force
+from runner.config.user_settings import user_overrides
 from runner.paths import conf_dir
 from runner.quiet import quiet_environment
 from runner.recall.runs import keep_run, plain_line
@@ -138,7 +138,7 @@ def _composed(task: _Task, arguments: Sequence[str]) -> Callable[[], None] | Non
     many = any(word in _MANY for word in arguments)
     of_sweeper = [word for word in arguments if many and word.startswith(_OF_SWEEPER)]
     line = plain_line([word for word in arguments if word not in (*_MANY, *of_sweeper)])
-    if line is None or len(line[1]) > 1 or not all(folder.is_dir() for folder in line[1]):
+    if line is None or not all(folder.is_dir() for folder in line[1]):
         return None
     overrides, own = force([*line[0], *of_sweeper]), [folder.absolute() for folder in line[1]]
     if many:
@@ -146,15 +146,17 @@ def _composed(task: _Task, arguments: Sequence[str]) -> Callable[[], None] | Non
     if any(each.is_sweep_override() for each in parse(overrides)):
         return None
     config = hydra_config(overrides, own)
-    if config.hydra.mode == RunMode.MULTIRUN:  # a file asks for a sweep
-        return None
     return partial(task.make, config, config.hydra, overrides, own)
 
 
 def _let_hydra_take(task: _Task, arguments: Sequence[str]) -> None:
     installing = bool({"-sc", "--shell-completion"} & set(arguments))
     helping = "--hydra-help" in arguments
-    sys.argv = ["runner", *(arguments if installing else force(arguments)), *(_WITHOUT_OURS if helping else ())]
+    sys.argv = [
+        "runner",
+        *(arguments if installing else [*user_overrides(), *force(arguments)]),
+        *(_WITHOUT_OURS if helping else ()),
+    ]
     # The absolute path works from a console script and from a wheel, where a relative one does not.
     with code_refused():
         hydra.main(version_base="1.3", config_path=str(conf_dir()), config_name="config")(task)()

@@ -12,6 +12,7 @@ from typing import Literal
 
 from runner import progress
 from runner.commands.arguments import Parser
+from runner.config.user_settings import outputs_dir
 from runner.errors import RunnerError
 from runner.quiet import quiet_environment
 
@@ -38,7 +39,7 @@ def main(arguments: Sequence[str]) -> int:
     """Print what is stored, and what of it is damaged; return 1 where anything is."""
     parser = Parser("verify", __doc__)
     parser.add_argument(
-        "outputs", nargs="?", type=Path, default=Path("outputs"), metavar="DIR", help="an outputs folder (./outputs)"
+        "outputs", nargs="?", type=Path, default=outputs_dir(), metavar="DIR", help="an outputs folder (./outputs)"
     )
     options = parser.parse_args(arguments)
     if not options.outputs.is_dir():

@@ -16,6 +16,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from runner.commands.arguments import Parser
+from runner.config.user_settings import outputs_dir
 from runner.quiet import quiet_environment
 from runner.reporting.changes import KINDS, Change, Value, changes, read_conclusions
 from runner.texts import one_line
@@ -31,7 +32,7 @@ def main(arguments: Sequence[str]) -> int:
     new.add_argument("folder", type=Path, metavar="DIR", help="a folder that is not there yet, or empty")
     check = actions.add_parser("check", help="look through a work")
     check.add_argument("work", metavar="DIR", help="the work's folder, or the name of an installed one")
-    check.add_argument("--outputs", type=Path, default=Path("outputs"), help="folder of runs")
+    check.add_argument("--outputs", type=Path, default=outputs_dir(), help="folder of runs")
     check.add_argument("--code", action="store_true", help="run the Python of DIR")
     diff = actions.add_parser("diff", help="what changed between two makings")
     diff.add_argument("old", type=Path, metavar="OLD", help="file or folder of the earlier making")

@@ -12,7 +12,9 @@ from typing import Any
 import yaml
 from yaml.resolver import Resolver
 
+from runner.config.interpolation import calls_function
 from runner.errors import RunnerError
+from runner.paths import ships
 from runner.texts import quoted
 
 
@@ -72,11 +74,12 @@ def check_yaml(text: str, name: str | Path, bounds: Bounds = CONFIG, once: bool 
 
     Raises:
         YamlError: if it is no YAML, too long, too deep or of too many values, an anchor holds itself, a key is no
-            text, or a value has a tag, which names how to make it.
+            text, a value has a tag, which names how to make it, or holds a ${...} that is no reference to a key, which
+            our configs alone may.
     """
     if len(text) > bounds.characters:
         raise YamlError(f"{name}: has {len(text)} characters; allowed: up to {bounds.characters}")
-    scan = _Scan(str(name), bounds, once)
+    scan = _Scan(str(name), bounds, once, isinstance(name, Path) and ships(name))
     try:
         for event in yaml.parse(text, Loader=yaml.CSafeLoader):
             scan.take(event)
@@ -97,6 +100,16 @@ def line_of(event: yaml.Event, name: str) -> str:
     return name if event.start_mark is None else f"{name}, line {event.start_mark.line + 1}"
 
 
+def line_with(text: str, path: Path) -> str:
+    """Return a YAML file, with the line of an override, or of its key, where it stands there."""
+    key = text.partition("=")[0]
+    for event in yaml.parse(path.read_text(encoding="utf-8"), Loader=yaml.CSafeLoader):
+        value = event.value.removeprefix("override ").lstrip("/") if isinstance(event, yaml.ScalarEvent) else ""
+        if value and (value == text or f".{key}".endswith(f".{value}")):
+            return line_of(event, str(path))
+    return str(path)
+
+
 @dataclass
 class _Open:
     """A collection whose end has not come: its anchor, the values in it, whether a key comes next (None in a list)."""
@@ -108,8 +121,8 @@ class _Open:
 
 
 class _Scan:
-    def __init__(self, name: str, bounds: Bounds, once: bool) -> None:
-        self._name, self._bounds, self._once = name, bounds, once
+    def __init__(self, name: str, bounds: Bounds, once: bool, ours: bool) -> None:
+        self._name, self._bounds, self._once, self._ours = name, bounds, once, ours
         self._open = [_Open(None, 0, None)]
         self._sizes: dict[str, int] = {}
         self._resolver = Resolver()
@@ -157,6 +170,8 @@ class _Scan:
             yield f"nested deeper than {self._bounds.depth} levels; no config needs so many"
         if event.tag not in (None, "!"):
             yield f"the tag {quoted(event.tag)} says how to make a value; remove it: values are plain"
+        if isinstance(event, yaml.ScalarEvent) and calls_function(event.value) and not self._ours:
+            yield f"{quoted(event.value)} calls a function; a file may refer to keys alone, as in ${{robot.period}}"
         if self._open[-1].key_next and not self._is_text(event):
             found = quoted(event.value) if isinstance(event, yaml.ScalarEvent) else "a collection"
             yield f"the key {found} is no text; put it in quotes, or look for a typing error"

@@ -1,17 +1,15 @@
 """Turning what Hydra, OmegaConf and YAML say of a bad config into what a user can mend."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import yaml
 from hydra.errors import HydraException, MissingConfigException, OverrideParseException
-from omegaconf import OmegaConf
 from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 
 from runner.config.bounded_yaml import explain_yaml
 from runner.config.malformed import explain_parser
-from runner.config.no_code import check_file
 from runner.config.options import group_options
 from runner.errors import ConfigError, nearest
 from runner.texts import VALUE, one_line, quoted
@@ -27,10 +25,6 @@ def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
     """Return the message for what Hydra, OmegaConf or YAML say of a config."""
     if isinstance(error, yaml.YAMLError):
         return ConfigError([explain_yaml(error)])
-    if isinstance(error, UnicodeDecodeError | OSError) and not isinstance(error, HydraException):
-        unreadable = [problem for folder in config_dirs for problem in _unreadable(folder)]
-        if unreadable:
-            return ConfigError(unreadable)
     if isinstance(error, MissingConfigException) and error.missing_cfg_file:
         group, _, option = str(error.missing_cfg_file).partition("/")
         known = group_options(group, config_dirs)
@@ -56,18 +50,3 @@ def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
         )
     text = str(error).replace("++", "").split("\nSee https")[0].split("\nTo append")[0]
     return ConfigError([" ".join(text.split())])
-
-
-def _unreadable(folder: Path) -> Iterator[str]:
-    for path in sorted(folder.resolve().rglob("*.yaml")):
-        try:
-            check_file(path)
-            OmegaConf.load(path)
-        except ConfigError as error:
-            yield from error.problems
-        except yaml.YAMLError as error:
-            yield explain_yaml(error)
-        except UnicodeDecodeError as error:
-            yield f"{path}: is no text: {error}"
-        except OSError as error:
-            yield f"{path}: {error.strerror or 'holds no mapping of keys'}"

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from runner.config.work_folder import check_inside
 from runner.errors import ConfigError
 
 
@@ -44,6 +45,7 @@ def _find(name: str, config_dirs: Sequence[Path]) -> Path:
     places = [Path(name)] if Path(name).is_absolute() else [folder / name for folder in (*config_dirs, Path.cwd())]
     for place in places:
         if place.is_file():
+            check_inside(place, config_dirs)
             return place
     raise ConfigError(
         [f"trajectory.file: no file '{name}'; looked in {', '.join(str(each.parent) for each in places)}"]

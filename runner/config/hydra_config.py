@@ -20,6 +20,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from runner.config.no_code import check_composed, code_refused
 from runner.config.options import groups
+from runner.config.user_settings import user_overrides
 from runner.engines import default_plant
 from runner.errors import ConfigError
 from runner.paths import conf_dir
@@ -42,12 +43,13 @@ def hydra_config(
         mode: MULTIRUN leaves out what is swept.
 
     Raises:
-        ConfigError: for a config that names code, or refers to itself.
+        ConfigError: for a config that sets what no file may, or refers to itself.
         Exception: one of COMPOSITION_ERRORS, as Hydra raises it for what it cannot compose.
     """
+    overrides = [*user_overrides(), *overrides]
     folders = tuple(folder.resolve() for folder in config_dirs)
     found = _with_values(overrides, folders, root, mode)
-    return _compose(overrides, folders, root, mode)[0] if found is None else found
+    return _compose(overrides, folders, root, mode) if found is None else found
 
 
 def parse(overrides: Sequence[str]) -> list[Override]:
@@ -83,8 +85,6 @@ def _with_values(
         kept = _of_options(lines, config_dirs, root, mode, files, default_plant())
     except ConfigError:
         return None  # a value may mend it
-    if kept is None:
-        return None
     config: DictConfig = pickle.loads(kept)  # noqa: S301 - made below
     try:
         for each in values:
@@ -111,27 +111,21 @@ def _is_put(override: Override) -> bool:
 
 
 @lru_cache(maxsize=_KEPT)
-def _of_options(
-    options: tuple[str, ...], config_dirs: tuple[Path, ...], root: str, mode: RunMode, *_: object
-) -> bytes | None:
-    """Return the config of some options, pickled; None where it comes from files beside the config folders.
+def _of_options(options: tuple[str, ...], config_dirs: tuple[Path, ...], root: str, mode: RunMode, *_: object) -> bytes:
+    """Return the config of some options, pickled.
 
     The last arguments are what else it follows from: the files as they are, and the plant that `default` stands for.
     """
-    config, read = _compose(options, config_dirs, root, mode)
-    inside = all(any(path.is_relative_to(folder) for folder in (conf_dir(), *config_dirs)) for path in read)
-    return pickle.dumps(config) if inside else None
+    return pickle.dumps(_compose(options, config_dirs, root, mode))
 
 
-def _compose(
-    overrides: Sequence[str], config_dirs: Sequence[Path], root: str, mode: RunMode
-) -> tuple[DictConfig, set[Path]]:
-    """Return what Hydra composes, and the files that it read."""
+def _compose(overrides: Sequence[str], config_dirs: Sequence[Path], root: str, mode: RunMode) -> DictConfig:
+    """Return what Hydra composes."""
     search = [f"hydra.searchpath=[{','.join(f'file://{folder}' for folder in config_dirs)}]"]
     lines = [*overrides, *(search if config_dirs else [])]
-    with code_refused() as read, initialize_config_dir(str(conf_dir()), version_base="1.3", job_name="runner"):
+    with code_refused(), initialize_config_dir(str(conf_dir()), version_base="1.3", job_name="runner"):
         loader = GlobalHydra.instance().config_loader()
-        return loader.load_configuration(root, lines, mode, from_shell=False), read
+        return loader.load_configuration(root, lines, mode, from_shell=False)
 
 
 def _files(*folders: Path) -> Files | None:

@@ -1,14 +1,10 @@
-"""References between the values of a config, as ${robot.period}: how much they stand for, and what a file may write."""
+"""References between the values of a config, as ${robot.period}: which there may be, and how much they stand for."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-import yaml
-
-from runner.config.bounded_yaml import line_of
 from runner.errors import ConfigError
-from runner.texts import quoted
 
 _REFERENCE = re.compile(r"\$\{\s*(\.*[^\s.:${}'\"\\][^\s:${}'\"\\]*)\s*\}")
 _SIZE = 2_000_000  # of a config whose references are replaced by what they stand for
@@ -18,27 +14,13 @@ _DEPTH = 60  # of collections and references within each other
 Place = tuple[str | int, ...]
 
 
-def refuse_functions(text: str, name: str) -> None:
-    """Check that the values of a config file refer to keys at most.
+def calls_function(text: str) -> bool:
+    """Tell whether a text holds a ${...} that is no reference to a key.
 
-    Functions of OmegaConf would take the environment (oc.env) into a config, and from there into stored runs and
-    reports; a file may be a stranger's. On the command line they are free.
-
-    Args:
-        text: The YAML text, checked by check_yaml.
-        name: Its file, for messages.
-
-    Raises:
-        ConfigError: for any ${...} that is no reference to a key.
+    Functions of OmegaConf, such as oc.env, would take the environment into a config, and from there into stored runs
+    and reports.
     """
-    problems = [
-        f"{line_of(event, name)}: {quoted(event.value)} calls a function; a file may refer to keys, as in "
-        "${robot.period}; functions such as oc.env are free on the command line alone"
-        for event in yaml.parse(text, Loader=yaml.CSafeLoader)
-        if isinstance(event, yaml.ScalarEvent) and "${" in _REFERENCE.sub("", event.value)
-    ]
-    if problems:
-        raise ConfigError(problems)
+    return "${" in text and "${" in _REFERENCE.sub("", text)
 
 
 def check_references(config: Mapping[str, Any]) -> None:

@@ -5,12 +5,15 @@ from collections.abc import Sequence
 
 from runner.config.bounded_yaml import CONFIG
 from runner.config.in_si import with_numbers
+from runner.config.interpolation import calls_function
 from runner.config.malformed import malformed
 from runner.config.options import groups
+from runner.config.user_settings import SAYS_HOW
 from runner.errors import ConfigError
 from runner.texts import quoted
 
 _CHARACTERS = 20_000  # Hydra takes some seconds for a list of that length
+_MAY_BE_TYPED = re.compile(r"[+]*hydra\.sweeper\.(workers|address|params(\.[^@:]*)?)")
 _LOOKS_LIKE_A_VALUE = re.compile(r"(?i)(null|true|false|[-+.\d][-+.\de]*)$")
 
 
@@ -22,7 +25,7 @@ def force(overrides: Sequence[str]) -> list[str]:
 
     Raises:
         ConfigError: for overrides that are too long, nested too deeply or malformed, choose an option of Hydra's own,
-            give a group no name to choose, or a range in a unit that does not fit its key.
+            give a group no name to choose, call a function, or for a range in a unit that does not fit its key.
     """
     names = set(groups())
     problems = [problem for override in overrides if (problem := _problem(override, names))]
@@ -48,12 +51,14 @@ def _problem(override: str, names: set[str]) -> str | None:
         return f"{quoted(override)} is no override: it is too long; allowed: up to {_CHARACTERS} characters"
     if _depth(value) + key.count(".") > CONFIG.depth:
         return f"{quoted(override)} is no override: nested deeper than {CONFIG.depth} levels"
+    if calls_function(override.replace("\\", "")):  # Hydra takes them away
+        return f"{quoted(override)} calls a function; a value may refer to keys alone, as in ${{robot.period}}"
     fault = malformed(override)
     if fault:
         return f"{quoted(override)} is no override: {fault}"
     group = key.lstrip("+~").partition("@")[0]
-    if group.startswith("hydra/"):
-        return f"{group}: Hydra's own groups cannot be changed; you may set hydra.sweeper.workers, .address and .params"
+    if (says := SAYS_HOW.search(key)) and says[1] == "hydra" and not _MAY_BE_TYPED.fullmatch(key):
+        return f"{key}: is Hydra's own; you may set hydra.sweeper.workers, .address and .params; folders: --config-dir"
     if given and group in names and (not value or "${" in value):
         return f"{group}: {quoted(value)} is no option; choose by name, see `runner list`"
     return None

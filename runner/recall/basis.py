@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from runner.config.user_settings import user_overrides
 from runner.paths import conf_dir, package_dir, robots_dir
 
 _MOST = 1000  # files and folders of the user's config folders; where there are more, nothing is recalled
@@ -16,15 +17,16 @@ _INSTALLED = (".dist-info", ".egg-info", ".egg-link", ".pth")
 def basis(typed: Sequence[str], config_dirs: Sequence[Path]) -> str | None:
     """Return a digest of a command line and of all that may be read for it; None where that is too much to read.
 
-    It holds the folder in which the line is typed, every file of our configs, URDFs and source, every file of the
-    user's config folders, and which packages of which versions are installed. What the environment says counts
-    nowhere: no config reads it, and lines with plug-ins are not recalled.
+    It holds the folder in which the line is typed, the user's settings, every file of our configs, URDFs and source,
+    every file of the user's config folders, and which packages of which versions are installed. What the environment
+    says counts nowhere else: no config reads it, and lines with plug-ins are not recalled.
 
     Args:
         typed: The command line.
         config_dirs: Config folders of the user's that it names.
     """
-    digest = hashlib.sha256(repr((sys.version, sys.path, os.getcwd(), list(typed), *_installed())).encode())  # noqa: PTH109
+    line = [*user_overrides(), *typed]
+    digest = hashlib.sha256(repr((sys.version, sys.path, os.getcwd(), line, *_installed())).encode())  # noqa: PTH109
     for path in (*_tree(conf_dir()), *_tree(robots_dir()), *_tree(package_dir())):
         _add(digest, path)
     own = [path for folder in config_dirs for path in _tree(folder.resolve())]

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runner.config.work_folder import check_inside
 from runner.errors import ConfigError, nearest
 from runner.paths import robots_dir
 from runner.robots.inertials import (
@@ -41,7 +42,7 @@ def find_file(key: str, name: str, config_dirs: Sequence[Path] = ()) -> Path:
         config_dirs: Config folders of the user's; each is searched itself and in its sub-folder `robots`.
 
     Raises:
-        ConfigError: if no such file exists, which names the places searched, or a name leads out of these.
+        ConfigError: if no such file exists, which names the places searched, or a name or link leads out of these.
     """
     if ".." in Path(name).parts:
         raise ConfigError([f"{key}: '{name}' leads out of its folder; put the file there, or give its whole path"])
@@ -50,6 +51,7 @@ def find_file(key: str, name: str, config_dirs: Sequence[Path] = ()) -> Path:
     for candidate in candidates:
         with contextlib.suppress(OSError):  # a name that is too long for a file, a folder that cannot be read
             if candidate.is_file():
+                check_inside(candidate, config_dirs)
                 return candidate
     own = sorted(path.name for path in robots_dir().glob("*.urdf" if key == "robot.urdf" else "*.xml"))
     ours = f"; ours: {', '.join(own)}" if own else ""

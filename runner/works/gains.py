@@ -5,6 +5,7 @@ from pathlib import Path
 
 import yaml
 
+from runner.config.user_settings import refuse_settings
 from runner.data_file import read_data
 from runner.errors import RunnerError, nearest
 from runner.store.atomic import write_atomically
@@ -24,7 +25,9 @@ def read_gains(folder: Path) -> Gains:
         RunnerError: if the file cannot be read or does not fit.
     """
     path = folder / FILE
-    return read_data(path, dict[str, list[dict[str, float]]]) if path.is_file() else {}
+    gains = read_data(path, dict[str, list[dict[str, float]]]) if path.is_file() else {}
+    refuse_settings((key for each in gains.values() for own in each for key in own), path)
+    return gains
 
 
 def write_gains(folder: Path, gains: Gains) -> None:

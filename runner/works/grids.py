@@ -22,6 +22,7 @@ for what it holds. Calibrations are grids under `calibrations`.
 """
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -29,6 +30,7 @@ from pydantic import ValidationError
 
 from runner.config.bounded_yaml import read_yaml
 from runner.config.messages import describe
+from runner.config.user_settings import refuse_settings
 from runner.errors import RunnerError, nearest
 from runner.registry import StrictModel
 from runner.works.arithmetic import Level
@@ -98,6 +100,8 @@ class Grids:
                 check_named(self.runs, {name: each.times for name, each in self.tunings.items()})
         except RunnerError as error:
             problems.append(str(error))
+        tuned_with = (each.overrides for each in self.tunings.values())
+        refuse_settings(chain(*self.runs.values(), *self.calibrations.values(), *tuned_with), path)
         if profile is not None:
             self.runs, self.calibrations = (
                 {name: profile.repeated(overrides) for name, overrides in own.items()}

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from runner.claims import CLAIMS, load_claims
+from runner.config.work_folder import check_inside
 from runner.errors import RunnerError, nearest
 from runner.plugins import use_plugins
 from runner.reporting.checklist import load_checklist
@@ -60,6 +61,9 @@ class Work:
         self, place: Place, allow_code: bool = False, profile: str = "", parts: Sequence[GivenPart] = ()
     ) -> None:
         self.name, self.folder = place.name, place.folder
+        for path in () if place.package else place.folder.rglob("*"):
+            if path.is_symlink():
+                check_inside(path, [place.folder])
         self.about = read_about(place.folder)
         self.installed = place.package is not None
         self._ours = place.ours

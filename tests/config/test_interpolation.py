@@ -2,7 +2,9 @@
 
 import pytest
 
-from runner.config.interpolation import check_references, refuse_functions
+from runner.config.bounded_yaml import YamlError, check_yaml
+from runner.config.interpolation import check_references
+from runner.config.overrides import force
 from runner.errors import ConfigError
 from runner.paths import conf_dir
 
@@ -12,12 +14,12 @@ def test_files_of_ours_refer_to_keys_alone():
         text = path.read_text()
         if path == conf_dir() / "plant" / "default.yaml":
             text = text.replace("${default_plant:}", "")  # which plant that is, only the machine can tell
-        refuse_functions(text, path.name)
+        check_yaml(text, path.name)
 
 
 @pytest.mark.parametrize("value", ["${robot.goal}", "${.x}", "${a.b[0]}_${ c }", "$ {oc.env:HOME}", "costs $5 {a: b}"])
 def test_references_to_keys_are_free(value):
-    refuse_functions(f"a: '{value}'", "f")
+    check_yaml(f"a: '{value}'", "f")
 
 
 @pytest.mark.parametrize(
@@ -36,8 +38,38 @@ def test_references_to_keys_are_free(value):
     ],
 )
 def test_functions_in_a_file_are_refused_with_their_line(text):
-    with pytest.raises(ConfigError, match=r"own\.yaml, line 2: .* calls a function; a file may refer to keys"):
-        refuse_functions(f"a: 1\n{text}", "own.yaml")
+    with pytest.raises(YamlError, match=r"own\.yaml, line 2: .* calls a function; a file may refer to keys"):
+        check_yaml(f"a: 1\n{text}", "own.yaml")
+
+
+def test_ours_alone_may_call_a_function():
+    ours = conf_dir() / "plant" / "default.yaml"
+    check_yaml(ours.read_text(), ours)
+    with pytest.raises(YamlError, match="calls a function"):
+        check_yaml(ours.read_text(), conf_dir().parent / "plant" / "default.yaml")
+
+
+@pytest.mark.parametrize(
+    "override",
+    [
+        "a=${oc.env:HOME}",
+        "a='${oc.env:HOME}'",
+        r"a=$\{oc.env:HOME\}",
+        r"a=\${oc.env:HOME}",
+        "a=[1,{b: ${now:%H}}]",
+        "a=1,${hydra:run.dir}",
+        "a=${${b}:HOME}",
+        "${oc.env:HOME}=1",
+    ],
+)
+def test_functions_in_an_override_are_refused(override):
+    with pytest.raises(ConfigError, match="calls a function; a value may refer to keys alone"):
+        force([override])
+
+
+@pytest.mark.parametrize("override", ["a=${robot.period}", "a='${.x}'", "a=[${b},1]", "a={b: ${ c.d }}", "a=x$y"])
+def test_references_to_keys_in_an_override_are_free(override):
+    assert force([override]) == [f"++{override}"]
 
 
 def doubling(first, double):

@@ -1,58 +1,94 @@
-"""Configs that name code: refused from every kind of file, before anything runs."""
+"""What a config file may set: how and where runs are made, code and folders are refused, before anything runs."""
 
 import json
 import os
+import socket
 
 import pytest
-from hydra._internal.config_search_path_impl import ConfigSearchPathImpl
 
 from runner.config.compose import compose
-from runner.config.no_code import refuse_modules
 from runner.errors import ConfigError
 from runner.paths import conf_dir
 
 HEAD = "# @package _global_\n# A stranger's\n# experiment\n"
+WHY = "says how or where runs are made, which no file may; set it on the command line or in "
 
 
 @pytest.fixture
 def stranger(cli, tmp_path):
-    """Runs an experiment of a stranger's config folder, whose text may make the folder `done`, once or as a sweep."""
+    """Runs a file of a stranger's config folder, whose text may make the folder `done`, once or as a sweep."""
 
-    def run(text, *mode):
-        folder = tmp_path / "theirs"
-        (folder / "experiment").mkdir(parents=True)
+    def run(text, *mode, file="experiment/trap", head=HEAD):
+        place = tmp_path / "theirs" / f"{file}.yaml"
+        place.parent.mkdir(parents=True, exist_ok=True)
         made = json.dumps({"_target_": "os.mkdir", "path": str(tmp_path / "done")})
-        (folder / "experiment/trap.yaml").write_text(HEAD + text.replace("MAKE", made))
-        ending = cli(*mode, "--config-dir", folder, "experiment=trap", "robot=macro", "plant=rk4", "duration=0.05")
+        place.write_text(head + text.replace("MAKE", made))
+        group, _, option = file.partition("/")
+        chosen = [f"{group}={option}"] if option else ["--config-name", file]
+        ending = cli(*mode, "--config-dir", "theirs", *chosen, "robot=macro", "plant=rk4", "duration=0.05")
         assert not (tmp_path / "done").exists()
         return ending
 
     return run
 
 
-CODE = [
-    ("hydra: {callbacks: {a: MAKE}}", "callbacks"),
-    ("hydra: {sweeper: {params: {seed: MAKE}}}", "sweeper"),
-    ("hydra: {sweeper: {_recursive_: true}}", "sweeper"),
-    ("hydra: {job_logging: {handlers: {a: {'()': os.mkdir, path: done}}, root: {handlers: [a]}}}", "job_logging"),
-    ("hydra: {hydra_logging: {formatters: {a: {'()': os.getcwd}}}}", "hydra_logging"),
-    ("hydra: {job: {env_set: {RUNNER_PLUGINS: metric=trap.py}}}", "job.env_set"),
-    ("hydra: {job: {env_copy: [PATH]}}", "job.env_set"),
-    ("hydra: {sweeper: {params: {robot.name: '${x}{oc.env:HOME}'}}}\nx: $", "sweeper"),
-]
-# Both modes compose alike: what concerns the sweeper is tried as a sweep, the rest as a run; the other half is slow.
-MODES = [
-    pytest.param(text, key, mode, marks=() if (key == "sweeper") == (mode == ("-m",)) else pytest.mark.slow)
-    for text, key in CODE
-    for mode in ((), ("-m",))
+@pytest.fixture
+def listening():
+    """A port of this machine at which nobody came, once the test has ended."""
+    with socket.socket() as door:
+        door.bind(("127.0.0.1", 0))
+        door.listen()
+        yield door.getsockname()[1]
+        door.setblocking(False)
+        with pytest.raises(BlockingIOError):
+            door.accept()
+
+
+HOW = [
+    ("hydra: {callbacks: {a: MAKE}}", "hydra.callbacks.a._target_"),
+    ("hydra: {sweeper: {_recursive_: true}}", "hydra.sweeper._recursive_"),
+    ("hydra: {sweeper: {workers: 3}}", "hydra.sweeper.workers"),
+    ("hydra: {job_logging: {root: {handlers: [a]}}}", "hydra.job_logging.root.handlers"),
+    ("hydra: {job: {env_set: {RUNNER_PLUGINS: metric=trap.py}}}", "hydra.job.env_set.RUNNER_PLUGINS"),
+    ("hydra: {job: {env_copy: [PATH]}}", "hydra.job.env_copy"),
+    ("hydra: {run: {dir: there}}", "hydra.run.dir"),
+    ("hydra: {mode: MULTIRUN}", "hydra.mode"),
+    ("hydra: 3", "hydra"),
+    ("outputs: there", "outputs"),
+    ("defaults: [override hydra/sweeper: basic]", "hydra/sweeper"),
+    ("defaults: [/hydra/job_logging/default]", "hydra/job_logging/default"),
+    ("defaults: ['/noise@hydra.callbacks': thesis]", "noise@hydra.callbacks"),
 ]
 
 
-@pytest.mark.parametrize(("text", "key", "mode"), MODES)
-def test_a_config_that_names_code_is_refused_before_it_runs(stranger, text, key, mode):
+@pytest.mark.parametrize(("text", "key"), HOW)
+@pytest.mark.parametrize("mode", [(), pytest.param(("-m",), marks=pytest.mark.slow)])
+def test_how_and_where_runs_are_made_is_not_set_by_a_file(stranger, tmp_path, text, key, mode):
     ending = stranger(text, *mode)
     assert (ending.code, ending.out) == (2, "")
-    assert f"hydra.{key}: a config cannot name code" in ending.err
+    assert f"theirs/experiment/trap.yaml, line 4: '{key}' {WHY}" in ending.err
+    assert "arm-control-runner/config.yaml; allowed here: hydra.sweeper.params" in ending.err
+    assert [entry.name for entry in tmp_path.iterdir()] == ["theirs"]
+
+
+def test_a_scheduler_that_a_file_names_is_not_called(stranger, listening):
+    ending = stranger(f"hydra:\n  sweeper:\n    address: tcp://127.0.0.1:{listening}", "-m")
+    assert (ending.code, ending.out) == (2, "")
+    assert f"theirs/experiment/trap.yaml, line 6: 'hydra.sweeper.address' {WHY}" in ending.err
+
+
+@pytest.mark.parametrize(
+    ("head", "text", "key"),
+    [
+        ("# @package hydra.sweeper\n", "address: ADDRESS", "hydra.sweeper.address"),
+        ("# @package _global_.hydra\n", "sweeper: {address: ADDRESS}", "hydra.sweeper.address"),
+        ("# @package _global_\n", "defaults: ['other@hydra.sweeper']\naddress: ADDRESS", "other@hydra.sweeper"),
+    ],
+)
+def test_nor_by_way_of_a_package(stranger, listening, head, text, key):
+    ending = stranger(text.replace("ADDRESS", f"tcp://127.0.0.1:{listening}"), "-m", file="noise/hydra", head=head)
+    assert (ending.code, ending.out) == (2, "")
+    assert f"theirs/noise/hydra.yaml, line 2: '{key}' {WHY}" in ending.err
 
 
 def test_code_as_a_value_of_ours_is_only_a_wrong_value(stranger):
@@ -62,9 +98,30 @@ def test_code_as_a_value_of_ours_is_only_a_wrong_value(stranger):
 
 
 def test_axes_of_an_experiment_stay_free(stranger):
-    ending = stranger("hydra: {sweeper: {workers: 0, params: {seed: '0,1'}}}", "-m")
+    ending = stranger("hydra: {sweeper: {params: {seed: '0,1'}}}", "-m", "hydra.sweeper.workers=0")
     assert ending.code == 0
     assert "runner: 2 runs" in ending.err
+
+
+@pytest.mark.parametrize(
+    ("params", "problem"),
+    [
+        ("3", "hydra.sweeper.params: must be keys with their values, or null; found 3"),
+        ("{seed: MAKE}", "is no override"),
+        ("{seed: '${nope}'}", "hydra.sweeper.params.seed: it refers to nope"),
+        (
+            "{hydra.sweeper.address: 'tcp://127.0.0.1:9'}",
+            "line 6: 'hydra.sweeper.params.hydra.sweeper.address' says how",
+        ),
+        ("{outputs: there}", "line 6: 'hydra.sweeper.params.outputs' says how"),
+        ("{robot.name: '${x}{oc.env:HOME}'}\nx: $", "'robot.name=${oc.env:HOME}' calls a function"),
+    ],
+)
+def test_axes_of_an_experiment_are_values(stranger, params, problem):
+    text = f"hydra:\n  sweeper:\n    params: {params}"
+    ending = stranger(text, "-m", "hydra.sweeper.workers=0")
+    assert (ending.code, ending.out) == (2, "")
+    assert problem in ending.err
 
 
 @pytest.fixture
@@ -78,7 +135,6 @@ def trap(tmp_path, monkeypatch):
     assert not (tmp_path / "done").exists()
 
 
-@pytest.mark.parametrize("scheme", ["pkg", "structured"])
 @pytest.mark.parametrize(
     "command",
     [
@@ -88,72 +144,74 @@ def trap(tmp_path, monkeypatch):
         ("calibrate",),
     ],
 )
-def test_a_search_path_imports_nothing(cli, trap, command, scheme):
-    ending = cli(*command, f"hydra.searchpath=[{scheme}://{trap}]")
+def test_a_search_path_is_given_by_config_dir_alone(cli, trap, command):
+    ending = cli(*command, f"hydra.searchpath=[pkg://{trap}]")
     assert (ending.code, ending.out) == (2, "")
-    assert f"hydra.searchpath: '{scheme}://{trap}' names a module; allowed: folders" in ending.err
+    assert "hydra.searchpath: is Hydra's own; you may set" in ending.err
+    assert "folders: --config-dir" in ending.err
 
 
-@pytest.mark.parametrize("scheme", ["pkg", "structured"])
-def test_nor_does_that_of_a_stranger_s_primary_config(cli, trap, tmp_path, scheme):
-    own = tmp_path / "theirs"
-    own.mkdir()
-    (own / "mine.yaml").write_text(f"hydra: {{searchpath: ['{scheme}://{trap}']}}\n")
-    ending = cli("--config-dir", own, "--config-name", "mine", "robot=macro")
+@pytest.mark.parametrize("scheme", ["pkg", "structured", "file"])
+def test_nor_does_a_primary_config_name_one(stranger, trap, scheme):
+    ending = stranger(f"hydra: {{searchpath: ['{scheme}://{trap}']}}", file="mine")
     assert ending.code == 2
-    assert f"hydra.searchpath: '{scheme}://{trap}' names a module" in ending.err
-
-
-@pytest.mark.parametrize(
-    ("text", "key"),
-    [("output_subdir: there", "output_subdir"), ("run: {dir: there}", "run.dir"), ("job: {chdir: true}", "job.chdir")],
-)
-def test_a_primary_config_does_not_say_where_hydra_writes(cli, tmp_path, text, key):
-    own = tmp_path / "theirs"
-    own.mkdir()
-    (own / "mine.yaml").write_text(f"defaults: [config, _self_]\nhydra: {{{text}}}\n")
-    ending = cli("--config-dir", own, "--config-name", "mine", "robot=macro")
-    assert ending.code == 2
-    assert f"hydra.{key}: a config cannot name code" in ending.err
-    assert [entry.name for entry in tmp_path.iterdir()] == ["theirs"]
+    assert f"theirs/mine.yaml, line 4: 'hydra.searchpath' {WHY}" in ending.err
 
 
 def test_nor_does_python(trap):
-    with pytest.raises(ConfigError, match=r"hydra\.searchpath: 'pkg://"):
+    with pytest.raises(ConfigError, match=r"hydra\.searchpath: is Hydra's own"):
         compose([f"hydra.searchpath=[pkg://{trap}]"])
 
 
-def test_a_folder_may_stand_in_the_search_path(cli, tmp_path):
-    own = tmp_path / "own" / "noise"
-    own.mkdir(parents=True)
-    (own / "mine.yaml").write_text("position: 0.0\ndistribution: none\nresolution: 0.0\nvelocity: exact\n")
-    assert cli(f"hydra.searchpath=[file://{own.parent}]", "noise=mine", "duration=0.05").code == 0
-    ending = cli(f"hydra.searchpath=[file://{tmp_path}/nowhere]")
-    assert (ending.code, "is no folder; allowed: folders" in ending.err) == (2, True)
+def test_several_config_folders_are_searched(cli, tmp_path):
+    for folder, name in (("a", "noise"), ("b", "trajectory")):
+        (tmp_path / folder / name).mkdir(parents=True)
+    (tmp_path / "a/noise/mine.yaml").write_text("defaults: [thesis]\nposition: 1e-3\n")
+    (tmp_path / "b/trajectory/mine.yaml").write_text("defaults: [goal]\n")
+    line = ("robot=macro", "noise=mine", "trajectory=mine", "plant=rk4", "duration=0.05")
+    assert cli("--config-dir", "a", "--config-dir=b", *line).code == 0
 
 
-def test_what_an_installed_plugin_of_hydra_s_adds_stays():
-    path = ConfigSearchPathImpl()
-    path.append("hydra-colorlog", "pkg://hydra_plugins.hydra_colorlog.conf")
-    refuse_modules(path)
-
-
-def test_the_environment_enters_by_the_command_line_alone(cli, stranger, monkeypatch):
+def test_the_environment_enters_by_no_file_and_no_override(cli, stranger, monkeypatch):
     monkeypatch.setenv("RUNNER_SECRET", "hidden")
     ending = stranger("robot: {name: '${oc.env:RUNNER_SECRET}'}")
     assert ending.code == 2
-    assert "trap.yaml, line 4: '${oc.env:RUNNER_SECRET}' calls a function" in ending.err
-    assert "hidden" not in ending.err
+    assert "trap.yaml, line 4: '${oc.env:RUNNER_SECRET}' calls a function; a file may refer to keys alone" in ending.err
     ending = cli("robot.name=${oc.env:RUNNER_SECRET}", "duration=0.05")
-    assert "name: hidden" in (ending.folder / "config.yaml").read_text()
+    assert ending.code == 2
+    assert "'robot.name=${oc.env:RUNNER_SECRET}' calls a function; a value may refer to keys alone" in ending.err
+    assert "hidden" not in ending.err
 
 
-def test_a_way_out_of_our_folder_is_no_way_around_the_check(stranger, tmp_path):
+def test_a_way_out_of_a_folder_is_refused(stranger, tmp_path):
     (tmp_path / "bomb.yaml").write_text("a: " + "[" * 10_000)
     there = os.path.relpath(tmp_path / "bomb", conf_dir() / "experiment")
     ending = stranger(f"defaults: [{there}]")
     assert ending.code == 2
-    assert "bomb.yaml, line 1: nested deeper than 30 levels" in ending.err
+    assert f"bomb.yaml: is {tmp_path}/bomb.yaml, outside of the folder {conf_dir()}; put the file itself" in ending.err
+
+
+@pytest.mark.parametrize("file", ["experiment/trap.yaml", "noise", "robots/own.urdf", "own.csv"])
+def test_links_out_of_a_config_folder_are_refused(cli, tmp_path, file):
+    folder = tmp_path / "theirs"
+    (tmp_path / "away/noise").mkdir(parents=True)
+    contents = {"away/trap.yaml": HEAD, "away/noise/mine.yaml": "defaults: [thesis]\n", "away/own.urdf": "<robot/>"}
+    for name, content in (contents | {"away/own.csv": "t\n"}).items():
+        (tmp_path / name).write_text(content)
+    place = folder / file
+    place.parent.mkdir(parents=True)
+    place.symlink_to(tmp_path / "away" / place.name)
+    line = {
+        "experiment/trap.yaml": ["experiment=trap"],
+        "noise": ["noise=mine"],
+        "robots/own.urdf": ["robot.urdf=own.urdf"],
+        "own.csv": ["trajectory=from_file", "trajectory.file=own.csv"],
+    }[file]
+    ending = cli("--config-dir", folder, "robot=macro", *line)
+    assert (ending.code, ending.out) == (2, "")
+    assert f"outside of the folder {folder}; put the file itself there" in ending.err
+    place.unlink()
+    place.symlink_to(os.devnull)
 
 
 @pytest.mark.parametrize("address", ["3", "[a]", "true"])

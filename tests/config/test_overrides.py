@@ -15,7 +15,7 @@ from runner.errors import ConfigError
         ("robot=macro,mini", "robot=macro,mini"),
         ("noise=1", "noise='1'"),
         ("experiment=null", "experiment='null'"),
-        ("hydra.run.dir=x", "hydra.run.dir=x"),
+        ("hydra.sweeper.workers=1", "hydra.sweeper.workers=1"),
         ("+new=1", "+new=1"),
         ("~noise", "~noise"),
         ("--config-dir=" + "/x" * 20_000, "--config-dir=" + "/x" * 20_000),
@@ -32,10 +32,26 @@ def test_keys_are_forced_and_options_are_not(override, forced):
         ("noise.position=" + "{a:" * 80 + "1" + "}" * 80, "nested deeper than 30 levels"),
         (".".join("a" * 100) + "=1", "nested deeper than 30 levels"),
         ("seed=" + "1," * 20_000, "it is too long; allowed: up to 20000 characters"),
-        ("hydra/launcher=", "hydra/launcher: Hydra's own groups cannot be changed; you may set hydra.sweeper"),
-        ("+hydra/job_logging=default", "hydra/job_logging: Hydra's own groups cannot be changed"),
+        ("hydra/launcher=", "hydra/launcher: is Hydra's own; you may set hydra.sweeper.workers"),
+        ("+hydra/job_logging=default", "+hydra/job_logging: is Hydra's own"),
         ("noise=", "noise: '' is no option; choose by name, see `runner list`"),
-        ('torque_limits=${oc.decode:"1e400"}', "torque_limits: '${oc.decode:\"1e400\"}' is no option"),
+        ("torque_limits=${robot.name}", "torque_limits: '${robot.name}' is no option"),
+        ('torque_limits=${oc.decode:"1e400"}', "calls a function; a value may refer to keys alone"),
+        *(
+            (f"{key}=1", f"{key}: is Hydra's own; you may set hydra.sweeper.workers, .address and .params")
+            for key in (
+                "hydra",
+                "hydra.run.dir",
+                "+hydra.callbacks.a",
+                "~hydra.job",
+                "hydra.searchpath",
+                "hydra.sweeper",
+                "hydra.sweeper._target_",
+                "noise@hydra.sweeper",
+                "noise@_global_.hydra",
+                "noise@a:hydra.x",
+            )
+        ),
     ],
 )
 @pytest.mark.parametrize("mode", [(), ("-m",)])

@@ -3,6 +3,7 @@
 import hashlib
 from pathlib import Path
 
+from runner.config.user_settings import outputs_dir
 from runner.metrics import unit_of
 from runner.quantities import above_rounding, quantity
 from runner.recordings import words
@@ -38,7 +39,7 @@ def recording_document(found: RecordingComparison) -> Document:
 def report_folder(found: RecordingComparison) -> Path:
     """Return the folder of the report, which follows from the run and the content of the recording."""
     place = found.run.folder.resolve().parent
-    outputs = found.run.folder.parent.parent if place.name == "runs" else Path("outputs")
+    outputs = found.run.folder.parent.parent if place.name == "runs" else outputs_dir()
     content = hashlib.sha256(f"recording {found.run.hash} {found.offset.start!r} ".encode())
     content.update(found.recording.path.read_bytes())
     return outputs / "reports" / content.hexdigest()[:24]

@@ -14,7 +14,6 @@ from runner.config.hydra_config import hydra_config
 from runner.config.no_code import code_refused
 from runner.config.overrides import force
 from runner.errors import ConfigError
-from runner.sweeps import run as sweeps
 
 SHORT = ("robot=macro", "plant=rk4", "duration=0.05")
 
@@ -59,7 +58,7 @@ def outcome(way, *arguments):
         ("robot=macro", "+new.key=[1,{a: b}]", "~torque_limits"),
         ("robot=macro", "~notch.kind", "++a.b=1", "+experiment=thesis/figure_3_5"),
         ("robot=macro", "noise@other=thesis"),
-        ("robot=macro", "hydra.verbose=true", "hydra.sweeper.workers=0"),
+        ("robot=macro", "hydra.sweeper.workers=0"),
         ("robot=makro", "seed=1"),
         ("noise.position=[1,", "robot=macro"),
         ("seed=1,2",),
@@ -160,13 +159,6 @@ def test_a_folder_named_from_another_working_folder_is_another(own, tmp_path, mo
     assert found == [1e-3, 2e-3]
 
 
-def test_an_edited_file_beside_the_folder_is_noticed(own, tmp_path):
-    (own / "noise/own.yaml").write_text("defaults: [thesis, ../../beside@_here_]\n")
-    for value in (1e-3, 2e-3):
-        (tmp_path / "beside.yaml").write_text(f"position: {value}\n")
-        assert position(own) == value
-
-
 def test_an_edited_file_of_ours_is_noticed(tmp_path, monkeypatch):
     shutil.copytree(paths.conf_dir(), tmp_path / "conf")
     monkeypatch.setattr(paths, "_root", lambda: tmp_path)
@@ -215,17 +207,6 @@ def test_default_stands_for_the_plant_that_is_installed(monkeypatch):
 @pytest.mark.parametrize("mode", [(), ("-m", "hydra.sweeper.workers=0")])
 def test_a_command_line_makes_what_hydras_own_command_makes(cli, mode):
     ours = cli(*mode, *SHORT, "++seed=3", "noise={position: 1e-3}")
-    hydras = cli(*mode, *SHORT, "++seed=3", "noise={position: 1e-3}", "hydra.verbose=false")
+    hydras = cli(*mode, *SHORT, "++seed=3", "noise={position: 1e-3}", "--config-name", "config")
     assert ours.folder == hydras.folder
     assert (ours.code, hydras.code) == (0, 0)
-
-
-def test_a_file_may_ask_for_a_sweep(cli, own, monkeypatch):
-    (own / "experiment").mkdir()
-    text = "# @package _global_\nhydra: {mode: MULTIRUN, sweeper: {workers: 0, params: {seed: '0,1'}}}\n"
-    (own / "experiment/many.yaml").write_text(text)
-    planned = []
-    monkeypatch.setattr(sweeps, "run_sweep", lambda plan, *_: planned.append(len(plan)))
-    for more in ((), ("noise.position=0,1e-3",)):
-        assert cli("--config-dir", own, "experiment=many", *SHORT, *more).code == 0
-    assert planned == [2, 4]

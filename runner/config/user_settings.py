@@ -1,0 +1,76 @@
+"""How and where runs are made: said by the command line and the user's settings, never by a file from outside.
+
+The settings are `arm-control-runner/config.yaml` in XDG_CONFIG_HOME or ~/.config: KEYS, as a command line gives them.
+They change no result, so that a command means the same on another machine.
+"""
+
+import os
+import re
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from pathlib import Path
+
+from runner.errors import ConfigError, nearest
+from runner.texts import quoted
+
+KEYS = ("outputs", "hydra.sweeper.workers", "hydra.sweeper.address")
+SAYS_HOW = re.compile(r"(?:^[+~]*|[@:])(?:_global_\.)?(hydra|outputs)(?![^./@:])")
+_AXES = "hydra.sweeper.params"
+
+
+def refuse_settings(given: Iterable[str], path: Path) -> None:
+    """Check that keys or overrides in a file from outside say nothing of how or where runs are made.
+
+    Raises:
+        ConfigError: for `outputs` and all of `hydra`, but the axes of a sweep; names the line.
+    """
+    for text in given:
+        key = text.partition("=")[0]
+        if key != _AXES and SAYS_HOW.search(key.removeprefix(f"{_AXES}.")):
+            from runner.config.bounded_yaml import line_with
+
+            where = f"set it on the command line or in {settings_path()}; allowed here: {_AXES}"
+            found = f"{line_with(text, path)}: {quoted(text)}"
+            raise ConfigError([f"{found} says how or where runs are made, which no file may; {where}"])
+
+
+def settings_path() -> Path:
+    """Return the file of the settings, which need not be there."""
+    base = os.environ.get("XDG_CONFIG_HOME") or "~/.config"
+    return Path(os.path.expanduser(base)) / "arm-control-runner" / "config.yaml"  # noqa: PTH111 - never raises
+
+
+def user_settings() -> Mapping[str, str]:
+    """Return the settings by key.
+
+    Raises:
+        ConfigError: with file and line, for a file that cannot be read, an unknown key or a value that is none.
+    """
+    return _read(settings_path())
+
+
+def user_overrides() -> list[str]:
+    """Return what stands before the overrides that are typed."""
+    return [f"{key}={value}" for key, value in user_settings().items()]
+
+
+def outputs_dir() -> Path:
+    """Return the outputs folder where no command line names one."""
+    return Path(user_settings().get("outputs", "outputs"))
+
+
+@lru_cache(maxsize=1)
+def _read(path: Path) -> Mapping[str, str]:
+    if not path.exists():
+        return {}
+    from runner.config.bounded_yaml import line_with, read_yaml  # for the few who have such a file
+
+    try:
+        content = read_yaml(path.read_text(encoding="utf-8"), path) or {}
+    except (OSError, ValueError) as error:
+        raise ConfigError([f"cannot read {path}: {error}"]) from None
+    for key, value in content.items() if isinstance(content, dict) else [(str(content), None)]:
+        if key not in KEYS or not isinstance(value, str | int):
+            known = f"{nearest(key, KEYS)}; settings: {', '.join(KEYS)}"
+            raise ConfigError([f"{line_with(key, path)}: {quoted({key: value})} is no setting{known}"])
+    return {key: os.path.expanduser(str(value)) for key, value in content.items()}  # noqa: PTH111 - of a folder

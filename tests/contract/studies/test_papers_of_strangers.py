@@ -1,0 +1,170 @@
+"""What the files of a stranger's paper may name, against a secret, a scheduler, and files outside of its folder."""
+
+from pathlib import Path
+
+import pytest
+
+ABOUT = "title: T\nsource: S\nabstract: A\nchapters: [one.md]\n"
+RUNS = "grids:\n  goal:\n    with: [robot=macro, plant=rk4, duration=0.05, experiment=paper/own]\n"
+FILES = {
+    "work.yaml": ABOUT,
+    "runs.yaml": RUNS,
+    "one.md": "# One\n\nWords.\n",
+    "experiment/own.yaml": "# @package _global_\n# An experiment\nseed: 1\n",
+}
+GRID = "grids:\n  goal:\n    with: [robot=macro]\n"
+
+
+@pytest.fixture
+def paper(cli, tmp_path, monkeypatch):
+    """Reproduce a paper of some files beside those of a small one, which are replaced by name."""
+    monkeypatch.setenv("RUNNER_SECRET", "hidden")
+
+    def reproduce(files, *options):
+        for name, text in (FILES | files).items():
+            place = tmp_path / "paper" / name
+            place.parent.mkdir(parents=True, exist_ok=True)
+            if not place.is_symlink():
+                place.write_text(text)
+        ending = cli("reproduce", "paper", *options)
+        assert "hidden" not in ending.err
+        return ending
+
+    return reproduce
+
+
+def refused(ending, tmp_path, problem):
+    """Check that a paper is refused in one sentence, before anything is made."""
+    assert (ending.code, ending.out) == (2, "")
+    assert problem in ending.err
+    assert ending.err.count("\n") <= 3
+    assert [path for path in (tmp_path / "outputs").rglob("*") if path.is_file()] == []
+    return True
+
+
+def last_line(text):
+    """Return where the last line of a text of runs.yaml stands, as messages say it."""
+    return f"paper/runs.yaml, line {text.count(chr(10)) + 1}: "
+
+
+SECRET = "${oc.env:RUNNER_SECRET}"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"grids:\n  goal:\n    with: [robot=macro, 'robot.name={SECRET}']",
+        f"{GRID}    over:\n      robot.name: ['{SECRET}']",
+        f"{GRID}    over:\n      a: {{b: 'robot.name={SECRET}'}}",
+        f"{GRID}calibrations:\n  tool:\n    with: ['robot.name={SECRET}']",
+        f"{GRID}values: {{a: '{SECRET}'}}",
+    ],
+)
+def test_runs_yaml_reads_no_environment(paper, tmp_path, text):
+    assert refused(paper({"runs.yaml": text}), tmp_path, f"{last_line(text)}'")
+
+
+def test_nor_one_that_is_put_together(paper, tmp_path):
+    text = f"{GRID}    over:\n      sign: [$]\n      x: {{y: 'robot.name={{{{ sign }}}}{{oc.env:RUNNER_SECRET}}'}}"
+    assert refused(paper({"runs.yaml": text}), tmp_path, "calls a function; a value may refer to keys alone")
+
+
+@pytest.mark.parametrize(
+    ("file", "line"),
+    [
+        ("work.yaml", 5),
+        ("claims.yaml", 1),
+        ("gains.yaml", 1),
+        ("caveats.yaml", 1),
+        ("experiment/own.yaml", 4),
+    ],
+)
+def test_nor_does_any_other_file(paper, tmp_path, file, line):
+    text = FILES.get(file, "") + f"bibtex: '{SECRET}'\n"
+    assert refused(paper({file: text}), tmp_path, f"{file}, line {line}: '{SECRET}' calls a function")
+
+
+@pytest.mark.parametrize(
+    ("text", "given"),
+    [
+        ("grids:\n  goal:\n    with: [robot=macro, 'KEY=VALUE']", "KEY=VALUE"),
+        ("grids:\n  goal:\n    with: [robot=macro, '++KEY=VALUE']", "++KEY=VALUE"),
+        (f"{GRID}    over:\n      KEY: ['VALUE']", "KEY=VALUE"),
+        (f"{GRID}    over:\n      a: {{b: 'KEY=VALUE'}}", "KEY=VALUE"),
+        (f"{GRID}calibrations:\n  tool:\n    with: ['KEY=VALUE']", "KEY=VALUE"),
+        (
+            f"{GRID}tunings:\n  t:\n    over: {{a: [b]}}\n    ranges: {{a: {{b: {{}}}}}}\n    minimize: energy\n"
+            "    with: ['KEY=VALUE']",
+            "KEY=VALUE",
+        ),
+    ],
+)
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("hydra.sweeper.address", "tcp://127.0.0.1:9"), ("outputs", "there"), ("hydra.searchpath", "[file:///]")],
+)
+def test_runs_yaml_does_not_say_how_runs_are_made(paper, tmp_path, text, given, key, value):
+    text, given = (each.replace("KEY", key).replace("VALUE", value) for each in (text, given))
+    line = f"{last_line(text)}'{given}' says how or where runs are made, which no file may"
+    assert refused(paper({"runs.yaml": text}), tmp_path, line)
+
+
+def test_nor_one_that_is_put_together_of_pieces(paper, tmp_path):
+    text = f"{GRID}    over:\n      dot: ['.']\n      x: {{y: 'hydra{{{{ dot }}}}searchpath=[file:///]'}}"
+    problem = "paper/runs.yaml: 'hydra.searchpath=[file:///]' says how or where runs are made, which no file may"
+    assert refused(paper({"runs.yaml": text}), tmp_path, problem)
+
+
+def test_nor_do_gains(paper, tmp_path):
+    problem = "paper/gains.yaml, line 2: 'hydra.sweeper.workers' says how or where runs are made, which no file may"
+    assert refused(paper({"gains.yaml": "a/b:\n- {hydra.sweeper.workers: 1000}\n"}), tmp_path, problem)
+
+
+KINDS = [
+    "work.yaml", "runs.yaml", "one.md", "experiment/own.yaml", "claims.yaml", "gains.yaml", "caveats.yaml",
+    "checklist.yaml", "one.py", "robots/own.urdf", "robots/own.xml", "robots/mesh.stl", "own.csv", "own.parquet",
+    "equations/inventory.yaml", "equations/own.yaml", "equations/truths/own.py", "mine.ranges.yaml", "noise",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("file", KINDS)
+def test_links_out_of_a_paper_are_refused(paper, tmp_path, file):
+    away = tmp_path / "away" / Path(file).name
+    away.parent.mkdir()
+    if away.suffix:
+        away.write_text(FILES.get(file, ""))
+    else:
+        away.mkdir()
+    place = tmp_path / "paper" / file
+    place.parent.mkdir(parents=True)
+    place.symlink_to(away)
+    problem = f"{place}: is {away}, outside of the folder {tmp_path}/paper; put the file itself there"
+    assert refused(paper({}), tmp_path, problem)
+
+
+def test_links_within_a_paper_are_free(paper, tmp_path):
+    (tmp_path / "paper").mkdir()
+    (tmp_path / "paper/two.md").write_text(FILES["one.md"])
+    (tmp_path / "paper/one.md").symlink_to("two.md")
+    assert paper({}, "hydra.sweeper.workers=0").code == 0
+
+
+@pytest.mark.parametrize(
+    "override", ["robot.urdf=HERE/own.urdf", "trajectory.file=HERE/own.csv", "trajectory.file=own.csv"]
+)
+@pytest.mark.parametrize("file", ["runs.yaml", "experiment/own.yaml"])
+def test_a_paper_names_no_file_outside(paper, tmp_path, override, file):
+    (tmp_path / "own.urdf").write_text("<robot name='hidden'/>")
+    (tmp_path / "own.csv").write_text("hidden\n")
+    key, _, value = override.replace("HERE", str(tmp_path)).partition("=")
+    group, _, name = key.partition(".")
+    text = f"# @package _global_\n# An experiment\n{group}: {{{name}: '{value}'}}\n"
+    with_ = [f"{group}.{name}={value}"] if file == "runs.yaml" else []
+    runs = RUNS.replace("[robot=macro", ", ".join(["[robot=macro, trajectory=from_file", *with_]))
+    files = {"runs.yaml": runs} | ({file: text} if file != "runs.yaml" else {})
+    problem = (
+        f"own.{value[-4:].strip('.')}: is {tmp_path}/{value.rpartition('/')[2]}, outside of the folder {tmp_path}/paper"
+    )
+    ending = paper(files)
+    assert (ending.code, ending.out) == (2, "")
+    assert problem in ending.err
