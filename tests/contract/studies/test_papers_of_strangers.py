@@ -1,8 +1,14 @@
 """What the files of a stranger's paper may name, against a secret, a scheduler, and files outside of its folder."""
 
+import os
+import shutil
+import sys
+import tempfile
 from pathlib import Path
 
 import pytest
+from support.opened_files import opened, outside
+from support.pages import ROOT
 
 ABOUT = "title: T\nsource: S\nabstract: A\nchapters: [one.md]\n"
 RUNS = "grids:\n  goal:\n    with: [robot=macro, plant=rk4, duration=0.05, experiment=paper/own]\n"
@@ -26,8 +32,12 @@ def paper(cli, tmp_path, monkeypatch):
             place.parent.mkdir(parents=True, exist_ok=True)
             if not place.is_symlink():
                 place.write_text(text)
-        ending = cli("reproduce", "paper", *options)
+        with opened() as seen:
+            ending = cli("reproduce", "paper", *options)
         assert "hidden" not in ending.err
+        beside = {str(path) for path in tmp_path.glob("own.*")} | {str(path) for path in tmp_path.glob("away/*")}
+        assert beside.isdisjoint(seen)
+        assert str(tmp_path / "paper/runs.yaml") in seen or ending.code
         return ending
 
     return reproduce
@@ -168,3 +178,27 @@ def test_a_paper_names_no_file_outside(paper, tmp_path, override, file):
     ending = paper(files)
     assert (ending.code, ending.out) == (2, "")
     assert problem in ending.err
+
+
+SYSTEM = ("/usr", "/lib", "/proc", "/sys", "/dev", "/etc/fonts", "/etc/localtime", "/etc/os-release", "/etc/ssl")
+
+
+@pytest.mark.costs(2)
+def test_a_paper_without_code_opens_nothing_outside_its_folder(cli, tmp_path, monkeypatch):
+    folder, home = tmp_path / "away/paper", tmp_path / "home"
+    shutil.copytree(ROOT / "examples/own_paper", folder)
+    (folder / "figures.py").write_text("open('secret.txt')\n")
+    for each in (tmp_path, tmp_path / "away", home, tmp_path / "temporary"):
+        each.mkdir(exist_ok=True)
+        (each / "secret.txt").write_text("hidden\n")
+    monkeypatch.setenv("HOME", str(home))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    with opened() as seen:
+        ending = cli("reproduce", folder, "hydra.sweeper.workers=0")
+    assert ending.code == 0, ending.err
+    installed = (sys.prefix, sys.base_prefix, ROOT, home / ".fonts", home / ".local/share/fonts", *SYSTEM)
+    elsewhere = (tmp_path / "outputs", os.environ["XDG_CACHE_HOME"], os.environ["XDG_CONFIG_HOME"])
+    found = outside(seen, tmp_path / "temporary", *elsewhere, *installed)
+    assert {str(folder / name) for name in ("runs.yaml", "claims.yaml", "goal.md")} <= found
+    assert outside(found, folder) == set()
+    assert str(tmp_path / "temporary/secret.txt") not in seen
