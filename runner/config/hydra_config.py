@@ -104,10 +104,7 @@ def _chooses_option(override: Override, known: Sequence[str]) -> bool:
 
 def _is_put(override: Override) -> bool:
     """Tell if all that an override does is to put a value at its key."""
-    key = override.key_or_group
-    ours = key.partition(".")[0] != "hydra" or key.startswith("hydra.sweeper.")
-    sets = override.is_force_add() or not (override.is_add() or override.is_delete())
-    return ours and sets
+    return override.is_force_add() or not (override.is_add() or override.is_delete())
 
 
 @lru_cache(maxsize=_KEPT)

@@ -15,11 +15,7 @@ Place = tuple[str | int, ...]
 
 
 def calls_function(text: str) -> bool:
-    """Tell whether a text holds a ${...} that is no reference to a key.
-
-    Functions of OmegaConf, such as oc.env, would take the environment into a config, and from there into stored runs
-    and reports.
-    """
+    """Tell whether a text holds a ${...} that is no reference to a key: oc.env would take secrets into a config."""
     return "${" in text and "${" in _REFERENCE.sub("", text)
 
 
