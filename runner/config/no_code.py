@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from hydra._internal.config_loader_impl import ConfigLoaderImpl
+from hydra._internal.config_repository import ConfigRepository
 from hydra._internal.sources_registry import SourcesRegistry
 from hydra.core.plugins import Plugins
 from hydra.plugins.config_source import ConfigResult, ConfigSource
@@ -43,6 +44,7 @@ def code_refused() -> Iterator[None]:
     OmegaConf.register_new_resolver("default_plant", lambda: f"/plant/{default_plant()}", replace=True)
     files = SourcesRegistry.instance().resolve("file")
     load, load_one = ConfigLoaderImpl.load_configuration, ConfigLoaderImpl._load_single_config
+    load_name = ConfigRepository.load_config
     load_file, is_config, is_group = files.load_config, files.is_config, files.is_group
 
     def checked_load(self: ConfigLoaderImpl, *args: Any, **options: Any) -> DictConfig:
@@ -62,12 +64,24 @@ def code_refused() -> Iterator[None]:
             _check_settings(result.config, Path(folder) / ConfigSource._normalize_file_name(place))
         return result
 
+    def checked_name(self: ConfigRepository, config_path: str) -> ConfigResult | None:
+        if config_path.startswith("/") or ".." in config_path.split("/"):  # for any source, Hydra's own as well
+            named = f"{quoted(config_path)}: no config of a folder; a defaults list or an override names it"
+            raise ConfigError([f"{named}; allowed: names without '..' and '/' in front"])
+        return load_name(self, config_path)
+
     def load_sound(self: ConfigSource, path: Path, place: str) -> bytes:
-        check_file(path)
         try:
+            if not ships(path):
+                with path.open(encoding="utf-8") as file:
+                    check_yaml(file.read(CONFIG.characters + 1), path)
             return pickle.dumps(load_file(self, place))
-        except OSError:
-            raise ConfigError([f"{path}: holds no mapping of keys"]) from None
+        except YamlError as error:
+            raise ConfigError([str(error)]) from None
+        except UnicodeDecodeError as error:
+            raise ConfigError([f"{path}: is no text: {error}"]) from None
+        except OSError as error:
+            raise ConfigError([f"{path}: {error.strerror or 'holds no mapping of keys'}"]) from None
 
     def checked_read(self: ConfigSource, config_path: str) -> ConfigResult:
         place = place_in(Path(self.path), config_path)
@@ -87,6 +101,7 @@ def code_refused() -> Iterator[None]:
     with (
         _replaced(ConfigLoaderImpl, checked_load, "load_configuration"),
         _replaced(ConfigLoaderImpl, checked_one, "_load_single_config"),
+        _replaced(ConfigRepository, checked_name, "load_config"),
         _replaced(files, checked_read, "load_config"),
         _replaced(
             files, lambda self, config_path: is_config(self, place_in(Path(self.path), config_path)), "is_config"
@@ -119,23 +134,6 @@ def check_composed(config: DictConfig) -> None:
         found = OmegaConf.to_container(value, resolve=True) if OmegaConf.is_config(value) else value
         if not isinstance(found, kind | None):
             raise ConfigError([f"hydra.sweeper.{key}: must be {wanted}, or null; found {quoted(found)}"])
-
-
-def check_file(path: Path) -> None:
-    """Check a config file before Hydra reads it; ours need no check.
-
-    Raises:
-        ConfigError: if it is no text, too large or nested too deeply, refers to itself, or calls a function.
-    """
-    if ships(path) or not path.is_file():
-        return
-    try:
-        with path.open(encoding="utf-8") as file:
-            check_yaml(file.read(CONFIG.characters + 1), path)
-    except YamlError as error:
-        raise ConfigError([str(error)]) from None
-    except (OSError, ValueError) as error:
-        raise ConfigError([f"{path}: is no text: {error}"]) from None
 
 
 def _check_settings(config: Any, path: Path) -> None:

@@ -26,10 +26,10 @@ def refuse_settings(given: Iterable[str], path: Path) -> None:
     """
     for text in given:
         key = text.partition("=")[0]
-        if key != _AXES and SAYS_HOW.search(key.removeprefix(f"{_AXES}.")):
+        if SAYS_HOW.search(key.removeprefix(f"{_AXES}.")):
             from runner.config.bounded_yaml import line_with
 
-            where = f"set it on the command line or in {settings_path()}; allowed here: {_AXES}"
+            where = f"set it on the command line or in {settings_path()}; allowed here: keys of {_AXES}"
             found = f"{line_with(text, path)}: {quoted(text)}"
             raise ConfigError([f"{found} says how or where runs are made, which no file may; {where}"])
 

@@ -3,8 +3,11 @@
 import json
 import os
 import socket
+from pathlib import Path
 
+import hydra
 import pytest
+from support.opened_files import opened
 
 from runner.config.compose import compose
 from runner.errors import ConfigError
@@ -65,7 +68,7 @@ def test_how_and_where_runs_are_made_is_not_set_by_a_file(stranger, tmp_path, te
     ending = stranger(text, *mode)
     assert (ending.code, ending.out) == (2, "")
     assert f"theirs/experiment/trap.yaml, line 4: '{key}' {WHY}" in ending.err
-    assert "arm-control-runner/config.yaml; allowed here: hydra.sweeper.params" in ending.err
+    assert "arm-control-runner/config.yaml; allowed here: keys of hydra.sweeper.params" in ending.err
     assert [entry.name for entry in tmp_path.iterdir()] == ["theirs"]
 
 
@@ -104,7 +107,8 @@ def test_axes_of_an_experiment_stay_free(stranger):
 @pytest.mark.parametrize(
     ("params", "problem"),
     [
-        ("3", "hydra.sweeper.params: must be keys with their values, or null; found 3"),
+        ("3", "line 6: 'hydra.sweeper.params' says how"),
+        ("${x}\nx: {outputs: there}", "line 6: 'hydra.sweeper.params' says how"),
         ("{seed: MAKE}", "is no override"),
         ("{seed: '${nope}'}", "hydra.sweeper.params.seed: it refers to nope"),
         (
@@ -112,6 +116,8 @@ def test_axes_of_an_experiment_stay_free(stranger):
             "line 6: 'hydra.sweeper.params.hydra.sweeper.address' says how",
         ),
         ("{outputs: there}", "line 6: 'hydra.sweeper.params.outputs' says how"),
+        ("{++outputs: there}", "line 6: 'hydra.sweeper.params.++outputs' says how"),
+        ("{'noise@hydra.sweeper': none}", "'hydra.sweeper.params.noise@hydra.sweeper' says how"),
         ("{robot.name: '${x}{oc.env:HOME}'}\nx: $", "'robot.name=${oc.env:HOME}' calls a function"),
     ],
 )
@@ -181,12 +187,35 @@ def test_the_environment_enters_by_no_file_and_no_override(cli, stranger, monkey
     assert "hidden" not in ending.err
 
 
-def test_a_way_out_of_a_folder_is_refused(stranger, tmp_path):
-    (tmp_path / "bomb.yaml").write_text("a: " + "[" * 10_000)
-    there = os.path.relpath(tmp_path / "bomb", conf_dir() / "experiment")
-    ending = stranger(f"defaults: [{there}]")
-    assert ending.code == 2
-    assert f"bomb.yaml: is {tmp_path}/bomb.yaml, outside of the folder {conf_dir()}; put the file itself" in ending.err
+@pytest.mark.parametrize(
+    "entry",
+    [
+        "/HERE/secret",
+        "UP/secret",
+        "/noise: UP/secret",
+        "/noise: ${x}",
+        "/UP/secret@_here_",
+    ],
+)
+@pytest.mark.parametrize("root", [conf_dir(), Path(hydra.__file__).parent / "conf"])
+def test_a_config_outside_of_every_folder_is_refused(stranger, tmp_path, entry, root):
+    secret = tmp_path / "secret.yaml"
+    secret.write_text("# @package _global_\nhydra: {sweeper: {address: 'tcp://127.0.0.1:9'}}\n")
+    up = os.path.relpath(tmp_path, root / "experiment")
+    entry = f"{{{entry}}}" if ": " in entry else entry
+    text = f"defaults: ['{entry}']" if ": " not in entry else f"defaults: [{entry}]"
+    with opened() as seen:
+        ending = stranger(f"{text}\nx: UP/secret".replace("HERE", str(tmp_path)).replace("UP", up), "-m")
+    assert (ending.code, ending.out) == (2, "")
+    assert str(secret) not in seen
+    assert "no config of a folder" in ending.err or "${x}" in entry
+
+
+@pytest.mark.parametrize("value", ["../../secret", "a/../b"])
+def test_nor_does_an_override_name_one(cli, value):
+    ending = cli("robot=macro", f"noise={value}")
+    assert (ending.code, ending.out) == (2, "")
+    assert f"noise/{value}': no config of a folder" in ending.err
 
 
 @pytest.mark.parametrize("file", ["experiment/trap.yaml", "noise", "robots/own.urdf", "own.csv"])
@@ -210,6 +239,13 @@ def test_links_out_of_a_config_folder_are_refused(cli, tmp_path, file):
     assert f"outside of the folder {folder}; put the file itself there" in ending.err
     place.unlink()
     place.symlink_to(os.devnull)
+
+
+@pytest.mark.parametrize("params", ["3", "[seed]"])
+def test_axes_that_are_typed_are_keys(cli, params):
+    ending = cli("-m", "robot=macro", f"hydra.sweeper.params={params}")
+    assert ending.code == 2
+    assert "hydra.sweeper.params: must be keys with their values, or null; found" in ending.err
 
 
 @pytest.mark.parametrize("address", ["3", "[a]", "true"])
