@@ -45,8 +45,8 @@ def _forced(override: str, names: set[str]) -> str:
 
 def _problem(override: str, names: set[str]) -> str | None:
     key, given, value = override.partition("=")
-    if override.startswith("-"):
-        return None  # a flag
+    if override.startswith("-"):  # a flag
+        return f"{override}: a pickle may run code; give the overrides again" if override.startswith("--e") else None
     if len(override) > _CHARACTERS:
         return f"{quoted(override)} is no override: it is too long; allowed: up to {_CHARACTERS} characters"
     if _depth(value) + key.count(".") > CONFIG.depth:

@@ -25,6 +25,15 @@ def test_keys_are_forced_and_options_are_not(override, forced):
     assert force([override]) == [forced]
 
 
+@pytest.mark.parametrize("flag", ["--experimental-rerun", "--exp", "--experimental-rerun=config.pickle"])
+def test_no_pickle_is_read(cli, tmp_path, flag):
+    (tmp_path / "config.pickle").write_bytes(b"cos\nmkdir\n(Vdone\ntR.")
+    ending = cli(flag, "config.pickle")
+    assert (ending.code, ending.out) == (2, "")
+    assert "a pickle may run code" in ending.err
+    assert not (tmp_path / "done").exists()
+
+
 @pytest.mark.parametrize(
     ("override", "problem"),
     [
