@@ -160,9 +160,15 @@ def test_links_within_a_paper_are_free(paper, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "override", ["robot.urdf=HERE/own.urdf", "trajectory.file=HERE/own.csv", "trajectory.file=own.csv"]
+    ("file", "override"),
+    [
+        ("runs.yaml", "robot.urdf=HERE/own.urdf"),
+        ("runs.yaml", "trajectory.file=own.csv"),
+        ("experiment/own.yaml", "trajectory.file=HERE/own.csv"),
+        pytest.param("experiment/own.yaml", "robot.urdf=HERE/own.urdf", marks=pytest.mark.slow),
+        pytest.param("runs.yaml", "trajectory.file=HERE/own.csv", marks=pytest.mark.slow),
+    ],
 )
-@pytest.mark.parametrize("file", ["runs.yaml", "experiment/own.yaml"])
 def test_a_paper_names_no_file_outside(paper, tmp_path, override, file):
     (tmp_path / "own.urdf").write_text("<robot name='hidden'/>")
     (tmp_path / "own.csv").write_text("hidden\n")
