@@ -6,7 +6,6 @@ places (its own, and those that interpolate it), a cell is made by putting it th
 """
 
 import copy
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -24,8 +23,6 @@ Changes = Mapping[Place, Any]
 
 _GONE: Place = ()  # stands for a key that another config lacks
 _GROUPS_KEPT = 10_000
-
-_NESTED = re.compile(r"\$\{[^}]*\$\{")
 
 
 class Template:
@@ -111,14 +108,10 @@ class Template:
     def _find_changes(self) -> "list[Sequence[Changes]] | None":
         """Return what each value of each key changes against the first cell, or None where keys act on each other.
 
-        They do where two keys change one place; they may where values are mappings, which merge, or interpolations,
-        or where an interpolation names its key by another.
+        They do where two keys change one place; they may where values are mappings, which merge, or interpolations.
         """
         swept = [key.values for key in self._keys if len(key.values) > 1]
         if not all(isinstance(values, range) or all(map(_is_plain, values)) for values in swept):
-            return None
-        fixed = [key.values[0] for key in self._keys if len(key.values) == 1]
-        if _NESTED.search(f"{OmegaConf.to_container(self._config, resolve=False)} {fixed}"):
             return None
         found: list[Sequence[Changes]] = []
         places: set[Place] = set()

@@ -26,7 +26,6 @@ ENTANGLED = [
     ("robot.period=0.01,0.02", "trajectory.duration=1,${robot.period}", "trajectory=quintic"),  # one takes the other
     ("robot=combined", "robot.period={macro:0.01},{macro:0.02}", "controller.period.mini=1,2"),  # mappings merge
     ("robot.masses={link2:1.5},{link3:0.5}", "robot.masses.link2=3,4"),  # one place
-    ("seed=1,2", "+robot.note='${robot.${robot.pick}}'", "+robot.pick=name,tip"),  # one chooses what is taken
 ]
 
 
