@@ -197,7 +197,9 @@ class Work:
 
     def _parts(self) -> list[str]:
         """Return its plug-ins, GROUP=FILE each, files by their whole paths."""
-        named = (text.partition("=") for text in self.about.plugins)
+        named = [text.partition("=") for text in self.about.plugins]
+        for _, _, file in named:
+            check_inside(self.folder / file, [self.folder])
         return [f"{group}={self.folder / file}" for group, _, file in named]
 
     def _check_given(self) -> None:

@@ -186,6 +186,14 @@ def test_a_paper_names_no_file_outside(paper, tmp_path, override, file):
     assert problem in ending.err
 
 
+@pytest.mark.parametrize("file", ["../own.py", "HERE/own.py", "/HERE/away/own.py"])
+@pytest.mark.parametrize("options", [(), ("--code",)])
+def test_plug_ins_of_a_paper_lie_in_its_folder(paper, tmp_path, file, options):
+    (tmp_path / "own.py").write_text("raise RuntimeError\n")
+    about = f"{ABOUT}plugins: ['controller={file.replace('HERE', str(tmp_path))}']\n"
+    assert refused(paper({"work.yaml": about}, *options), tmp_path, f"outside of the folder {tmp_path}/paper")
+
+
 SYSTEM = ("/usr", "/lib", "/proc", "/sys", "/dev", "/etc/fonts", "/etc/localtime", "/etc/os-release", "/etc/ssl")
 
 
