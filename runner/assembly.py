@@ -124,7 +124,8 @@ def _find_start(config: RunConfig) -> FloatArray:
     else:
         q_start = start_posture(config.controller, arm, path.start, config.parallel)
     if CONTROLLERS.follows_paths(config.controller.kind):
-        check_path(config.controller, arm, path, q_start, config.robot.settling_band)
+        end = config.timing.ticks * config.timing.tick
+        check_path(config.controller, arm, path, q_start, config.robot.settling_band, end)
     return q_start
 
 

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from runner.completion import answer, is_asked
-from runner.errors import RunnerError, nearest, told, user_place
+from runner.errors import DISK_FULL, RunnerError, nearest, told, unwritten, user_place
 from runner.progress import shown
 from runner.texts import one_line
 
@@ -92,7 +92,7 @@ def main() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 0  # nobody reads on, as in `runner list | head -1`
         if not isinstance(error, BrokenPipeError):
-            print(f"runner: {error}", file=sys.stderr)
+            print(f"runner: {unwritten(error) if error.errno in DISK_FULL else error}", file=sys.stderr)
             code = 2
     sys.exit(code)
 

@@ -5,8 +5,9 @@ from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from runner.config.bounded_yaml import YamlError, read_yaml
+from runner.config.bounded_yaml import STORED, YamlError, read_yaml
 from runner.errors import RunnerError
+from runner.limits import read_text
 
 T = TypeVar("T")
 
@@ -22,7 +23,7 @@ def read_data(path: Path, model: type[T]) -> T:
         RunnerError: if the file cannot be read or does not fit; names the file, and the entries and keys.
     """
     try:
-        content = read_yaml(path.read_text(encoding="utf-8"), path.name)
+        content = read_yaml(read_text(path, STORED.size), path.name)
     except (OSError, ValueError, YamlError) as error:
         raise RunnerError(f"cannot read {path}: {error}") from error
     try:

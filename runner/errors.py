@@ -3,6 +3,7 @@
 Every command imports this; what only a message needs is imported with it.
 """
 
+import errno
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +13,8 @@ from runner.texts import VALUE, lines, one_line
 if TYPE_CHECKING:
     import traceback
 
+DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""What the system says of a disk that takes no more."""
 _PROBLEMS_SHOWN = 20
 
 
@@ -63,6 +66,12 @@ class SimulationError(Exception):
         self.reason, self.time, self.joint = reason, time, joint
         at = f" at t = {time:.4g} s" + (f", {joint}" if joint else "")
         super().__init__(f"{reason}{at}")
+
+
+def unwritten(error: OSError, path: Path | None = None) -> str:
+    """Return that a file cannot be written, why, and what to do about it where its disk is full."""
+    name = path or error.filename or "the output, or a temporary file where TMPDIR says"
+    return f"cannot write {name}: {error.strerror}" + ("; free space on its disk" if error.errno in DISK_FULL else "")
 
 
 def nearest(name: str, allowed: Iterable[str]) -> str:

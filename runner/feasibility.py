@@ -20,16 +20,17 @@ _SINGULAR = 0.1  # of the reach; damping keeps a tip from the path well before t
 
 
 def check_path(
-    controller: ControllerConfig, robot: Robot, trajectory: Trajectory, q_start: FloatArray, tolerance: float
+    controller: ControllerConfig, arm: Robot, trajectory: Trajectory, q_start: FloatArray, tolerance: float, end: float
 ) -> None:
     """Let a controller of joint positions lead a perfect arm without speed limits along the path, without noise.
 
     Args:
         controller: Config of the controller.
-        robot: The robot.
+        arm: The robot.
         trajectory: The desired motion.
         q_start: Joint positions at t = 0, shape (nq,), in rad.
         tolerance: Distance from the path at which it is left, in m.
+        end: Time at which the run ends, in s; of the path what comes later is not asked.
 
     Raises:
         ConfigError: if the path cannot be followed: says when, which joint, and why; or not so fast: says the
@@ -37,21 +38,22 @@ def check_path(
     """
     if not trajectory.tracked:
         return
-    (loop,) = CONTROLLERS.build(controller, _without_speed_limits(robot))
+    (loop,) = CONTROLLERS.build(controller, _without_speed_limits(arm))
     if trajectory.duration < loop.period:
         raise ConfigError(
             [f"trajectory.duration: {trajectory.duration:g} s is shorter than one controller period, {loop.period:g} s"]
         )
-    times: FloatArray = np.arange(math.floor(trajectory.duration / loop.period) + 1, dtype=np.float64) * loop.period
+    lasts = min(trajectory.duration, max(end, loop.period))
+    times: FloatArray = np.arange(math.floor(lasts / loop.period) + 1, dtype=np.float64) * loop.period
     try:
         q, stuck = _roll_out(loop, trajectory.sample(times), q_start)
     except SimulationError:  # of a part of the user's: the run itself ends there, and says so
         return
     problem = (
         _find_end(times, q, stuck)
-        or _find_stop(robot.model, trajectory, times, q, tolerance)
-        or _find_haste(robot.model, trajectory, times, q)
-        or _find_departure(robot.model, trajectory, times, q, tolerance)
+        or _find_stop(arm.model, trajectory, times, q, tolerance)
+        or _find_haste(arm.model, trajectory, times, q)
+        or _find_departure(arm.model, trajectory, times, q, tolerance)
     )
     if problem:
         raise ConfigError([problem])

@@ -38,7 +38,7 @@ def _print_two(a: "Run", b: "Run", name: str, metrics: Sequence[str], end: str) 
     from runner.comparison.cells import one_cell
     from runner.comparison.side import side_of_run
 
-    print(f"A  {_headline(a)}\n{name}  {_headline(b)}\n")
+    print(one_line(f"A  {_headline(a)}"), one_line(f"{name}  {_headline(b)}"), "", sep="\n")
     found = beyond(side_of_run("A", a), side_of_run(name, b), one_cell())
     print(one_line(found.in_words("A", name)))
     print(_differing("config", store.simulated_part(a.config), store.simulated_part(b.config), name))

@@ -14,6 +14,7 @@ from yaml.resolver import Resolver
 
 from runner.config.interpolation import calls_function
 from runner.errors import RunnerError
+from runner.limits import Limit
 from runner.paths import ships
 from runner.texts import quoted
 
@@ -23,19 +24,19 @@ class Bounds:
     """What a YAML text may hold.
 
     Attributes:
-        characters: Its length.
+        size: Its length.
         values: Values, keys and collections in it, each alias counted as all that it stands for.
         depth: Collections within each other.
     """
 
-    characters: int
+    size: Limit
     values: int
     depth: int = 30
 
 
-CONFIG = Bounds(characters=250_000, values=10_000)
+CONFIG = Bounds(Limit(250_000, "bytes"), values=10_000)
 """Of a config file: some 3,000 way-points; Hydra takes a second for it."""
-STORED = Bounds(characters=2_000_000, values=100_000)
+STORED = Bounds(Limit(2_000_000, "bytes"), values=100_000)
 """Of what the runner wrote itself, and what a person lists: a reference, a set of inertials."""
 
 
@@ -77,8 +78,8 @@ def check_yaml(text: str, name: str | Path, bounds: Bounds = CONFIG, once: bool 
             text, a value has a tag, which names how to make it, or holds a ${...} that is no reference to a key, which
             our configs alone may.
     """
-    if len(text) > bounds.characters:
-        raise YamlError(f"{name}: has {len(text)} characters; allowed: up to {bounds.characters}")
+    if excess := bounds.size.excess(len(text.encode(errors="replace"))):
+        raise YamlError(f"{name}: {excess}")
     scan = _Scan(str(name), bounds, once, isinstance(name, Path) and ships(name))
     try:
         for event in yaml.parse(text, Loader=yaml.CSafeLoader):

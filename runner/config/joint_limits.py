@@ -3,6 +3,7 @@
 import numpy as np
 
 from runner.errors import ConfigError
+from runner.limits import SAMPLES
 from runner.robots.robot import Robot
 from runner.trajectories import Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
@@ -15,11 +16,13 @@ def check_joints(arm: Robot, path: Trajectory) -> None:
     """Check positions and speeds of the joints where the desired motion is one of the joints.
 
     Raises:
-        ConfigError: for each joint that is led beyond a limit: the time, its value there that lies farthest beyond,
-            and the limit.
+        ConfigError: if it needs too many samples; for each joint that is led beyond a limit: the time, its value there
+            that lies farthest beyond, and the limit.
     """
     if not isinstance(path, TipOfJoints):
         return
+    if excess := SAMPLES.excess(path.joints.samples):
+        raise ConfigError([f"trajectory.duration: a motion of {path.duration:g} s {excess}; make it shorter or slower"])
     times = np.linspace(0.0, path.duration, max(_SAMPLES, path.joints.samples + 1))
     motion, model = path.sample_joints(times), arm.model
     lower, upper = model.position_limits

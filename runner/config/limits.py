@@ -1,9 +1,12 @@
 """Config of what a command may cost, and the estimate that it is compared with before anything is allocated."""
 
+import math
+
 from pydantic import PositiveFloat
 
 from runner.config.timing import Timing
 from runner.errors import ConfigError
+from runner.limits import half_of_memory
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
 
@@ -24,7 +27,7 @@ class LimitsConfig(StrictModel):
 
     Attributes:
         cpu_hours: Largest CPU time of all runs of a command together, in hours; None for no limit.
-        memory: Largest memory of one run, in GB (10^9 bytes); None for no limit.
+        memory: Largest memory of one run, in GB (10^9 bytes); never more than half of the machine's, as for None.
     """
 
     cpu_hours: PositiveFloat | None
@@ -57,17 +60,38 @@ def check_memory(limits: LimitsConfig, arm: Robot, timing: Timing, repetitions: 
     Raises:
         ConfigError: if it would take more than `limits.memory`; gives the estimate, and how many repetitions would fit.
     """
-    needed = memory_of_run(arm, timing.ticks, repetitions, feels) / _GB
-    if limits.memory is not None and needed > limits.memory:
-        left = _GB * limits.memory - memory_of_run(arm, timing.ticks, repetitions, feels)
-        fit = repetitions + int(left // _of_repetition(arm))
+    needed, half = memory_of_run(arm, timing.ticks, repetitions, feels), half_of_memory()
+    own = math.inf if limits.memory is None else _GB * limits.memory
+    if needed > min(own, half):
+        fit = repetitions + int((min(own, half) - needed) // _of_repetition(arm))
         fitting = f", in which {fit} repetitions fit" if fit > 0 else ""
         length = f"{timing.ticks * timing.tick:.3g} s ({timing.ticks:.3g} ticks of {timing.tick:g} s"
+        allowed, more = (f"{own / _GB:g} GB", ", or set limits.memory") if own < half else (_told(half), "")
         raise ConfigError(
             [
-                f"limits.memory: a run of {length}, repetitions: {repetitions}) would take about {needed:.3g} GB; "
-                f"allowed: {limits.memory:g} GB{fitting}; shorten duration or trajectory.duration, ask for fewer "
-                "repetitions, or set limits.memory"
+                f"limits.memory: a run of {length}, repetitions: {repetitions}) would take about {needed / _GB:.3g} "
+                f"GB; allowed: {allowed}{fitting}; shorten duration or trajectory.duration, ask for fewer "
+                f"repetitions{more}"
+            ]
+        )
+
+
+def _told(half: float) -> str:
+    return f"{half / _GB:.3g} GB, half of this machine's memory"
+
+
+def check_memory_together(needed: float, runs: int) -> None:
+    """Check that runs at a time, the largest of which needs so many bytes, fit into half of the machine's memory.
+
+    Raises:
+        ConfigError: if they do not; gives the estimate, and how many would fit.
+    """
+    half = half_of_memory()
+    if runs * needed > half:
+        raise ConfigError(
+            [
+                f"hydra.sweeper.workers: {runs} runs at a time, of {needed / _GB:.3g} GB each, would take about "
+                f"{runs * needed / _GB:.3g} GB; allowed: {_told(half)}, in which {int(half // needed)} fit"
             ]
         )
 

@@ -23,6 +23,7 @@ from runner.config.user_settings import refuse_settings
 from runner.config.work_folder import check_inside, place_in
 from runner.engines import default_plant
 from runner.errors import ConfigError
+from runner.limits import ExcessError, read_text
 from runner.paths import ships
 from runner.texts import quoted
 
@@ -73,11 +74,12 @@ def code_refused() -> Iterator[None]:
     def load_sound(self: ConfigSource, path: Path, place: str) -> bytes:
         try:
             if not ships(path):
-                with path.open(encoding="utf-8") as file:
-                    check_yaml(file.read(CONFIG.characters + 1), path)
+                check_yaml(read_text(path, CONFIG.size), path)
             return pickle.dumps(load_file(self, place))
         except YamlError as error:
             raise ConfigError([str(error)]) from None
+        except ExcessError as error:
+            raise ConfigError([f"{path}: {error}"]) from None
         except UnicodeDecodeError as error:
             raise ConfigError([f"{path}: is no text: {error}"]) from None
         except OSError as error:

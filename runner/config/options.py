@@ -6,6 +6,8 @@ from pathlib import Path
 from runner.config.work_folder import option_in
 from runner.paths import conf_dir
 
+_HEAD = 10_000  # characters, in which the first comment of a file stands
+
 
 def groups(config_dirs: Sequence[Path] = ()) -> list[str]:
     """Return the names of the config groups, sorted; Hydra's own are none of them."""
@@ -43,8 +45,8 @@ def described_files(root: Path) -> dict[str, str]:
 
 
 def _first_comment(path: Path) -> str:
-    with path.open(errors="replace") as lines:
-        for line in lines:
+    with path.open(errors="replace") as file:
+        for line in file.read(_HEAD).splitlines():
             text = line.strip()
             if text.startswith("#") and not text.startswith(("# @package", "# runner ")):
                 return text.lstrip("# ")

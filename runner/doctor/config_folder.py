@@ -6,8 +6,9 @@ from pathlib import Path
 import yaml
 
 from runner.doctor.examination import Examination
-from runner.errors import RunnerError
+from runner.errors import RunnerError, StoreError
 from runner.robots.model import FloatArray
+from runner.store.atomic import write_atomically
 
 _ROBOT = """\
 # @package _global_
@@ -66,10 +67,11 @@ def write_folder(examination: Examination, folder: Path) -> list[Path]:
         raise RunnerError(f"--write: {', '.join(there)} is there already; choose another folder, or remove it")
     try:
         for path, content in files.items():
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(content)
-    except OSError as error:
-        raise RunnerError(f"--write: {error.filename} cannot be written: {error.strerror}") from error
+            write_atomically(path, content)
+    except StoreError as error:
+        for path in filter(Path.is_file, files):
+            path.unlink()
+        raise RunnerError(f"--write: {error}; nothing was written") from error
     return list(files)
 
 

@@ -4,6 +4,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 from runner.doctor.finding import Finding
+from runner.limits import FACES, MESH
 from runner.robots.tree import UrdfTree
 
 
@@ -33,8 +34,13 @@ def _check_mesh(mesh: ET.Element, folder: Path) -> tuple[str, str] | None:
         if not path.is_relative_to(root):
             return f"it leads out of {root.name}", "put the mesh beside the URDF, and name it from there"
         if path.is_file():
-            return None
+            excess = MESH.excess(path.stat().st_size) or FACES.excess(_faces(path))
+            return (f"it {excess}", "write it with fewer triangles, or take the shape out") if excess else None
     return "no such file", "put it there, or take the shape out"
+
+
+def _faces(path: Path) -> int:
+    return path.read_bytes().count(b"\nf") if path.suffix.lower() == ".obj" else 0
 
 
 def _package_folders(folder: Path, package: str) -> list[Path]:

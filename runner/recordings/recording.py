@@ -2,21 +2,23 @@
 
 import csv
 import math
-from collections.abc import Mapping, Sequence
+from array import array
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from runner.errors import RunnerError, nearest
+from runner.limits import RECORDING, RECORDING_ROW, RECORDING_ROWS, ExcessError
 from runner.recordings.columns_map import ColumnsMap, Factor, Signal
 from runner.texts import few, quoted
 
 FloatArray = NDArray[np.float64]
 
 FEWEST_ROWS = 50
-_MOST_BYTES = 100_000_000
 _MOST_TOLD = 5  # problems of one file
 _GAP = 1.5  # times the usual time between two rows
 _OTHER_RATE = 0.01  # relative difference from the rate that is said
@@ -91,15 +93,33 @@ def read_recording(path: Path, said: ColumnsMap, factors: Mapping[str, Factor]) 
 
 def _read_columns(path: Path, wanted: Sequence[str]) -> dict[str, FloatArray]:
     try:
-        if path.stat().st_size > _MOST_BYTES:
-            raise RunnerError(f"{path}: has {path.stat().st_size:,} bytes; allowed: {_MOST_BYTES:,}")
+        if excess := RECORDING.excess(path.stat().st_size):
+            raise ExcessError(f"it {excess}")
         with path.open(encoding="utf-8-sig", newline="") as file:
-            lines = list(csv.reader(file))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+            return _columns_of(path, _rows(file), wanted)
+    except (OSError, ExcessError, UnicodeDecodeError, csv.Error) as error:
         raise RunnerError(f"cannot read {path}: {error}") from error
-    while lines and not any(cell.strip() for cell in lines[-1]):
-        lines.pop()
-    names = [name.strip() for name in lines[0]] if lines else []
+
+
+def _rows(file: TextIO) -> Iterator[list[str]]:
+    """Yield the rows of a CSV file, none longer than allowed: quotes can join all lines to one."""
+    held = 0
+
+    def lines() -> Iterator[str]:
+        nonlocal held
+        for number, line in enumerate(file, start=1):
+            held += len(line)
+            if excess := RECORDING_ROWS.excess(number) or RECORDING_ROW.excess(held):
+                raise ExcessError(f"it {excess}")
+            yield line
+
+    for row in csv.reader(lines()):
+        held = 0
+        yield row
+
+
+def _columns_of(path: Path, rows: Iterator[list[str]], wanted: Sequence[str]) -> dict[str, FloatArray]:
+    names = [name.strip() for name in next(rows, [])]
     twice = [name for name in dict.fromkeys(names) if name in wanted and names.count(name) > 1]
     problems = [f"line 1 has the column {quoted(name)} more than once" for name in twice]
     missing = [f"{quoted(name)}{nearest(name, names)}" for name in wanted if name not in names]
@@ -107,22 +127,25 @@ def _read_columns(path: Path, wanted: Sequence[str]) -> dict[str, FloatArray]:
         problems.append(f"has no column {few(missing)}; its columns: {few(names) or 'none'}")
     if problems:
         raise _refused(path, problems)
-    places = [names.index(name) for name in wanted]
-    found = np.full((len(lines) - 1, len(wanted)), np.nan)
-    for row, cells in enumerate(lines[1:]):
-        if len(cells) != len(names):
-            problems.append(f"line {row + 2}: {len(cells)} cells for {len(names)} columns")
+    found = {name: array("d") for name in wanted}
+    places, told, empty = [(names.index(name), name) for name in wanted], 0, []
+    for line, cells in enumerate(rows, start=2):
+        if not any(cell.strip() for cell in cells):
+            empty.append(f"line {line}: {len(cells)} cells for {len(names)} columns")
             continue
-        for place, index in enumerate(places):
-            found[row, place] = _number(cells[index])
-            if math.isnan(found[row, place]):
-                text = cells[index].strip()
-                problems.append(
-                    f"line {row + 2}: {names[index]} is {quoted(text) if text else 'missing'}; needed: a finite number"
-                )
+        wrong, empty = empty, []  # at the end of the file they do no harm
+        if len(cells) != len(names):
+            wrong.append(f"line {line}: {len(cells)} cells for {len(names)} columns")
+        for place, name in places if len(cells) == len(names) else ():
+            found[name].append(_number(cells[place]))
+            if math.isnan(found[name][-1]):
+                text = cells[place].strip()
+                wrong.append(f"line {line}: {name} is {quoted(text) if text else 'missing'}; needed: a finite number")
+        told += len(wrong)
+        problems += wrong[: max(0, _MOST_TOLD - len(problems))]
     if problems:
-        raise _refused(path, problems)
-    return {name: found[:, place] for place, name in enumerate(wanted)}
+        raise _refused(path, problems, told)
+    return {name: np.array(column) for name, column in found.items()}
 
 
 def _number(text: str) -> float:
@@ -163,7 +186,7 @@ def _and_more(count: int) -> str:
     return f" (and {count - 1} more lines like this)" if count > 1 else ""
 
 
-def _refused(path: Path, problems: Sequence[str]) -> RunnerError:
-    more = len(problems) - _MOST_TOLD
+def _refused(path: Path, problems: Sequence[str], count: int = 0) -> RunnerError:
+    more = max(count, len(problems)) - _MOST_TOLD
     told = [*problems[:_MOST_TOLD], *([f"{more} more problems like these"] if more > 0 else [])]
     return RunnerError(f"{path}: {'; '.join(told)}")

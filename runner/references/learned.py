@@ -12,12 +12,14 @@ from pydantic import ValidationError
 from runner.config.bounded_yaml import Bounds, YamlError, read_yaml
 from runner.config.messages import describe
 from runner.errors import StoreError
+from runner.limits import Limit, read_text
 from runner.registry import StrictModel
 from runner.store import Run, Sweep
 from runner.store.atomic import write_atomically
+from runner.texts import escaped
 
 SCHEMA = 1
-_BOUNDS = Bounds(characters=200_000_000, values=5_000_000)  # some 10^5 cells
+_BOUNDS = Bounds(Limit(200_000_000, "bytes"), values=5_000_000)  # some 10^5 cells
 _ROUNDING = 1e-6  # of a value: what another machine's rounding may change
 
 
@@ -76,7 +78,7 @@ def learn(sweep: Sweep, path: Path) -> int:
         cells[cell] = {name: _spread(run, metric).model_dump() for name, metric in run.metrics.items()}
     text = yaml.dump({"schema": SCHEMA, "cells": cells}, sort_keys=False, width=120, Dumper=yaml.CSafeDumper)
     head = f"# What each cell gave, over its seeds; made by `runner check DIR --learn {path.name}` after\n"
-    write_atomically(path, f"{head}# {sweep.command}\n{text}".encode())
+    write_atomically(path, f"{head}# {escaped(sweep.command)}\n{text}".encode())
     return sum(map(len, cells.values()))
 
 
@@ -87,10 +89,10 @@ def load_learned(path: Path) -> Learned | None:
         StoreError: if it cannot be read or is damaged; lists all its problems.
     """
     try:
-        content = read_yaml(path.read_text(), path, _BOUNDS)
+        content = read_yaml(read_text(path, _BOUNDS.size), path, _BOUNDS)
     except YamlError as error:
         raise StoreError(f"reference file {error}") from error
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
         raise StoreError(f"cannot read the reference file {path}: {error}") from error
     if not isinstance(content, dict) or "cells" not in content:
         return None

@@ -13,6 +13,7 @@ from pydantic import Field, ValidationError
 from runner.config.messages import describe
 from runner.config.spec import Bound
 from runner.errors import StoreError, nearest
+from runner.limits import read_text
 from runner.metrics import unit_of, units
 
 if TYPE_CHECKING:
@@ -75,13 +76,13 @@ def load_reference(path: Path, name: str | None = None) -> Reference:
     from runner.config.bounded_yaml import STORED, YamlError, check_yaml, explain_yaml
 
     try:
-        check_yaml(path.read_text(encoding="utf-8"), path, STORED)
+        check_yaml(read_text(path, STORED.size), path, STORED)
         content = OmegaConf.to_container(OmegaConf.load(path), resolve=False)
     except YamlError as error:
         raise StoreError(f"reference file {error}") from error
     except yaml.YAMLError as error:
         raise StoreError(f"reference file {explain_yaml(error, path)}") from error
-    except (OSError, UnicodeDecodeError, OmegaConfBaseException) as error:
+    except (OSError, ValueError, OmegaConfBaseException) as error:
         raise StoreError(f"cannot read the reference file {path}: {error}") from error
     bands: dict[str, Band] = {}
     problems = list(_check_content(content, bands))

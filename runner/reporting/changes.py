@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from runner.errors import RunnerError
+from runner.limits import RECORD, read_text
 
 FILE = "conclusions.json"
 """Name of the file with a work's conclusions in the folder of its report."""
@@ -49,7 +50,7 @@ def read_conclusions(path: Path) -> Mapping[str, Any]:
     """
     file = path / FILE if path.is_dir() else path
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
+        content = json.loads(read_text(file, RECORD))
     except (OSError, ValueError) as error:
         raise RunnerError(f"cannot read {file}: {error}; `runner reproduce NAME --json FILE` writes one") from None
     if not isinstance(content, dict) or not all(

@@ -1,7 +1,5 @@
 """A report written to its folder: one offline HTML file and one PDF."""
 
-import os
-import tempfile
 from collections.abc import Callable, Collection
 from pathlib import Path
 
@@ -11,6 +9,7 @@ from runner.progress.stages import of_report
 from runner.reporting import html, outline, pdf
 from runner.reporting.column_units import in_readable_units
 from runner.reporting.document import Document
+from runner.store.atomic import write_atomically
 
 _RENDERERS: dict[str, Callable[[Document], bytes]] = {
     "html": lambda document: html.render(document).encode("utf-8", errors="replace"),
@@ -30,7 +29,7 @@ def write_report(document: Document, folder: Path, formats: Collection[str] = ("
         The files written, in the order of `formats`.
 
     Raises:
-        RunnerError: If a format is unknown.
+        RunnerError: If a format is unknown, or the disk does not take a file.
     """
     unknown = sorted(set(formats) - set(_RENDERERS))
     if unknown:
@@ -38,21 +37,7 @@ def write_report(document: Document, folder: Path, formats: Collection[str] = ("
     folder.mkdir(parents=True, exist_ok=True)
     progress.plan(of_report(formats, outline.count_figures(document)))
     shown = in_readable_units(document)
-    return [_write(folder / f"report.{name}", _RENDERERS[name](shown)) for name in formats]
-
-
-def _write(path: Path, content: bytes) -> Path:
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    temporary = Path(name)
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(content)
-            stream.flush()
-            os.fsync(stream.fileno())
-        # mkstemp makes files for their owner alone; a report is to be passed on.
-        temporary.chmod(0o644)
-        temporary.replace(path)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
-    return path
+    written = [folder / f"report.{name}" for name in formats]
+    for name, path in zip(formats, written, strict=True):
+        write_atomically(path, _RENDERERS[name](shown))
+    return written

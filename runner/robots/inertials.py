@@ -6,14 +6,15 @@ import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 import numpy as np
 import pinocchio as pin
 from pydantic import Field, NonNegativeFloat, TypeAdapter, ValidationError
 
-from runner.config.bounded_yaml import YamlError, read_yaml
+from runner.config.bounded_yaml import STORED, YamlError, read_yaml
 from runner.errors import ConfigError, nearest
+from runner.limits import ExcessError, read_text
 from runner.registry import StrictModel
 from runner.texts import quoted
 
@@ -55,7 +56,7 @@ class _InertialSet(StrictModel):
     links: dict[str, _Inertial]
 
 
-_SETS = TypeAdapter(dict[str, _InertialSet])
+T = TypeVar("T", bound=StrictModel)
 
 
 def set_file(urdf: Path) -> Path:
@@ -77,7 +78,7 @@ def replace_inertials(links: Mapping[str, ET.Element], urdf: Path, name: str) ->
     Raises:
         ConfigError: if there is no such set, its file cannot be read, or it names a link that the URDF does not have.
     """
-    sets = _read_sets(set_file(urdf))
+    sets = read_sets("robot.inertials", set_file(urdf), _InertialSet)
     if name not in sets:
         there = f"sets: {', '.join(sets)}" if sets else f"there is no {set_file(urdf).name}; allowed: null"
         raise ConfigError([f"robot.inertials: no set '{name}'{nearest(name, sets)}; {there}"])
@@ -93,17 +94,21 @@ def replace_inertials(links: Mapping[str, ET.Element], urdf: Path, name: str) ->
     return {link: f"robot.inertials: set '{name}' in {set_file(urdf)} gives link '{link}'" for link in sets[name].links}
 
 
-def _read_sets(path: Path) -> dict[str, _InertialSet]:
+def read_sets(key: str, path: Path, kind: type[T]) -> dict[str, T]:
+    """Return the sets in a file by name, each of a kind; none where it is not there.
+
+    Raises:
+        ConfigError: if it cannot be read, or holds something else; names the key, the file and the place.
+    """
     if not path.is_file():
         return {}
     try:
-        return _SETS.validate_python(read_yaml(path.read_text(), path))
-    except (YamlError, UnicodeDecodeError) as error:
-        raise ConfigError([f"robot.inertials: {path} cannot be read: {error}"]) from error
+        return TypeAdapter(dict[str, kind]).validate_python(read_yaml(read_text(path, STORED.size), path))  # type: ignore[valid-type]
+    except (YamlError, ExcessError, UnicodeDecodeError) as error:
+        raise ConfigError([f"{key}: {path} cannot be read: {error}"]) from error
     except ValidationError as error:
         raise ConfigError(
-            f"robot.inertials: {path}: {'.'.join(map(str, problem['loc']))}: {problem['msg']}; found "
-            f"{quoted(problem['input'])}"
+            f"{key}: {path}: {'.'.join(map(str, problem['loc']))}: {problem['msg']}; found {quoted(problem['input'])}"
             for problem in error.errors()
         ) from None
 

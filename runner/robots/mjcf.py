@@ -13,7 +13,7 @@ import mujoco
 from runner.errors import ConfigError
 from runner.robots.mjcf_efforts import efforts_of
 from runner.robots.mjcf_files import asset_files, follow_includes
-from runner.robots.mjcf_losses import LeftOut, left_out, refused_model, refused_parts
+from runner.robots.mjcf_losses import LeftOut, left_out, refused_model, refused_parts, refused_shapes
 from runner.robots.mjcf_urdf import write_urdf
 
 _LOCK = threading.Lock()  # MuJoCo has one place for warnings
@@ -65,7 +65,7 @@ def _convert(path: Path) -> Mjcf:
     with _caught_warnings() as said:
         try:
             spec = mujoco.MjSpec.from_file(str(path.resolve()))
-        except (ValueError, mujoco.FatalError) as error:
+        except (ValueError, RuntimeError, mujoco.FatalError) as error:
             raise _refused(path, error) from error
         names = [asset.file for asset in (*spec.meshes, *spec.hfields)]
         names = [Path(name).name for name in names] if spec.strippath else names
@@ -73,9 +73,10 @@ def _convert(path: Path) -> Mjcf:
         _refuse(path, refused_parts(spec))
         slim = spec.copy()
         _leave_shapes_that_weigh(slim)
+        _refuse(path, refused_shapes(slim))
         try:
             model = slim.compile()
-        except (ValueError, mujoco.FatalError) as error:
+        except (ValueError, RuntimeError, mujoco.FatalError) as error:
             raise _refused(path, error) from error
     _refuse(path, refused_model(model))
     efforts, of_efforts = efforts_of(model)
@@ -115,7 +116,12 @@ def _leave_shapes_that_weigh(spec: Any) -> None:
     for mesh in (*spec.meshes, *spec.hfields):
         if (mesh.name or Path(mesh.file).stem) not in used:
             spec.delete(mesh)
-    spec.memory, spec.nuserdata = -1, 0
+    spec.memory = spec.nstack = spec.njmax = spec.nconmax = -1  # what it takes memory for
+    spec.nkey = spec.nuserdata = 0
+    for name in ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor"):
+        setattr(spec, f"nuser_{name}", -1)
+    for element in (*spec.bodies, *spec.joints, *spec.geoms, *spec.sites, *spec.actuators):
+        element.userdata = []
 
 
 @contextmanager

@@ -1,14 +1,14 @@
 """The files that an MJCF consists of: followed before MuJoCo reads them, and refused where they lead out."""
 
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from runner.errors import ConfigError
+from runner.limits import ARM_PARTS, HEIGHTS, MESH, MJCF_ELEMENTS, XML
 from runner.robots.tree import parse_xml
 from runner.texts import few, quoted
 
-_FILES = 100  # with all that they include
 _DEPTH = 200
 _MAKES_MORE = {  # elements that stand for many bodies, or for code; `model` brings another file's
     "attach": "copy its bodies in",
@@ -16,6 +16,7 @@ _MAKES_MORE = {  # elements that stand for many bodies, or for code; `model` bri
     "extension": "take it out, and the plugins",
     "flex": "take it out",
     "flexcomp": "take it out",
+    "mesh": "write its vertices to a file, as builtin makes them without limit",
     "model": "copy its bodies in",
     "plugin": "take it out",
     "replicate": "write its bodies, or take it out",
@@ -42,9 +43,10 @@ def follow_includes(path: Path) -> list[Path]:
     if root.tag != "mujoco":
         urdf = "; a URDF stands at robot.urdf" if root.tag == "robot" else ""
         raise ConfigError([f"robot.mjcf: {path} is no MJCF: it begins with <{root.tag}>, not with <mujoco>{urdf}"])
-    found, todo, problems = [path], [(path, root)], []
+    found, todo, problems, roots = [path], [(path, root)], [], []
     while todo:
         file, element = todo.pop()
+        roots.append(element)
         problems += _refused(file, element)
         for include in element.iter("include"):
             places = _places(include.get("file", ""), (folder, file.resolve().parent))
@@ -52,8 +54,7 @@ def follow_includes(path: Path) -> list[Path]:
             new = [] if problems else [place for place in places if place.is_file() and place not in found]
             found += new
             todo += [(place, parse_xml(place, "robot.mjcf")) for place in new]
-        if len(found) > _FILES:
-            problems.append(f"robot.mjcf: {path} includes more than {_FILES} files")
+        problems += [f"robot.mjcf: {path} {excess}, with all that it includes" for excess in _excess(found, roots)]
         if problems:
             raise ConfigError(problems)
     return found
@@ -83,6 +84,28 @@ def asset_files(path: Path, folder: str, files: Iterable[str]) -> list[Path]:
     return list(dict.fromkeys(found.values()))
 
 
+def _excess(files: list[Path], roots: list[ET.Element]) -> Iterator[str]:
+    """Yield what MuJoCo would take much memory for, of an MJCF with all that it includes."""
+    elements = [element for root in roots for element in root.iter()]
+    fields = [(_whole(element, "nrow"), _whole(element, "ncol")) for element in elements if element.tag == "hfield"]
+    for limit, count in (
+        (XML, sum(file.stat().st_size for file in files)),
+        (MJCF_ELEMENTS, len(elements)),
+        (ARM_PARTS, sum(element.tag in ("body", "joint") for element in elements)),
+        (HEIGHTS, sum(rows * columns for rows, columns in fields)),
+    ):
+        if excess := limit.excess(count):
+            yield excess
+
+
+def _whole(element: ET.Element, key: str) -> int:
+    """Return the size of a whole number in an XML element; 0 where there is none, which MuJoCo refuses."""
+    try:
+        return abs(int(element.get(key, "0")))
+    except ValueError:
+        return 0
+
+
 def _places(name: str, folders: Iterable[Path]) -> list[Path]:
     """Return where MuJoCo looks for a file that is included: from the first file's folder, and from its own."""
     return list(dict.fromkeys((folder / name).resolve() for folder in folders))
@@ -102,7 +125,7 @@ def _led_out(place: Path, folder: Path) -> str:
 
 
 def _missing(place: Path) -> str:
-    return "" if place.is_file() else "no such file; put it there, or take it out"
+    return MESH.excess(place.stat().st_size) if place.is_file() else "no such file; put it there, or take it out"
 
 
 def _refused(file: Path, root: ET.Element) -> list[str]:
@@ -114,7 +137,7 @@ def _refused(file: Path, root: ET.Element) -> list[str]:
     return [
         f"robot.mjcf: {file} holds <{element.tag}>{_named(element)}, unknown here; {_MAKES_MORE[element.tag]}"
         for element in root.iter()
-        if element.tag in _MAKES_MORE
+        if element.tag in _MAKES_MORE and (element.tag != "mesh" or element.get("builtin"))
     ]
 
 

@@ -43,6 +43,11 @@ def refused_parts(spec: Any) -> Iterator[str]:
         yield from _listed(text, joints, "an arm stands on the world, and its joints are hinges and slides")
 
 
+def refused_shapes(spec: Any) -> Iterator[str]:
+    """Yield shapes that cannot weigh, of a specification in which only those are left that do."""
+    yield from _listed("height fields that weigh", spec.hfields, "give their body an <inertial>, or take them out")
+
+
 def refused_model(model: Any) -> Iterator[str]:
     """Yield what no arm of ours has, of a compiled model, with its names and what to do about it."""
     if not model.njnt:

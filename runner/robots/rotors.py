@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from pydantic import NonNegativeFloat, TypeAdapter, ValidationError
+from pydantic import NonNegativeFloat
 
-from runner.config.bounded_yaml import YamlError, read_yaml
 from runner.errors import ConfigError, nearest
 from runner.registry import StrictModel
+from runner.robots.inertials import read_sets
 from runner.robots.tree import UrdfTree, moves
 from runner.texts import quoted
 
@@ -15,9 +15,6 @@ from runner.texts import quoted
 class _RotorSet(StrictModel):
     source: str
     joints: dict[str, NonNegativeFloat]  # kg m^2, as the joint's link feels it
-
-
-_SETS = TypeAdapter(dict[str, _RotorSet])
 
 
 def rotor_file(urdf: Path) -> Path:
@@ -55,7 +52,7 @@ def rotor_inertias(tree: UrdfTree, urdf: Path, given: float | Sequence[float] | 
 
 def _of_set(joints: Sequence[str], urdf: Path, name: str) -> dict[str, float]:
     path = rotor_file(urdf)
-    sets = _read_sets(path)
+    sets = read_sets("robot.rotor_inertia", path, _RotorSet)
     if name not in sets:
         there = f"sets: {', '.join(sets)}" if sets else f"there is no {path.name}"
         raise ConfigError(
@@ -73,18 +70,3 @@ def _of_set(joints: Sequence[str], urdf: Path, name: str) -> dict[str, float]:
             for joint in strange
         )
     return {joint: values.get(joint, 0.0) for joint in joints}
-
-
-def _read_sets(path: Path) -> dict[str, _RotorSet]:
-    if not path.is_file():
-        return {}
-    try:
-        return _SETS.validate_python(read_yaml(path.read_text(), path))
-    except (YamlError, UnicodeDecodeError) as error:
-        raise ConfigError([f"robot.rotor_inertia: {path} cannot be read: {error}"]) from error
-    except ValidationError as error:
-        raise ConfigError(
-            f"robot.rotor_inertia: {path}: {'.'.join(map(str, problem['loc']))}: {problem['msg']}; found "
-            f"{quoted(problem['input'])}"
-            for problem in error.errors()
-        ) from None

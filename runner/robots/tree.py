@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from runner.errors import ConfigError, nearest
+from runner.limits import ARM_PARTS, XML, XML_ATTRIBUTES, XML_ELEMENTS, ExcessError, read_text
 from runner.texts import quoted
 
 _NAME = 200  # characters
-_ELEMENTS = 2000  # links and joints
 _DEPTH = 20
 _XACRO = "{http://www.ros.org/wiki/xacro}"
 
@@ -103,8 +103,18 @@ def make_tree(robot: ET.Element, path: Path) -> UrdfTree:
     raise ConfigError(f"robot.urdf: {path}: {problem}; allowed: one tree of links" for problem in problems)
 
 
-class _NoDoctype(ET.TreeBuilder):
-    """Refuses a document type at its first word: no arm needs one, and entities can grow without end."""
+class _Builder(ET.TreeBuilder):
+    """Refuses a document type at its first word, as entities can grow without end, and too many elements."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._elements = 0
+
+    def start(self, tag: str, attrs: dict[str, str], /) -> ET.Element:
+        self._elements += 1
+        if excess := XML_ELEMENTS.excess(self._elements) or XML_ATTRIBUTES.excess(len(attrs)):
+            raise ExcessError(excess)
+        return super().start(tag, attrs)
 
     def doctype(self, name: str, pubid: str | None, system: str | None) -> None:
         raise ET.ParseError("it has a document type (<!DOCTYPE>), which no arm needs; remove it")
@@ -121,20 +131,22 @@ def parse_xml(path: Path, key: str = "robot.urdf") -> ET.Element:
         ConfigError: if it cannot be read, or is no such file.
     """
     try:
-        text = path.read_text(encoding="utf-8")
-        return ET.fromstring(text, parser=ET.XMLParser(target=_NoDoctype()))  # noqa: S314 - no entities, see there
+        text = read_text(path, XML)
+        return ET.fromstring(text, parser=ET.XMLParser(target=_Builder()))  # noqa: S314 - no entities, see there
+    except ExcessError as error:
+        raise ConfigError([f"{key}: {path} {error}"]) from error
     except (ET.ParseError, ValueError) as error:
         hint = "; xacro macros? Make a URDF of it first" if "unbound prefix" in str(error) else ""
         raise ConfigError([f"{key}: {path} is no XML: {error}{hint}"]) from error
     except OSError as error:
-        raise ConfigError([f"{key}: {path} cannot be read: {error.strerror}"]) from error
+        raise ConfigError([f"{key}: {path} cannot be read: {error.strerror or error}"]) from error
 
 
 def _excess(robot: ET.Element) -> list[str]:
     """Return what engines have no room for: PyBullet writes names that are too long over other memory."""
     named = (robot, *robot.findall("link"), *robot.findall("joint"))
-    if len(named) > _ELEMENTS:
-        return [f"it has {len(named) - 1} links and joints; allowed: up to {_ELEMENTS}"]
+    if excess := ARM_PARTS.excess(len(named) - 1):
+        return [f"it {excess}"]
     level, depth = [robot], 0
     while level:
         level, depth = [inner for element in level for inner in element], depth + 1

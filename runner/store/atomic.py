@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
-from runner.errors import StoreError
+from runner.errors import StoreError, unwritten
 
 _STALE = 60.0  # s; a temporary file lives for milliseconds
 
@@ -45,9 +45,10 @@ def open_atomically(path: Path, flush: bool = True) -> Iterator[BinaryIO]:
                 os.fsync(file.fileno())
         temporary.replace(path)
     except OSError as error:
+        raise StoreError(unwritten(error, path)) from error
+    finally:
         with contextlib.suppress(OSError):  # the first error says more
             temporary.unlink(missing_ok=True)
-        raise StoreError(f"cannot write {path}: {error.strerror}") from error
 
 
 def remove_leftovers(folder: Path) -> None:

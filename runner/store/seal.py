@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from runner.errors import StoreError
+from runner.limits import RECORD, RECORD_VALUES, ExcessError
 
 SCHEMA = 3
 """Of all that is stored; no other is read."""
@@ -72,7 +73,11 @@ def read_json(path: Path, mend: str) -> dict[str, Any]:
         SchemaError: if it is of another schema.
     """
     try:
+        if excess := RECORD.excess(path.stat().st_size):
+            raise ExcessError(excess)
         content = path.read_bytes()
+        if excess := RECORD_VALUES.excess(sum(map(content.count, (b",", b":", b"[", b"{")))):
+            raise ExcessError(excess)
         record = json.loads(content)
     except OSError as error:
         raise DamagedError(f"cannot read {path}: {error.strerror}; {mend}") from error

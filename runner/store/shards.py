@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.errors import StoreError
+from runner.limits import ExcessError, open_parquet
 from runner.store.arrow_columns import list_column, text_column, truth_column, whole_column
 from runner.store.atomic import write_atomically
 from runner.store.json_texts import encode_finite
@@ -296,19 +297,18 @@ def _read_rows(path: Path) -> Any:
 def _read(path: Path, columns: Sequence[str], start: str | None = None) -> Any:
     """Return columns of a shard, and all whose names begin with a text."""
     import pyarrow
-    import pyarrow.parquet
 
     try:
         content = path.read_bytes()
         if digest(content)[:_HEX] != path.name.split(".")[1]:
             raise DamagedError(f"cannot read {path}: it is damaged: its content has another digest than named; {_MEND}")
-        file = pyarrow.parquet.ParquetFile(pyarrow.BufferReader(content))
+        file = open_parquet(pyarrow.BufferReader(content))
         schema = (file.schema_arrow.metadata or {}).get(b"schema", b"none").decode(errors="replace")
         if schema != str(SCHEMA):
             raise SchemaError(path, schema)
         wanted = [*columns, *(name for name in file.schema_arrow.names if start and name.startswith(start))]
         table = file.read(wanted)
-    except (OSError, pyarrow.ArrowException) as error:
+    except (OSError, ExcessError, pyarrow.ArrowException) as error:
         raise DamagedError(f"cannot read {path}: {str(error).splitlines()[0]}; {_MEND}") from error
     if table.column_names != wanted:
         raise DamagedError(f"cannot read {path}: it is no shard: it needs columns {', '.join(columns)}; {_MEND}")

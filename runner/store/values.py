@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from runner import limits
 from runner.store.arrow_columns import optional_column
 from runner.store.seal import DamagedError
 from runner.store.stored import MEND
@@ -35,11 +36,10 @@ def open_parquet(content: bytes, path: Path) -> Any:
         DamagedError: if it is none; names the file.
     """
     import pyarrow
-    import pyarrow.parquet
 
     try:
-        return pyarrow.parquet.ParquetFile(pyarrow.BufferReader(content))
-    except (OSError, pyarrow.ArrowException) as error:
+        return limits.open_parquet(pyarrow.BufferReader(content))
+    except (OSError, limits.ExcessError, pyarrow.ArrowException) as error:
         raise _damaged(path, error) from error
 
 

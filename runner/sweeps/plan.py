@@ -13,7 +13,7 @@ from runner.assembly import assemble
 from runner.calibration_job import CALIBRATION, TICKS
 from runner.config.calibration import validate_calibration
 from runner.config.compose import Composed
-from runner.config.limits import LimitsConfig
+from runner.config.limits import LimitsConfig, memory_of_run
 from runner.config.run import RunConfig
 from runner.config.spec import Bound
 from runner.config.sweep import SweepConfig
@@ -75,6 +75,7 @@ class Checked:
         limits: What they may cost.
         spec: Bounds on metrics.
         resolved: What differs between the configs of the runs.
+        memory: What the largest of its runs takes, in bytes.
     """
 
     names: Names
@@ -85,6 +86,7 @@ class Checked:
     limits: LimitsConfig
     spec: Mapping[str, Bound]
     resolved: Resolved
+    memory: float
 
 
 def check(plan: Plan) -> Checked:
@@ -97,6 +99,7 @@ def check(plan: Plan) -> Checked:
     calibrations: set[int] = set()
     problems = _Problems()
     first: RunConfig | None = None
+    memory = 0.0
     resolved = Resolved()
     assembled: dict[tuple[str, bytes], ConfigError | None] = {}
     progress.begin(CHECKING, None, len(plan), "cells")
@@ -113,7 +116,9 @@ def check(plan: Plan) -> Checked:
             _check_alike(first, config)
             _check_assembly(composed, config, assembled)
             names[cells] = _names(composed, config, block)
-            costs[cells] = config.timing.ticks * config.settings.repetitions
+            repetitions = config.settings.repetitions
+            costs[cells] = config.timing.ticks * repetitions
+            memory = max(memory, memory_of_run(config.arm, config.timing.ticks, repetitions, config.feels))
             start = config.path.start.tolist() if is_one_arm(composed.resolved) else None
             described = resolve(composed.resolved, config.timing.step, start)
             resolved.add(described, composed.overrides, block.cells)
@@ -124,8 +129,8 @@ def check(plan: Plan) -> Checked:
     if problems or first is None:
         problems.report(plan)
     outputs = Path(first.settings.outputs)
-    bounds = first.spec.metrics
-    return Checked(Names(names), costs, frozenset(calibrations), outputs, first.sweep, first.limits, bounds, resolved)
+    shared = first.sweep, first.limits, first.spec.metrics
+    return Checked(Names(names), costs, frozenset(calibrations), outputs, *shared, resolved, memory)
 
 
 class _Problems:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from omegaconf import DictConfig
 
 from runner import progress, store
-from runner.config.limits import check_cpu_time
+from runner.config.limits import check_cpu_time, check_memory_together
 from runner.config.sweep import SweepConfig
 from runner.errors import ConfigError, StoreError
 from runner.latest import note
@@ -228,6 +228,7 @@ def make_jobs(
     if not len(cells):
         progress.plan({SIMULATING: 0.0})
         return
+    check_memory_together(checked.memory, 1 if engine.address else min(max(engine.workers, 1), len(cells)))
     ticks = int(checked.costs[cells].sum())
     progress.begin("estimating", SOON)
     expected = estimate(plan, checked, cells, queue.rules.kept)

@@ -12,9 +12,8 @@ from hydra.core.override_parser.types import Override, RangeSweep, Transformer
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.in_si import as_numbers
 from runner.errors import ConfigError
+from runner.limits import CELLS
 from runner.store.axes import Counted
-
-_MOST_CELLS = 10_000_000  # of one sweep; their overrides alone would fill the memory of most machines
 
 
 @dataclass(frozen=True)
@@ -75,8 +74,8 @@ def _check_ranges(overrides: Sequence[Override]) -> None:
 
 
 def _check_cells(cells: float) -> None:
-    if cells > _MOST_CELLS:
-        raise ConfigError([f"a sweep of {cells:.3g} cells: allowed: up to {_MOST_CELLS:.0e}; sweep over fewer values"])
+    if excess := CELLS.excess(cells):
+        raise ConfigError([f"the sweep {excess}; sweep over fewer values"])
 
 
 def is_simulated(key: str) -> bool:

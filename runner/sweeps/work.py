@@ -18,7 +18,7 @@ from runner.config.calibration import validate_calibration
 from runner.config.compose import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.errors import RunnerError, StoreError, user_place
+from runner.errors import DISK_FULL, RunnerError, StoreError, unwritten, user_place
 from runner.job import simulate_job
 from runner.plugins import use_only
 from runner.progress.ticks import told
@@ -219,6 +219,8 @@ def _try(make: Callable[[], Made], rules: Rules) -> tuple[Made | None, str, str]
             place = user_place(error)
             found = f"no result within sweep.time_limit, {limit:g} s{f' ({place})' if place else ''}", ""
         except Exception as error:
+            if isinstance(error, OSError) and error.errno in DISK_FULL:  # no fault of the run
+                raise StoreError(unwritten(error)) from error
             place = user_place(error)
             found = f"{type(error).__name__}: {error}{f' ({place})' if place else ''}", traceback.format_exc()
     return None, *found

@@ -16,6 +16,7 @@ from runner.trajectories.posture import Posture, start_of
 from runner.trajectories.trajectory import FloatArray
 
 _SAMPLES = 64  # in a period of the highest harmonic
+_AT_ONCE = 2_000_000  # sines that are in memory at the same time
 
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 
@@ -89,6 +90,11 @@ class JointSinusoids:
 
     def sample_joints(self, times: FloatArray) -> FloatArray:
         """Return the motion, at rest in q_0 after t_f."""
+        harmonics = self.coefficients.shape[1]
+        parts = np.array_split(times, len(times) * harmonics // _AT_ONCE + 1)
+        return np.concatenate([self._sample(part) for part in parts])
+
+    def _sample(self, times: FloatArray) -> FloatArray:
         rate = self.omega * np.arange(1, self.coefficients.shape[1] + 1)
         phase = np.outer(times - self.ramp, rate)
         sine, cosine = np.sin(phase), np.cos(phase)

@@ -8,6 +8,7 @@ from itertools import chain, pairwise
 from pathlib import Path
 
 from runner.errors import ConfigError
+from runner.limits import TABLE, TABLE_NUMBERS, ExcessError, open_parquet
 from runner.texts import quoted
 
 Columns = Mapping[str, Sequence[float]]
@@ -17,8 +18,6 @@ ALLOWED = (
     "(ax,ay,az or ddq1,ddq2,...) may follow"
 )
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
-_MOST_BYTES = 5_000_000
-_MOST_NUMBERS = 40_000
 _ROUNDING = 1e-9  # of the largest speed
 _MOST_TOLD = 5  # problems of one file
 
@@ -34,10 +33,10 @@ def read_table(path: Path) -> dict[str, list[float]]:
     """
     parquet = path.suffix.lower() == ".parquet"
     try:
-        if path.stat().st_size > _MOST_BYTES:
-            raise _refused(path, f"has {path.stat().st_size:,} bytes; allowed: {_MOST_BYTES:,}")
+        if excess := TABLE.excess(path.stat().st_size):
+            raise _refused(path, excess)
         columns = _read_parquet(path) if parquet else _read_csv(path)
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, UnicodeDecodeError, ExcessError) as error:
         raise _refused(path, f"cannot be read: {error}") from error
 
     def place(row: int) -> str:
@@ -83,8 +82,8 @@ def wrong_columns(columns: Columns, place: Callable[[int], str]) -> Iterator[str
     if len(t) < 3:
         yield f"has {len(t)} rows; a motion needs 3 or more"
         return
-    if len(t) * len(columns) > _MOST_NUMBERS:
-        yield f"has {len(t):,} rows of {len(columns)} numbers; allowed: {_MOST_NUMBERS:,} numbers in all"
+    if excess := TABLE_NUMBERS.excess(len(t) * len(columns)):
+        yield excess
         return
     if t[0] != 0.0:
         yield f"{place(0)}: t is {t[0]:g} s; the first must be 0"
@@ -130,12 +129,11 @@ def _is_number(text: str) -> bool:
 
 def _read_parquet(path: Path) -> dict[str, list[float]]:
     import pyarrow
-    import pyarrow.parquet
 
     try:
-        file = pyarrow.parquet.ParquetFile(path)
-        if file.metadata.num_rows * file.metadata.num_columns > _MOST_NUMBERS:
-            raise _refused(path, f"has {file.metadata.num_rows:,} rows; allowed: {_MOST_NUMBERS:,} numbers in all")
+        file = open_parquet(path, TABLE)
+        if excess := TABLE_NUMBERS.excess(file.metadata.num_rows * file.metadata.num_columns):
+            raise _refused(path, excess)
         table = file.read()
     except pyarrow.ArrowException as error:
         raise _refused(path, f"is no Parquet file: {str(error).splitlines()[0]}") from error

@@ -11,7 +11,7 @@ from optuna.storages import JournalStorage
 from optuna.storages.journal import BaseJournalBackend
 from optuna.trial import FrozenTrial
 
-from runner.errors import StoreError
+from runner.errors import StoreError, unwritten
 from runner.store.seal import DamagedError, Lines
 from runner.tuning.key import Key
 from runner.tuning.objective import Objective
@@ -50,7 +50,7 @@ class Journal:
                     storage=_open(path), study_name=path.parent.name, directions=directions
                 )
         except OSError as error:
-            raise StoreError(f"cannot write {path}: {error.strerror}") from error
+            raise StoreError(unwritten(error, path)) from error
 
     def append(self, trial: Trial) -> None:
         """Add a trial that ended.
@@ -62,7 +62,7 @@ class Journal:
         try:
             self._study.add_trial(frozen)
         except OSError as error:
-            raise StoreError(f"cannot write {self._path}: {error.strerror}") from error
+            raise StoreError(unwritten(error, self._path)) from error
         self.history.append(frozen)
         self.trials.append(trial)
 

@@ -13,8 +13,9 @@ from runner import store
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.options import groups
 from runner.config.overrides import force
-from runner.errors import ConfigError, StoreError
+from runner.errors import ConfigError, RunnerError, StoreError
 from runner.latest import note
+from runner.limits import TRIALS
 from runner.store.names import Names
 from runner.sweeps.grid import Grid
 from runner.sweeps.loading import Loader
@@ -49,9 +50,12 @@ def tune(
 
     Raises:
         ConfigError: if a key cannot be tuned, or a config in its range not be run; nothing has been started then.
-        RunnerError: if a run lacks a metric, another sweep is at work there, or the Dask scheduler does not answer.
+        RunnerError: if there are too many trials, a run lacks a metric, another sweep is at work there, or the Dask
+            scheduler does not answer.
         StoreError: if the disk does not take the runs, or a worker cannot work.
     """
+    if excess := TRIALS.excess(trials):
+        raise RunnerError(f"the tuning {excess}; take fewer")
     fixed, keys = _read(overrides, config_dirs)
     loader = Loader(config_dirs)
     sweeper = loader.sweeper(force(fixed))

@@ -13,6 +13,7 @@ from runner.audit.audit import audit
 from runner.audit.sources import Source
 from runner.claims import FACTOR, Verdict, load_claims
 from runner.errors import RunnerError
+from runner.limits import CHAPTER, read_text
 from runner.progress.stages import CHAPTERS
 from runner.reporting.audit.report import rows
 from runner.reporting.claim import Claim
@@ -172,7 +173,19 @@ class Chapters:
         return heading.removeprefix("# ").strip() if heading.startswith("# ") else chapter
 
     def _text(self, file: str) -> str:
-        return (self._folder / file).read_text(encoding="utf-8")
+        return chapter_text(self._folder / file)
+
+
+def chapter_text(path: Path) -> str:
+    """Return the content of a chapter.
+
+    Raises:
+        RunnerError: if it cannot be read, or is too large.
+    """
+    try:
+        return read_text(path, CHAPTER)
+    except (OSError, ValueError) as error:
+        raise RunnerError(f"cannot read {path}: {error}") from None
 
 
 def _count(chapters: Sequence[str | Part]) -> int:

@@ -12,7 +12,7 @@ from runner.reporting.job import LeftOutError, MissingError
 from runner.reporting.prose.trying import never_failing
 from runner.reporting.prose.typed import levels_in, typed_numbers
 from runner.store import Calibration, Run
-from runner.works.chapters import Chapters
+from runner.works.chapters import Chapters, chapter_text
 from runner.works.names import FILE as ABOUT
 from runner.works.work import Work
 
@@ -46,7 +46,7 @@ def problems(work: Work, runs: Mapping[str, Run], calibrations: Mapping[str, Cal
 
 def formulas_at(work: Work, document: Document) -> Iterator[str]:
     """Yield each formula of a work's report that cannot be read, with file and line where a chapter has it."""
-    texts = [(file, (work.folder / file).read_text(encoding="utf-8")) for file in work.about.files()]
+    texts = [(file, chapter_text(work.folder / file)) for file in work.about.files()]
     for formula in faulty(document):
         found = ((file, text.count("\n", 0, text.index(formula)) + 1) for file, text in texts if formula in text)
         file, line = next(found, (ABOUT, 1))
@@ -57,7 +57,7 @@ def _of_chapter(work: Work, file: str, chapters: Chapters, levels: set[str]) -> 
     path = work.folder / file
     if path.suffix != ".md":
         return
-    text, name = path.read_text(encoding="utf-8"), f"{work.folder.name}/{file}"
+    text, name = chapter_text(path), f"{work.folder.name}/{file}"
     try:
         yield from never_failing(name, chapters.reading(path.stem))
     except LeftOutError:

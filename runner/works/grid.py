@@ -8,12 +8,12 @@ from typing import Annotated, Literal, Self
 from pydantic import BeforeValidator, Field, PlainValidator, model_validator
 
 from runner.errors import RunnerError, nearest
+from runner.limits import GRID
 from runner.registry import StrictModel
 from runner.works.arithmetic import Level, alone, fill, names_in
 from runner.works.given import GivenPart
 
 Overrides = tuple[str, ...]
-_MOST = 10_000  # runs of a grid
 
 
 def _levels(value: object) -> Mapping[Level, Overrides | None]:
@@ -98,8 +98,8 @@ class Grid(StrictModel):
             values: Numbers that expressions of all grids may name.
         """
         items = [*self.with_, *(f"{{{{ {axis} }}}}" for axis in self.over if not self._is_placed(axis))]
-        if (count := math.prod(map(len, self.over.values()))) > _MOST:
-            raise RunnerError(f"stands for {count} runs; allowed: up to {_MOST}")
+        if excess := GRID.excess(math.prod(map(len, self.over.values()))):
+            raise RunnerError(excess)
         begin = self.name or key
         rest = [axis for axis in self.over if axis not in names_in(begin)]
         for levels in itertools.product(*self.over.values()):

@@ -28,10 +28,11 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from runner.config.bounded_yaml import read_yaml
+from runner.config.bounded_yaml import STORED, read_yaml
 from runner.config.messages import describe
 from runner.config.user_settings import refuse_settings
 from runner.errors import RunnerError, nearest
+from runner.limits import read_text
 from runner.registry import StrictModel
 from runner.works.arithmetic import Level
 from runner.works.gains import check_named
@@ -69,7 +70,7 @@ class Grids:
     def __init__(self, path: Path, profile: Profile | None = None, parts: Sequence[GivenPart] = ()) -> None:
         self._path = path
         try:
-            text = path.read_text(encoding="utf-8")
+            text = read_text(path, STORED.size)
         except (OSError, ValueError) as error:
             raise RunnerError(f"cannot read {path}: {error}") from None
         content = read_yaml(text, path)

@@ -141,3 +141,11 @@ def test_equal_generators_give_equal_outcomes():
 def test_what_cannot_be_told_apart_is_refused_with_the_reason(overrides, reason):
     with pytest.raises(ConfigError, match=reason):
         repeat(procedure(*overrides))
+
+
+def test_readings_are_counted_before_they_are_drawn():
+    many = procedure("calibration=gravity", "calibration.samples=100000")
+    with pytest.raises(ConfigError, match="calibration: it has 1,600,000 readings; allowed: up to 1,000,000"):
+        repeat(many)
+    with pytest.raises(ConfigError, match=r"calibration.candidates: must .* 100000"):
+        procedure("calibration=gravity", "calibration.candidates=100001")

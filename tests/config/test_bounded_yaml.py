@@ -4,6 +4,7 @@ import pytest
 import yaml
 
 from runner.config.bounded_yaml import CONFIG, Bounds, YamlError, check_yaml, read_yaml
+from runner.limits import Limit
 from runner.paths import conf_dir
 
 
@@ -45,7 +46,7 @@ def test_every_file_of_ours_is_within_the_bounds():
         ("a: !!timestamp x", "line 1: the tag "),
         ("a: [", "line 2, column 1: "),
         ("a: \x01", "unacceptable character"),
-        ("#" * 250_001, "has 250001 characters; allowed: up to 250000"),
+        ("#" * 250_001, "has 250,001 bytes; allowed: up to 250,000"),
     ],
 )
 def test_what_no_loader_would_survive_is_told_with_its_line_before_it_is_read_whole(text, problem, monkeypatch):
@@ -77,9 +78,9 @@ def test_a_key_that_stands_twice_is_refused():
 
 def test_aliases_count_as_what_they_stand_for():
     text = "a: &a [1, 2, 3]\nb: [*a, *a]"
-    check_yaml(text, "f", Bounds(characters=100, values=16))  # 4 of a, 9 of b, two keys and the whole
+    check_yaml(text, "f", Bounds(Limit(100, "bytes"), values=16))  # 4 of a, 9 of b, two keys and the whole
     with pytest.raises(YamlError, match="more than 15 values"):
-        check_yaml(text, "f", Bounds(characters=100, values=15))
+        check_yaml(text, "f", Bounds(Limit(100, "bytes"), values=15))
 
 
 def test_a_config_may_hold_thousands_of_way_points():

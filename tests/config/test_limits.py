@@ -5,12 +5,18 @@ import re
 import pytest
 
 from runner.config.compose import compose
-from runner.config.limits import LimitsConfig, check_cpu_time, memory_of_run
+from runner.config.limits import LimitsConfig, check_cpu_time, check_memory_together, memory_of_run
 from runner.config.validation import validate
 from runner.errors import ConfigError
 from runner.job import seconds_per_tick
 from runner.progress.ticks import counter
 from runner.store import simulated_part
+
+
+@pytest.fixture(autouse=True)
+def memory(monkeypatch):
+    """The same memory on every machine: half of it are 8 GB."""
+    monkeypatch.setattr("runner.config.limits.half_of_memory", lambda: 8e9)
 
 
 @pytest.mark.parametrize(
@@ -24,6 +30,10 @@ from runner.store import simulated_part
             ("repetitions=1000000000",),
             r"limits.memory: .* repetitions: 1000000000\) would take about 409 GB; allowed: 4 GB, in which 8\d{6} "
             "repetitions fit; shorten",
+        ),
+        (
+            ("trajectory=joint_sinusoids", "trajectory.duration=6e6", "duration=0.02"),
+            r"trajectory.duration: a motion of 6e\+06 s has 288,000,128 samples; allowed: up to 500,000; make",
         ),
         (("duration=4000", "limits.memory=0.1"), r"limits.memory: .* allowed: 0.1 GB; shorten duration"),
         (
@@ -46,10 +56,22 @@ def test_a_sweep_that_costs_too_much_is_not_begun(cli, tmp_path):
     assert not [*(tmp_path / "outputs" / "runs").iterdir()]
 
 
-def test_null_allows_all(checked_config):
-    config = checked_config("robot=macro", "duration=1e6", "limits.memory=null", "limits.cpu_hours=null")
-    assert config.timing.ticks == 10**8
-    check_cpu_time(config.limits, 1e12, 1)
+def test_null_allows_half_of_the_memory_and_any_time(checked_config, monkeypatch):
+    asked = ("robot=macro", "duration=30000", "limits.memory=null", "limits.cpu_hours=null")
+    config = checked_config(*asked)
+    needed = memory_of_run(config.arm, config.timing.ticks, 1, config.feels)
+    monkeypatch.setattr("runner.config.limits.half_of_memory", lambda: needed)
+    check_cpu_time(checked_config(*asked).limits, 1e12, 1)
+    monkeypatch.setattr("runner.config.limits.half_of_memory", lambda: needed - 1.0)
+    with pytest.raises(ConfigError, match=r"would take about 1.51 GB; allowed: 1.51 GB, half of this machine's memory"):
+        checked_config(*asked)
+
+
+def test_runs_at_a_time_share_half_of_the_memory(monkeypatch):
+    monkeypatch.setattr("runner.config.limits.half_of_memory", lambda: 6e9)
+    check_memory_together(3e9, 2)
+    with pytest.raises(ConfigError, match=r"workers: 3 runs at a time, .* 9 GB; allowed: 6 GB, .* in which 2 fit"):
+        check_memory_together(3e9, 3)
 
 
 def test_hours_are_compared():

@@ -253,3 +253,17 @@ def test_an_address_is_a_text(cli, address):
     ending = cli("-m", "robot=macro", "seed=1,2", f"hydra.sweeper.address={address}")
     assert ending.code == 2
     assert "hydra.sweeper.address: must be that of a Dask scheduler, as tcp://127.0.0.1:8786, or null" in ending.err
+
+
+def test_files_without_end_are_not_read(cli, tmp_path):
+    (tmp_path / "experiment").mkdir()
+    (tmp_path / "experiment/zero.yaml").symlink_to("/dev/zero")
+    with (tmp_path / "experiment/big.yaml").open("wb") as file:
+        file.truncate(10**12)
+    for name, told in (
+        ("zero", "experiment: no 'zero'"),
+        ("big", "big.yaml: has 1,000,000,000,000 bytes; allowed: up"),
+    ):
+        ending = cli("--config-dir", tmp_path, f"experiment={name}", "robot=macro")
+        assert ending.code == 2
+        assert told in ending.err

@@ -1,5 +1,7 @@
 """Config folders that the doctor writes: names of files and folders."""
 
+import errno
+
 import pytest
 import yaml
 from support import strangers
@@ -46,5 +48,19 @@ def test_files_are_named_plainly_and_lie_in_the_folder(written, tmp_path, name, 
 
 def test_a_folder_that_cannot_be_made_is_told(written, tmp_path):
     (tmp_path / "mine").write_text("a file")
-    with pytest.raises(RunnerError, match=r"--write: .* cannot be written"):
+    with pytest.raises(RunnerError, match=r"--write: cannot write .*mine.robot.arm.yaml: .*; nothing was written"):
         written("arm")
+
+
+def test_where_a_file_cannot_be_written_none_is_left(written, tmp_path, monkeypatch):
+    taken = []
+
+    def full(file):
+        if taken:
+            raise OSError(errno.ENOSPC, "disk full")
+        taken.append(file)
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(RunnerError, match=r"cannot write .*arm.urdf: disk full; free space on its disk; nothing was"):
+        written("arm")
+    assert not [path for path in (tmp_path / "mine").rglob("*") if path.is_file()]

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from runner.errors import RunnerError
+from runner.limits import Limit
+from runner.recordings import recording
 from runner.recordings.columns_map import ColumnsMap, Factor, Signal
 from runner.recordings.recording import read_recording
 
@@ -84,3 +86,32 @@ def test_cells_that_do_not_fit(tmp_path, lines, wanted):
 def test_a_file_that_is_not_there(tmp_path):
     with pytest.raises(RunnerError, match=r"cannot read .*none.csv"):
         read_recording(tmp_path / "none.csv", said(), FACTORS)
+
+
+def test_rows_are_counted_while_they_are_read(tmp_path, monkeypatch):
+    path = write(tmp_path, rows(range(60)))
+    monkeypatch.setattr(recording, "RECORDING_ROWS", Limit(61, "rows"))
+    assert len(read_recording(path, said(), FACTORS).t) == 60
+    monkeypatch.setattr(recording, "RECORDING_ROWS", Limit(60, "rows"))
+    with pytest.raises(RunnerError, match=r"cannot read .*recording.csv: it has 61 rows; allowed: up to 60"):
+        read_recording(path, said(), FACTORS)
+
+
+@pytest.mark.parametrize("row", ["," * 100_001, '"\n",' * 60_000])
+def test_a_row_without_end_is_not_kept(tmp_path, row):
+    with pytest.raises(RunnerError, match="characters in a row; allowed: up to 100,000"):
+        read_recording(write(tmp_path, ["t,a", row]), said(), FACTORS)
+
+
+def test_a_recording_of_a_terabyte_is_not_read(tmp_path):
+    path = write(tmp_path, rows(range(60)))
+    with path.open("r+b") as file:
+        file.truncate(10**12)
+    with pytest.raises(RunnerError, match="has 1,000,000,000,000 bytes; allowed: up to 100,000,000"):
+        read_recording(path, said(), FACTORS)
+
+
+def test_problems_beyond_the_first_are_counted_and_empty_lines_at_the_end_are_none(tmp_path):
+    assert len(read_recording(write(tmp_path, [*rows(range(60)), "", ",,"]), said(), FACTORS).t) == 60
+    with pytest.raises(RunnerError, match=r"line 62: 0 cells for 3 columns; line 63: t is '-'"):
+        read_recording(write(tmp_path, [*rows(range(60)), "", "x,-,1", ""]), said(), FACTORS)

@@ -1,10 +1,11 @@
 """Report files: written whole or not at all, in the formats asked for."""
 
+import errno
+
 import pytest
 from support.sample_document import document
 
-from runner.errors import RunnerError
-from runner.reporting import render
+from runner.errors import RunnerError, StoreError
 from runner.reporting.render import write_report
 
 
@@ -29,9 +30,9 @@ def test_a_failed_write_leaves_the_old_report(tmp_path, monkeypatch):
     (tmp_path / "report.pdf").write_bytes(b"old")
 
     def fail(_):
-        raise OSError("disk full")
+        raise OSError(errno.ENOSPC, "disk full")
 
-    monkeypatch.setattr(render.os, "fsync", fail)
-    with pytest.raises(OSError, match="disk full"):
+    monkeypatch.setattr("os.fsync", fail)
+    with pytest.raises(StoreError, match=r"cannot write .*report.pdf: disk full; free space on its disk"):
         write_report(document(), tmp_path, ["pdf"])
     assert [(path.name, path.read_bytes()) for path in tmp_path.iterdir()] == [("report.pdf", b"old")]

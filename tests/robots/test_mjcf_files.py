@@ -93,3 +93,55 @@ def test_a_mesh_that_weighs_nothing_is_not_read(tmp_path):
     written(tmp_path, "junk", "m.obj")
     text = MESH.replace("FILE", "m.obj").replace('<joint name="q3"', f'{INERTIAL}<joint name="q3"')
     assert "q3" in read_mjcf(written(tmp_path, text)).urdf
+
+
+HEIGHTS = '<asset><hfield name="h" nrow="{0}" ncol="{1}" size="1 1 1 1"/></asset>'
+
+
+def with_asset(tmp_path, asset):
+    return written(tmp_path, CHAIN.replace("<worldbody>", f"{asset}<worldbody>"))
+
+
+@pytest.mark.parametrize("rows", ["1000", " +1000 ", "-1000"])
+def test_heights_are_counted_before_mujoco_makes_them(tmp_path, rows):
+    too_many = with_asset(tmp_path, HEIGHTS.format(rows, 1001))
+    assert (
+        refused(too_many)
+        == f"robot.mjcf: {too_many} has 1,001,000 heights; allowed: up to 1,000,000, with all that it includes"
+    )
+    assert read_mjcf(with_asset(tmp_path, HEIGHTS.format(1000, 1000))).urdf
+
+
+def test_heights_of_all_fields_count_together(tmp_path):
+    fields = "".join(HEIGHTS.format(900, 900).replace('"h"', f'"h{number}"') for number in range(2))
+    assert "has 1,620,000 heights" in refused(with_asset(tmp_path, fields))
+
+
+@pytest.mark.parametrize(
+    ("asset", "told"),
+    [
+        ("<default>" + '<default class="a"/>' * 3000 + "</default>", "elements; allowed: up to 2,500, with all"),
+        ("<!--" + "x" * 5_000_000 + "-->", "bytes; allowed: up to 5,000,000"),
+        ('<asset><mesh name="m" builtin="supersphere" params="5000 1 1"/></asset>', "<mesh> 'm', unknown here; write"),
+        ('<asset><mesh name="m" file="m.stl"/></asset>', "'m.stl': has 20,000,001 bytes; allowed: up to 20,000,000"),
+    ],
+)
+def test_what_mujoco_would_take_much_memory_for_is_refused(tmp_path, asset, told):
+    with (tmp_path / "m.stl").open("wb") as file:
+        file.truncate(20_000_001)
+    assert told in refused(with_asset(tmp_path, asset))
+
+
+@pytest.mark.parametrize(
+    "size", ['nkey="100000000"', 'nuser_body="100000000"', 'nuserdata="900000000"', 'memory="4000G"']
+)
+def test_room_that_an_mjcf_asks_for_is_not_made(tmp_path, size):
+    assert read_mjcf(with_asset(tmp_path, f"<size {size}/>")).urdf == read_mjcf(with_asset(tmp_path, "")).urdf
+
+
+def test_a_height_field_that_weighs_is_refused(tmp_path):
+    text = CHAIN.replace("<worldbody>", f"{HEIGHTS.format(3, 3)}<worldbody>")
+    path = written(tmp_path, text.replace('<geom fromto="0 0 0 0.2 0 0"/>', '<geom type="hfield" hfield="h"/>'))
+    assert refused(path).endswith(
+        "holds height fields that weigh: 'h'; give their body an <inertial>, or take them out"
+    )

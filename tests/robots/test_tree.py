@@ -96,3 +96,23 @@ def test_meshes_are_left_out_and_other_shapes_kept(tmp_path):
     kept = read_urdf(tmp_path / "arm.urdf", {})
     assert "mesh" not in kept
     assert kept.count("<sphere") == 2
+
+
+def attributes(count):
+    return " ".join(f"a{number}='0'" for number in range(count))
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ("<a/>" * 19_990, "has 20,001 elements; allowed: up to 20,000"),
+        (f"<a {attributes(201)}/>", "has 201 attributes in an element; allowed: up to 200"),
+        ("<!--" + "x" * 5_000_000 + "-->", "bytes; allowed: up to 5,000,000"),
+    ],
+    ids=["elements", "attributes", "bytes"],
+)
+def test_what_is_too_much_is_refused_before_it_is_kept(read, more, told):
+    arm = f'<robot name="x">{LINKS}{joint("q", "a", "b")}{joint("r", "b", "c")}MORE</robot>'  # 10 elements
+    assert read(arm.replace("MORE", f"<a {attributes(200)}/>" + "<a/>" * 19_989)).root == "a"
+    with pytest.raises(ConfigError, match=told):
+        read(arm.replace("MORE", more + "<a/>"))

@@ -34,7 +34,7 @@ FAULTS = {
     "joint name": (changed('"q2"', f'"{"q" * 2000}"'), "the name of a joint has 2000 characters, 'qqq"),
     "robot name": (changed('name="arm"', f'name="{"r" * 201}"'), "the name of a robot has 201 characters, 'rrr"),
     "deep": (changed("</robot>", "<a>" * 5000 + "</a>" * 5000 + "</robot>"), "stand 5001 deep within each other"),
-    "links": (changed("</robot>", '<link name="x"/>' * 3000 + "</robot>"), "links and joints; allowed: up to 2000"),
+    "links": (changed("</robot>", '<link name="x"/>' * 3000 + "</robot>"), "links and joints; allowed: up to 2,000"),
 }  # fmt: skip
 
 

@@ -234,3 +234,10 @@ def test_every_law_runs_along_it(written, macro, tmp_path, controller):
         overrides = ("robot=macro", f"controller={controller}", "trajectory=from_file", f"trajectory.file={file}")
         made = run(*overrides, f"outputs={tmp_path}")
         assert made.metrics["max_tracking_error"]["median"] < 0.02
+
+
+def test_a_small_parquet_of_huge_cells_is_refused(tmp_path):
+    path = tmp_path / "motion.parquet"
+    pa.parquet.write_table(pa.table({"t": [b"0" * 6_000_000]}), path, compression="zstd", use_dictionary=False)
+    with pytest.raises(ConfigError, match=r"bytes; allowed: up to 5,000,000, unpacked"):
+        compose(["robot=macro", "trajectory=from_file", f"trajectory.file={path}"])

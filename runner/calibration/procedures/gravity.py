@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, NonNegativeFloat, PositiveInt
+from pydantic import Field, NonNegativeFloat
 
 from runner.calibration.compensation import WrenchCompensation
 from runner.calibration.gravity import PARAMETERS, GravityCalibration, identify_gravity
@@ -14,6 +14,7 @@ from runner.calibration.procedures.bench import Bench
 from runner.calibration.procedures.procedure import Outcome, Procedure
 from runner.calibration.tool import REST
 from runner.errors import ConfigError
+from runner.limits import READINGS
 from runner.registry import StrictModel
 from runner.robots.model import FloatArray, RobotModel
 from runner.sensing.force_torque import ForceTorqueSensor
@@ -38,11 +39,11 @@ class WeighingConfig(StrictModel):
     """
 
     kind: Literal["gravity"]
-    orientations: PositiveInt
+    orientations: Annotated[int, Field(ge=1, le=1000)]
     choice: Literal["best", "first"]
-    candidates: PositiveInt
+    candidates: Annotated[int, Field(ge=1, le=100_000)]
     spread: Annotated[float, Field(gt=0.0, le=np.pi)] | None
-    samples: PositiveInt
+    samples: Annotated[int, Field(ge=1, le=100_000)]
     repeatability: NonNegativeFloat
 
 
@@ -122,6 +123,8 @@ class Weighing:
         if config.low_pass is not None:
             settling = int(np.ceil(-np.log(_SETTLED) / (2.0 * np.pi * config.low_pass * period)))
         each = settling + samples
+        if excess := READINGS.excess(each * len(self._loads)):
+            raise ConfigError([f"calibration: it {excess}; take fewer samples or orientations, or a higher low_pass"])
         sensor = ForceTorqueSensor(each * len(self._loads), period, config, generator)
         readings = np.array(
             [

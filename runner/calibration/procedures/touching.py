@@ -4,7 +4,7 @@ from typing import Annotated
 
 import numpy as np
 import pinocchio as pin
-from pydantic import Field, NonNegativeFloat, PositiveInt
+from pydantic import Field, NonNegativeFloat
 
 from runner.calibration.procedures.bench import Bench
 from runner.errors import ConfigError
@@ -25,7 +25,7 @@ class TouchingConfig(StrictModel):
         repeatability: To which the arm repeats its flange's position at home, in m.
     """
 
-    poses: PositiveInt
+    poses: Annotated[int, Field(ge=1, le=1000)]
     spread: Annotated[float, Field(gt=0.0, lt=np.pi)]
     posture: list[float] | None
     repeatability: NonNegativeFloat

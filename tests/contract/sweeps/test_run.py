@@ -256,7 +256,9 @@ def test_a_full_disk_stops_the_sweep_which_goes_on_later(sweep, simulated_runs, 
         fsync(file)
 
     monkeypatch.setattr(os, "fsync", fill_up)
-    with pytest.raises(StoreError, match="No space left on device; finished runs are stored; the same command"):
+    with pytest.raises(
+        StoreError, match="No space left on device; free space on its disk; finished runs are stored; the"
+    ):
         sweep("seed=range(0,40)", f"sweep.trace={trace}")
     monkeypatch.undo()
     ended = sweep("seed=range(0,40)", f"sweep.trace={trace}")

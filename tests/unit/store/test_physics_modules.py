@@ -15,8 +15,8 @@ OTHERS = {
     "config/preset.py", "config/problems.py", "config/robot_defaults.py", "config/spec.py", "config/stage_defaults.py",
     "config/sweep.py", "config/units.py", "config/user_settings.py", "config/work_folder.py", "data_file.py", "doctor",
     "drawing", "engine_output.py", "engines.py", "errors.py", "export", "expressions", "folder_code.py", "latest.py",
-    "paths.py", "plugins.py", "progress", "provenance.py", "quantities.py", "quiet.py", "recall", "recordings",
-    "references", "reporting", "sensitivity", "servo_contact.py", "spec", "statistics", "store", "sweeps", "texts.py",
+    "limits.py", "paths.py", "plugins.py", "progress", "provenance.py", "quantities.py", "quiet.py", "recall",
+    "recordings", "references", "reporting", "sensitivity", "servo_contact.py", "spec", "statistics", "store", "sweeps", "texts.py",
     "tuning", "works", "__init__.py", "__main__.py",
 }  # fmt: skip
 TREE = {

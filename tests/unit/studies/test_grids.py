@@ -90,7 +90,7 @@ values: {parts: 9, twice: 2}
         ("grids: {g: {over: {a: [1, 1]}}}", "has a level twice"),
         ("grids: {g: {over: {a: [1, 1.0]}}}", "has a level twice"),
         ("grids: {g: {over: {a: [.inf]}}}", "a level must be a finite number"),
-        (f"grids: {{g: {{over: {{a: {[*range(200)]}, b: {[*range(100)]}}}}}}}", "stands for 20000 runs; allowed"),
+        (f"grids: {{g: {{over: {{a: {[*range(200)]}, b: {[*range(100)]}}}}}}}", "has 20,000 runs; allowed"),
         ("grids: {g: {over: {a: []}}}", "grids.g.over.a: .*must be a list of levels"),
         ("grids: {g: {over: {a: 1}}}", "must be a list of levels"),
         ("grids: {g: {with: a=1}}", "grids.g.with: must be a list of overrides"),
