@@ -430,7 +430,7 @@ class _Evaluation:
             elif type(each) is int:
                 raise OverflowError(f"a whole number of more than {_BITS} bits")
             elif not (isinstance(each, (Real, *self._kinds, *self._scope.handed)) or callable(each)):
-                self._refuse(node, f"a value of kind {type(each).__name__} is nothing for an expression")
+                self._refuse(node, f"an expression takes no value of kind {type(each).__name__}")
             if count > LONGEST:
                 raise OverflowError(f"more than {LONGEST} items; allowed: up to {LONGEST}")
         return count

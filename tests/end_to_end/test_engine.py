@@ -187,15 +187,20 @@ def answers(address, context=None):
     return b""
 
 
+def listening():
+    """Return the addresses at which this process and those that it started listen."""
+    ours = psutil.Process()
+    places = [each for process in (ours, *ours.children(recursive=True)) for each in process.net_connections()]
+    return {each.laddr for each in places if each.status == psutil.CONN_LISTEN}
+
+
 @pytest.mark.costs(5)
 def test_processes_of_this_machine_listen_to_each_other_alone(tmp_path):
     stranger = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
     stranger.check_hostname, stranger.verify_mode = False, ssl.CERT_NONE
-    ours = psutil.Process()
-    before = {each.laddr for each in ours.net_connections() if each.status == psutil.CONN_LISTEN}
+    before = listening()
     with engine.local_client(2, tmp_path / "scratch") as client:
-        places = [each for process in (ours, *ours.children(recursive=True)) for each in process.net_connections()]
-        ports = {each.laddr for each in places if each.status == psutil.CONN_LISTEN} - before
+        ports = listening() - before
         known = client.scheduler_info()
         workers = [place for worker, told in known["workers"].items() for place in (worker, told["nanny"])]
         assert {f"tls://{ip}:{port}" for ip, port in ports} == {known["address"], *workers}

@@ -1,5 +1,7 @@
 """The spec of a sweep over its axes."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from support.sample_sweep import measurements, two_axes
@@ -9,6 +11,7 @@ from runner.reporting.document import Curves, Maps, Table, Text
 from runner.reporting.sweep import spec
 from runner.reporting.sweep.subject import choose
 from runner.statistics.share import count_share
+from runner.store.sweep import Sweep
 
 SPEC = {"rms": Bound(max=0.5)}
 
@@ -22,12 +25,16 @@ def one_axis(values=(1e-4, 1e-3, 1e-2), numbers=(0, 20, 100)):
     return choose(measurements({"noise.position": list(values)}, {"rms": failing(*numbers)}))
 
 
+def swept(bounds):
+    return Sweep(Path(), (), (), "", bounds)
+
+
 def blocks(section, kind):
     return [block for block in section.blocks if isinstance(block, kind)]
 
 
 def test_over_one_axis_it_is_a_curve_with_the_interval_as_its_band():
-    (figure,) = blocks(spec.section(one_axis(), SPEC), Curves)
+    (figure,) = blocks(spec.section(one_axis(), swept(SPEC)), Curves)
     shares, few = figure.panels[0].series
     exact = [count_share(count, 100) for count in (0, 20, 100)]
     np.testing.assert_allclose(shares.y, [0.0, 0.2, 1.0])
@@ -37,14 +44,14 @@ def test_over_one_axis_it_is_a_curve_with_the_interval_as_its_band():
 
 
 def test_over_texts_they_stand_in_their_order():
-    (figure,) = blocks(spec.section(one_axis(("a", "b", "c")), SPEC), Curves)
+    (figure,) = blocks(spec.section(one_axis(("a", "b", "c")), swept(SPEC)), Curves)
     assert list(figure.panels[0].x_names) == ["a", "b", "c"]
 
 
 def test_over_two_axes_it_is_a_map_of_the_share_and_one_of_the_upper_end():
     axes = {"noise.position": [1e-4, 1e-3, 1e-2], "torque_limits.max": [20.0, 40.0]}
     subject = choose(measurements(axes, {"rms": failing(0, 4, 60)}))
-    (figure,) = blocks(spec.section(subject, SPEC), Maps)
+    (figure,) = blocks(spec.section(subject, swept(SPEC)), Maps)
     share, upper = figure.panels
     np.testing.assert_allclose(share.values, [[0.0, 0.04, 0.6]] * 2)
     np.testing.assert_allclose(upper.values[0], [count_share(count, 100).high for count in (0, 4, 60)])
@@ -57,7 +64,7 @@ def test_over_two_axes_it_is_a_map_of_the_share_and_one_of_the_upper_end():
 def test_a_third_axis_gives_further_maps():
     axes = {"noise.position": [1e-4, 1e-3], "torque_limits.max": [20.0, 40.0], "controller.coupling": ["a", "b"]}
     subject = choose(measurements(axes, {"rms": failing(3, 30)}))
-    (figure,) = blocks(spec.section(subject, SPEC), Maps)
+    (figure,) = blocks(spec.section(subject, swept(SPEC)), Maps)
     assert [panel.title.partition(":")[0] for panel in figure.panels[::2]] == [
         "controller.coupling = a", "controller.coupling = b",
     ]  # fmt: skip
@@ -65,12 +72,12 @@ def test_a_third_axis_gives_further_maps():
 
 def test_seeds_are_pooled():
     subject = choose(measurements({"noise.position": [1e-4, 1e-3], "seed": [0.0, 1.0]}, {"rms": failing(1, 30)}))
-    (figure,) = blocks(spec.section(subject, SPEC), Curves)
+    (figure,) = blocks(spec.section(subject, swept(SPEC)), Curves)
     np.testing.assert_allclose(figure.panels[0].series[0].high, [count_share(2, 200).high, count_share(60, 200).high])
 
 
 def test_the_table_has_each_cell_with_its_interval_those_that_fail_most_first():
-    (table,) = blocks(spec.section(one_axis(), SPEC), Table)
+    (table,) = blocks(spec.section(one_axis(), swept(SPEC)), Table)
     assert [row[0] for row in table.rows] == ["noise.position=0.01", "noise.position=0.001", "noise.position=0.0001"]
     assert table.rows[-1][1] == "0 of 100 failed, 0 (0 to 0.0362); too few"
 
@@ -81,15 +88,15 @@ def test_several_bounds_are_kept_together_by_the_same_repetitions():
     both = {**SPEC, "overshoot": Bound(max=0.5)}
     found = spec.find_failing(subject, both)
     assert [one.failed.tolist() for one in found] == [[0, 20, 100], [10, 10, 10], [10, 30, 100]]
-    assert spec.summary(subject, both) == "0 of 3 cells keep the spec in every repetition."
-    assert spec.summary(subject, SPEC) == "1 of 3 cells keep the spec in every repetition."
+    assert spec.summary(subject, swept(both)) == "0 of 3 cells keep the spec in every repetition."
+    assert spec.summary(subject, swept(SPEC)) == "1 of 3 cells keep the spec in every repetition."
 
 
 def test_a_failed_run_keeps_nothing_and_a_missing_metric_is_told():
     subject = two_axes(failed=(0,))
     (found,) = spec.find_failing(subject, {"peak_torque": Bound(max=1e6)})
     assert found.failed.tolist() == [8] + [0] * 11
-    texts = [block.text for block in blocks(spec.section(subject, {"overshoot": Bound(max=1.0)}), Text)]
+    texts = [block.text for block in blocks(spec.section(subject, swept({"overshoot": Bound(max=1.0)})), Text)]
     assert texts[-1].startswith("No run of the sweep has the metric of the bound: overshoot at most 1 m")
 
 
