@@ -194,6 +194,27 @@ def test_plug_ins_of_a_paper_lie_in_its_folder(paper, tmp_path, file, options):
     assert refused(paper({"work.yaml": about}, *options), tmp_path, f"outside of the folder {tmp_path}/paper")
 
 
+@pytest.mark.parametrize(
+    ("expression", "problem"),
+    [
+        ('metric.args[0]["goal"]', "a value of kind partial has no 'args'"),
+        ('table.__globals__["__builtins__"]', "a value of kind partial has no '__globals__'"),
+        ('metric("goal", "peak_torque").__class__', "a value of kind Measured has no '__class__'"),
+        ('config("goal", "seed").bit_length()', "a value of kind int has no 'bit_length'"),
+        ('"%0999999999d" % 1', "forms %s, %d"),
+        ('"a".ljust(20000000000)', "a value of kind str has no 'ljust'"),
+        ("norm('error')(1)", "only a function with a name is called"),
+        ("__import__('os').popen('touch taken')", "no name '__import__'"),
+    ],
+)
+def test_a_chapter_reaches_its_values_and_nothing_behind_them(paper, tmp_path, expression, problem):
+    ending = paper({"one.md": f"# One\n\nA {{{{ {expression} }}}}\n"}, "hydra.sweeper.workers=0")
+    assert (ending.code, ending.out) == (2, "")
+    assert "paper/one.md:3: " in ending.err
+    assert problem in ending.err
+    assert list(tmp_path.rglob("taken")) == []
+
+
 SYSTEM = ("/usr", "/lib", "/proc", "/sys", "/dev", "/etc/fonts", "/etc/localtime", "/etc/os-release", "/etc/ssl")
 
 
