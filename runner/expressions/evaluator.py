@@ -148,6 +148,8 @@ def parse(text: str) -> ast.expr:
     if len(text) > LONGEST:
         raise ExpressionError(text, LONGEST, f"has {len(text)} characters; allowed: up to {LONGEST}")
     text = text.translate(_ONE_LINE)
+    if "\0" in text:  # which Python refuses in several ways
+        raise ExpressionError(text, text.index("\0"), "contains a null byte")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # what Python would rather have otherwise
@@ -155,9 +157,9 @@ def parse(text: str) -> ast.expr:
     except SyntaxError as error:
         early = error.msg == "invalid syntax" and not error.offset
         told = "it ends too early" if early else re.split(r"[.;] ", error.msg)[0]
-        raise ExpressionError(text, (error.offset or len(text) + 1) - 1, f"is no expression: {told}") from None
-    except ValueError:
-        raise ExpressionError(text, 0, "holds what is no text") from None
+        raise ExpressionError(text, (error.offset or len(text) + 1) - 1, f"is not an expression: {told}") from None
+    except ValueError:  # a half of a surrogate pair
+        raise ExpressionError(text, 0, "contains a character that is not allowed") from None
     except (MemoryError, RecursionError):
         raise ExpressionError(text, 0, _TOO_DEEP) from None
     if behind := text.encode()[tree.end_col_offset :].decode().strip(" )"):
@@ -259,7 +261,7 @@ class _Evaluation:
             case ast.UnaryOp(op=ast.USub() | ast.UAdd()):
                 value = self.of(node.operand)
                 if not self._has_arithmetic(value):
-                    self._refuse(node, f"a sign before {type(value).__name__}")
+                    self._refuse(node, f"a sign needs a number after it; found {type(value).__name__}")
                 return -value if isinstance(node.op, ast.USub) else value
             case ast.UnaryOp() if isinstance(node.op, ast.Not):
                 return not self._truth(node.operand)
@@ -289,9 +291,9 @@ class _Evaluation:
             return self._of_mapping(owner, node.attr, node)
         known = self._scope.members.get(type(owner), ())
         if node.attr not in known:
-            of = f"a value of kind {type(owner).__name__}"
+            of = f"a value of type {type(owner).__name__}"
             there = f"{nearest(node.attr, known)}; there are: {', '.join(known)}" if known else ""
-            self._refuse(node, f"{of} has no '{node.attr}' to be read{there}")
+            self._refuse(node, f"{of} has no '{node.attr}' that can be read{there}")
         return getattr(owner, node.attr)
 
     def _call(self, node: ast.Call) -> Any:
@@ -300,12 +302,12 @@ class _Evaluation:
         elif isinstance(node.func, ast.Attribute):
             function = self._member(node.func)
         else:
-            self._refuse(node, "only a function with a name is called")
+            self._refuse(node, "only named functions can be called")
         arguments = list(self._spread(node.args))
         options = {each.arg: self.of(each.value) for each in node.keywords if each.arg is not None}
         if len(options) < len(node.keywords) or not callable(function):
             told = "two stars, or a name twice, are not allowed here"
-            self._refuse(node, told if callable(function) else "this is no function")
+            self._refuse(node, told if callable(function) else "this is not a function")
         try:
             return function(*arguments, **options)
         except (RunnerError, ArithmeticError):
@@ -321,13 +323,13 @@ class _Evaluation:
                 continue
             items = self.of(node.value)
             if not isinstance(items, list | tuple):
-                self._refuse(node, f"a star stands before a list, not before {type(items).__name__}")
+                self._refuse(node, f"a star needs a list after it; found {type(items).__name__}")
             yield from items
 
     def _key(self, node: ast.expr | None, inside: ast.expr) -> Any:
         value = None if node is None else self.of(node)
         if not isinstance(value, str | int | float):
-            self._refuse(node or inside, "a key of a mapping is a text or a number")
+            self._refuse(node or inside, "a key of a mapping must be a string or a number")
         return value
 
     def _item(self, node: ast.Subscript) -> Any:
@@ -335,7 +337,7 @@ class _Evaluation:
         if isinstance(owner, dict):
             return self._of_mapping(owner, key, node)
         if not isinstance(owner, list | tuple | np.ndarray) or type(key) is not int:
-            self._refuse(node, f"no item {key!r} of a value of kind {type(owner).__name__}")
+            self._refuse(node, f"no item {key!r} of a value of type {type(owner).__name__}")
         if not -len(owner) <= key < len(owner):
             self._refuse(node, f"no item {key} of {len(owner)}")
         return owner[key]
@@ -353,11 +355,11 @@ class _Evaluation:
             return self._formatted(left, right if isinstance(right, tuple) else (right,), node.right)
         if work is operator.add and any(isinstance(left, kind) and isinstance(right, kind) for kind in (str, list)):
             if len(left) + len(right) > LONGEST:
-                raise OverflowError(f"a text or list of {len(left) + len(right)}; allowed: up to {LONGEST}")
+                raise OverflowError(f"a string or list of {len(left) + len(right)}; allowed: up to {LONGEST}")
             return left + right
         if work is None or not self._has_arithmetic(left, right):
             sides = f"{type(left).__name__} and {type(right).__name__}"
-            self._refuse(node.right, f"this is not worked out with {sides}")
+            self._refuse(node.right, f"cannot compute with {sides}")
         if work is operator.pow and type(left) is type(right) is int and abs(left) > 1 and right > _BITS:
             raise OverflowError(f"a whole number of more than {_BITS} bits")
         value = self._answer(work(left, right), node.right)
@@ -368,7 +370,7 @@ class _Evaluation:
         sides = [self.of(each) for each in (node.left, *node.comparators)]
         found = [self._pair(kind, *pair, node) for kind, pair in zip(node.ops, pairwise(sides), strict=True)]
         if len(found) > 1 and not all(isinstance(each, bool) for each in found):
-            self._refuse(node, "measured values are compared in pairs; write a list of two conditions")
+            self._refuse(node, "measured values can only be compared in pairs; write a list of two conditions")
         return found[0] if len(found) == 1 else all(found)
 
     def _pair(self, kind: ast.cmpop, left: Any, right: Any, node: ast.expr) -> Any:
@@ -381,11 +383,11 @@ class _Evaluation:
             return bool(left == right) is isinstance(kind, ast.Eq | ast.Is)
         if isinstance(kind, ast.In | ast.NotIn) and isinstance(left, str) and isinstance(right, str | list | tuple):
             return (left in right) is isinstance(kind, ast.In)
-        return self._refuse(node, f"{type(left).__name__} and {type(right).__name__} are not compared so")
+        return self._refuse(node, f"{type(left).__name__} and {type(right).__name__} cannot be compared like this")
 
     def _answer(self, value: Any, node: ast.expr) -> Any:
         if value is NotImplemented or isinstance(value, complex):
-            self._refuse(node, "has no value: no real number")
+            self._refuse(node, "has no value: not a real number")
         return value
 
     def _formatted(self, form: str, values: tuple[Any, ...], node: ast.expr) -> str:
@@ -399,7 +401,7 @@ class _Evaluation:
                 self._refuse(node, f"%{kind} does not show {type(value).__name__}")
             shown.append(str(value) if kind == "s" else value)
         if len(form) + sum(len(each) if isinstance(each, str) else _EXCERPT for each in shown) > LONGEST:
-            raise OverflowError(f"a text of more than {LONGEST} characters")
+            raise OverflowError(f"a string of more than {LONGEST} characters")
         return form % tuple(shown)
 
     def _is_shown(self, value: Any) -> bool:
@@ -411,7 +413,11 @@ class _Evaluation:
 
     def _truth(self, node: ast.expr) -> bool:
         value = self.of(node)
-        return value if isinstance(value, bool) else self._refuse(node, f"{type(value).__name__} is not true or false")
+        return (
+            value
+            if isinstance(value, bool)
+            else self._refuse(node, f"{type(value).__name__} is neither true nor false")
+        )
 
     def _sized(self, value: Any, node: ast.expr) -> int:
         """Return how many items a value has in all, after a look at each: none may be of a class that is not listed."""
@@ -426,11 +432,11 @@ class _Evaluation:
             elif isinstance(each, str):
                 count = max(count, len(each) // _EXCERPT)
                 if len(each) > LONGEST:
-                    raise OverflowError(f"a text of {len(each)} characters; allowed: up to {LONGEST}")
+                    raise OverflowError(f"a string of {len(each)} characters; allowed: up to {LONGEST}")
             elif type(each) is int:
                 raise OverflowError(f"a whole number of more than {_BITS} bits")
             elif not (isinstance(each, (Real, *self._kinds, *self._scope.handed)) or callable(each)):
-                self._refuse(node, f"an expression takes no value of kind {type(each).__name__}")
+                self._refuse(node, f"an expression cannot hold a value of type {type(each).__name__}")
             if count > LONGEST:
                 raise OverflowError(f"more than {LONGEST} items; allowed: up to {LONGEST}")
         return count

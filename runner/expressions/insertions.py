@@ -19,7 +19,7 @@ def insertions(text: str) -> Iterator[tuple[int, int]]:
     while (start := text.find("{{", stop)) >= 0:
         stop = _closed(text, start + 2)
         if stop < 0:
-            raise ExpressionError(text, start, "{{ is not closed; write }} behind the expression")
+            raise ExpressionError(text, start, "{{ is not closed; write }} after the expression")
         yield start, stop
 
 

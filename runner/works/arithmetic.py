@@ -57,5 +57,5 @@ def _shown(value: Any) -> str:
     if isinstance(value, str):
         return value
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise RunnerError(f"gives {quoted(value)}; only a finite number or a text is put in")
+        raise RunnerError(f"gives {quoted(value)}; only a finite number or a string can be inserted")
     return f"{value:.9g}"

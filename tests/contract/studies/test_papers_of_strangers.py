@@ -197,13 +197,13 @@ def test_plug_ins_of_a_paper_lie_in_its_folder(paper, tmp_path, file, options):
 @pytest.mark.parametrize(
     ("expression", "problem"),
     [
-        ('metric.args[0]["goal"]', "a value of kind partial has no 'args'"),
-        ('table.__globals__["__builtins__"]', "a value of kind partial has no '__globals__'"),
-        ('metric("goal", "peak_torque").__class__', "a value of kind Measured has no '__class__'"),
-        ('config("goal", "seed").bit_length()', "a value of kind int has no 'bit_length'"),
+        ('metric.args[0]["goal"]', "a value of type partial has no 'args'"),
+        ('table.__globals__["__builtins__"]', "a value of type partial has no '__globals__'"),
+        ('metric("goal", "peak_torque").__class__', "a value of type Measured has no '__class__'"),
+        ('config("goal", "seed").bit_length()', "a value of type int has no 'bit_length'"),
         ('"%0999999999d" % 1', "forms %s, %d"),
-        ('"a".ljust(20000000000)', "a value of kind str has no 'ljust'"),
-        ("norm('error')(1)", "only a function with a name is called"),
+        ('"a".ljust(20000000000)', "a value of type str has no 'ljust'"),
+        ("norm('error')(1)", "only named functions can be called"),
         ("__import__('os').popen('touch taken')", "no name '__import__'"),
     ],
 )
