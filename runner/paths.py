@@ -1,7 +1,14 @@
 """Where the configs, robots and templates are: in the checkout beside the package, or inside an installed wheel."""
 
+import os
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
+
+from runner.errors import ConfigError
+
+WORK_FILE = "work.yaml"
+"""The file that makes a folder a work."""
 
 _PACKAGE = Path(__file__).resolve().parent
 
@@ -55,3 +62,20 @@ def example_work_dir() -> Path:
 def templates_dir() -> Path:
     """Return the folder of the report templates."""
     return _root() / "reports" / "templates"
+
+
+def check_inside(path: Path, folders: Sequence[Path]) -> None:
+    """Check that a file found in a config folder lies there, whatever links lead to it; nothing is read before.
+
+    A file that is found elsewhere, by its whole path, may lie anywhere, unless one of the folders is that of a work:
+    the files of its runs are its own, or ours.
+
+    Raises:
+        ConfigError: if the file lies elsewhere.
+    """
+    own = [folder for folder in folders if path.is_relative_to(folder)]
+    if not own and any((folder / WORK_FILE).is_file() for folder in folders):
+        own = [*folders, robots_dir()]
+    place = Path(os.path.realpath(path))
+    if own and not any(place.is_relative_to(os.path.realpath(folder)) for folder in own):
+        raise ConfigError([f"{path}: is {place}, outside of the folder {own[0]}; put the file itself there"])

@@ -9,7 +9,8 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 from numpy.typing import NDArray
 
 from runner.errors import RunnerError
-from runner.expressions.evaluator import Budget, ExpressionError, Scope
+from runner.expressions.evaluator import Budget, Scope
+from runner.expressions.grammar import ExpressionError
 from runner.expressions.parser import FUNCTIONS, PRIME, Expression, as_written, parse
 from runner.expressions.tree import symbols as names_in
 

@@ -21,7 +21,8 @@ from runner.audit.sources import Where, rollout_of, source_of
 from runner.audit.truth import FloatArray
 from runner.data_file import read_data
 from runner.errors import RunnerError, nearest
-from runner.expressions.evaluator import Budget, ExpressionError, Scope
+from runner.expressions.evaluator import Budget, Scope
+from runner.expressions.grammar import ExpressionError
 from runner.expressions.insertions import fill
 from runner.registry import StrictModel
 

@@ -13,7 +13,7 @@ from runner.audit.model_truths import AuditedArm, audited_arm, sample
 from runner.audit.sources import Source, truth_of
 from runner.audit.truth import Elements, FloatArray, Symbols, Truth
 from runner.errors import ConfigError, RunnerError
-from runner.expressions.evaluator import ExpressionError
+from runner.expressions.grammar import ExpressionError
 from runner.expressions.parser import parse
 
 SAMPLES = 1000

@@ -20,11 +20,11 @@ from runner.config.bounded_yaml import CONFIG, YamlError, check_yaml
 from runner.config.interpolation import check_references
 from runner.config.memory import Memory
 from runner.config.user_settings import refuse_settings
-from runner.config.work_folder import check_inside, place_in
+from runner.config.work_folder import place_in
 from runner.engines import default_plant
 from runner.errors import ConfigError
 from runner.limits import ExcessError, read_text
-from runner.paths import ships
+from runner.paths import check_inside, ships
 from runner.texts import quoted
 
 _SWEEPER = (

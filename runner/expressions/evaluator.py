@@ -11,11 +11,9 @@ import ast
 import operator
 import re
 import traceback
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import lru_cache
 from itertools import pairwise
 from numbers import Real
 from typing import Any, NoReturn
@@ -23,17 +21,12 @@ from typing import Any, NoReturn
 import numpy as np
 
 from runner.errors import RunnerError, nearest
+from runner.expressions.grammar import EXCERPT, LONGEST, ExpressionError, chain, dotted, index_of, parse
 
-LONGEST = 10_000  # characters of a text, items of a list and of those in it
 _BITS = 63  # of a whole number
 _WHOLE = 2**_BITS
-_DEEPEST = 60
-_LONGEST_ROW = 1000  # operations; Python's own parser ends at some 3000
-_EXCERPT = 30
 _LISTED = 40  # names
 _FEW = 20  # numbers of a list that a text shows
-_TOO_DEEP = f"is nested more than {_DEEPEST} deep, or has more than {_LONGEST_ROW} operations in a row"
-_ONE_LINE = str.maketrans("\n\r\f\t", "    ")
 _FORM = re.compile(r"%(?:%|[-+]?\d{0,2}(?:\.\d{1,2})?([sdfge]))")
 _ARITHMETIC: Mapping[type[ast.AST], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
@@ -50,38 +43,6 @@ _COMPARISONS: Mapping[type[ast.AST], Callable[[Any, Any], Any]] = {
     ast.Eq: operator.eq,
     ast.NotEq: operator.ne,
 }
-_WORDS: Mapping[type[ast.AST], str] = {
-    ast.Lambda: "a function",
-    ast.ListComp: "a loop",
-    ast.SetComp: "a loop",
-    ast.DictComp: "a loop",
-    ast.GeneratorExp: "a loop",
-    ast.JoinedStr: "a text with braces",
-    ast.NamedExpr: "an assignment",
-    ast.Slice: "a range",
-}
-
-
-class ExpressionError(RunnerError):
-    """An expression that cannot be read or evaluated.
-
-    Args:
-        text: The expression.
-        index: Where it is wrong, counted from 0.
-        reason: What is wrong.
-
-    Attributes:
-        reason: What is wrong.
-        position: Where, counted from 1.
-    """
-
-    def __init__(self, text: str, index: int, reason: str) -> None:
-        self.reason, self.position = reason, index + 1
-        first, last = max(0, index - _EXCERPT), index + _EXCERPT
-        before, after = "... " if first else "", " ..." if last < len(text) else ""
-        excerpt = before + re.sub(r"\s", " ", text[first:last]) + after
-        mark = " " * (len(before) + index - first) + "^"
-        super().__init__(f"position {self.position}: {reason}\n    {excerpt}\n    {mark}")
 
 
 class Budget:
@@ -136,77 +97,6 @@ class Scope:
             RunnerError: as a function raises it.
         """
         return _Evaluation(self, text, budget).of(parse(text))
-
-
-@lru_cache(maxsize=32)  # a long one takes megabytes
-def parse(text: str) -> ast.expr:
-    """Return the syntax tree of an expression, which must not be changed; its lines are one.
-
-    Raises:
-        ExpressionError: for what is no expression, too long or nested too deep.
-    """
-    if len(text) > LONGEST:
-        raise ExpressionError(text, LONGEST, f"has {len(text)} characters; allowed: up to {LONGEST}")
-    text = text.translate(_ONE_LINE)
-    if "\0" in text:  # which Python refuses in several ways
-        raise ExpressionError(text, text.index("\0"), "contains a null byte")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # what Python would rather have otherwise
-            tree = ast.parse(text, mode="eval").body
-    except SyntaxError as error:
-        early = error.msg == "invalid syntax" and not error.offset
-        told = "it ends too early" if early else re.split(r"[.;] ", error.msg)[0]
-        raise ExpressionError(text, (error.offset or len(text) + 1) - 1, f"is not an expression: {told}") from None
-    except ValueError:  # a half of a surrogate pair
-        raise ExpressionError(text, 0, "contains a character that is not allowed") from None
-    except (MemoryError, RecursionError):
-        raise ExpressionError(text, 0, _TOO_DEEP) from None
-    if behind := text.encode()[tree.end_col_offset :].decode().strip(" )"):
-        raise ExpressionError(text, text.rindex(behind), "a comment is not allowed in an expression")
-    _check(tree, text)
-    return tree
-
-
-def index_of(node: ast.expr, text: str) -> int:
-    """Return where in an expression a part of it begins; Python counts bytes of UTF-8."""
-    return len(text.encode()[: node.col_offset].decode(errors="ignore"))
-
-
-def dotted(node: ast.expr) -> str:
-    """Return the name that a node is, dots included, or an empty text."""
-    if isinstance(node, ast.Attribute):
-        owner = dotted(node.value)
-        return f"{owner}.{node.attr}" if owner else ""
-    return node.id if isinstance(node, ast.Name) else ""
-
-
-def chain(node: ast.expr, *signs: type[ast.operator]) -> tuple[ast.expr, list[ast.BinOp]]:
-    """Return the first operand of a row of operations such as a + b - c, and these from left to right.
-
-    The operations are of the signs given, or of all. What is in brackets begins later than its row: it is an operand.
-    """
-    row: list[ast.BinOp] = []
-    start = node.col_offset
-    while isinstance(node, ast.BinOp) and node.col_offset == start and isinstance(node.op, signs or ast.operator):
-        row.append(node)
-        node = node.left
-    return node, row[::-1]
-
-
-def _check(tree: ast.expr, text: str) -> None:
-    """Refuse what is nested too deep, and loops and the like; a row of operations has a limit of its own."""
-    left: list[tuple[ast.AST, int]] = [(tree, 0)]
-    while left:
-        node, depth = left.pop()
-        first, row = chain(node) if isinstance(node, ast.BinOp) else (node, [])
-        told = f"{_WORDS[type(node)]} is not allowed in an expression" if type(node) in _WORDS else ""
-        if depth > _DEEPEST or len(row) > _LONGEST_ROW:
-            told = _TOO_DEEP
-        if told:
-            raise ExpressionError(text, index_of(node, text) if isinstance(node, ast.expr) else 0, told)
-        inner = [first, *(each.right for each in row)] if row else ast.iter_child_nodes(node)
-        left += [(each, depth + 1) for each in inner if each._fields]
 
 
 class _Evaluation:
@@ -273,7 +163,7 @@ class _Evaluation:
             case ast.Compare():
                 return self._compared(node)
         place = index_of(node, self._text)
-        return self._refuse(node, f"'{self._text[place : place + _EXCERPT]}' is not allowed in an expression")
+        return self._refuse(node, f"'{self._text[place : place + EXCERPT]}' is not allowed in an expression")
 
     def _function(self, node: ast.expr, name: str) -> Callable[..., Any]:
         if name not in self._scope.functions:
@@ -400,7 +290,7 @@ class _Evaluation:
             if not (_is_number(value) or (kind == "s" and self._is_shown(value))):
                 self._refuse(node, f"%{kind} does not show {type(value).__name__}")
             shown.append(str(value) if kind == "s" else value)
-        if len(form) + sum(len(each) if isinstance(each, str) else _EXCERPT for each in shown) > LONGEST:
+        if len(form) + sum(len(each) if isinstance(each, str) else EXCERPT for each in shown) > LONGEST:
             raise OverflowError(f"a string of more than {LONGEST} characters")
         return form % tuple(shown)
 
@@ -413,11 +303,9 @@ class _Evaluation:
 
     def _truth(self, node: ast.expr) -> bool:
         value = self.of(node)
-        return (
-            value
-            if isinstance(value, bool)
-            else self._refuse(node, f"{type(value).__name__} is neither true nor false")
-        )
+        if not isinstance(value, bool):
+            self._refuse(node, f"{type(value).__name__} is neither true nor false")
+        return value
 
     def _sized(self, value: Any, node: ast.expr) -> int:
         """Return how many items a value has in all, after a look at each: none may be of a class that is not listed."""
@@ -430,7 +318,7 @@ class _Evaluation:
                 count += len(each)
                 left += [] if count > LONGEST else each.values() if isinstance(each, dict) else each
             elif isinstance(each, str):
-                count = max(count, len(each) // _EXCERPT)
+                count = max(count, len(each) // EXCERPT)
                 if len(each) > LONGEST:
                     raise OverflowError(f"a string of {len(each)} characters; allowed: up to {LONGEST}")
             elif type(each) is int:

@@ -4,7 +4,8 @@ import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from runner.expressions.evaluator import Budget, ExpressionError, Scope
+from runner.expressions.evaluator import Budget, Scope
+from runner.expressions.grammar import ExpressionError
 
 _PIECE = re.compile(r""""(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[{}]|[^"'{}]+|.""", re.DOTALL)
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 from runner.errors import nearest
-from runner.expressions import evaluator
-from runner.expressions.evaluator import ExpressionError
+from runner.expressions import grammar
+from runner.expressions.grammar import ExpressionError
 from runner.expressions.tree import Call, Name, Node, Number, Power, Product, Sum
 
 FUNCTIONS = {
@@ -65,7 +65,7 @@ def parse(text: str) -> Expression:
     python = "".join(letters).rstrip()
     places = [start + index for index, each in enumerate(letters) for _ in each.encode()] + [len(text)]
     with as_written(text, python, places):
-        return Expression(text, _Reader(python, places).sum(evaluator.parse(python)), python, places)
+        return Expression(text, _Reader(python, places).sum(grammar.parse(python)), python, places)
 
 
 @contextmanager
@@ -92,8 +92,8 @@ class _Reader:
 
     def sum(self, node: ast.expr) -> Node:
         """Return what stands alone, in brackets or as an argument; the sign before its first factor is its own."""
-        first, row = evaluator.chain(node, ast.Add, ast.Sub)
-        factor, _ = evaluator.chain(first, ast.Mult, ast.Div)
+        first, row = grammar.chain(node, ast.Add, ast.Sub)
+        factor, _ = grammar.chain(first, ast.Mult, ast.Div)
         sign = factor.op if isinstance(factor, ast.UnaryOp) and factor.col_offset == node.col_offset else None
         negative = isinstance(sign, ast.USub)
         bracketed = first.col_offset != node.col_offset
@@ -104,7 +104,7 @@ class _Reader:
         return Sum(tuple(terms), self._places[node.col_offset]) if negative or row else terms[0][1]
 
     def _product(self, node: ast.expr, signed: bool = False) -> Node:
-        first, row = evaluator.chain(node, ast.Mult, ast.Div)
+        first, row = grammar.chain(node, ast.Mult, ast.Div)
         start = node.col_offset
         if signed and isinstance(first, ast.UnaryOp):
             start, first = self._behind(rb"[+-] *", start), first.operand
@@ -128,7 +128,7 @@ class _Reader:
                 return self._call(node, function, index)
             case ast.Name() if node.id not in FUNCTIONS:
                 return Name(node.id.replace(PRIME, "'"), index)
-            case ast.Constant() if number := _NUMBER.match(self._python, evaluator.index_of(node, self._python)):
+            case ast.Constant() if number := _NUMBER.match(self._python, grammar.index_of(node, self._python)):
                 if float(number[0]) == float("inf"):
                     self._refuse(node, f"the number {number[0]} is too large")
                 return Number(number[0], index)
@@ -147,4 +147,4 @@ class _Reader:
         return match.end() if match else start
 
     def _refuse(self, node: ast.expr, reason: str) -> NoReturn:
-        raise ExpressionError(self._python, evaluator.index_of(node, self._python), reason)
+        raise ExpressionError(self._python, grammar.index_of(node, self._python), reason)

@@ -7,7 +7,8 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 
 from runner.data_file import read_data
-from runner.expressions.evaluator import Budget, ExpressionError, Scope
+from runner.expressions.evaluator import Budget, Scope
+from runner.expressions.grammar import ExpressionError
 from runner.expressions.insertions import fill
 from runner.paths import works_dir
 from runner.registry import StrictModel

@@ -7,9 +7,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.config.work_folder import check_inside
 from runner.errors import ConfigError, nearest
-from runner.paths import robots_dir
+from runner.paths import check_inside, robots_dir
 from runner.robots.inertials import (
     Payload,
     add_payload,

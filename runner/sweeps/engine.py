@@ -153,8 +153,6 @@ def local_client(workers: int, scratch: Path) -> Iterator[Any]:
         "distributed.deploy.lost-worker-timeout": "1000 days",
         "distributed.worker.memory.terminate": False,
         "distributed.admin.system-monitor.gil.enabled": False,
-        "distributed.scheduler.http.routes": [],
-        "distributed.worker.http.routes": [],
         "distributed.nanny.environ": {"OMP_NUM_THREADS": 1, "TMPDIR": str(scratch)},
         **{f"distributed.nanny.pre-spawn-environ.{name}": value for name, value in _MEMORY.items()},
     }

@@ -8,8 +8,8 @@ from pydantic import Field
 
 from runner.data_file import read_data
 from runner.errors import RunnerError, nearest
+from runner.paths import WORK_FILE
 from runner.registry import StrictModel
-from runner.works.names import FILE
 from runner.works.profiles import Profile
 
 _SUFFIXES = (".md", ".py")
@@ -54,7 +54,7 @@ class About(StrictModel):
         presets: Names of the presets under which claims are judged, with their words.
         in_all: Whether `runner reproduce all` makes the work.
         traces: Whether its runs keep their traces, which figures over time read.
-        plugins: Parts of the work's own, GROUP=FILE.py each, such as "controller=spring.py".
+        plugins: Parts of the work's own, GROUP=WORK_FILE.py each, such as "controller=spring.py".
         profiles: Profiles by name.
         default_profile: Name of the profile by which it is made where none is chosen; empty for the whole work.
         cover: What moves on the first screen.
@@ -86,7 +86,7 @@ def read_about(folder: Path) -> About:
     Raises:
         RunnerError: if `work.yaml` cannot be read or does not fit, or names a file that is not there.
     """
-    path = folder / FILE
+    path = folder / WORK_FILE
     about = read_data(path, About)
     there = sorted(each.name for each in folder.iterdir() if each.suffix in _SUFFIXES)
     problems = [

@@ -7,7 +7,8 @@ from typing import Any
 
 from runner.errors import RunnerError
 from runner.expressions import insertions
-from runner.expressions.evaluator import Budget, ExpressionError, Scope
+from runner.expressions.evaluator import Budget, Scope
+from runner.expressions.grammar import ExpressionError
 from runner.texts import quoted
 
 Level = str | int | float

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from fnmatch import fnmatchcase
 
 from runner.errors import RunnerError, nearest
+from runner.paths import WORK_FILE
 from runner.reporting.conclusions import fallen
 from runner.reporting.document import Document
 from runner.reporting.expected_caveats import unexpected_caveats
@@ -13,7 +14,6 @@ from runner.reporting.prose.trying import never_failing
 from runner.reporting.prose.typed import levels_in, typed_numbers
 from runner.store import Calibration, Run
 from runner.works.chapters import Chapters, chapter_text
-from runner.works.names import FILE as ABOUT
 from runner.works.work import Work
 
 
@@ -37,7 +37,7 @@ def problems(work: Work, runs: Mapping[str, Run], calibrations: Mapping[str, Cal
     yield from unexpected_caveats(runs, work.expected)
     cover = work.about.cover
     if cover is not None and cover.run not in {**runs, **work.dropped()}:
-        yield f"{work.folder.name}/{ABOUT}: cover: no run '{cover.run}'{nearest(cover.run, list(runs))}"
+        yield f"{work.folder.name}/{WORK_FILE}: cover: no run '{cover.run}'{nearest(cover.run, list(runs))}"
     if not faults:
         document = work.document(runs, calibrations, chapters)
         yield from fallen(document)
@@ -49,7 +49,7 @@ def formulas_at(work: Work, document: Document) -> Iterator[str]:
     texts = [(file, chapter_text(work.folder / file)) for file in work.about.files()]
     for formula in faulty(document):
         found = ((file, text.count("\n", 0, text.index(formula)) + 1) for file, text in texts if formula in text)
-        file, line = next(found, (ABOUT, 1))
+        file, line = next(found, (WORK_FILE, 1))
         yield f"{work.folder.name}/{file}:{line}: {formula}: no formula in Typst's notation"
 
 

@@ -7,10 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from runner.errors import RunnerError, nearest
-from runner.paths import works_dir, works_with
-
-FILE = "work.yaml"
-"""The file that makes a folder a work."""
+from runner.paths import WORK_FILE, works_dir, works_with
 
 GROUP = "runner.works"
 """The group of entry points by which an installed package says that it is a work."""
@@ -38,7 +35,7 @@ class Place:
 
 def work_names() -> tuple[str, ...]:
     """Return the names of the installed works, sorted."""
-    return tuple(sorted({*works_with(FILE), *(point.name for point in _installed())}))
+    return tuple(sorted({*works_with(WORK_FILE), *(point.name for point in _installed())}))
 
 
 def find_work(text: str, others: Sequence[str] = ()) -> Place:
@@ -51,20 +48,24 @@ def find_work(text: str, others: Sequence[str] = ()) -> Place:
     Raises:
         RunnerError: if there is none.
     """
-    if (works_dir() / text / FILE).is_file() and "/" not in text:
+    if (works_dir() / text / WORK_FILE).is_file() and "/" not in text:
         return Place(text, works_dir() / text, f"runner.works.{text}")
     for point in _installed():
         if point.name == text:
             return Place(text, _folder_of(point), point.value)
     folder = Path(text).resolve()
-    if (folder / FILE).is_file():
+    if (folder / WORK_FILE).is_file():
         if folder.name in work_names():
             raise RunnerError(f"{text}: {folder.name} is the name of an installed work; rename the folder")
         return Place(folder.name, folder)
     if folder.is_dir() or "/" in text:
-        raise RunnerError(f"{text}: no work: there is no {FILE} in it; `runner work new {text}` writes a first one")
+        raise RunnerError(
+            f"{text}: no work: there is no {WORK_FILE} in it; `runner work new {text}` writes a first one"
+        )
     names = (*work_names(), *others)
-    raise RunnerError(f"no work '{text}'{nearest(text, names)}; works: {', '.join(names)}, or a folder with a {FILE}")
+    raise RunnerError(
+        f"no work '{text}'{nearest(text, names)}; works: {', '.join(names)}, or a folder with a {WORK_FILE}"
+    )
 
 
 def _installed() -> tuple[EntryPoint, ...]:
@@ -77,6 +78,6 @@ def _folder_of(point: EntryPoint) -> Path:
     except ImportError as error:
         raise RunnerError(f"work {point.name}: package {point.value} cannot be found: {error}") from error
     folders = list(spec.submodule_search_locations or ()) if spec is not None else []
-    if not folders or not (Path(folders[0]) / FILE).is_file():
-        raise RunnerError(f"work {point.name}: package {point.value} has no {FILE}")
+    if not folders or not (Path(folders[0]) / WORK_FILE).is_file():
+        raise RunnerError(f"work {point.name}: package {point.value} has no {WORK_FILE}")
     return Path(folders[0])

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from runner.claims import CLAIMS, load_claims
-from runner.config.work_folder import check_inside
 from runner.errors import RunnerError, nearest
+from runner.paths import check_inside
 from runner.plugins import use_plugins
 from runner.reporting.checklist import load_checklist
 from runner.reporting.cover import cover

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 
 from runner.audit.entry import Entry, Form
 from runner.expressions.difference import Difference, difference
-from runner.expressions.evaluator import ExpressionError
+from runner.expressions.grammar import ExpressionError
 from runner.expressions.parser import parse
 from runner.expressions.shortening import holds, shortened
 from runner.expressions.tree import Node, Sum, size

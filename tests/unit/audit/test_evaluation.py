@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runner.audit.evaluation import evaluate
-from runner.expressions.evaluator import ExpressionError
+from runner.expressions.grammar import ExpressionError
 from runner.expressions.parser import parse
 
 X = np.array([0.3, -1.2, 2.0])

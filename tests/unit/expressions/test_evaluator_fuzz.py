@@ -8,7 +8,7 @@ import pytest
 from support.hostile_expressions import attempt, expression
 
 from runner.audit.evaluation import evaluate
-from runner.expressions.evaluator import ExpressionError
+from runner.expressions.grammar import ExpressionError
 from runner.expressions.parser import parse
 
 SEED, COUNT = 1, 20_000

@@ -2,7 +2,8 @@
 
 import pytest
 
-from runner.expressions.evaluator import Budget, ExpressionError, Scope
+from runner.expressions.evaluator import Budget, Scope
+from runner.expressions.grammar import ExpressionError
 from runner.expressions.insertions import fill, insertions
 
 SCOPE = Scope({"of": lambda group: group["a"]["b"]}, {"x": 2.5, "group": {"a": 1}})

@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.expressions.evaluator import LONGEST, ExpressionError
+from runner.expressions.grammar import LONGEST, ExpressionError
 from runner.expressions.parser import parse
 from runner.expressions.tree import Call, Name, Number, Power, Product, Sum, parts
 
