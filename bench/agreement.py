@@ -19,7 +19,7 @@ from runner.trace import Trace
 _SEEDS = 20
 _TARGET = 1e-11  # rad
 _NOISY = ("plant=rk4", "trajectory=quintic", "duration=1", "noise=thesis", "torque_limits=thesis")
-_ROTORS = "robot.rotor_inertia=assumed"  # light joints without rotors are unstable under gains of diag M
+_ARMATURE = "robot.armature=assumed"  # light joints without it are unstable under gains of diag M
 _JOINT_LAWS = ("adaptive", "computed_torque", "joint_pd", "joint_pid", "passivity", "sliding_mode")
 _CASES = {
     "3 joints": ("robot=macro", ("operational_space", "whole_body", *_JOINT_LAWS)),
@@ -34,7 +34,7 @@ def main() -> bool:
     met = []
     for arm, (robot, laws) in _CASES.items():
         for law in laws:
-            limits = ("noise.position=1e-5", "torque_limits.max=40", _ROTORS) if robot == "robot=xarm7" else ()
+            limits = ("noise.position=1e-5", "torque_limits.max=40", _ARMATURE) if robot == "robot=xarm7" else ()
             largest = max(
                 _apart(robot, f"controller={law}", *_NOISY, *limits, f"seed={seed}") for seed in range(_SEEDS)
             )

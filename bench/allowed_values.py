@@ -4,7 +4,7 @@ from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from runner.config.per_stage import FinitePerStage, NonNegativePerStage, PositivePerStage, TorquePerStage
-from runner.config.robot import RotorInertia
+from runner.config.robot import Armature
 from runner.registry import StrictModel
 from runner.trajectories.posture import Posture
 
@@ -14,7 +14,7 @@ _IN_WORDS = {
     NonNegativePerStage: "number of 0 or more, by stage",
     TorquePerStage: "number above 0, or a list with one for each joint, by stage",
     Posture: "number, or a list with one for each joint",
-    RotorInertia: "number of 0 or more, or a list with one for each joint, or the name of a set",
+    Armature: "number of 0 or more, or a list with one for each joint, or the name of a set",
 }
 _BOUNDS = {"gt": "above {:g}", "ge": "of {:g} or more", "lt": "below {:g}", "le": "of {:g} or less"}
 

@@ -42,11 +42,11 @@ _JOINT_LAWS = ("adaptive", "computed_torque", "joint_pd", "joint_pid", "passivit
 
 
 def _laws(
-    period: float, *names: str, one_for_all: tuple[str, ...] = (), rotors: str | None = None
+    period: float, *names: str, one_for_all: tuple[str, ...] = (), armature: str | None = None
 ) -> dict[str, tuple[str, ...]]:
-    """Return the overrides of laws at a period; `rotors` is for gains of diag M, under which light joints chatter."""
+    """Return the overrides of laws at a period; `armature` is for gains of diag M, under which light joints chatter."""
     found = {name: (f"controller={name}", f"controller.period={period}") for name in names}
-    more = one_for_all if rotors is None else (*one_for_all, rotors)
+    more = one_for_all if armature is None else (*one_for_all, armature)
     return {name: (*law, *more) if name in _JOINT_LAWS else law for name, law in found.items()}
 
 
@@ -80,7 +80,7 @@ ARMS = (
         "7 joints",
         ("robot=xarm7", "trajectory.duration=19"),
         0.01,
-        _laws(0.01, "operational_space", "whole_body", *_JOINT_LAWS, rotors="robot.rotor_inertia=assumed"),
+        _laws(0.01, "operational_space", "whole_body", *_JOINT_LAWS, armature="robot.armature=assumed"),
         (1,),
         (2.0,),
         1.3,

@@ -5,7 +5,7 @@ should be over the last 3 s, in mm, which laws of the tip and of the joints have
 no limits but the arm's own efforts, exact encoders, and a period of 1 ms, on plant=rk4. The wrong model has 0.8 of the
 true masses, and the arm friction that it does not know: dry friction at which joint PD would rest 1 mrad away,
 c = 1e-3 omega_n^2 diag M at home, and as much viscous friction as comes to c at 2.5 rad/s. Light joints have assumed
-rotors; the KUKA's, of which nothing is published, 0.1 kg m^2 each.
+armature; the KUKA's, of which nothing is published, 0.1 kg m^2 each.
 """
 
 import tempfile
@@ -39,9 +39,9 @@ LAWS = {
 }
 ARMS = {
     "macro": ("robot=macro",),
-    "xarm7": ("robot=xarm7", "robot.rotor_inertia=assumed"),
-    "meca500": ("robot=meca500", "robot.rotor_inertia=assumed"),
-    "kuka": ("robot.rotor_inertia=0.1",),
+    "xarm7": ("robot=xarm7", "robot.armature=assumed"),
+    "meca500": ("robot=meca500", "robot.armature=assumed"),
+    "kuka": ("robot.armature=0.1",),
 }
 OMEGA = 20.0
 PERIOD, WAY, LASTS = 0.001, 1.5, 12.0

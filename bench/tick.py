@@ -29,6 +29,8 @@ _CASES = {
     "bullet, 10 substeps": (*_MACRO, "plant=bullet", "plant.step=0.001"),
     "bullet, 1 substep": (*_MACRO, "plant=bullet", "plant.step=0.01"),
     "rk4, 1 step": (*_MACRO, "plant=rk4", "plant.step=0.01"),
+    "armature, 10 substeps": (*_MACRO, "plant=bullet", "plant.step=0.001", "robot.armature=0.5"),
+    "armature, 1 substep": (*_MACRO, "plant=bullet", "plant.step=0.01", "robot.armature=0.5"),
     "combined, 4 substeps": ("robot=combined", "trajectory.duration=1", "plant=bullet", "plant.step=0.00025"),
 }
 
@@ -38,14 +40,14 @@ def main() -> bool:
     loops = {name: _assemble(*overrides) for name, overrides in _CASES.items()}
     blocks: dict[str, Callable[[], None]] = {}
     for name, (config, loop) in loops.items():
-        if isinstance(loop.plant, Bullet):
+        if isinstance(loop.plant, Bullet) and not config.arm.model.armature.any():
             torques = simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0)).tau[:-1].tolist()
             blocks[f"F: {name}"] = pybullet_alone(config, torques)
         blocks[name] = whole_run(config, loop)
     times = measure({name: Block(work, TICKS) for name, work in blocks.items()})
 
     F10, F1 = times["F: bullet, 10 substeps"], times["F: bullet, 1 substep"]
-    bullet10, bullet1, rk4, combined = (times[name] for name in _CASES)
+    bullet10, bullet1, rk4, armature10, armature1, combined = (times[name] for name in _CASES)
     F6 = times["F: combined, 4 substeps"]
     print(
         f"CPU time of a control tick, 3 joints (combined: 6), median of the quieter {ROUNDS // 2} of {ROUNDS} rounds "
@@ -55,6 +57,8 @@ def main() -> bool:
         print(f"  {name:26} {median(values):6.2f} us  (quickest round {min(values):.2f})")
     within = [
         _judge("bullet, 10 substeps / F", ratio(bullet10, F10), 1.5),
+        _judge("with armature / without, 10", ratio(armature10, bullet10), 4.0),
+        _judge("with armature / without, 1", ratio(armature1, bullet1), 2.5),
         _judge("rk4 / F, 10 substeps", ratio(rk4, F10), 0.9),
         _judge("bullet, 1 substep - F (us)", median(a - b for a, b in zip(bullet1, F1, strict=True)), 12.0),
         _judge("combined: all but F / F", ratio(combined, F6) - 1.0, 2.0),

@@ -15,7 +15,7 @@ def touches_by_tip(config: RunConfig) -> bool:
     """Tell whether the tip of a moving arm, a point, touches a wall within the plant's steps; a tool does else.
 
     Raises:
-        ConfigError: where the plant's tip is none that rigid bodies have.
+        ConfigError: where the plant's tip is none that rigid bodies have, or its contacts know no armature.
     """
     if config.parallel:
         raise ConfigError(
@@ -23,6 +23,13 @@ def touches_by_tip(config: RunConfig) -> bool:
                 "environment.kind: a wall is touched where rigid bodies bring the tip, and "
                 "plant.wrist_rotation=parallel leaves the rider's base unturned; set plant.wrist_rotation=real, or "
                 "environment=free"
+            ]
+        )
+    if config.plant.kind == "bullet" and config.arm.model.armature.any():
+        raise ConfigError(
+            [
+                "environment.kind: a wall found together with robot.armature, which PyBullet's contacts do not know; "
+                "take plant=mujoco, robot.armature=0, or environment=free"
             ]
         )
     return config.robot.tool is None and PLANTS.commands(config.plant.kind) == "torque"

@@ -21,8 +21,7 @@ def _tell(value: float, setting: Setting) -> str:
     if coupling < _LIGHT:
         return text
     return (
-        f"{text}, or robot.rotor_inertia: joints move others that are heavier, and lambda_max(M^-1 diag M) is "
-        f"{coupling:.3g}"
+        f"{text}, or robot.armature: joints move others that are heavier, and lambda_max(M^-1 diag M) is {coupling:.3g}"
     )
 
 

@@ -1,8 +1,8 @@
 """`runner sensitivity RUN`: how the metrics of a run change with its parameters, the one that matters most first.
 
-The derivatives are exact, by forward differentiation of the compiled run: of gains, masses and lengths of links, the
-payload, friction, gravity, torque limits, noise, and of what controllers believe (mismatch). A run on bullet or mujoco
-has those of the same run on rk4.
+The derivatives are exact, by forward differentiation of the compiled run: of gains, masses and lengths of links,
+armature, the payload, friction, gravity, torque limits, noise, and of what controllers believe (mismatch). A run on
+bullet or mujoco has those of the same run on rk4.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,7 +25,7 @@ _SHOWN = (
     "energy",
 )  # fmt: skip
 _AGREES, _SURE = 1e-6, 1e-7  # of a derivative: how far differences may be off, and how sure they must be to count
-_GROUPS = ("gains", "masses", "lengths", "payload", "friction", "gravity", "limits", "noise", "mismatch")
+_GROUPS = ("gains", "masses", "armature", "lengths", "payload", "friction", "gravity", "limits", "noise", "mismatch")
 
 
 def main(arguments: Sequence[str]) -> int:

@@ -98,7 +98,8 @@ class ArmAlgebra:
         torques: list[Scalar] = [0.0] * len(bodies)
         for index in reversed(range(len(bodies))):
             body, (R, p) = bodies[index], placements[index]
-            torques[index] = forces[index][2] if body.slides else moments[index][2]
+            torque = forces[index][2] if body.slides else moments[index][2]
+            torques[index] = plus(torque, times(body.armature, ddq[index]))
             if body.parent is not None:
                 force = product(R, forces[index])
                 forces[body.parent] = add(forces[body.parent], force)
@@ -128,7 +129,7 @@ class ArmAlgebra:
         for index in reversed(range(len(bodies))):
             body, (R, at), (w, v, _) = bodies[index], placements[index], speeds[index]
             linear, angular, weight, moment = sums[index]
-            p_joint[index] = linear[2] if body.slides else angular[2]
+            p_joint[index] = plus(linear[2] if body.slides else angular[2], times(body.armature, dq[index]))
             turned_way = dot(linear if body.slides else angular, cross(w, _Z))
             turned_way = turned_way if body.slides else plus(turned_way, dot(linear, cross(v, _Z)))
             rates[index] = plus(turned_way, weight[2] if body.slides else moment[2])
@@ -168,7 +169,7 @@ class ArmAlgebra:
             force = scale(masses[index], _Z) if body.slides else cross(_Z, moments[index])
             moment = cross(moments[index], _Z) if body.slides else [row[2] for row in inertias[index]]
             at, carrier = index, body.parent
-            M[index][index] = force[2] if body.slides else moment[2]
+            M[index][index] = plus(force[2] if body.slides else moment[2], body.armature)
             while carrier is not None:
                 R, p = placements[at]
                 force = product(R, force)

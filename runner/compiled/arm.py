@@ -43,6 +43,7 @@ class Body:
         mass: In kg.
         moment: Mass times the way from the origin to the centre of mass, shape (3,), in kg m.
         inertia: About the origin, shape (3, 3), in kg m^2.
+        armature: Reflected inertia of its joint's motor and gear, in kg m^2; kg where the joint slides.
         turn: Turns its frame into that of its joint, in which its inertial parameters are known, shape (3, 3).
     """
 
@@ -53,6 +54,7 @@ class Body:
     mass: Scalar
     moment: Vector
     inertia: Matrix
+    armature: Scalar
     turn: Matrix
 
 
@@ -99,6 +101,7 @@ def constants_of(
                 _scalar(body.mass, number),
                 [_scalar(value, number) for value in body.moment],
                 _symmetric(body.inertia, number),
+                _scalar(body.armature, number),
                 [[_scalar(value, number) for value in row] for row in body.turn],
             )
             for body in bodies
@@ -133,6 +136,7 @@ def _raw_bodies(model: RobotModel) -> tuple[Body, ...]:
                 _rounded(inertia.mass),
                 _rounded(inertia.mass * centre),
                 _rounded(about_origin),
+                float(arm.armature[index]),
                 _rounded(turn),
             )
         )

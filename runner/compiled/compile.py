@@ -8,7 +8,7 @@ from typing import Any
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.compiled.commands import Commands, LoopCode
 from runner.compiled.engine import MOST_JOINTS, evaluator
-from runner.compiled.motion import CompiledStep
+from runner.compiled.motion import CompiledLinksTorque, CompiledStep
 from runner.compiled.structure import CannotCompileError
 from runner.config.timing import Timing
 from runner.controllers.controller import FloatArray, Loop
@@ -83,6 +83,13 @@ def compile_motion(model: RobotModel, step: float) -> CompiledStep | None:
     if not evaluator() or model.nq > MOST_JOINTS:
         return None
     return CompiledStep(model, step)
+
+
+def compile_links_torque(model: RobotModel) -> CompiledLinksTorque | None:
+    """Return the compiled torques of an arm's links beside its armature; None where there is none."""
+    if not evaluator() or model.nq > MOST_JOINTS:
+        return None
+    return CompiledLinksTorque(model)
 
 
 def _law(controller: Any) -> Any:

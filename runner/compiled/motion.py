@@ -11,7 +11,7 @@ from runner.compiled.expression import Value, absolute, both, equal, less, place
 from runner.compiled.places import Places
 from runner.compiled.program import Expressed, FloatArray, Frame, program
 from runner.compiled.structure import Values, any_number, arm_pattern
-from runner.compiled.vectors import Matrix, Vector, add, product, scale, subtract, transpose
+from runner.compiled.vectors import Matrix, Vector, add, product, scale, subtract, times, transpose
 from runner.robots.model import RobotModel
 from runner.robots.robot import StageBase
 
@@ -265,6 +265,52 @@ class CompiledStep:
         state[:n], state[n:], frame.rows[0, :, 0], frame.steps[0] = q, v, tau, steps
         frame.call()
         q[:], v[:] = state[:n], state[n:]
+
+
+class CompiledLinksTorque:
+    """The torques of links whose motors take A ddq of them, as compiled code; see runner/plants/armature.py.
+
+    Args:
+        model: The arm, with its armature A.
+    """
+
+    def __init__(self, model: RobotModel) -> None:
+        self._model = model.copy()
+
+    @cached_property
+    def _frame(self) -> Frame:
+        """The code with its arrays, compiled when it is asked first."""
+        model, n = self._model, self._model.nq
+
+        def express() -> Expressed:
+            at = Places()
+            gravity, _, constants = step_scalars(model, 0.0, at.number)
+            q, v = (at.take(STATE, n)[1] for _ in range(2))
+            first, tau = at.take(ROWS, n)
+            mover = Mover(ArmAlgebra(constants._replace(gravity=gravity)), 0, n, n, at)
+            motors = [
+                times(body.armature, a) for body, a in zip(constants.bodies, mover.acceleration(q, v, tau), strict=True)
+            ]
+            return Expressed([], [_put(ROWS, first, subtract(tau, motors))], at.widths, [])
+
+        values = Values()
+        step_scalars(model, 0.0, values.number)
+        pattern = f"links' torque {arm_pattern(model)}"
+        frame = program(pattern, f"the armature of {n} joints", express, 1).frame(1, last=-1)
+        frame.pars[:, 0] = values.values
+        return frame
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector in the base frame, shape (3,), in m/s^2."""
+        self._frame.pars[:3, 0] = gravity
+
+    def at(self, q: FloatArray, v: FloatArray, tau: FloatArray) -> FloatArray:
+        """Return the torques of the links, shape (nq,), in N m; valid until it is asked again."""
+        frame, n = self._frame, len(q)
+        state, row = frame.state[:, 0], frame.rows[0, :, 0]
+        state[:n], state[n:], row[:] = q, v, tau
+        frame.call()
+        return row
 
 
 def step_scalars(model: RobotModel, step: float, number: Callable[[float], Any]) -> tuple[Vector, Value, ArmConstants]:

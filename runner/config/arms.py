@@ -9,13 +9,13 @@ import numpy as np
 from runner.config.per_joint import expand
 from runner.config.robot import ArmConfig, RobotConfig, StageConfig
 from runner.errors import ConfigError
+from runner.robots.armature import armature_file
 from runner.robots.description import find_file, find_urdf, mjcf_of, read_urdf
 from runner.robots.inertials import Payload, set_file
 from runner.robots.mjcf_files import is_mjcf
 from runner.robots.model import FloatArray, RobotModel
 from runner.robots.mounting import Mount, mount
 from runner.robots.robot import Robot, Stage
-from runner.robots.rotors import rotor_file
 from runner.robots.tool_link import TOOL_TIP, ToolBody, mount_tool
 from runner.sensing.force_torque import ForceTorqueConfig
 
@@ -44,7 +44,7 @@ def build_robot(
     files = [
         file
         for path, arm in zip(paths, config.arms.values(), strict=True)
-        for file in (*(mjcf_of(path).files if arm.mjcf else [path]), set_file(path), rotor_file(path))
+        for file in (*(mjcf_of(path).files if arm.mjcf else [path]), set_file(path), armature_file(path))
         if file.exists()
     ]
     key = (
@@ -78,7 +78,7 @@ def _build(config: RobotConfig, gravity: float, paths: Sequence[Path], sensor: F
         outermost = len(stages) + 1 == len(config.arms)
         payloads = _payloads(config, arm.tip, sensor) if outermost else []
         with _told_of(arm):
-            urdf = read_urdf(path, arm.masses, arm.rotor_inertia, arm.inertials, arm.velocity_limits, payloads)
+            urdf = read_urdf(path, arm.masses, arm.armature, arm.inertials, arm.velocity_limits, payloads)
             own_tip = arm.tip
             if outermost and config.tool is not None:
                 urdf, own_tip = mount_tool(urdf, arm.tip, ToolBody(**config.tool.model_dump())), TOOL_TIP

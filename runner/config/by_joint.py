@@ -14,6 +14,8 @@ def by_joint(key: str, value: OptionalPerStage, arm: Robot) -> FloatArray:
     Raises:
         ConfigError: for values that do not fit the robot's stages and joints.
     """
+    if value is None:
+        return np.full(arm.model.nq, np.inf)
     values: list[float | None] = []
     for stage, given in zip(arm.stages, by_stage(key, value, arm.stage_names), strict=True):
         at = f"{key}.{stage.name}" if len(arm.stages) > 1 else key

@@ -7,11 +7,11 @@ from runner.controllers.motor_pd import MotorPdConfig
 from runner.errors import ConfigError
 from runner.plants import Plant
 from runner.plants.decoupled import TorquePlantConfig
-from runner.plants.flexible_joints import Flexibility, FlexibleJoints
+from runner.plants.flexible_joints import Flexibility, FlexibleJoints, links_of
 from runner.plants.kinds import MayBend
 from runner.plants.motion import find_motion
 from runner.plants.plant import innermost
-from runner.robots.motors import with_motors
+from runner.robots.armature import with_armature
 from runner.robots.robot import Robot
 from runner.sensing.motors import MotorSide
 
@@ -31,7 +31,10 @@ def find_flexibility(config: RunConfig) -> Flexibility | None:
 def believe_motors(config: RunConfig, believed: Robot) -> Robot:
     """Return a robot as its controllers believe it to be, who know the motors of flexible joints."""
     flexibility = find_flexibility(config)
-    return believed if flexibility is None else with_motors(believed, flexibility.motors)
+    if flexibility is None:
+        return believed
+    own = believed.model.armature
+    return with_armature(believed, np.where(flexibility.flexible, flexibility.motors, own))
 
 
 def find_motor_side(config: RunConfig, plant: Plant, believed: Robot) -> MotorSide | None:
@@ -59,7 +62,8 @@ def check_flexible_joints(config: RunConfig) -> None:
     if flexibility is None or not isinstance(config.plant, TorquePlantConfig):
         return
     problems = [f"plant.flexible_joints: {problem}" for problem in _refused(config, config.plant, flexibility)]
-    rate, step = flexibility.largest_rate(config.arm.model.mass_matrix(config.arm.home)), config.timing.step
+    links = links_of(config.arm.model, flexibility.flexible)
+    rate, step = flexibility.largest_rate(links.mass_matrix(config.arm.home)), config.timing.step
     if rate * step > _FASTEST:
         steps = int(np.ceil(rate * config.timing.tick / _FASTEST))
         problems.append(
@@ -98,12 +102,4 @@ def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibili
         problems.append(
             "motor_pd reads theta as it is; take plant.flexible_joints.encoders=motor and .static_deflection=unknown"
         )
-    for name, arm, stage in zip(config.robot.arms, config.robot.arms.values(), config.arm.stages, strict=True):
-        on, rotors = flexibility.flexible[stage.joints], arm.rotor_inertia
-        if on.any() and (isinstance(rotors, str) or np.broadcast_to(rotors, len(on))[on].any()):
-            key = f"robot.stages.{name}.rotor_inertia" if len(config.arm.stages) > 1 else "robot.rotor_inertia"
-            problems.append(
-                f"{key}: {arm.rotor_inertia} turns with the links, beside motor_inertia with which the motors turn; "
-                "take 0 for it, or motor_inertia=null to have the motors turn with it"
-            )
     return problems

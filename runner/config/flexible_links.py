@@ -6,8 +6,8 @@ from runner.config.flexible_joints import find_flexibility
 from runner.config.run import RunConfig
 from runner.errors import ConfigError
 from runner.plants.rk4_flexible_links import Rk4FlexibleLinksConfig
+from runner.robots.armature import with_armature
 from runner.robots.beams import stiffened
-from runner.robots.motors import with_motors
 from runner.robots.robot import Robot
 
 _FASTEST = 0.5  # step times the largest rate; see runner/config/flexible_joints.py
@@ -22,7 +22,7 @@ def believe_links(config: RunConfig, believed: Robot) -> Robot:
     """Return a robot as its controllers believe it to be: rigid, with the masses of links and motors that bend."""
     if not isinstance(config.plant, Rk4FlexibleLinksConfig):
         return believed
-    return with_motors(stiffened(believed, config.plant.beams(config.arm)), config.plant.motors(config.arm))
+    return with_armature(stiffened(believed, config.plant.beams(config.arm)), config.plant.motors(config.arm))
 
 
 def check_flexible_links(config: RunConfig) -> None:

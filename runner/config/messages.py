@@ -31,7 +31,10 @@ _NUMBERS = {
 }
 _OF_NUMBERS = ("float_type", "int_type", "list_type", "value_error")
 
-_MOVED = {"command_delay": "it is plant.computation.delay now, in ticks of the fastest loop"}  # keys of before
+_MOVED = {  # keys of before
+    "command_delay": "it is plant.computation.delay now, in ticks of the fastest loop",
+    "rotor_inertia": "it is armature now, and adds to the diagonal of the mass matrix alone",
+}
 
 
 def describe(group: str, model: type[StrictModel], error: ValidationError) -> Iterator[str]:

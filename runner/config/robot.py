@@ -16,7 +16,7 @@ Name = Annotated[str, Field(min_length=1, max_length=_LONGEST_NAME)]
 FileName = Annotated[str, Field(min_length=1)]
 
 
-def _rotor(value: Any) -> float | list[float] | str:
+def _armature(value: Any) -> float | list[float] | str:
     numbers = value if isinstance(value, list) else [value]
     if isinstance(value, str) and 0 < len(value) <= _LONGEST_NAME and value[0].isalpha():
         return value
@@ -25,7 +25,7 @@ def _rotor(value: Any) -> float | list[float] | str:
     raise ValueError("must be a number of 0 or more, a list of such with one for each joint, or the name of a set")
 
 
-RotorInertia = Annotated[float | list[float] | str, BeforeValidator(_rotor)]
+Armature = Annotated[float | list[float] | str, BeforeValidator(_armature)]
 
 
 class ArmConfig(StrictModel):
@@ -40,8 +40,9 @@ class ArmConfig(StrictModel):
         inertials: Set of masses, centres of mass and inertias, of those in `<urdf>.inertials.yaml`, in place of the
             file's; None keeps these.
         masses: Mass of links by name, in kg, in place of the file's or the set's.
-        rotor_inertia: Inertia added to each moving link about its joint's axis, in kg m^2. One for all joints, a list
-            with one for each, or the name of a set of those in `<urdf>.rotors.yaml`.
+        armature: Reflected inertia of motor and gear, N^2 J, in kg m^2; kg where a joint slides. It adds to the
+            diagonal of the mass matrix and to nothing else. One for all joints, a list with one for each, or the name
+            of a set of those in `<urdf>.armature.yaml`.
         velocity_limits: Largest speed of joints by name, in rad/s; m/s where a joint slides. They stand in place of the
             file's; an MJCF has none.
     """
@@ -52,7 +53,7 @@ class ArmConfig(StrictModel):
     home: list[float]
     inertials: Name | None
     masses: dict[str, PositiveFloat]
-    rotor_inertia: RotorInertia
+    armature: Armature
     velocity_limits: dict[str, PositiveFloat]
 
 

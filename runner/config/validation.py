@@ -1,7 +1,6 @@
 """Checking a composed config: every problem is found before one message lists them all."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +23,6 @@ from runner.config.plugged import exact_encoders
 from runner.config.problems import Problems, sure
 from runner.config.reach import check_path, check_points
 from runner.config.repeats import check_repeats
-from runner.config.rotors import with_rotors_at_motors
 from runner.config.run import RunConfig
 from runner.config.start import start_posture
 from runner.config.timing import Timing, count_steps, count_ticks
@@ -56,7 +54,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         ConfigError: with every problem found: dotted key, value found, values allowed, nearest valid name.
     """
     problems = Problems(_MEMORY)
-    groups = _with_motors(read_groups(resolved, problems), problems, config_dirs)
+    groups = read_groups(resolved, problems)
     problems.recall(check_payload, groups.robot, groups.mismatch)
     gravity = STANDARD_GRAVITY if groups.settings is None else groups.settings.gravity
     made_of = (groups.robot, gravity, config_dirs, *([] if groups.wrist_sensor is None else [groups.wrist_sensor]))
@@ -115,12 +113,6 @@ def _shape(groups: Groups, arm: Robot, path: Trajectory, loops: tuple[Loop, ...]
         else start_posture(controller, arm, path.start, _is_parallel(arm, plant))
     )
     return shape(groups.input_shaper, plant, arm, path, q, loops)
-
-
-def _with_motors(groups: Groups, problems: Problems, config_dirs: Sequence[Path]) -> Groups:
-    """Return groups with the robot's rotors at the motors of flexible joints, where those turn with rotors."""
-    made = problems.recall(with_rotors_at_motors, groups.robot, groups.plant, config_dirs)
-    return groups if made is None else replace(groups, robot=made[0], plant=made[1])
 
 
 def _checked(config: RunConfig) -> RunConfig:

@@ -45,6 +45,7 @@ class AdaptiveNumbers(NamedTuple):
         motion: Of the joint motion that is followed.
         rate: lambda, in 1/s.
         damping: Diagonal of K_D, shape (nq,), in kg m^2/s.
+        armature: Diagonal of A, shape (nq,), in kg m^2.
         adaptation: Diagonal of Gamma, shape (P,).
         believed: theta^ at the first tick, shape (P,).
         swings: a omega_n^2 / 4, above which a direction of s swings, in 1/s^2.
@@ -54,6 +55,7 @@ class AdaptiveNumbers(NamedTuple):
     motion: JointMotionNumbers
     rate: Scalar
     damping: Array
+    armature: Array
     adaptation: Array
     believed: FloatArray
     swings: Scalar
@@ -65,12 +67,12 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
 
     .. math::
 
-        \tau = Y(q, \dot q, \dot q_r, \ddot q_r) \hat\theta + K_D s, \qquad
+        \tau = Y(q, \dot q, \dot q_r, \ddot q_r) \hat\theta + A \ddot q_r + K_D s, \qquad
         \dot{\hat\theta} = \Gamma Y^T s, \qquad \dot q_r = \dot q_d + \lambda (q_d - q), \qquad s = \dot q_r - \dot q
 
     with lambda = omega_n and K_D = omega_n D, D = diag M(home). Y is Arm.regressor, and theta starts at what is
-    believed. V = (s^T M s + (theta - theta^)^T Gamma^-1 (theta - theta^)) / 2 falls as -s^T K_D s, whatever theta is,
-    so that s fades; theta^ goes to theta only as far as the motion excites it.
+    believed; A is the armature, which is known. V = (s^T M s + (theta - theta^)^T Gamma^-1 (theta - theta^)) / 2 falls
+    as -s^T K_D s, whatever theta is, so that s fades; theta^ goes to theta only as far as the motion excites it.
 
     With friction, Y has a column for each joint's viscous friction, dq_r, and one for its dry friction,
     dq_d / sqrt(dq_d^2 + (0.01 rad/s)^2): the sign of the motion that is wanted, which no noise and no standstill makes
@@ -107,6 +109,7 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
             motion=motion.numbers,
             rate=config.natural_frequency,
             damping=config.natural_frequency * D,
+            armature=model.armature,
             adaptation=gains,
             believed=believed,
             limits=model.effort_limits,
@@ -137,7 +140,7 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
         Y = arm.regressor(q, dq, dq_r, ddq_r)
         if self._friction:
             Y = np.concatenate([Y, _friction(arm, dq_r, desired.dq)], axis=1)
-        torque = Y.dot(memory) + numbers.damping * s
+        torque = Y.dot(memory) + numbers.armature * ddq_r + numbers.damping * s
         teaches = np.array([_taught(arm, *of) for of in zip(torque, numbers.limits, s, strict=True)])
         gradient = Y.T.dot(teaches)
         change = numbers.motion.period * numbers.adaptation * gradient

@@ -71,11 +71,11 @@ class Arm(Protocol):
         ...
 
     def regressor(self, q: Array, dq: Array, dq_r: Array, ddq_r: Array) -> Array:
-        """Return Y, shape (nq, 10 nq): Y theta = M ddq_r + C dq_r + G, with the C of Christoffel's symbols.
+        """Return Y, shape (nq, 10 nq): Y theta + A ddq_r = M ddq_r + C dq_r + G, with the C of Christoffel's symbols.
 
-        theta are the inertial parameters of the moving bodies, base first, in each joint's frame of the URDF: mass in
-        kg, mass times the way to its centre in kg m, and I_xx, I_xy, I_yy, I_xz, I_yz, I_zz about the frame's origin in
-        kg m^2; see RobotModel.inertial_parameters.
+        A is the armature. theta are the inertial parameters of the moving bodies, base first, in each joint's frame of
+        the URDF: mass in kg, mass times the way to its centre in kg m, and I_xx, I_xy, I_yy, I_xz, I_yz, I_zz about the
+        frame's origin in kg m^2; see RobotModel.inertial_parameters.
         """
         ...
 

@@ -7,6 +7,7 @@ import numpy as np
 import pinocchio as pin
 
 from runner.engine_output import quiet_stderr
+from runner.plants.armature import LinksTorque
 from runner.plants.bullet_servers import SERVERS
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
 from runner.plants.flexible_around import flexible_around
@@ -41,6 +42,8 @@ class BulletConfig(TorquePlantConfig):
 class Bullet:
     """An arm in PyBullet, torque-controlled, without motors, damping or speed limit; a wall is all that it can touch.
 
+    PyBullet knows no armature: an arm that has one gets, in each step, the torques that give its accelerations.
+
     Args:
         urdf: The arm's URDF text.
         model: The model built from it, for gravity and the order of the joints.
@@ -56,6 +59,8 @@ class Bullet:
         self.q, self.dq = np.split(self._state, 2)
         self._put = struct.Struct(f"{2 * model.nq}d").pack_into  # a third of the time of filling arrays from tuples
         self._steps_per_tick = steps_per_tick
+        self._armature = LinksTorque(model) if model.armature.any() else None
+        self._motors = model.armature
         self._wall: int | None = None
         self._server = SERVERS.open(urdf)
         self._client, self._body = self._server.client, self._server.body
@@ -76,9 +81,10 @@ class Bullet:
         self.set_gravity(model.gravity)
         # Bullet splits one stepSimulation into the steps: bit-identical to as many calls, and cheaper. Its own
         # "substeps" start at 2; 0 means none.
+        at_once = self._steps_per_tick if self._armature is None else 1
         pybullet.setPhysicsEngineParameter(
-            fixedTimeStep=step * self._steps_per_tick,
-            numSubSteps=self._steps_per_tick if self._steps_per_tick > 1 else 0,
+            fixedTimeStep=step * at_once,
+            numSubSteps=at_once if at_once > 1 else 0,
             physicsClientId=self._client,
         )
 
@@ -122,9 +128,19 @@ class Bullet:
     def set_gravity(self, gravity: FloatArray) -> None:
         """Take another gravity vector; see Plant."""
         pybullet.setGravity(*gravity.tolist(), self._client)
+        if self._armature is not None:
+            self._armature.set_gravity(gravity)
 
     def advance(self, tau: FloatArray) -> None:
         """Hold the torques for one tick; see Plant."""
+        if self._armature is None:
+            self._hold(tau)
+            return
+        for _ in range(self._steps_per_tick):
+            self._hold(self._armature.at(self.q, self.dq, tau))
+
+    def _hold(self, tau: FloatArray) -> None:
+        """Hold torques of the links while Bullet moves them."""
         client, body, joints = self._client, self._body, self._joints
         pybullet.setJointMotorControlArray(
             body, joints, pybullet.TORQUE_CONTROL, forces=tau.tolist(), physicsClientId=client
@@ -173,12 +189,12 @@ class Bullet:
         return wrench
 
     def mass_matrix(self, q: FloatArray) -> FloatArray:
-        """Return Bullet's joint-space mass matrix, shape (nq, nq), in kg m^2, joints in the model's order."""
+        """Return Bullet's mass matrix, armature added, shape (nq, nq), in kg m^2, joints in the model's order."""
         places = np.argsort(np.argsort(self._joints))  # Bullet counts in its own order
         ordered = np.empty_like(q)
         ordered[places] = q
         M = np.array(pybullet.calculateMassMatrix(self._body, ordered.tolist(), physicsClientId=self._client))
-        return M[np.ix_(places, places)]
+        return M[np.ix_(places, places)] + np.diag(self._motors)
 
     def close(self) -> None:
         """Give back the physics server, which may serve the next plant of the same arm."""
@@ -194,7 +210,7 @@ def build(config: BulletConfig, robot: Robot, step: float, steps_per_tick: int) 
     """Make the plant that a config describes."""
     if config.flexible_joints is not None:
         parts = config.flexible_joints, config.friction, robot, step, steps_per_tick
-        return flexible_around(*parts, lambda: Bullet(robot.urdf, robot.model, step, 1))
+        return flexible_around(*parts, lambda links: Bullet(robot.urdf, links, step, 1))
     tick = step * steps_per_tick
     return assemble_plant(config, robot, tick, lambda urdf, model: Bullet(urdf, model, step, steps_per_tick))
 

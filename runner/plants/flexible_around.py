@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from runner.plants.flexible_config import FlexibleJointsConfig
-from runner.plants.flexible_joints import Flexibility, FlexibleJoints
+from runner.plants.flexible_joints import Flexibility, FlexibleJoints, links_of
 from runner.plants.friction import FrictionConfig
 from runner.plants.motion import friction_by_joint
 from runner.plants.motor_friction import MotorFriction
@@ -73,19 +73,21 @@ def flexible_around(
     robot: Robot,
     step: float,
     steps_per_tick: int,
-    make: Callable[[], Plant],
+    make: Callable[[RobotModel], Plant],
 ) -> Plant:
     """Make the plant of a robot with flexible joints.
 
     Args:
         joints: Its springs and motors.
         friction: Friction in its motors.
-        robot: The robot, of the links alone.
+        robot: The robot.
         step: Integration step, in s.
         steps_per_tick: Steps in a tick.
-        make: Makes the engine that moves the links, with one step in a tick.
+        make: Makes the engine that moves the links, of their model, with one step in a tick.
     """
-    plant = FlexibleAround(make(), robot.model, joints.by_joint(robot), step, steps_per_tick)
+    flexibility = joints.by_joint(robot)
+    links = links_of(robot.model, flexibility.flexible)
+    plant = FlexibleAround(make(links), links, flexibility, step, steps_per_tick)
     viscous, coulomb = friction_by_joint(robot, friction)
     rubs = viscous.any() or coulomb.any()
     return MotorFriction(plant, viscous, coulomb, step * steps_per_tick) if rubs else plant

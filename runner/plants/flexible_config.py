@@ -8,7 +8,7 @@ from pydantic import NonNegativeFloat
 from runner.config.by_joint import by_joint
 from runner.config.per_stage import SpringPerStage
 from runner.errors import ConfigError, nearest
-from runner.plants.flexible_joints import Flexibility
+from runner.plants.flexible_joints import Flexibility, links_of
 from runner.plants.plant import FloatArray
 from runner.registry import StrictModel
 from runner.robots.modes import Mode, find_modes
@@ -22,8 +22,8 @@ class FlexibleJointsConfig(StrictModel):
     Attributes:
         stiffness: Stiffness between motor and link, in N m/rad. One for all joints or a list with one for each; None
             for a joint that is rigid.
-        motor_inertia: Inertia of the motor after its gear, in kg m^2; likewise, None for the same joints. None alone is
-            the robot's rotor_inertia, which then turns with the motors.
+        motor_inertia: Inertia of the motor after its gear, in kg m^2; likewise. None for a joint with a spring is its
+            `robot.armature`, for a rigid one no motor.
         damping_ratio: Damping of each joint's spring, of its link alone with the others held at home: 1 is critical.
         torsion_damping: Ratio of the damping that drives add, of each motor alone against its spring, from encoders at
             motor and link: the fast part of Spong's composite control. 0 is none.
@@ -46,37 +46,44 @@ class FlexibleJointsConfig(StrictModel):
 
         Raises:
             ConfigError: for values that do not fit the robot's stages and joints, no spring at all, one without motor
-                or a motor without spring, or a spring in a joint that slides.
+                or with both a motor and an armature, a motor without spring, or a spring in a joint that slides.
         """
         springs = by_joint("plant.flexible_joints.stiffness", self.stiffness, arm)
         motors = by_joint("plant.flexible_joints.motor_inertia", self.motor_inertia, arm)
-        key, names = "plant.flexible_joints", arm.model.joint_names
-        flexible = np.isfinite(springs)
+        key, flexible, given = "plant.flexible_joints", np.isfinite(springs), np.isfinite(motors)
         problems = []
         if not flexible.any():
             problems.append(f"{key}.stiffness: null for every joint; take plant.flexible_joints=null for a rigid arm")
-        for name, spring, motor, slides in zip(names, flexible, np.isfinite(motors), arm.model.slides, strict=True):
-            if spring != motor:
+        for name, spring, motor, armature, slides in zip(
+            arm.model.joint_names, flexible, given, arm.model.armature, arm.model.slides, strict=True
+        ):
+            if spring and not motor and not armature:
                 problems.append(
-                    f"{key}.motor_inertia: {name} has {'a spring and no motor' if spring else 'a motor and no spring'};"
-                    " give each joint both, or null for both"
+                    f"{key}.motor_inertia: null takes robot.armature, which is 0 for {name}; give one of both"
                 )
+            if spring and motor and armature:
+                problems.append(
+                    f"{key}.motor_inertia: {name} has robot.armature={armature:g}, too, and both are its motor; give "
+                    "null here, or robot.armature=0"
+                )
+            if motor and not spring:
+                problems.append(f"{key}.motor_inertia: {name} has a motor and no spring; give null, or a stiffness")
             if spring and slides:
                 problems.append(f"{key}.stiffness: {name} slides; springs are for joints that turn, so null")
         if problems:
             raise ConfigError(problems)
-        held = np.diag(arm.model.mass_matrix(arm.home))
+        motors = np.where(flexible, np.where(given, motors, arm.model.armature), 0.0)
+        held = np.diag(links_of(arm.model, flexible).mass_matrix(arm.home))
         damping, fed_back = np.zeros((2, len(springs)))
         damping[flexible] = 2.0 * self.damping_ratio * np.sqrt(springs[flexible] * held[flexible])
         fed_back[flexible] = 2.0 * self.torsion_damping * np.sqrt(springs[flexible] * motors[flexible])
-        motors = np.where(flexible, motors, 0.0)
         return Flexibility(springs, motors, damping, self._find_braked(arm, flexible), fed_back)
 
     def modes(self, arm: Robot, q: FloatArray) -> list[Mode]:
         """Return how a robot's joints ring about a posture with their motors held, by frequency; see Rings."""
         flexibility = self.by_joint(arm)
         on = flexibility.flexible
-        M = arm.model.mass_matrix(q)[np.ix_(on, on)]
+        M = links_of(arm.model, on).mass_matrix(q)[np.ix_(on, on)]
         return find_modes(M, np.diag(flexibility.damping[on]), np.diag(flexibility.stiffness[on]))
 
     def _find_braked(self, arm: Robot, flexible: np.ndarray) -> FloatArray:

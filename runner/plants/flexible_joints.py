@@ -59,6 +59,11 @@ class Flexibility:
         return float(np.abs(np.linalg.eigvals(np.vstack([np.eye(n, 2 * n, n), slopes]))).max())
 
 
+def links_of(model: RobotModel, flexible: np.ndarray) -> RobotModel:
+    """Return the model of an arm's links, without the armature of flexible joints, which turns with their motors."""
+    return model.with_armature(np.where(flexible, 0.0, model.armature))
+
+
 class FlexibleJoints:
     r"""An arm with flexible joints, by the classical Runge-Kutta scheme.
 

@@ -76,7 +76,9 @@ class Mujoco:
         integrator: Integrator,
         least_inertia: float,
     ) -> None:
-        self._model = compiled(read_spec(urdf, least_inertia))
+        self._model = compiled(
+            read_spec(urdf, least_inertia, dict(zip(model.joint_names, model.armature, strict=True)))
+        )
         self._data = data = mujoco.MjData(self._model)
         self._steps_per_tick = steps_per_tick
         options = self._model.opt
@@ -171,7 +173,7 @@ def build(config: MujocoConfig, robot: Robot, step: float, steps_per_tick: int) 
     tick, chosen = step * steps_per_tick, (config.integrator, config.least_inertia)
     if config.flexible_joints is not None:
         parts = config.flexible_joints, config.friction, robot, step, steps_per_tick
-        return flexible_around(*parts, lambda: Mujoco(robot.urdf, robot.model, step, 1, *chosen))
+        return flexible_around(*parts, lambda links: Mujoco(robot.urdf, links, step, 1, *chosen))
     return assemble_plant(config, robot, tick, lambda urdf, model: Mujoco(urdf, model, step, steps_per_tick, *chosen))
 
 

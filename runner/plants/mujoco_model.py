@@ -1,6 +1,7 @@
 """An arm as MuJoCo's model, from the URDF text that the other engines read."""
 
 import xml.etree.ElementTree as ET
+from collections.abc import Mapping
 from typing import Any
 
 import mujoco
@@ -18,7 +19,7 @@ FORCE, MOMENT, WALL = "reaction_force", "reaction_moment", "wall"
 """Names of what is beside the arm: sensors of the reaction in a tool's mount, and a wall that its shapes can touch."""
 
 
-def read_spec(urdf: str, least_inertia: float) -> Any:
+def read_spec(urdf: str, least_inertia: float, armature: Mapping[str, float]) -> Any:
     """Return an arm as MuJoCo's specification, which can still be changed before it is compiled.
 
     Its joints have no damping and no friction, whatever the text says, and its shapes touch nothing but a wall.
@@ -27,6 +28,7 @@ def read_spec(urdf: str, least_inertia: float) -> Any:
         urdf: The arm's URDF text.
         least_inertia: MuJoCo takes no moving link without mass and inertia: one with less mass, or less of a principal
             moment, gets this, in kg and kg m^2.
+        armature: Of each joint by name, in kg m^2.
 
     Raises:
         ConfigError: if MuJoCo cannot read the text.
@@ -46,6 +48,8 @@ def read_spec(urdf: str, least_inertia: float) -> Any:
     for body in spec.bodies:
         if body.joints:
             _give_inertia(body, least_inertia)
+    for joint in spec.joints:
+        joint.armature = armature.get(joint.name, 0.0)
     _put_up_wall(spec)
     for mounted in root.iterfind(f"joint[@name='{TOOL_MOUNT}']/child"):
         _feel(spec, mounted.get("link", ""))

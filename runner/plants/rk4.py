@@ -8,7 +8,7 @@ import pinocchio as pin
 from runner.compiled.compile import compile_motion
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
 from runner.plants.flexible_config import FlexibleJointsConfig
-from runner.plants.flexible_joints import FlexibleJoints
+from runner.plants.flexible_joints import FlexibleJoints, links_of
 from runner.plants.motion import Motion, find_motion
 from runner.plants.motor_friction import MotorFriction
 from runner.plants.plant import FloatArray, Plant
@@ -100,7 +100,8 @@ def build(config: Rk4Config, robot: Robot, step: float, steps_per_tick: int) -> 
     tick = step * steps_per_tick
     if config.flexible_joints is not None:
         (arm,) = find_motion(robot, config).arms
-        springs = FlexibleJoints(arm.model, config.flexible_joints.by_joint(robot), step, steps_per_tick)
+        flexibility = config.flexible_joints.by_joint(robot)
+        springs = FlexibleJoints(links_of(arm.model, flexibility.flexible), flexibility, step, steps_per_tick)
         rubs = arm.viscous.any() or arm.coulomb.any()
         return MotorFriction(springs, arm.viscous, arm.coulomb, tick) if rubs else springs
     return assemble_plant(config, robot, tick, lambda _, model: Rk4(model, step, steps_per_tick))

@@ -43,7 +43,7 @@ class Rk4FlexibleLinksConfig(StrictModel):
         links: The links that bend, by name; None for one that is rigid.
         parts: Springs along each of them; above 1 for links with mass alone.
         motor_inertia: Inertia of each joint's motor after its gear, in kg m^2. One for all joints or a list with one
-            for each, by stage where the robot has several; None for a joint whose motor has none.
+            for each, by stage where the robot has several; None for a joint is its `robot.armature`.
         damping_ratio: Of each mode, with the motors held at home.
         computation: What a computer does to the controllers' torques: how late they act, and which are missed.
     """
@@ -84,10 +84,17 @@ class Rk4FlexibleLinksConfig(StrictModel):
         """Return B of a robot's joints, shape (nq,), in kg m^2.
 
         Raises:
-            ConfigError: for values that do not fit its stages and joints.
+            ConfigError: for values that do not fit its stages and joints, and a joint with both it and an armature.
         """
-        given = by_joint("plant.motor_inertia", self.motor_inertia, robot)
-        return np.where(np.isfinite(given), given, 0.0)
+        given, own = by_joint("plant.motor_inertia", self.motor_inertia, robot), robot.model.armature
+        twice = np.isfinite(given) & (own > 0.0)
+        if twice.any():
+            name, armature = robot.model.joint_names[twice.argmax()], own[twice][0]
+            raise ConfigError(
+                [f"plant.motor_inertia: {name} has robot.armature={armature:g}, too, and both are its motor; give null "
+                 "here, or robot.armature=0"]
+            )  # fmt: skip
+        return np.where(np.isfinite(given), given, own)
 
     def chain(self, robot: Robot) -> Chain:
         """Return the parts of a robot; see cut.

@@ -9,17 +9,16 @@ from typing import TYPE_CHECKING
 
 from runner.errors import ConfigError, nearest
 from runner.paths import check_inside, robots_dir
+from runner.robots.armature import armature_by_joint, write_armature
 from runner.robots.inertials import (
     Payload,
     add_payload,
-    add_rotor,
     impossible_inertia,
     make_massless,
     replace_inertials,
     scale_inertial,
 )
 from runner.robots.mjcf_files import is_mjcf
-from runner.robots.rotors import rotor_inertias
 from runner.robots.tree import UrdfTree, make_tree, moves, read_tree
 from runner.robots.urdf_values import TENSOR, absurd_inertial, number, wrong_limits, wrong_places
 
@@ -80,7 +79,7 @@ def mjcf_of(path: Path) -> "Mjcf":
 def read_urdf(
     path: Path,
     masses: Mapping[str, float],
-    rotor_inertia: float | Sequence[float] | str = 0.0,
+    armature: float | Sequence[float] | str = 0.0,
     inertials: str | None = None,
     velocity_limits: Mapping[str, float] | None = None,
     payloads: Sequence[Payload] = (),
@@ -91,9 +90,8 @@ def read_urdf(
         path: Its file, a URDF or an MJCF.
         masses: Mass of links by name, in kg, inertias scaled along (a uniform change of density); links not named keep
             theirs.
-        rotor_inertia: Inertia added to each moving link about its joint's axis, in kg m^2, and half of it across: a
-            rotor, a thin disc, that turns with the link, without gear. One for all joints, a list with one for each, or
-            the name of a set; see rotor_inertias.
+        armature: Reflected inertia of motor and gear, in kg m^2, which adds to the diagonal of the mass matrix alone.
+            One for all joints, a list with one for each, or the name of a set; see armature_by_joint.
         inertials: Set of inertials that comes in place of the file's own, before `masses`; see replace_inertials.
         velocity_limits: Largest speed of joints by name, in rad/s; joints not named keep theirs.
         payloads: Point masses that links carry.
@@ -126,10 +124,7 @@ def read_urdf(
             make_massless(link)
     for name, mass in masses.items():
         scale_inertial(links[name], mass)
-    if rotor_inertia:
-        for name, inertia in rotor_inertias(tree, path, rotor_inertia).items():
-            if inertia:
-                add_rotor(tree.joints[name], links, inertia)
+    write_armature(tree, armature_by_joint(tree, path, armature))
     for payload in payloads:
         if payload.mass:
             add_payload(links, payload)

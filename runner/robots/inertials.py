@@ -1,4 +1,4 @@
-"""What the links of a URDF weigh, changed as a config asks: other sets of inertials, masses, rotors, a payload."""
+"""What the links of a URDF weigh, changed as a config asks: other sets of inertials, masses, a payload."""
 
 import itertools
 import math
@@ -123,21 +123,6 @@ def scale_inertial(link: ET.Element, mass: float) -> None:
     for key, value in dict({} if inertia is None else inertia.attrib).items():
         if inertia is not None:
             inertia.set(key, repr(float(value) * scale))
-
-
-def add_rotor(joint: ET.Element, links: Mapping[str, ET.Element], rotor_inertia: float) -> None:
-    """Add a rotor's inertia, in kg m^2 about a joint's axis, to the link that the joint turns; none where it slides."""
-    child, axis = joint.find("child"), joint.find("axis")
-    link = None if child is None else links.get(child.get("link", ""))
-    inertia = None if link is None else link.find("inertial/inertia")
-    if joint.get("type") in ("fixed", "prismatic") or link is None or inertia is None:
-        return
-    direction = _inertial_frame(link).rotation.T @ _vector("1 0 0" if axis is None else axis.get("xyz", "1 0 0"))
-    # A thin disc: PyBullet drops an inertia that no body has, such as one about a single axis.
-    added = 0.5 * rotor_inertia * (np.eye(3) + np.outer(direction, direction) / float(direction @ direction))
-    for row, column in itertools.combinations_with_replacement(range(3), 2):
-        key = f"i{'xyz'[row]}{'xyz'[column]}"
-        inertia.set(key, repr(float(inertia.get(key, "0")) + float(added[row, column])))
 
 
 def add_payload(links: Mapping[str, ET.Element], payload: Payload) -> None:

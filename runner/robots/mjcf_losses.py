@@ -73,7 +73,7 @@ def _of_motion(spec: Any, model: Any) -> Iterator[str]:
     for values, curve, text, name in (
         (model.dof_damping, model.dof_dampingpoly, "damping (plant.friction.viscous)", joint),
         (model.dof_frictionloss, None, "friction (plant.friction.coulomb)", joint),
-        (model.dof_armature, None, "armature (robot.rotor_inertia, which adds half of it across the axis, too)", joint),
+        (model.dof_armature, None, "armature (robot.armature)", joint),
         (model.actuator_armature, None, "armature of actuators (likewise)", actuator),
         (model.actuator_damping, model.actuator_dampingpoly, "damping of actuators (plant.friction.viscous)", actuator),
     ):

@@ -26,8 +26,10 @@ _NO_LIMIT = 1e6  # SI units; URDF demands limits, and a file without them writes
 class RobotModel:
     """Rigid-body model of a fixed-base serial arm with joints that turn (revolute) or slide (prismatic).
 
-    Every result is a new array; positions and Jacobians are given in the base frame. Where a unit of a joint is given,
-    it is that of one that turns: rad, rad/s and N m stand for m, m/s and N where a joint slides.
+    The armature of its joints, reflected inertia of motors and gears, stands on the diagonal of the mass matrix and
+    nowhere else; it is read from `<dynamics armature="...">`. Every result is a new array; positions and Jacobians are
+    given in the base frame. Where a unit of a joint is given, it is that of one that turns: rad, rad/s and N m stand
+    for m, m/s and N where a joint slides.
 
     Args:
         urdf: The URDF's text.
@@ -42,6 +44,7 @@ class RobotModel:
     def __init__(self, urdf: str, tip: str, gravity: float = STANDARD_GRAVITY) -> None:
         self.pin_model = _build(urdf)
         self.pin_model.gravity.linear = np.array([0.0, 0.0, -gravity])
+        self.pin_model.armature = _armature(urdf, list(self.pin_model.names)[1:])
         joints = list(self.pin_model.joints)[1:]
         self.joint_names: tuple[str, ...] = tuple(list(self.pin_model.names)[1:])
         _check_joints(self.pin_model, self.joint_names)
@@ -149,6 +152,19 @@ class RobotModel:
         """Mass of all moving links, in kg."""
         return float(sum(inertia.mass for inertia in list(self.pin_model.inertias)[1:]))
 
+    @property
+    def armature(self) -> FloatArray:
+        """Reflected inertia of each joint's motor and gear, shape (nq,), in kg m^2."""
+        armature: FloatArray = self.pin_model.armature.copy()
+        return armature
+
+    def with_armature(self, armature: FloatArray) -> "RobotModel":
+        """Return this arm with other armatures, shape (nq,), in kg m^2."""
+        own = self.copy()
+        own.pin_model.armature = armature.copy()
+        own._data = own.pin_model.createData()
+        return own
+
     def copy(self) -> "RobotModel":
         """Return this arm with a Pinocchio model of its own, so that no change of this one reaches it."""
         own = copy.copy(self)
@@ -255,6 +271,16 @@ def _build(urdf: str) -> pin.Model:
     if said:
         raise ConfigError([f"robot.urdf: Pinocchio does not take it as it is: {' '.join(said)}"])
     return model
+
+
+def _armature(urdf: str, joints: Sequence[str]) -> FloatArray:
+    """Return what a URDF's text says of the armature of joints, shape (nq,), in kg m^2."""
+    if "armature" not in urdf:
+        return np.zeros(len(joints))
+    robot = ET.fromstring(urdf)  # noqa: S314 - Pinocchio has read it
+    found = {joint.get("name"): joint.find("dynamics[@armature]") for joint in robot.iter("joint")}
+    values = [found.get(name) for name in joints]
+    return np.array([0.0 if value is None else float(value.get("armature", "0")) for value in values])
 
 
 def _read(urdf: str) -> tuple[pin.Model, list[str]]:

@@ -10,11 +10,12 @@ import numpy as np
 
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS
+from runner.robots.armature import with_armature
 from runner.robots.mismatch import scaled
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 
-GROUPS = ("gains", "masses", "lengths", "payload", "friction", "gravity", "limits", "noise", "mismatch")
+GROUPS = ("gains", "masses", "armature", "lengths", "payload", "friction", "gravity", "limits", "noise", "mismatch")
 # Of each group of keys: where they stand, and those below that no derivative is asked by.
 _KEYS: Mapping[str, tuple[str, tuple[str, ...]]] = {
     "gains": ("controller", ("period", "reach", "max_tip_speed")),
@@ -37,7 +38,8 @@ class Parameter:
     """A number on which a run depends.
 
     Attributes:
-        name: Its name: a dotted key of the config, or mass.JOINT or length.JOINT of the link that a joint moves.
+        name: Its name: a dotted key of the config, armature.JOINT, or mass.JOINT or length.JOINT of the link that a
+            joint moves.
         group: One of GROUPS.
         value: Its value.
         unit: Its unit.
@@ -113,6 +115,10 @@ def _links(config: RunConfig, group: str) -> Iterator[Parameter]:
             mass = float(model.pin_model.inertias[joint].mass)
             if mass > 0.0:
                 yield Parameter(f"mass.{name}", group, mass, "kg", partial(_with_mass, config, joint, mass))
+        elif group == "armature":
+            unit, armature = "kg" if model.slides[joint - 1] else "kg m^2", float(model.armature[joint - 1])
+            if armature > 0.0:
+                yield Parameter(f"armature.{name}", group, armature, unit, partial(_with_armature, config, joint))
         else:
             length = _length(model, joint)
             if length > 0.0:
@@ -135,6 +141,12 @@ def _with_mass(config: RunConfig, joint: int, mass: float, value: float) -> RunC
     return _with_arm(config, masses, np.ones(len(masses) + 1))
 
 
+def _with_armature(config: RunConfig, joint: int, value: float) -> RunConfig:
+    armature = config.arm.model.armature
+    armature[joint - 1] = value
+    return _with_robot(config, with_armature(config.arm, armature))
+
+
 def _with_length(config: RunConfig, joint: int, length: float, value: float) -> RunConfig:
     lengths = np.ones(config.arm.model.nq + 1)
     lengths[joint] = value / length
@@ -142,7 +154,7 @@ def _with_length(config: RunConfig, joint: int, length: float, value: float) -> 
 
 
 def _with_arm(config: RunConfig, masses: Any, lengths: Any) -> RunConfig:
-    """Return a config with another arm, true and believed; masses (nq,) and lengths (nq + 1,) are factors."""
+    """Return a config with another arm; masses (nq,) and lengths (nq + 1,) are factors."""
 
     def change(model: RobotModel, joints: slice) -> RobotModel:
         own = masses[joints]
@@ -151,5 +163,9 @@ def _with_arm(config: RunConfig, masses: Any, lengths: Any) -> RunConfig:
     arm = config.arm
     stages = tuple(replace(stage, model=change(stage.model, stage.joints)) for stage in arm.stages)
     whole = stages[0].model if len(stages) == 1 else change(arm.model, slice(0, arm.model.nq))
-    changed: Robot = replace(arm, model=whole, stages=stages)
+    return _with_robot(config, replace(arm, model=whole, stages=stages))
+
+
+def _with_robot(config: RunConfig, changed: Robot) -> RunConfig:
+    """Return a config with another arm, true and believed."""
     return replace(config, arm=changed, loops=CONTROLLERS.build(config.controller, changed))

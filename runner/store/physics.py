@@ -33,7 +33,7 @@ _TABLE = """
         disturbance_observer=config.disturbance_observer endpoint_sensor flexible_joints=config.flexible_joints
         flexible_links=config.flexible_links force_reading=config.force_reading groups input_shaper joint_limits noise
         notch=config.notch parsing payload per_joint per_stage plugged reach repeats robot=config.robot
-        rotors=config.rotors run settings start timing torque_limits validation
+        run settings start timing torque_limits validation
     controllers: __init__=controllers.__init__ adaptive admittance admittance_filter admittance_stability approach
         computed_torque controller=controllers.controller differential_inverse_kinematics
         disturbance_observer=controllers.disturbance_observer force_reading=controllers.force_reading force_stability
@@ -49,15 +49,14 @@ _TABLE = """
         endpoint=loop.endpoint failures joint_torques recorder sensors
     metrics: __init__=metrics.__init__ contact=metrics.contact context effort family positioning reaching summary
         tracking
-    plants: __init__=plants.__init__ bullet bullet_reading bullet_servers computation=plants.computation decoupled
-        end_points=plants.end_points flexible_around flexible_config flexible_joints=plants.flexible_joints
-        flexible_links=plants.flexible_links friction kinds=plants.kinds kinematic load motion=plants.motion
-        motor_friction mujoco mujoco_model payload_changes plant=plants.plant rk4 rk4_flexible_links servo set_points
-        touched
-    robots: __init__=robots.__init__ beams cantilever chain denavit_hartenberg description effective_mass
-        inertials inverse_kinematics mismatch mjcf mjcf_efforts mjcf_files mjcf_losses mjcf_urdf model modes
-        motors=robots.motors mounting robot=robots.robot rotors=robots.rotors task_space tool_link tree urdf_values
-        workspace
+    plants: __init__=plants.__init__ armature=plants.armature bullet bullet_reading bullet_servers
+        computation=plants.computation decoupled end_points=plants.end_points flexible_around flexible_config
+        flexible_joints=plants.flexible_joints flexible_links=plants.flexible_links friction kinds=plants.kinds
+        kinematic load motion=plants.motion motor_friction mujoco mujoco_model payload_changes plant=plants.plant rk4
+        rk4_flexible_links servo set_points touched
+    robots: __init__=robots.__init__ armature=robots.armature beams cantilever chain denavit_hartenberg description
+        effective_mass inertials inverse_kinematics mismatch mjcf mjcf_efforts mjcf_files mjcf_losses mjcf_urdf model
+        modes mounting robot=robots.robot task_space tool_link tree urdf_values workspace
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
         kinds=sensing.kinds motors=sensing.motors streams velocity wrench
     trajectories: __init__=trajectories.__init__ blend circle closed_figure from_file goal impulses interpolation

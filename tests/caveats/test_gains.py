@@ -11,19 +11,19 @@ def test_light_joints_that_move_others_are_told_the_bound(checked_config):
     """Without rotors joint PD is unstable along this motion, and chatters."""
     told = found(checked_config(*LINE, "controller=joint_pd"))["unstable_gains"]
     assert told.value == pytest.approx(5.64, abs=0.01)
-    assert "or controller.period 5.64 times smaller or more, or robot.rotor_inertia" in told.text
+    assert "or controller.period 5.64 times smaller or more, or robot.armature" in told.text
     assert "lambda_max(M^-1 diag M) is 188" in told.text
 
 
 def test_a_law_of_the_whole_mass_matrix_is_told_its_own(checked_config):
     told = found(checked_config(*LINE, "controller=computed_torque", "controller.natural_frequency=1200"))
     assert told["unstable_gains"].value == pytest.approx(1.2)
-    assert "rotor_inertia" not in told["unstable_gains"].text
+    assert "armature" not in told["unstable_gains"].text
 
 
 QUIET = [
     ("controller=computed_torque",),
-    ("controller=joint_pd", "robot.rotor_inertia=assumed"),
+    ("controller=joint_pd", "robot.armature=assumed"),
     ("controller=joint_pd", "caveats.unstable_gains.share=6"),
 ]
 

@@ -36,7 +36,7 @@ def test_a_run_says_what_its_mjcf_holds_and_it_has_not(caveats_of):
     assert caveat.value == 2.0
     assert caveat.text == (
         "not taken from arm.xml: damping (plant.friction.viscous): 2 (q1, q2, q3); "
-        "armature (robot.rotor_inertia, which adds half of it across the axis, too): 0.1 (q1, q2, q3)"
+        "armature (robot.armature): 0.1 (q1, q2, q3)"
     )
     assert "mjcf" not in caveats_of(damped, "caveats.mjcf.left_out=2")
 

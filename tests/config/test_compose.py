@@ -21,7 +21,7 @@ robot:
   home: [0.0, 0.0, 0.0]
   inertials: null
   masses: {link3: 2.0}
-  rotor_inertia: 0.0
+  armature: 0.0
   velocity_limits: {}
   start: null
   goal: [0.2, -0.7, 0.4]

@@ -33,7 +33,7 @@ robot:
       urdf: mini.urdf
       tip: tip
       home: [0.0, 0.0, 0.0]
-      rotor_inertia: 1.0e-6
+      armature: 1.0e-6
       mount: {frame: tip, translation: [0.0, 0.0, 0.0], rotation: [0.0, 0.0, 0.0]}
   goal: [0.4, 1.1, 0.9]
 controller: {kind: whole_body}
@@ -84,15 +84,15 @@ def test_every_key_of_a_robot_has_a_default_or_must_be_given():
 def test_each_stage_takes_the_defaults_of_an_arm(mine):
     robot = compose(["robot=pair"], [mine]).resolved["robot"]
     of_arm = {key: DEFAULTS[key] for key in DEFAULTS if key in ArmConfig.model_fields}
-    assert set(of_arm) == {"urdf", "mjcf", "inertials", "masses", "rotor_inertia", "velocity_limits"}
+    assert set(of_arm) == {"urdf", "mjcf", "inertials", "masses", "armature", "velocity_limits"}
     assert {key: robot["stages"]["lower"][key] for key in of_arm} == of_arm | {"urdf": "macro.urdf"}
-    assert robot["stages"]["upper"]["rotor_inertia"] == 1e-6
+    assert robot["stages"]["upper"]["armature"] == 1e-6
     assert not set(of_arm) & set(robot)
 
 
 def test_a_value_of_one_arm_is_refused_for_a_robot_of_several():
-    with pytest.raises(ConfigError, match=r"robot.rotor_inertia: unknown key"):
-        validate(compose(["robot=combined", "robot.rotor_inertia=0.1"]).resolved)
+    with pytest.raises(ConfigError, match=r"robot.armature: unknown key"):
+        validate(compose(["robot=combined", "robot.armature=0.1"]).resolved)
 
 
 @pytest.mark.parametrize("robot", ["macro", "combined", "xarm7", "meca500"])

@@ -15,7 +15,7 @@ SECOND_MINI = {
     "home": [0.0, 0.0, 0.0],
     "inertials": None,
     "masses": {},
-    "rotor_inertia": 0.0,
+    "armature": 0.0,
     "velocity_limits": {},
     "mount": {"frame": "tip", "translation": [0.0, 0.0, 0.0], "rotation": [0.0, 0.0, 0.0]},
 }

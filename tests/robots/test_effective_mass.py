@@ -10,8 +10,8 @@ from runner.robots.effective_mass import mass_along, tip_mobility
 ARMS = ["combined", "macro_mini_mini"]
 # A folded Mini has its masses on its first axis; a rotor keeps that joint's inertia from being none.
 ROTORS = {
-    "combined": ("robot.stages.macro.rotor_inertia=1e-7", "robot.stages.mini.rotor_inertia=1e-7"),
-    "macro_mini_mini": tuple(f"robot.stages.{stage}.rotor_inertia=1e-7" for stage in ("macro", "mini", "mini2")),
+    "combined": ("robot.stages.macro.armature=1e-7", "robot.stages.mini.armature=1e-7"),
+    "macro_mini_mini": tuple(f"robot.stages.{stage}.armature=1e-7" for stage in ("macro", "mini", "mini2")),
 }
 
 

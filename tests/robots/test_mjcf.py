@@ -194,9 +194,9 @@ def test_a_joint_of_a_links_name_gets_another(tmp_path, link):
     np.testing.assert_allclose(model.tip_position(data.qpos), place, atol=1e-12)
 
 
-def test_masses_rotors_and_payloads_change_it_as_a_urdf(tmp_path):
+def test_masses_and_armature_change_it_as_a_urdf(tmp_path):
     path = written(tmp_path, CHAIN)
-    model = RobotModel(read_urdf(path, {"hand": 5.0}, rotor_inertia=0.1), "tcp")
+    model = RobotModel(read_urdf(path, {"hand": 5.0}, armature=0.1), "tcp")
     plain = RobotModel(read_urdf(path, {}), "tcp")
     assert model.mass > plain.mass + 1.0
     assert model.mass_matrix(np.zeros(3))[0, 0] > plain.mass_matrix(np.zeros(3))[0, 0] + 0.1

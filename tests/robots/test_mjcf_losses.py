@@ -98,7 +98,7 @@ LEFT_OUT = {
     ),
     "armature": (
         CHAIN.replace("<joint ", '<joint armature="0.1" ', 1),
-        "armature (robot.rotor_inertia, which adds half of it across the axis, too): 0.1 (q1, q2, q3)",
+        "armature (robot.armature): 0.1 (q1, q2, q3)",
     ),
     "gravity": (
         CHAIN.replace("<default>", '<option gravity="0 0 -1.62"/><default>'),

@@ -4,15 +4,12 @@ import numpy as np
 import pinocchio as pin
 import pytest
 import yaml
-from support.physics import assert_energy_kept
 
 from runner.assembly import assemble
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.loop.sensors import make_encoders
 from runner.paths import conf_dir
-from runner.plants.rk4 import Rk4
-from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.robots.robot import StageBase, end_points
 from runner.simulation import simulate
 
@@ -23,7 +20,7 @@ TOP = {
     "home": [0.1, 0.2, 0.3],
     "inertials": None,
     "masses": {"link2": 0.01},
-    "rotor_inertia": 0.0,
+    "armature": 0.0,
     "velocity_limits": {},
     "mount": {"frame": "tip", "translation": [0.0, 0.0, 0.01], "rotation": [np.pi / 2, 0.0, np.pi / 2]},
 }
@@ -170,7 +167,7 @@ def test_three_stages_run(three):
     assert len(loop.loops) == 3
 
 
-# Payload and rotors.
+# Payload.
 
 
 @pytest.mark.parametrize("mass", [0.2, 5.0])
@@ -192,67 +189,3 @@ def test_a_payload_leaves_the_arm_itself_alone(macro):
     macro.with_payload(3.0).mass_matrix(np.zeros(3))
     np.testing.assert_array_equal(macro.mass_matrix(np.ones(3)), before[0])
     assert macro.mass == before[1]
-
-
-@pytest.mark.parametrize("name", ["macro", "mini"])
-def test_a_rotor_adds_its_inertia_about_its_joint_and_half_of_it_across(name):
-    inertia = 0.3
-    plain, turned = (RobotModel(read_urdf(find_urdf(f"{name}.urdf"), {}, rotor), "tip") for rotor in (0.0, inertia))
-    for q in np.random.default_rng(3).uniform(-3.0, 3.0, (6, 3)):
-        added = turned.mass_matrix(q) - plain.mass_matrix(q)
-        axes = plain.tip_jacobian(q)[3:]
-        expected = np.zeros((3, 3))
-        for joint in range(3):
-            spin = np.where(np.arange(3) <= joint, axes, 0.0)  # the link's angular velocity per joint velocity
-            disc = 0.5 * inertia * (np.eye(3) + np.outer(axes[:, joint], axes[:, joint]))
-            expected += spin.T @ disc @ spin
-        np.testing.assert_allclose(added, expected, atol=1e-12)
-        assert added[2, 2] == pytest.approx(inertia, abs=1e-14)  # the last joint turns its own rotor alone
-        np.testing.assert_allclose(turned.gravity_torque(q), plain.gravity_torque(q), atol=1e-12)
-
-
-def test_rotors_keep_the_energy():
-    model = RobotModel(read_urdf(find_urdf("macro.urdf"), {}, 0.3), "tip")
-    plant = Rk4(model, 1e-3, 10)
-    plant.reset(np.array([0.3, 0.5, -0.4]), np.array([1.0, 0.5, -0.5]))
-    start = model.energy(plant.q, plant.dq)
-    kinetic = 0.5 * plant.dq @ model.mass_matrix(plant.q) @ plant.dq
-    assert start - model.energy(plant.q, np.zeros(3)) == pytest.approx(kinetic, rel=1e-12)
-    for _ in range(200):
-        plant.advance(np.zeros(3))
-    assert_energy_kept([start, model.energy(plant.q, plant.dq)], 1e-8)
-    assert np.abs(plant.q - [0.3, 0.5, -0.4]).max() > 0.3
-
-
-@pytest.mark.bullet
-@pytest.mark.parametrize("robot", ["macro", "combined"])
-def test_bullet_takes_the_rotors_too(checked_config, robot, capfd):
-    from runner.plants.bullet import Bullet
-
-    # It sets an inertia that no body can have to zero, and says so on standard error.
-    stages = ("robot.stages.macro", "robot.stages.mini") if robot == "combined" else ("robot",)
-    rotors = [f"{stage}.rotor_inertia={inertia}" for stage, inertia in zip(stages, (0.3, 1e-3), strict=False)]
-    arm = checked_config(f"robot={robot}", *rotors).arm
-    plant, h = Bullet(arm.urdf, arm.model, 1e-5, 1), 1e-5
-    try:
-        q, tau = np.linspace(0.1, 0.6, arm.model.nq), np.ones(arm.model.nq)
-        plant.reset(q, np.zeros_like(q))
-        plant.advance(tau)
-        expected = arm.model.forward_dynamics(q, np.zeros_like(q), tau)
-        np.testing.assert_allclose(plant.dq / h, expected, atol=1e-6 * np.abs(expected).max())
-    finally:
-        plant.close()
-    assert "Bad inertia" not in "".join(capfd.readouterr())
-
-
-def test_a_rotor_turns_about_its_axis_however_the_inertia_s_frame_lies(macro_urdf, tmp_path):
-    # Link 3's point mass looks the same from every inertial frame; the rotor must, too.
-    origin = '<origin xyz="0 0 1"/><mass'
-    assert origin in macro_urdf.replace(" />", "/>")
-    turned = macro_urdf.replace(" />", "/>").replace(origin, '<origin xyz="0 0 1" rpy="0.4 -0.5 0.6"/><mass')
-    models = []
-    for name, text in (("plain", macro_urdf), ("turned", turned)):
-        (tmp_path / f"{name}.urdf").write_text(text)
-        models.append(RobotModel(read_urdf(tmp_path / f"{name}.urdf", {}, 0.3), "tip"))
-    for q in np.random.default_rng(4).uniform(-3.0, 3.0, (4, 3)):
-        np.testing.assert_allclose(models[1].mass_matrix(q), models[0].mass_matrix(q), atol=1e-12)

@@ -164,10 +164,10 @@ def test_an_edited_file_of_ours_is_noticed(tmp_path, monkeypatch):
     monkeypatch.setattr(paths, "_root", lambda: tmp_path)
     line = ["robot=combined", "noise=thesis"]
     robot = tmp_path / "conf/robot/combined.yaml"
-    robot.write_text(robot.read_text().replace("rotor_inertia: 0.0", ""))  # robot_defaults.yaml gives it
+    robot.write_text(robot.read_text().replace("armature: 0.0", ""))  # robot_defaults.yaml gives it
     for name, now, then in (
         ("noise/thesis.yaml", "uniform", "gaussian"),
-        ("robot_defaults.yaml", "rotor_inertia: 0.0", "rotor_inertia: 0.5"),  # which each stage takes
+        ("robot_defaults.yaml", "armature: 0.0", "armature: 0.5"),  # which each stage takes
     ):
         file = tmp_path / "conf" / name
         before = compose(line)

@@ -27,7 +27,7 @@ robot:
   home: [0.0, 0.3, -1.2]
   inertials: null
   masses: {jib: 12.0}
-  rotor_inertia: 0.0
+  armature: 0.0
   velocity_limits: {}
   start: null
   goal: [0.4, 1.1, 0.9]

@@ -69,7 +69,7 @@ def test_torques_and_parameters_are_those_of_the_equations(name, friction):
     [
         ("macro", [0.8, -0.5, 0.6], ("controller.friction=false",)),
         ("macro", [0.8, -0.5, 0.6], UNIFORM),
-        ("xarm7", [0.4, -0.3, 0.3, 0.4, -0.3, 0.3, 0.4], ("controller.friction=false", "robot.rotor_inertia=assumed")),
+        ("xarm7", [0.4, -0.3, 0.3, 0.4, -0.3, 0.3, 0.4], ("controller.friction=false", "robot.armature=assumed")),
     ],
 )
 def test_the_function_of_lyapunov_never_rises(name, swing, more):
@@ -111,7 +111,7 @@ def test_the_scale_by_parameter_bounds_the_frequencies_of_the_adaptation(name, f
 
 
 @pytest.mark.parametrize("more", [("robot=macro",), ("robot=macro", "torque_limits=thesis"),
-                                  ("robot=xarm7", "robot.rotor_inertia=assumed", "mismatch.mass=0.8")])  # fmt: skip
+                                  ("robot=xarm7", "robot.armature=assumed", "mismatch.mass=0.8")])  # fmt: skip
 def test_a_goal_that_asks_too_much_at_first_is_reached(simulated, more):
     """Accelerations are a hundred times those that set the gains, or torques at their limits: it stays stable."""
     trace = simulated("controller=adaptive", "trajectory=goal", "plant=rk4", "mismatch.mass=0.9", *more)

@@ -101,9 +101,9 @@ def test_it_takes_away_what_a_wrong_model_and_friction_leave(simulated):
 LAWS = [
     ("robot=macro", "controller=operational_space"),
     ("robot=macro", "controller=joint_pid"),
-    ("robot=xarm7", "controller=adaptive", "robot.rotor_inertia=assumed"),
+    ("robot=xarm7", "controller=adaptive", "robot.armature=assumed"),
     ("robot=xarm7", "controller=operational_space", "torque_limits.max=40"),
-    ("robot=meca500", "controller=whole_body", "robot.rotor_inertia=assumed"),
+    ("robot=meca500", "controller=whole_body", "robot.armature=assumed"),
     ("robot=combined", "controller=macro_mini", "disturbance_observer.bandwidth={macro: 30, mini: 100}"),
     ("robot=combined", "controller=whole_body", "disturbance_observer.bandwidth=40"),
 ]

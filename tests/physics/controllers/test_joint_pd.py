@@ -72,7 +72,7 @@ def test_the_sampled_loop_is_stable_up_to_the_limit(name):
 
 @pytest.mark.parametrize("name", ["macro", "xarm7"])
 def test_the_tip_reaches_a_goal(simulated, name):
-    more = ("robot.rotor_inertia=assumed",) if name == "xarm7" else ()
+    more = ("robot.armature=assumed",) if name == "xarm7" else ()
     trace = simulated(f"robot={name}", "controller=joint_pd", "controller.period=0.001",
                       "controller.natural_frequency=10", "trajectory=goal", "duration=3", *more)  # fmt: skip
     assert trace.failure is None

@@ -31,6 +31,6 @@ def test_every_option_composes_and_runs(simulated, chosen):
     own = OWN[law] if chosen["own"] else ()
     trace = simulated(
         "robot=xarm7", f"controller={law}", *(f"controller.{key}" for key in (*keys, *own)),
-        "robot.rotor_inertia=assumed", "controller.natural_frequency=10", "controller.period=0.001", "duration=0.1",
+        "robot.armature=assumed", "controller.natural_frequency=10", "controller.period=0.001", "duration=0.1",
     )  # fmt: skip
     assert trace.failure is None

@@ -7,7 +7,6 @@ from support.arms import model_of
 
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
 from runner.robots import RobotModel
-from runner.robots.motors import motorised
 
 HOME = np.zeros(3)  # rad, of the thesis
 LOCKED = 1e12  # kg m^2, a motor that does not turn
@@ -81,7 +80,7 @@ def test_energy_is_kept_without_damping():
 
 def test_the_distance_to_the_rigid_arm_falls_as_one_over_the_stiffness():
     model, motor, tau, time = macro(), 2.0, np.array([3.0, 30.0, 8.0]), 0.3
-    rigid = motorised(model, motor * np.ones(3))
+    rigid = model.with_armature(motor * np.ones(3))
 
     def slope(_, y):
         return np.concatenate([y[3:], rigid.forward_dynamics(y[:3], y[3:], tau)])
@@ -181,7 +180,7 @@ def test_at_rest_springs_carry_the_weight():
 
 def test_motors_add_their_spin_to_the_mass_matrix_and_nothing_else():
     model, motors, dq = macro(), np.array([1.0, 2.0, 3.0]), np.array([0.2, 0.3, -0.4])
-    own = motorised(model, motors)
+    own = model.with_armature(motors)
     assert own.mass_matrix(HOME) - model.mass_matrix(HOME) == pytest.approx(np.diag(motors), abs=1e-14)
     assert own.coriolis_torque(HOME, dq) == pytest.approx(model.coriolis_torque(HOME, dq), abs=1e-14)
     ddq = own.forward_dynamics(HOME, dq, np.zeros(3))

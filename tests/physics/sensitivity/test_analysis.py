@@ -5,7 +5,7 @@ import pytest
 
 from runner.sensitivity import differences
 
-OWN = ("gains", "masses", "lengths", "gravity", "limits", "noise", "friction", "payload")
+OWN = ("gains", "masses", "armature", "lengths", "gravity", "limits", "noise", "friction", "payload")
 MACRO = ("robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis", "duration=0.3")
 TWO_RATES = (
     "robot=combined", "controller=macro_mini", "plant=rk4", "trajectory=quintic", "noise=thesis", "duration=0.1",
@@ -15,6 +15,7 @@ INTEGRAL = ("robot=macro", "controller=computed_torque", "controller.integral_ga
 # Clipped torques, friction that holds, commands that act late, velocities that are differences, and a payload.
 HARD = (
     "robot=macro", "plant=rk4", "trajectory=goal", "torque_limits=thesis", "duration=0.2", "noise=thesis",
+    "robot.armature=[0.5,0.3,0]",
     "plant.friction.viscous=0.2", "plant.friction.coulomb=0.1", "plant.computation.delay=1", "noise.bias=1e-4",
     "noise.velocity=finite_difference", "robot.payload.mass=0.5",
 )  # fmt: skip

@@ -209,7 +209,7 @@ SINGULAR = {
     "Mini folded, tracking": (*FOLDING, "trajectory=quintic"),
     "Mini folded, goal": (*FOLDING, "trajectory=goal"),
     "Mini folded, thesis limits": (*FOLDING, "trajectory=quintic", "torque_limits=thesis", "noise=thesis"),
-    "Mini folded, with rotors": (*FOLDING, "trajectory=quintic", "robot.stages.mini.rotor_inertia=1e-5"),
+    "Mini folded, with rotors": (*FOLDING, "trajectory=quintic", "robot.stages.mini.armature=1e-5"),
     "Mini stretched": (
         "preset=as_reported",
         "controller.beyond_reach=stretch",

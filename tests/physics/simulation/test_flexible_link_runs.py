@@ -11,10 +11,10 @@ from runner.assembly import assemble
 from runner.config.compose import compose
 from runner.errors import ConfigError
 from runner.plants import PLANTS
+from runner.robots.armature import with_armature
 from runner.robots.beams import stiffened
 from runner.robots.cantilever import cantilever_roots
 from runner.robots.modes import Mode
-from runner.robots.motors import with_motors
 from runner.store import simulated_part
 from runner.trajectories.impulses import zero_vibration
 
@@ -82,7 +82,7 @@ def test_laws_believe_a_rigid_arm_of_the_same_masses_and_motors():
     closed = assemble(config)
     closed.close()
     (law,) = (loop.controller for loop in closed.loops)
-    expected = with_motors(stiffened(config.arm, config.plant.beams(config.arm)), np.full(3, 2.0)).model
+    expected = with_armature(stiffened(config.arm, config.plant.beams(config.arm)), np.full(3, 2.0)).model
     q = np.array([0.1, 0.2, 0.3])
     assert law.models[0].mass_matrix(q) == pytest.approx(expected.mass_matrix(q))
     assert law.models[0].mass == pytest.approx(2.2)

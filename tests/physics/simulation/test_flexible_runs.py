@@ -6,9 +6,11 @@ from support.arms import checked
 from support.physics import assert_order
 
 from runner.config.compose import compose
+from runner.config.flexible_joints import believe_motors
 from runner.config.validation import validate
 from runner.errors import ConfigError
-from runner.robots.motors import with_motors
+from runner.plants.flexible_joints import links_of
+from runner.robots.armature import with_armature
 from runner.store import simulated_part
 
 MACRO = ("robot=macro", "plant=rk4_flexible", "noise=none", "torque_limits=none")
@@ -68,7 +70,7 @@ def test_a_stage_with_null_stays_rigid():
     flexibility = config.plant.flexible_joints.by_joint(config.arm)
     assert flexibility.flexible.tolist() == [True] * 3 + [False] * 3
     M = config.arm.model.mass_matrix(config.arm.home)
-    gained = with_motors(config.arm, flexibility.motors).model.mass_matrix(config.arm.home) - M
+    gained = with_armature(config.arm, flexibility.motors).model.mass_matrix(config.arm.home) - M
     assert gained == pytest.approx(np.diag([2.0] * 3 + [0.0] * 3), abs=1e-12)
 
 
@@ -86,12 +88,12 @@ def test_the_names_of_rigid_runs_know_nothing_of_flexible_joints():
         ((f"{KEY}.damping_ratio=-0.1",), f"{KEY}.damping_ratio: must be 0 or more"),
         ((f"{KEY}.stiffness=[1,2]",), "2 values for 3 joints (q1, q2, q3)"),
         ((f"{KEY}.stiffness=null",), "null for every joint"),
-        ((f"{KEY}.motor_inertia=null",), "null takes robot.rotor_inertia, which is 0 for q1"),
-        ((f"{KEY}.motor_inertia=[null,2,2]",), "q1 has a spring and no motor"),
+        ((f"{KEY}.motor_inertia=null",), "null takes robot.armature, which is 0 for q1"),
+        ((f"{KEY}.motor_inertia=[null,2,2]",), "null takes robot.armature, which is 0 for q1"),
         ((f"{KEY}.stiffness=[null,1,1]",), "q1 has a motor and no spring"),
         ((f"{KEY}.stiffness=1e6",), "Hz at home; allowed: up to 0.0003"),
         ((f"{KEY}.encoders=motr",), "did you mean motor?"),
-        (("robot.rotor_inertia=0.1",), "take 0 for it, or motor_inertia=null to have the motors turn with it"),
+        (("robot.armature=0.1",), "q1 has robot.armature=0.1, too, and both are its motor; give null"),
         ((f"{KEY}.braked={{mini: 0}}",), f"{KEY}.braked: no such stage: 'mini'"),
         (("environment=wall",), "a wall is met by arms with rigid joints"),
         (("joint_torque_sensor=ideal",), "joint_torque_sensor.noise=null"),
@@ -166,20 +168,22 @@ def test_motor_pd_wants_motors(overrides, expected):
     assert expected in problems("robot=macro", *overrides)
 
 
-def test_without_a_motor_inertia_the_rotors_are_the_motors(simulated):
+def test_without_a_motor_inertia_the_armature_is_the_motor(simulated):
     move = (*MACRO, *MOVE, "plant.step=0.001")
     named = simulated(*move, f"{KEY}.motor_inertia=[2,1.5,1]")
-    rotors = simulated(*move, f"{KEY}.motor_inertia=null", "robot.rotor_inertia=[2,1.5,1]")
-    np.testing.assert_array_equal(named.q, rotors.q)
-    np.testing.assert_array_equal(named.tau, rotors.tau)
+    armature = simulated(*move, f"{KEY}.motor_inertia=null", "robot.armature=[2,1.5,1]")
+    np.testing.assert_array_equal(named.q, armature.q)
+    np.testing.assert_array_equal(named.tau, armature.tau)
 
 
-def test_rotors_of_rigid_joints_stay_on_their_links():
+def test_the_armature_of_rigid_joints_stays_where_it_is():
     both = ("robot=combined", "plant=rk4_flexible", f"{KEY}.stiffness={{macro: 1000, mini: null}}",
-            f"{KEY}.motor_inertia=null", "robot.stages.macro.rotor_inertia=2",
-            "robot.stages.mini.rotor_inertia=1e-4")  # fmt: skip
+            f"{KEY}.motor_inertia=null", "robot.stages.macro.armature=2",
+            "robot.stages.mini.armature=1e-4")  # fmt: skip
     config = checked(*both)
     flexibility = config.plant.flexible_joints.by_joint(config.arm)
     assert flexibility.motors.tolist() == [2.0] * 3 + [0.0] * 3
-    plain = checked("robot=combined", "robot.stages.mini.rotor_inertia=1e-4")
-    np.testing.assert_array_equal(config.arm.model.mass_matrix(np.zeros(6)), plain.arm.model.mass_matrix(np.zeros(6)))
+    links = links_of(config.arm.model, flexibility.flexible)
+    assert links.armature.tolist() == [0.0] * 3 + [1e-4] * 3
+    believed = believe_motors(config, config.arm).model
+    assert believed.armature.tolist() == [2.0] * 3 + [1e-4] * 3

@@ -23,7 +23,7 @@ def traced(config):
 
 def test_computed_torque_follows_the_joints_and_not_the_tip(checked_config):
     # Of seven joints the tip's motion leaves one free, which the joints' does not.
-    config = checked_config("robot=xarm7", *JOINTS[1:], "controller=computed_torque", "robot.rotor_inertia=assumed")
+    config = checked_config("robot=xarm7", *JOINTS[1:], "controller=computed_torque", "robot.armature=assumed")
     (loop,) = config.loops
     assert loop.follows_joints
     trace = traced(config)

@@ -40,7 +40,7 @@ def moved(simulated) -> Callable:
 
 @pytest.fixture(scope="module")
 def xarm7() -> RobotModel:
-    return RobotModel(read_urdf(find_urdf("xarm7.urdf"), {}, rotor_inertia=0.1), "flange")
+    return RobotModel(read_urdf(find_urdf("xarm7.urdf"), {}, armature=0.1), "flange")
 
 
 def largest_error(trace, stage):

@@ -14,12 +14,14 @@ from runner.compiled.arm import constants_of
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots import RobotModel
 
-OURS = ("macro", "mini", "combined", "xarm7", "meca500")
+OURS = ("macro", "mini", "combined", "xarm7", "meca500", "geared")
 
 
 def model_of(name):
     if name in strangers.STRANGERS:
         return strangers.config(name).arm.model
+    if name == "geared":
+        return checked("robot=xarm7").arm.model.with_armature(np.array([0.4, 0.0, 0.2, 1.0, 0.24, 0.16, 0.16]))
     return checked(f"robot={name}").arm.model
 
 
@@ -64,7 +66,7 @@ def test_the_regressor_is_pinocchio_s_and_gives_the_torques_of_the_arm_s_paramet
         close(algebra_of(model).regressor(q, dq, dq_r.tolist(), ddq), Y)
         C = pin.computeCoriolisMatrix(model.pin_model, data, np.array(q), np.array(dq))
         torque = model.mass_matrix(np.array(q)) @ ddq + C @ dq_r + model.gravity_torque(np.array(q))
-        close(Y @ theta, torque)
+        close(Y @ theta + model.armature * ddq, torque)
         close(
             arm.inverse_dynamics(*map(np.array, (q, dq, ddq))),
             pin.rnea(model.pin_model, data, *map(np.array, (q, dq, ddq))),
