@@ -21,6 +21,7 @@ class _Joint:
     origin: FloatArray
     axis: FloatArray
     slides: bool
+    armature: float
     place: int | None
 
 
@@ -68,7 +69,11 @@ class UrdfChain:
 
     def mass_matrix(self, q: FloatArray) -> FloatArray:
         """Return twice the kinetic energy as a matrix between joint velocities, shape (T, n, n)."""
-        frames, total = self.frames(q), np.zeros((len(q), q.shape[1], q.shape[1]))
+        motors = np.zeros(q.shape[1])
+        for joint in self._joints:
+            if joint.place is not None:
+                motors[joint.place] = joint.armature
+        frames, total = self.frames(q), np.tile(np.diag(motors), (len(q), 1, 1))
         for body in self._bodies:
             centre = frames[body.link] @ body.centre
             J = np.zeros((len(q), 6, q.shape[1]))  # velocity of the centre and turning, by joint
@@ -117,6 +122,7 @@ def _joint(element: ET.Element, names: Sequence[str]) -> _Joint:
         _origin(element.find("origin")),
         axis / np.linalg.norm(axis),
         element.get("type") == "prismatic",
+        0.0 if (dynamics := element.find("dynamics")) is None else float(dynamics.get("armature", "0")),
         names.index(name) if name in names else None,
     )
 
