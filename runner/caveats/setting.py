@@ -43,7 +43,7 @@ class Setting:
         contact: Of an arm behind joint servos with a wall, under an admittance law; None where there is none.
         touch: How a small motion on a wall grows in a period of a law that pushes by torques; None where none does.
         velocity_loop: How near a velocity loop is to what its period bears; None where no law says its gain.
-        left_out: What would change the motion and stands in the robot's MJCFs, in words, by the file's name.
+        left_out: What would change the motion, stands in the robot's files and is not in the run, in words, by file.
     """
 
     repetitions: int
@@ -74,6 +74,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         config: The checked config.
         q_start: Joint positions at the start, shape (nq,), in rad; None leaves contact out.
     """
+    from runner.caveats.file import left_out_of
     from runner.caveats.touch import force_contact, servo_contact
     from runner.controllers.sampled_stability import velocity_loop
     from runner.plants.kinds import StandsIn
@@ -103,7 +104,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         contact=None if q_start is None or "wrist_sensor" in config.plugged else servo_contact(config, q_start),
         touch=None if q_start is None or "wrist_sensor" in config.plugged else force_contact(config, q_start),
         velocity_loop=velocity_loop(config.loops, config.arm, config.path) if config.commands == "torque" else None,
-        left_out=config.arm.left_out,
+        left_out=left_out_of(config),
     )
 
 

@@ -10,8 +10,9 @@ from runner.config.per_joint import expand
 from runner.config.robot import ArmConfig, RobotConfig, StageConfig
 from runner.errors import ConfigError
 from runner.robots.armature import armature_file
-from runner.robots.description import find_file, find_urdf, mjcf_of, read_urdf
+from runner.robots.description import find_file, find_urdf, mjcf_of, read_arm, read_urdf
 from runner.robots.inertials import Payload, set_file
+from runner.robots.joint_dynamics import dynamics_of
 from runner.robots.mjcf_files import is_mjcf
 from runner.robots.model import FloatArray, RobotModel
 from runner.robots.mounting import Mount, mount
@@ -37,8 +38,8 @@ def build_robot(
         sensor: Config of the force/torque sensor on the last arm's tip frame, whose mass it bears; None for none.
 
     Raises:
-        ConfigError: for a file that cannot be found or built, a frame or link that does not exist, a posture of the
-            wrong length or beyond the joints' limits, or names that clash between stages.
+        ConfigError: for a file that cannot be found or built, a frame or link that does not exist, a posture or
+            friction of the wrong length, a posture beyond the joints' limits, or names that clash between stages.
     """
     paths = [find_arm(key, arm, config_dirs) for key, arm in keyed_arms(config)]
     files = [
@@ -94,13 +95,14 @@ def _build(config: RobotConfig, gravity: float, paths: Sequence[Path], sensor: F
         joints = slice(first, first + model.nq)
         home = np.array(expand(f"{key}.home", arm.home, model.joint_names))
         _check_home(f"{key}.home", model, home)
-        stages.append(Stage(name, model, urdf, joints, home, base_frame))
+        file = dynamics_of(read_arm(path), path.name, gravity)
+        stages.append(Stage(name, model, urdf, joints, home, base_frame, file))
         first = joints.stop
     flange = prefix + list(config.arms.values())[-1].tip
-    mjcfs = [path for path, arm in zip(paths, config.arms.values(), strict=True) if arm.mjcf]
-    left_out = {path.name: motion for path in mjcfs if (motion := mjcf_of(path).left_out.motion)}
     whole_model = RobotModel(whole, tip, gravity) if several else stages[0].model
-    return Robot(whole, whole_model, tuple(stages), flange, left_out)
+    for kind, value in (("viscous", config.friction.viscous), ("coulomb", config.friction.coulomb)):
+        expand(f"robot.friction.{kind}", value, whole_model.joint_names)
+    return Robot(whole, whole_model, tuple(stages), flange)
 
 
 def keyed_arms(config: RobotConfig) -> list[tuple[str, ArmConfig]]:

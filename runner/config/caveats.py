@@ -119,8 +119,8 @@ class DefaultPlantThreshold(StrictModel):
     replaced: Share
 
 
-class MjcfThreshold(StrictModel):
-    """Threshold of the rule on what is not taken from an MJCF.
+class RobotFileThreshold(StrictModel):
+    """Threshold of the rule on what is not taken from the file of a robot.
 
     Attributes:
         left_out: How many things that would change the motion may stand there and be left out.
@@ -154,7 +154,7 @@ class CaveatsConfig(StrictModel):
         unstable_gains: A velocity gain that its control period does not bear.
         unstable_contact: A wall too stiff for an admittance behind joint servos, or for a law that pushes by torques.
         default_plant: Another plant in place of the default one.
-        mjcf: What is not taken from the robot's MJCF.
+        robot_file: What is not taken from the robot's file.
         plant_error: What the plant's step is worth, of a run that was held against Runge-Kutta.
     """
 
@@ -169,5 +169,5 @@ class CaveatsConfig(StrictModel):
     unstable_gains: UnstableGainsThreshold
     unstable_contact: UnstableContactThreshold
     default_plant: DefaultPlantThreshold
-    mjcf: MjcfThreshold
+    robot_file: RobotFileThreshold
     plant_error: PlantErrorThreshold

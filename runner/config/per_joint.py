@@ -5,10 +5,23 @@ from collections.abc import Sequence
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.errors import ConfigError
+from runner.registry import StrictModel
 from runner.texts import quoted
 
 PositivePerJoint = PositiveFloat | list[PositiveFloat]
 NonNegativePerJoint = NonNegativeFloat | list[NonNegativeFloat]
+
+
+class FrictionConfig(StrictModel):
+    """Config of joint friction; a value for every joint or one for each.
+
+    Attributes:
+        viscous: Torque per speed, in N m s/rad; N s/m where a joint slides.
+        coulomb: Torque against any motion, and up to which a joint at rest stays so, in N m; N where it slides.
+    """
+
+    viscous: NonNegativePerJoint
+    coulomb: NonNegativePerJoint
 
 
 def expand(key: str, value: float | list[float], joints: Sequence[str]) -> list[float]:

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat, field_validator
 
+from runner.config.per_joint import FrictionConfig
 from runner.config.per_stage import NonNegativePerStage, PositivePerStage, TorquePerStage
 from runner.registry import StrictModel
 
@@ -148,6 +149,7 @@ class RobotConfig(StrictModel):
         goal: Tip position that goal, quintic and line go to, in m.
         path_size: Size of the paths that have one, such as a circle's radius, in m.
         tool: What is fixed on its tip frame, whose own tip is controlled then; None for nothing.
+        friction: Friction in its joints, which plants that take torques have; over all stages where there are several.
         payload: What its tip carries.
         rated_payload: The largest payload that its maker allows, in kg; None where none is stated.
         natural_frequency: omega_n of its controller, in rad/s, by stage where it has several; so all that follow.
@@ -165,6 +167,7 @@ class RobotConfig(StrictModel):
     goal: Vector
     path_size: PositiveFloat
     tool: ToolConfig | None
+    friction: FrictionConfig
     payload: PayloadConfig
     rated_payload: PositiveFloat | None
     natural_frequency: PositivePerStage

@@ -7,6 +7,7 @@ import yaml
 
 from runner.doctor.examination import Examination
 from runner.errors import RunnerError, StoreError
+from runner.robots.joint_dynamics import FileDynamics
 from runner.robots.model import FloatArray
 from runner.store.atomic import write_atomically
 
@@ -22,7 +23,7 @@ robot:
   {format}: {file}
   tip: {tip}  # the frame that is controlled
   home: {home}  # {units}
-  goal: {goal}  # m, tip position where quintic, line and goal go
+{dynamics}  goal: {goal}  # m, tip position where quintic, line and goal go
   path_size: {path_size}  # m, of a circle and the like
   natural_frequency: {natural_frequency}  # rad/s, of its controller
   settling_band: {settling_band}  # m, on each axis
@@ -55,6 +56,7 @@ def write_folder(examination: Examination, folder: Path) -> list[Path]:
         home=_list(start.home),
         units=" ".join(dict.fromkeys(model.joint_units)) if len(set(model.joint_units)) == 1 else
         ", ".join(model.joint_units),
+        dynamics=_dynamics(examination.dynamics),
         goal=_list(start.goal),
         path_size=_digits(0.05 * model.reach),
         natural_frequency=start.natural_frequency,
@@ -83,6 +85,18 @@ def _arm_files(examination: Examination, name: str) -> tuple[str, dict[str, byte
     folder = examination.source.resolve().parent
     files = [file.resolve() for file in mjcf.files]
     return "mjcf", {file.relative_to(folder).as_posix(): file.read_bytes() for file in files}
+
+
+def _dynamics(given: FileDynamics | None) -> str:
+    """Return the lines of armature and friction that the file gives the joints."""
+    lines = []
+    if given is not None and given.armature.any():
+        lines.append(f"  armature: {_list(given.armature)}  # kg m^2, of the file\n")
+    if given is not None and (given.damping.any() or given.friction.any()):
+        lines.append("  friction:  # of the file\n")
+        lines.append(f"    viscous: {_list(given.damping)}  # N m s/rad, its damping\n")
+        lines.append(f"    coulomb: {_list(given.friction)}  # N m\n")
+    return "".join(lines)
 
 
 def _list(values: FloatArray) -> str:

@@ -20,13 +20,14 @@ from runner.doctor.postures import (
     describe_singular,
     describe_workspace,
 )
-from runner.doctor.starting_point import StartingPoint, propose
+from runner.doctor.starting_point import StartingPoint, judge_home, propose
 from runner.doctor.tip import choose_tip, frames_at_the_end
 from runner.errors import ConfigError
 from runner.robots.description import drop_meshes, read_arm
+from runner.robots.joint_dynamics import FileDynamics, by_value, dynamics_of
 from runner.robots.mjcf import Mjcf, read_mjcf
 from runner.robots.mjcf_files import is_mjcf
-from runner.robots.model import RobotModel
+from runner.robots.model import STANDARD_GRAVITY, RobotModel
 from runner.robots.tree import UrdfTree
 
 _POSTURES = 300
@@ -45,6 +46,7 @@ class Examination:
         urdf: The text of the arm's URDF, mended as far as it can be without a choice, without meshes.
         model: The arm of that text; None where something bars it.
         start: Values to start with; None where there is no model.
+        dynamics: What the file says of damping, friction and armature; None where there is no model.
     """
 
     name: str
@@ -55,6 +57,7 @@ class Examination:
     urdf: str
     model: RobotModel | None
     start: StartingPoint | None
+    dynamics: FileDynamics | None = None
 
 
 def examine(path: Path, wanted_tip: str | None) -> Examination:
@@ -100,13 +103,26 @@ def examine(path: Path, wanted_tip: str | None) -> Examination:
         findings += compare_readings(path)
     findings += compare_engines(urdf, model, generator)
     findings += [*check_tasks(model), *describe_singular(model, postures), *describe_workspace(model, generator)]
-    return Examination(name, path, mjcf, tip, findings, urdf, model, propose(model, postures))
+    home, said = judge_home(model, tree.home)
+    findings += said
+    dynamics = dynamics_of(tree, path.name, STANDARD_GRAVITY)
+    findings += _taken(dynamics, model)
+    return Examination(name, path, mjcf, tip, findings, urdf, model, propose(model, postures, home), dynamics)
 
 
 def _left_out(mjcf: Mjcf) -> list[Finding]:
     """Return what an MJCF holds beside bodies, joints and sites."""
     moves = [Finding("note", "left out of the motion", text) for text in mjcf.left_out.motion]
     return [*moves, *(Finding("note", "left out", text) for text in mjcf.left_out.rest)]
+
+
+def _taken(dynamics: FileDynamics, model: RobotModel) -> list[Finding]:
+    """Return what the config takes from the file beside masses."""
+    return [
+        Finding("note", what, by_value(values, model.joint_names), f"--write gives it by {key}")
+        for what, key, values in dynamics.by_key()
+        if values.any()
+    ]
 
 
 def _name_frames(tree: UrdfTree, tip: str) -> Finding:

@@ -5,6 +5,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Collection
 
 from runner.doctor.finding import Finding
+from runner.robots.joint_dynamics import hold
 from runner.robots.tree import UrdfTree, moves
 from runner.robots.urdf_values import number
 
@@ -17,44 +18,37 @@ def check_joints(tree: UrdfTree, tip: str) -> list[Finding]:
     Joints that move and do not lie between base and tip are fixed: the runner takes serial arms.
     """
     way = tree.way(tip)
-    findings = [_fix(name, joint) for name, joint in tree.joints.items() if moves(joint) and name not in way]
+    fixed = sum(not moves(joint) for joint in tree.joints.values())
+    beside = [name for name, joint in tree.joints.items() if moves(joint) and name not in way]
+    findings = [_fix(tree, name, way) for name in beside]
     for name in way:
         if moves(tree.joints[name]):
-            findings += _check_joint(name, tree.joints[name])
-    lost = [name for name in way if _lost(tree.joints[name])]
-    if lost:
-        text = f"damping or friction of {', '.join(lost)}: PyBullet takes the damping, Pinocchio neither"
-        findings.append(Finding("note", "dynamics", text, "the runner leaves both out, so that the engines agree"))
-    fixed = sum(not moves(joint) for joint in tree.joints.values()) - len(_beside(findings))
+            findings += _check_joint(name, tree.joints[name], tree.ties.get(name))
     if fixed:
         findings.append(Finding("note", "fixed joints", f"{fixed}: each rides on the link before it"))
     return findings
 
 
-def _fix(name: str, joint: ET.Element) -> Finding:
-    joint.set("type", "fixed")
-    for tag in ("mimic", "limit", "dynamics", "axis"):
-        for element in joint.findall(tag):
-            joint.remove(element)
-    return Finding("finding", f"joint '{name}'", "it moves beside the way to the tip", "make it fixed, at zero", True)
+def _fix(tree: UrdfTree, name: str, way: Collection[str]) -> Finding:
+    joint, tie = tree.joints[name], tree.ties.get(name)
+    mimic, unit = joint.find("mimic"), "m" if joint.get("type") == "prismatic" else "rad"
+    text = "it moves beside the way to the tip" + (f", and {tie}" if tie else "")
+    if mimic is not None and mimic.get("joint") in way:
+        text += ", which moves the tip: its links no longer move with that"
+    where = "where the keyframe 'home' has it" if name in tree.home else "at zero, or the limit nearest to it"
+    held = f"{hold(tree, name):.6g} {unit}, {where}"
+    return Finding("finding", f"joint '{name}'", text, f"hold it fixed at {held}", True)
 
 
-def _beside(findings: Collection[Finding]) -> list[Finding]:
-    return [finding for finding in findings if finding.mend == "make it fixed, at zero"]
-
-
-def _check_joint(name: str, joint: ET.Element) -> list[Finding]:
+def _check_joint(name: str, joint: ET.Element, tie: str | None) -> list[Finding]:
     place, kind = f"joint '{name}'", joint.get("type", "")
     findings = []
     if kind not in ("revolute", "continuous", "prismatic"):
         return [Finding("refused", place, f"it is {kind or 'of no type'}", "allowed: revolute, prismatic or fixed")]
-    if joint.find("mimic") is not None:
+    if tie:
         return [
-            Finding(
-                "refused", place, "it mimics another joint, and PyBullet and Pinocchio let it move freely",
-                "make it fixed, or take its <mimic> out",
-            )
-        ]  # fmt: skip
+            Finding("refused", place, f"it {tie}, and engines would let it move freely", "take that out, or fix it")
+        ]
     limit = joint.find("limit")
     if limit is None:
         limit = ET.SubElement(joint, "limit")
@@ -66,12 +60,6 @@ def _check_joint(name: str, joint: ET.Element) -> list[Finding]:
     findings += _check_positions(place, joint, limit)
     findings += [finding for key in ("effort", "velocity") for finding in _check_limit(place, limit, key, joint)]
     return findings
-
-
-def _lost(joint: ET.Element) -> bool:
-    """Tell whether a joint has damping or friction, which the runner leaves out."""
-    dynamics = joint.find("dynamics")
-    return any(number(dynamics, key) > 0.0 for key in ("damping", "friction"))
 
 
 def _check_positions(place: str, joint: ET.Element, limit: ET.Element) -> list[Finding]:

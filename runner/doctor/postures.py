@@ -7,7 +7,7 @@ from runner.robots.model import FloatArray, RobotModel
 from runner.robots.task_space import task_directions
 from runner.robots.workspace import analyse
 
-_SINGULAR = 0.1  # of the reach: the smallest singular value below which controllers damp
+SINGULAR = 0.1  # of the reach: the smallest singular value below which controllers damp
 
 
 def check_gravity(model: RobotModel, postures: FloatArray) -> list[Finding]:
@@ -81,7 +81,7 @@ def describe_singular(model: RobotModel, postures: FloatArray) -> list[Finding]:
     if smallest.max() < 1e-9 * model.reach:
         text = "the tip's position is singular in every posture: a joint's axis passes through it"
         return [Finding("finding", "singular postures", text, "choose another tip by --tip, or add a link at the tool")]
-    share = float((smallest < _SINGULAR * model.reach).mean())
+    share = float((smallest < SINGULAR * model.reach).mean())
     text = (
         f"{100.0 * share:.0f} % of all postures are singular for the tip's position, or nearly so; the nearest found "
         f"is q = {np.round(worst, 2).tolist()}"

@@ -1,10 +1,12 @@
 """Values to start with: a home posture, a goal, and gains that the joints can bear."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from runner.doctor.postures import smallest_singular_values
+from runner.doctor.finding import Finding
+from runner.doctor.postures import SINGULAR, smallest_singular_values
 from runner.robots.model import FloatArray, RobotModel
 from runner.robots.task_space import distance_beside, task_directions
 
@@ -29,15 +31,40 @@ class StartingPoint:
     natural_frequency: float
 
 
-def propose(model: RobotModel, postures: FloatArray) -> StartingPoint:
-    """Return values for an arm: home as far from singular postures as some, shape (N, nq), are, above the ground.
+def propose(model: RobotModel, postures: FloatArray, home: FloatArray | None) -> StartingPoint:
+    """Return values for an arm.
+
+    Home is the one given, shape (nq,), or as far from singular postures as some, shape (N, nq), are, above the ground.
 
     The goal lies a small step away, where the joints can go; and the natural frequency is such that a sudden step to
     it asks for no more than half of the effort that gravity leaves, between 2 and 20 rad/s.
     """
-    home = _home(model, postures)
+    home = _home(model, postures) if home is None else home
     goal = _goal(model, home, postures)
     return StartingPoint(home, goal, _natural_frequency(model, home, goal))
+
+
+def judge_home(model: RobotModel, given: Mapping[str, float]) -> tuple[FloatArray | None, list[Finding]]:
+    """Return the posture of a file's keyframe `home`, by joint, and what there is to say of it.
+
+    It is None where there is none, or where it does not serve as a home: beyond limits, singular, or too heavy to hold.
+    """
+    if not given:
+        return None, []
+    home = np.array([given[name] for name in model.joint_names])
+    lower, upper = model.position_limits
+    wrong = [
+        f"it has '{name}' at {value:g} {unit}, and its limits are {low:g} to {high:g}"
+        for name, unit, value, low, high in zip(model.joint_names, model.joint_units, home, lower, upper, strict=True)
+        if not low <= value <= high
+    ]
+    if not wrong and smallest_singular_values(model, home[None], pose=False)[0] < SINGULAR * model.reach:
+        wrong = ["it is singular for the tip's position, or nearly so"]
+    if not wrong and (np.abs(model.gravity_torque(home)) > model.effort_limits).any():
+        wrong = ["gravity asks for more there than the effort limits"]
+    if wrong:
+        return None, [Finding("note", "home", f"the keyframe 'home' is not taken: {'; '.join(wrong)}")]
+    return home, [Finding("note", "home", "the keyframe 'home' is taken")]
 
 
 def _home(model: RobotModel, postures: FloatArray) -> FloatArray:

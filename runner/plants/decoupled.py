@@ -7,8 +7,9 @@ from typing import Literal
 import numpy as np
 from pydantic import PositiveFloat
 
+from runner.config.per_joint import FrictionConfig
 from runner.plants.computation import ComputationConfig
-from runner.plants.friction import FrictionConfig, friction_of, with_friction
+from runner.plants.friction import friction_of, with_friction
 from runner.plants.motion import find_motion
 from runner.plants.plant import FloatArray, Plant
 from runner.plants.servo import ServoConfig

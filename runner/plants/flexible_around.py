@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from runner.config.per_joint import FrictionConfig
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints, links_of
-from runner.plants.friction import FrictionConfig
 from runner.plants.motion import friction_by_joint
 from runner.plants.motor_friction import MotorFriction
 from runner.plants.plant import FloatArray, Plant

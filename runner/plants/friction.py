@@ -6,26 +6,12 @@ import numpy as np
 import pinocchio as pin
 from scipy.linalg.lapack import dposv
 
-from runner.config.per_joint import NonNegativePerJoint
 from runner.plants.plant import FloatArray, Plant, PlantAround, TellsContact
-from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 
 _NO_CONTACT = np.zeros(6)
 _PIVOTS = 100  # at most; an arm of ten joints takes one where nothing starts or stops, else a few
 _ROUNDING = 1e-12  # of the torques that act
-
-
-class FrictionConfig(StrictModel):
-    """Config of joint friction; a value for every joint or one for each.
-
-    Attributes:
-        viscous: Torque per speed, in N m s/rad; N s/m where a joint slides.
-        coulomb: Torque against any motion, and up to which a joint at rest stays so, in N m; N where it slides.
-    """
-
-    viscous: NonNegativePerJoint
-    coulomb: NonNegativePerJoint
 
 
 def with_friction(plant: Plant, model: RobotModel, viscous: FloatArray, coulomb: FloatArray, tick: float) -> Plant:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from runner.config.per_joint import expand
+from runner.config.per_joint import FrictionConfig, expand
 from runner.errors import ConfigError
 from runner.plants.plant import FloatArray
 from runner.robots.model import RobotModel
@@ -13,7 +13,6 @@ from runner.robots.robot import Robot
 
 if TYPE_CHECKING:
     from runner.plants.decoupled import TorquePlantConfig
-    from runner.plants.friction import FrictionConfig
 
 
 @dataclass(frozen=True)
@@ -81,7 +80,7 @@ def find_motion(robot: Robot, config: "TorquePlantConfig") -> Motion:
     return Motion(robot, tuple(arms), parallel)
 
 
-def friction_by_joint(robot: Robot, friction: "FrictionConfig") -> tuple[FloatArray, FloatArray]:
+def friction_by_joint(robot: Robot, friction: FrictionConfig) -> tuple[FloatArray, FloatArray]:
     """Return viscous and dry friction of each joint of a robot, shapes (nq,), in N m s/rad and N m.
 
     Raises:

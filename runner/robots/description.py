@@ -4,6 +4,7 @@ import contextlib
 import math
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -65,7 +66,9 @@ def read_arm(path: Path) -> UrdfTree:
         ConfigError: if it is neither; see read_tree and read_mjcf.
     """
     if is_mjcf(path):
-        return make_tree(ET.fromstring(mjcf_of(path).urdf), path)  # noqa: S314 - our own text
+        mjcf = mjcf_of(path)
+        tree = make_tree(ET.fromstring(mjcf.urdf), path)  # noqa: S314 - our own text
+        return replace(tree, ties=mjcf.ties, home=mjcf.home)
     return read_tree(path)
 
 
@@ -142,18 +145,18 @@ def drop_meshes(links: Mapping[str, ET.Element]) -> None:
 
 def _check_joints(path: Path, tree: UrdfTree) -> list[str]:
     """Return joints that move with another, or beside it: a robot is a serial arm, or several, each with its file."""
-    moving = {name for name, joint in tree.joints.items() if moves(joint)}
-    chain = max((moving.intersection(tree.way(link)) for link in tree.ends), key=len)
-    beside = sorted(moving - chain)
-    branches = [
-        f"robot.urdf: {path} branches: {', '.join(beside)} move beside {', '.join(sorted(chain))}; allowed: a serial "
-        "arm; `runner doctor FILE --tip FRAME --write DIR` holds them fixed"
-    ]
-    return (branches if beside else []) + [
-        f"robot.urdf: joint '{name}' in {path} mimics another, and its motion would be free; make it fixed, or take "
-        "its <mimic> out"
-        for name, joint in tree.joints.items()
-        if moves(joint) and joint.find("mimic") is not None
+    chain = tree.chain
+    beside = sorted(name for name, joint in tree.joints.items() if moves(joint) and name not in chain)
+    held = "`runner doctor FILE --tip FRAME --write DIR` holds fixed what does not move the tip"
+    if beside:
+        return [
+            f"robot.urdf: {path} branches: {', '.join(beside)} move beside {', '.join(sorted(chain))}; allowed: a "
+            f"serial arm; {held}"
+        ]
+    return [
+        f"robot.urdf: joint '{name}' in {path} {tree.ties[name]}, and its motion would be free; take that out; {held}"
+        for name in chain
+        if name in tree.ties
     ]
 
 

@@ -139,7 +139,7 @@ def add_payload(links: Mapping[str, ET.Element], payload: Payload) -> None:
             ]
         )
     link = links[payload.link]
-    frame, own = _inertial_frame(link), _own_inertia(link)
+    frame, own = place_of(link.find("inertial")), _own_inertia(link)
     whole = frame.act(own) + pin.Inertia(payload.mass, np.array(payload.position, dtype=float), np.zeros((3, 3)))
     write_inertial(link, whole.mass, whole.lever, whole.inertia)
 
@@ -198,9 +198,9 @@ def _tensor(link: ET.Element) -> np.ndarray:
     return tensor
 
 
-def _inertial_frame(link: ET.Element) -> pin.SE3:
-    """Return the frame in which a link's inertial is given, in the link's frame."""
-    origin = link.find("inertial/origin")
+def place_of(element: ET.Element | None) -> pin.SE3:
+    """Return the frame that the `<origin>` of a joint or an inertial gives, in that of the link that bears it."""
+    origin = None if element is None else element.find("origin")
     xyz, rpy = ("0 0 0", "0 0 0") if origin is None else (origin.get("xyz", "0 0 0"), origin.get("rpy", "0 0 0"))
     return pin.SE3(pin.rpy.rpyToMatrix(_vector(rpy)), _vector(xyz))
 

@@ -2,7 +2,7 @@
 
 import threading
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,10 +11,11 @@ from typing import Any
 import mujoco
 
 from runner.errors import ConfigError
-from runner.robots.mjcf_efforts import efforts_of
 from runner.robots.mjcf_files import asset_files, follow_includes
+from runner.robots.mjcf_joints import dynamics_of, efforts_of, home_of
 from runner.robots.mjcf_losses import LeftOut, left_out, refused_model, refused_parts, refused_shapes
-from runner.robots.mjcf_urdf import write_urdf
+from runner.robots.mjcf_ties import other_ties, take_out_ties
+from runner.robots.mjcf_urdf import joint_name, write_urdf
 
 _LOCK = threading.Lock()  # MuJoCo has one place for warnings
 _KEPT = 8
@@ -27,11 +28,15 @@ class Mjcf:
 
     Attributes:
         urdf: The text of a URDF of its bodies, joints and sites.
+        ties: Joints that do not move freely, with what ties them; see UrdfTree.
+        home: Joint positions of its keyframe `home`, in rad or m; empty where it has none.
         left_out: What it holds beside.
-        files: Itself, the files that it includes, and its meshes.
+        files: Itself, the files that it includes, and its meshes that are there.
     """
 
     urdf: str
+    ties: Mapping[str, str]
+    home: Mapping[str, float]
     left_out: LeftOut
     files: tuple[Path, ...]
 
@@ -42,8 +47,8 @@ def read_mjcf(path: Path) -> Mjcf:
     What was read last is kept until its files change.
 
     Raises:
-        ConfigError: if it is none, MuJoCo does not take it, it leads out of its folder, a mesh is missing, or it holds
-            what no arm of ours has.
+        ConfigError: if it is none, MuJoCo does not take it, it leads out of its folder, a mesh that weighs is missing,
+            or it holds what no arm of ours has.
     """
     if path in _read and _read[path][0] == _stamps(_read[path][1].files):
         return _read[path][1]
@@ -67,23 +72,36 @@ def _convert(path: Path) -> Mjcf:
             spec = mujoco.MjSpec.from_file(str(path.resolve()))
         except (ValueError, RuntimeError, mujoco.FatalError) as error:
             raise _refused(path, error) from error
-        names = [asset.file for asset in (*spec.meshes, *spec.hfields)]
-        names = [Path(name).name for name in names] if spec.strippath else names
-        meshes = asset_files(path, spec.meshdir, names)
         _refuse(path, refused_parts(spec))
         slim = spec.copy()
+        ties = take_out_ties(slim)
         _leave_shapes_that_weigh(slim)
         _refuse(path, refused_shapes(slim))
+        meshes, missing = asset_files(path, spec.meshdir, _asset_names(spec), _asset_names(slim))
         try:
             model = slim.compile()
         except (ValueError, RuntimeError, mujoco.FatalError) as error:
             raise _refused(path, error) from error
     _refuse(path, refused_model(model))
     efforts, of_efforts = efforts_of(model)
-    urdf, renamed = write_urdf(spec.modelname, model, efforts)
     lost = left_out(spec, model)
-    rest = (*of_efforts, *renamed, *lost.rest, *(f"MuJoCo's warning: {text.strip()}" for text in dict.fromkeys(said)))
-    return Mjcf(urdf, LeftOut(lost.motion, rest), (*texts, *meshes))
+    urdf, renamed = write_urdf(spec.modelname, model, efforts, dynamics_of(model), lost.motion)
+    rest = (
+        *of_efforts,
+        *renamed,
+        *lost.rest,
+        *missing,
+        *(f"MuJoCo's warning: {text.strip()}" for text in dict.fromkeys(said)),
+    )
+    tied = dict((*other_ties(model), *((joint.id, text) for joint, text in ties)))
+    named = {joint_name(model, joint): text for joint, text in tied.items()}
+    return Mjcf(urdf, named, home_of(spec, model), LeftOut(lost.motion, rest), (*texts, *meshes))
+
+
+def _asset_names(spec: Any) -> list[str]:
+    """Return the files that the meshes and height fields of a specification name."""
+    names = [asset.file for asset in (*spec.meshes, *spec.hfields)]
+    return [Path(name).name for name in names] if spec.strippath else names
 
 
 def _refuse(path: Path, problems: Iterator[str]) -> None:

@@ -1,7 +1,7 @@
 """The files that an MJCF consists of: followed before MuJoCo reads them, and refused where they lead out."""
 
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 
 from runner.errors import ConfigError
@@ -60,28 +60,29 @@ def follow_includes(path: Path) -> list[Path]:
     return found
 
 
-def asset_files(path: Path, folder: str, files: Iterable[str]) -> list[Path]:
-    """Return the files of an MJCF's meshes or height fields.
+def asset_files(path: Path, folder: str, files: Iterable[str], read: Collection[str]) -> tuple[list[Path], list[str]]:
+    """Return the files of an MJCF's meshes or height fields, and in words those that are not there and need not be.
 
     Args:
         path: The MJCF file.
         folder: Where they lie, from its folder: `meshdir`.
         files: Their names.
+        read: Those of them that are read, because they weigh.
 
     Raises:
-        ConfigError: with all that are missing or lie outside the file's folder.
+        ConfigError: with all of these that are missing or lie outside the file's folder.
     """
     home = path.resolve().parent
     found = {file: (home / folder / file).resolve() for file in files if file}
-    wrong: dict[str, list[str]] = {}
-    for file, place in found.items():
-        if problem := _led_out(place, home) or _missing(place):
-            wrong.setdefault(problem, []).append(quoted(str(Path(folder) / file)))
-    if wrong:
-        raise ConfigError(
-            f"robot.mjcf: {path} names the mesh {few(names)}: {problem}" for problem, names in wrong.items()
-        )
-    return list(dict.fromkeys(found.values()))
+    wrong = {file: bad for file, place in found.items() if (bad := _led_out(place, home) or _missing(place))}
+    told: dict[str, list[str]] = {}
+    for file, problem in wrong.items():
+        told.setdefault(problem if file in read else "", []).append(quoted(str(Path(folder) / file)))
+    spare = told.pop("", [])
+    if told:
+        raise ConfigError(f"robot.mjcf: {path} names the mesh {few(n)}: {problem}" for problem, n in told.items())
+    there = dict.fromkeys(place for file, place in found.items() if file not in wrong)
+    return list(there), [f"meshes that are not in its folder, and weigh nothing: {few(spare)}"] if spare else []
 
 
 def _excess(files: list[Path], roots: list[ET.Element]) -> Iterator[str]:

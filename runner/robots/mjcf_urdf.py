@@ -32,7 +32,13 @@ def body_name(model: Any, body: int) -> str:
     return own or f"body{body}"
 
 
-def write_urdf(name: str, model: Any, efforts: Mapping[int, float]) -> tuple[str, list[str]]:
+def write_urdf(
+    name: str,
+    model: Any,
+    efforts: Mapping[int, float],
+    dynamics: Mapping[str, FloatArray],
+    left_out: Mapping[str, str],
+) -> tuple[str, list[str]]:
     """Return the URDF text of a model of bodies with hinges and slides, on a fixed base.
 
     A link is a body's, in its frame; sites are links without mass. Where a body has several joints, or one beside its
@@ -42,6 +48,8 @@ def write_urdf(name: str, model: Any, efforts: Mapping[int, float]) -> tuple[str
         name: The robot's name.
         model: MuJoCo's compiled model.
         efforts: Largest torque or force of joints, by index, in N m or N; others have no limit.
+        dynamics: Damping, friction and armature of each joint, shapes (njnt,), by these names, in SI units.
+        left_out: What else would change the motion, and the gravity that gives it; see LeftOut.
 
     Returns:
         The text; and what is named otherwise than in the model, for the reader.
@@ -51,7 +59,7 @@ def write_urdf(name: str, model: Any, efforts: Mapping[int, float]) -> tuple[str
     for body in range(model.nbody):
         _write_body(ET.SubElement(robot, "link", name=body_name(model, body)), model, body)
         if body:
-            _write_joints(robot, model, body, efforts, names)
+            _write_joints(robot, model, body, efforts, dynamics, names)
     for site in range(model.nsite):
         bearer = body_name(model, int(model.site_bodyid[site]))
         link = names.claim(model.site(site).name or f"site{site}", "_site")
@@ -61,6 +69,8 @@ def write_urdf(name: str, model: Any, efforts: Mapping[int, float]) -> tuple[str
     for joint in range(model.njnt):
         if model.joint(joint).name not in ("", joint_name(model, joint)):
             names.told.append(f"joint '{model.joint(joint).name}' is '{joint_name(model, joint)}', beside a link")
+    for text, gravity in left_out.items():
+        ET.SubElement(robot, "left_out", text=text, gravity=gravity)
     ET.indent(robot)
     return ET.tostring(robot, encoding="unicode"), names.told
 
@@ -88,7 +98,10 @@ class _Names:
         return new
 
 
-def _write_joints(robot: ET.Element, model: Any, body: int, efforts: Mapping[int, float], names: _Names) -> None:
+def _write_joints(
+    robot: ET.Element, model: Any, body: int, efforts: Mapping[int, float], dynamics: Mapping[str, FloatArray],
+    names: _Names,
+) -> None:  # fmt: skip
     """Write the joints between a body and its parent, with links without mass between them."""
     parent, name = body_name(model, int(model.body_parentid[body])), body_name(model, body)
     place = _frame(model.body_pos, model.body_quat, body)
@@ -107,6 +120,8 @@ def _write_joints(robot: ET.Element, model: Any, body: int, efforts: Mapping[int
             "lower": repr(float(lower)), "upper": repr(float(upper)),
             "effort": repr(efforts.get(joint, _NO_LIMIT)), "velocity": repr(_NO_LIMIT),
         })  # fmt: skip
+        if any(values[joint] for values in dynamics.values()):
+            ET.SubElement(element, "dynamics", {key: repr(float(values[joint])) for key, values in dynamics.items()})
         if not last:
             _write_massless(robot, child)
         parent, offset, place = child, anchor, pin.SE3.Identity()

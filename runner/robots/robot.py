@@ -1,11 +1,12 @@
 """A robot as a chain of stages: one arm, or arms riding on each other."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 
+from runner.robots.joint_dynamics import FileDynamics
 from runner.robots.model import FloatArray, RobotModel
 
 
@@ -20,6 +21,7 @@ class Stage:
         joints: Its joints within the robot's.
         home: Its joint positions at home, in rad.
         base_frame: The robot's frame that is its base; None for the first stage, whose base is the robot's.
+        file: What its file says of its motion beside masses; None where it was made of none.
     """
 
     name: str
@@ -28,6 +30,7 @@ class Stage:
     joints: slice
     home: FloatArray
     base_frame: str | None
+    file: FileDynamics | None = None
 
     @property
     def home_offset(self) -> FloatArray:
@@ -44,14 +47,12 @@ class Robot:
         model: Rigid-body model of the whole; its tip is the last stage's.
         stages: The arms.
         flange: Frame on which a tool and a force/torque sensor are fixed; the tip itself where there is no tool.
-        left_out: What would change its motion and stands in the MJCFs that it is made of, by the file's name, in words.
     """
 
     urdf: str
     model: RobotModel
     stages: tuple[Stage, ...]
     flange: str
-    left_out: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def home(self) -> FloatArray:

@@ -2,8 +2,8 @@
 
 import xml.etree.ElementTree as ET
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from runner.errors import ConfigError, nearest
@@ -24,12 +24,16 @@ class UrdfTree:
         links: Its links by name.
         joints: Its joints by name.
         root: Name of the link that nothing bears.
+        ties: Joints that do not move freely, with what ties them, as in "mimics 'q1'".
+        home: Joint positions of the file's keyframe `home`, in rad or m; empty where it has none.
     """
 
     robot: ET.Element
     links: dict[str, ET.Element]
     joints: dict[str, ET.Element]
     root: str
+    ties: Mapping[str, str] = field(default_factory=dict)
+    home: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def bearers(self) -> dict[str, str]:
@@ -49,6 +53,12 @@ class UrdfTree:
             way.append(bearers[link])
             link = end_of(self.joints[way[-1]], "parent")
         return way[::-1]
+
+    @property
+    def chain(self) -> list[str]:
+        """Joints that move on the way with most of them, in order: of a serial arm all that move."""
+        ways = [[name for name in self.way(end) if moves(self.joints[name])] for end in self.ends]
+        return max(ways, key=len)
 
 
 def end_of(joint: ET.Element, role: str) -> str:
@@ -95,7 +105,9 @@ def make_tree(robot: ET.Element, path: Path) -> UrdfTree:
     elif len(roots) > 1:
         problems.append(f"it holds several trees, with the bases {', '.join(roots)}; join them by a fixed joint")
     if not problems:
-        tree = UrdfTree(robot, links, joints, roots[0])
+        mimics = {name: mimic for name, joint in joints.items() if (mimic := joint.find("mimic")) is not None}
+        ties = {name: f"mimics '{mimic.get('joint', '')}'" for name, mimic in mimics.items()}
+        tree = UrdfTree(robot, links, joints, roots[0], ties)
         circling = _circling(tree)
         if not circling:
             return tree

@@ -55,8 +55,8 @@ _TABLE = """
         kinematic load motion=plants.motion motor_friction mujoco mujoco_model payload_changes plant=plants.plant rk4
         rk4_flexible_links servo set_points touched
     robots: __init__=robots.__init__ armature=robots.armature beams cantilever chain denavit_hartenberg description
-        effective_mass inertials inverse_kinematics mismatch mjcf mjcf_efforts mjcf_files mjcf_losses mjcf_urdf model
-        modes mounting robot=robots.robot task_space tool_link tree urdf_values workspace
+        effective_mass inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_joints mjcf_losses
+        mjcf_ties mjcf_urdf model modes mounting robot=robots.robot task_space tool_link tree urdf_values workspace
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
         kinds=sensing.kinds motors=sensing.motors streams velocity wrench
     trajectories: __init__=trajectories.__init__ blend circle closed_figure from_file goal impulses interpolation

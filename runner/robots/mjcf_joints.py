@@ -1,11 +1,39 @@
-"""What the actuators of an MJCF say of the torques of an arm's joints."""
+"""What an MJCF says of its joints: largest torques, damping, friction, armature, and where they are at home."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import mujoco
+import numpy as np
 
 from runner.robots.mjcf_urdf import joint_name
 from runner.robots.model import FloatArray
+
+HOME = "home"  # the keyframe that is taken
+ON_JOINTS = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
+
+
+def dynamics_of(model: Any) -> Mapping[str, FloatArray]:
+    """Return damping, friction and armature of each joint, shapes (njnt,), in SI units; those of its actuators count.
+
+    An actuator turns as fast as its joint times its gear, and so counts by the square of it.
+    """
+    gear = np.zeros((model.nu, model.njnt))
+    for joint, actuators in _acting(model).items():
+        gear[actuators, joint] = model.actuator_gear[actuators, 0]
+    return {
+        "damping": model.dof_damping + model.actuator_damping @ gear**2,
+        "friction": model.dof_frictionloss.copy(),
+        "armature": model.dof_armature + model.actuator_armature @ gear**2,
+    }
+
+
+def home_of(spec: Any, model: Any) -> dict[str, float]:
+    """Return where a specification's keyframe `home` has the model's joints, in rad or m; empty without one."""
+    for key in spec.keys:
+        if key.name == HOME and len(key.qpos) == model.nq:
+            return {joint_name(model, joint): float(key.qpos[joint]) for joint in range(model.njnt)}
+    return {}
 
 
 def efforts_of(model: Any) -> tuple[dict[int, float], list[str]]:
@@ -37,8 +65,8 @@ def efforts_of(model: Any) -> tuple[dict[int, float], list[str]]:
 def _acting(model: Any) -> dict[int, list[int]]:
     """Return the actuators on each joint that has some, by index."""
     acting: dict[int, list[int]] = {}
-    on_joints = (int(mujoco.mjtTrn.mjTRN_JOINT), int(mujoco.mjtTrn.mjTRN_JOINTINPARENT))
-    for actuator in range(model.nactuator):
+    on_joints = [int(kind) for kind in ON_JOINTS]
+    for actuator in range(model.nu):
         if model.actuator_trntype[actuator] in on_joints:
             acting.setdefault(int(model.actuator_trnid[actuator, 0]), []).append(actuator)
     return acting
@@ -62,3 +90,8 @@ def is_motor(model: Any, actuator: int) -> bool:
         and model.actuator_dyntype[actuator] == mujoco.mjtDyn.mjDYN_NONE
         and any(actuator in acting for acting in _acting(model).values())
     )
+
+
+def actuator_name(model: Any, actuator: int) -> str:
+    """Return the name of an actuator, or one made of its number."""
+    return model.actuator(actuator).name or f"actuator{actuator}"

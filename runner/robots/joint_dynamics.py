@@ -1,0 +1,103 @@
+"""Damping, friction and armature that a robot's file gives its joints, and joints that are held fixed."""
+
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from runner.robots.inertials import place_of
+from runner.robots.model import FloatArray
+from runner.robots.tree import UrdfTree
+from runner.robots.urdf_values import number, wrong_places
+from runner.texts import few
+
+_LONGEST = 300  # characters, of what a file says is left out
+
+
+@dataclass(frozen=True)
+class FileDynamics:
+    """What an arm's file says of its motion beside masses, of joints from the base outwards; 0 where it says nothing.
+
+    Attributes:
+        file: The file's name.
+        damping: Torque per speed, shape (nq,), in N m s/rad; N s/m where a joint slides.
+        friction: Torque against any motion, shape (nq,), in N m; N where it slides.
+        armature: Reflected inertia of motors and gears, shape (nq,), in kg m^2; kg where it slides.
+        left_out: All else, in words; see write_urdf.
+    """
+
+    file: str
+    damping: FloatArray
+    friction: FloatArray
+    armature: FloatArray
+    left_out: tuple[str, ...]
+
+    def by_key(self) -> list[tuple[str, str, FloatArray]]:
+        """Return what it gives the joints: its name, the key that gives it to a run, and the values."""
+        return [
+            ("damping", "robot.friction.viscous", self.damping),
+            ("friction", "robot.friction.coulomb", self.friction),
+            ("armature", "robot.armature", self.armature),
+        ]
+
+
+def dynamics_of(tree: UrdfTree, file: str, gravity: float) -> FileDynamics:
+    """Return what an arm's file says of its motion beside masses.
+
+    A value below 0 or that is no number counts as 0.
+
+    Args:
+        tree: The arm.
+        file: The file's name.
+        gravity: That of the run, in m/s^2: what says the same is not left out.
+    """
+    said = [each for each in tree.robot.findall("left_out") if each.get("gravity") != repr(gravity)]
+    elements = [tree.joints[name].find("dynamics") for name in tree.chain]
+    values = [[number(element, key) for element in elements] for key in ("damping", "friction", "armature")]
+    damping, friction, armature = np.maximum(np.nan_to_num(values, posinf=0.0), 0.0)
+    left_out = tuple(each.get("text", "")[:_LONGEST] for each in said)
+    return FileDynamics(file, damping, friction, armature, left_out)
+
+
+def by_value(values: FloatArray, names: Sequence[str]) -> str:
+    """Return values other than 0 with their names, in SI units, those of equal value together."""
+    told: dict[str, list[str]] = {}
+    for value, name in zip(values.tolist(), names, strict=True):
+        if value:
+            told.setdefault(f"{value:g}", []).append(name)
+    return ", ".join(f"{value} ({few(named)})" for value, named in told.items())
+
+
+def hold(tree: UrdfTree, name: str) -> float:
+    """Fix a joint in place where the file's keyframe `home` has it, else at 0, or at the limit that is nearest to it.
+
+    Returns:
+        Its position, in rad; m where it slides.
+    """
+    joint = tree.joints[name]
+    limit, position = joint.find("limit"), tree.home.get(name, 0.0)
+    lower, upper = number(limit, "lower"), number(limit, "upper")
+    if joint.get("type") in ("revolute", "prismatic") and lower < upper:
+        position = float(np.clip(position, lower, upper))
+    if position and not any(wrong_places(joint)):
+        _move(joint, position)
+    joint.set("type", "fixed")
+    for tag in ("mimic", "limit", "dynamics", "axis"):
+        for element in joint.findall(tag):
+            joint.remove(element)
+    return position
+
+
+def _move(joint: ET.Element, position: float) -> None:
+    """Move the place of a joint as far as the joint goes to a position."""
+    axis, origin = joint.find("axis"), joint.find("origin")
+    along = np.array(("1 0 0" if axis is None else axis.get("xyz", "1 0 0")).split(), dtype=float)
+    step = along / np.linalg.norm(along) * position
+    slides = joint.get("type") == "prismatic"
+    place = place_of(joint) * (pin.SE3(np.eye(3), step) if slides else pin.SE3(pin.exp3(step), np.zeros(3)))
+    if origin is None:
+        origin = ET.SubElement(joint, "origin")
+    for key, values in (("xyz", place.translation), ("rpy", pin.rpy.matrixToRpy(place.rotation))):
+        origin.set(key, " ".join(repr(float(value)) for value in values))
