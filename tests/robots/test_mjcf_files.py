@@ -19,12 +19,18 @@ def refused(path):
     return problem
 
 
-@pytest.mark.parametrize("inertial", ["", INERTIAL], ids=["of the mesh", "of its own"])
-def test_a_missing_mesh_is_refused(tmp_path, inertial):
-    path = written(
-        tmp_path, MESH.replace("FILE", "hand.stl").replace('<joint name="q3"', f'{inertial}<joint name="q3"')
-    )
+def test_a_missing_mesh_that_weighs_is_refused(tmp_path):
+    path = written(tmp_path, MESH.replace("FILE", "hand.stl"))
     assert refused(path) == f"robot.mjcf: {path} names the mesh 'hand.stl': no such file; put it there, or take it out"
+
+
+@pytest.mark.parametrize("name", ["hand.stl", "../hand.stl"])
+def test_one_of_a_body_with_an_inertial_is_no_bar(tmp_path, name):
+    (tmp_path / "hand.stl").touch()
+    text = MESH.replace("FILE", name).replace('<joint name="q3"', f'{INERTIAL}<joint name="q3"')
+    path = written(tmp_path, text, "a/arm.xml")
+    assert read_mjcf(path).files == (path,)
+    assert f"meshes that are not in its folder, and weigh nothing: '{name}'" in read_mjcf(path).left_out.rest
 
 
 @pytest.mark.parametrize("name", ["../secret.obj", "/etc/passwd"])
@@ -123,13 +129,17 @@ def test_heights_of_all_fields_count_together(tmp_path):
         ("<default>" + '<default class="a"/>' * 3000 + "</default>", "elements; allowed: up to 2,500, with all"),
         ("<!--" + "x" * 5_000_000 + "-->", "bytes; allowed: up to 5,000,000"),
         ('<asset><mesh name="m" builtin="supersphere" params="5000 1 1"/></asset>', "<mesh> 'm', unknown here; write"),
-        ('<asset><mesh name="m" file="m.stl"/></asset>', "'m.stl': has 20,000,001 bytes; allowed: up to 20,000,000"),
     ],
 )
 def test_what_mujoco_would_take_much_memory_for_is_refused(tmp_path, asset, told):
+    assert told in refused(with_asset(tmp_path, asset))
+
+
+def test_a_large_mesh_that_weighs_is_refused(tmp_path):
     with (tmp_path / "m.stl").open("wb") as file:
         file.truncate(20_000_001)
-    assert told in refused(with_asset(tmp_path, asset))
+    told = "'m.stl': has 20,000,001 bytes; allowed: up to 20,000,000"
+    assert told in refused(written(tmp_path, MESH.replace("FILE", "m.stl")))
 
 
 @pytest.mark.parametrize(
