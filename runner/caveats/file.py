@@ -32,7 +32,7 @@ def left_out_of(config: "RunConfig") -> Mapping[str, Sequence[str]]:
     if isinstance(plant, TorquePlantConfig):
         viscous, coulomb = friction_by_joint(arm, plant.friction)
     flexibility = find_flexibility(config)
-    armature = arm.model.pin_model.armature
+    armature = arm.model.armature
     if flexibility is not None:
         armature = np.maximum(armature, flexibility.motors)
     found = {}

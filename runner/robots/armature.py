@@ -12,7 +12,7 @@ from runner.registry import StrictModel
 from runner.robots.inertials import read_sets
 from runner.robots.model import FloatArray
 from runner.robots.robot import Robot
-from runner.robots.tree import UrdfTree, moves
+from runner.robots.tree import UrdfTree
 from runner.texts import quoted
 
 
@@ -38,8 +38,7 @@ def armature_by_joint(tree: UrdfTree, path: Path, given: float | Sequence[float]
         ConfigError: for a list of another length, a set that there is not, one that cannot be read, or one that names a
             joint that the arm does not have.
     """
-    ways = [[name for name in tree.way(end) if moves(tree.joints[name])] for end in tree.ends]
-    joints = max(ways, key=len)  # of a serial arm all that move
+    joints = tree.chain
     if isinstance(given, str):
         return _of_set(joints, path, given)
     if isinstance(given, int | float):

@@ -24,7 +24,7 @@ REFUSED = {
         "holds free joints: one of the body 'other'; an arm stands on the world",
     ),
     "ball joints": (CHAIN.replace('name="q2"', 'name="q2" type="ball"'), "holds ball joints: 'q2'"),
-    "several trees": (CHAIN.replace("</worldbody>", SECOND), "branches: p move beside q1, q2, q3; allowed: a serial arm"),
+    "several trees": (CHAIN.replace("</worldbody>", SECOND), "branches: p move beside q1, q2, q3; allowed: a serial"),
     "branches": (
         CHAIN.replace('<site name="tcp" pos="0.2 0 0"/></body>', "").replace(
             '<site name="tcp"', '<body name="finger"><joint name="f"/><geom size="0.01 0.1"/></body>'

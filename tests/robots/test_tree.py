@@ -81,7 +81,7 @@ def test_a_mimicking_joint_is_refused(tmp_path):
     text = strangers.chain("arm", [("revolute", strangers.X), ("revolute", strangers.Y)])
     text = text.replace('<child link="l2"/>', '<child link="l2"/><mimic joint="q1"/>')
     (tmp_path / "arm.urdf").write_text(text)
-    with pytest.raises(ConfigError, match=r"joint 'q2' in .* mimics 'q1', and its motion would be free; take that out; `runner doctor"):
+    with pytest.raises(ConfigError, match=r"joint 'q2' in .* mimics 'q1', and its motion would be free; take"):
         read_urdf(tmp_path / "arm.urdf", {})
 
 
