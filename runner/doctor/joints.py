@@ -35,9 +35,9 @@ def _fix(tree: UrdfTree, name: str, way: Collection[str]) -> Finding:
     text = "it moves beside the way to the tip" + (f", and {tie}" if tie else "")
     if mimic is not None and mimic.get("joint") in way:
         text += ", which moves the tip: its links no longer move with that"
-    where = "where the keyframe 'home' has it" if name in tree.home else "at zero, or the limit nearest to it"
-    held = f"{hold(tree, name):.6g} {unit}, {where}"
-    return Finding("finding", f"joint '{name}'", text, f"hold it fixed at {held}", True)
+    held = hold(tree, name)
+    where = ", as the keyframe 'home' has it" if name in tree.home else ", its limit nearest to zero" if held else ""
+    return Finding("finding", f"joint '{name}'", text, f"hold it fixed at {held:.6g} {unit}{where}", True)
 
 
 def _check_joint(name: str, joint: ET.Element, tie: str | None) -> list[Finding]:

@@ -40,7 +40,7 @@ def armature_by_joint(tree: UrdfTree, path: Path, given: float | Sequence[float]
     """
     joints = tree.chain
     if isinstance(given, str):
-        return _of_set(joints, path, given)
+        return _of_set(tree, path, given)
     if isinstance(given, int | float):
         return dict.fromkeys(joints, float(given))
     if len(given) != len(joints):
@@ -80,7 +80,7 @@ def with_armature(robot: Robot, armature: FloatArray) -> Robot:
     return replace(robot, model=whole, stages=stages)
 
 
-def _of_set(joints: Sequence[str], path: Path, name: str) -> dict[str, float]:
+def _of_set(tree: UrdfTree, path: Path, name: str) -> dict[str, float]:
     sets = read_sets("robot.armature", armature_file(path), _ArmatureSet)
     if name not in sets:
         there = f"sets: {', '.join(sets)}" if sets else f"there is no {armature_file(path).name}"
@@ -90,12 +90,10 @@ def _of_set(joints: Sequence[str], path: Path, name: str) -> dict[str, float]:
                 "kg m^2, a list with one for each joint, or the name of a set"
             ]
         )
-    values = sets[name].joints
+    values, joints = sets[name].joints, tree.chain
     strange = [joint for joint in values if joint not in joints]
     if strange:
         raise ConfigError(
-            f"robot.armature: set '{name}' names the joint '{joint}', which {path.name} does not have"
-            f"{nearest(joint, joints)}; joints: {', '.join(joints)}"
-            for joint in strange
+            f"robot.armature: set '{name}' names the joint '{joint}': {tree.no_joint(joint)}" for joint in strange
         )
     return {joint: values.get(joint, 0.0) for joint in joints}

@@ -112,14 +112,12 @@ def read_urdf(
             problems.append(f"robot.masses.{name}: no such link{nearest(name, links)}; links: {', '.join(links)}")
         elif _mass(links[name]) == 0.0:
             problems.append(f"robot.masses.{name}: link '{name}' is massless in {path.name}; its mass cannot be scaled")
-    limits = {name: limit for name, joint in tree.joints.items() for limit in joint.findall("limit")}
     for name, speed in (velocity_limits or {}).items():
-        if name in limits:
-            limits[name].set("velocity", repr(float(speed)))
-        else:
-            problems.append(
-                f"robot.velocity_limits.{name}: no such joint{nearest(name, limits)}; joints: {', '.join(limits)}"
-            )
+        if name not in tree.chain:
+            problems.append(f"robot.velocity_limits.{name}: {tree.no_joint(name)}")
+            continue
+        for limit in tree.joints[name].findall("limit"):
+            limit.set("velocity", repr(float(speed)))
     if problems:
         raise ConfigError(problems)
     for link in links.values():

@@ -60,6 +60,11 @@ class UrdfTree:
         ways = [[name for name in self.way(end) if moves(self.joints[name])] for end in self.ends]
         return max(ways, key=len)
 
+    def no_joint(self, name: str) -> str:
+        """Return in words why a name is none of a joint that moves."""
+        said = "it is held fixed" if name in self.joints else f"no such joint{nearest(name, self.chain)}"
+        return f"{said}; joints: {', '.join(self.chain)}"
+
 
 def end_of(joint: ET.Element, role: str) -> str:
     """Return the link at an end of a joint; role is "parent" or "child"."""

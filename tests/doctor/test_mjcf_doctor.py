@@ -3,6 +3,7 @@
 import pytest
 import yaml
 from support import strangers
+from support.caveat_runs import found as caveats_found
 from support.mjcf_arms import CHAIN, disagreement, written
 
 from runner.config.compose import compose
@@ -23,10 +24,13 @@ def config(folder):
 
 
 def test_an_mjcf_is_examined_as_a_urdf(tmp_path):
-    examination = examine(written(tmp_path, CHAIN.replace("<joint ", '<joint damping="2" ', 1)), None)
+    held = CHAIN.replace("<joint ", '<joint damping="2" armature="0.1" ', 1)
+    examination = examine(written(tmp_path, held.replace("<default>", '<option density="1.2"/><default>')), None)
     assert exit_code(examination.findings) == 0
     said = {finding.place: finding.text for finding in examination.findings}
-    assert said["left out of the motion"] == "damping (plant.friction.viscous): 2 (q1, q2, q3)"
+    assert said["damping"] == "2 (q1, q2, q3)"
+    assert said["armature"] == "0.1 (q1, q2, q3)"
+    assert said["left out of the motion"] == "density of the air of 1.2 in SI units"
     assert said["left out"].startswith("shapes (3)")
     assert sum(finding.place == "engines" for finding in examination.findings) == 2
 
@@ -46,16 +50,58 @@ def test_a_folder_takes_the_mjcf_with_its_files(tmp_path):
     assert disagreement(files[1], "tcp") < 1e-10
 
 
-def test_joints_beside_the_tip_are_held_fixed_in_a_urdf(tmp_path):
-    path = written(tmp_path, FINGERS)
+@pytest.mark.parametrize("format", ["mjcf", "urdf"])
+def test_a_run_has_what_the_file_gives_its_joints(tmp_path, format):
+    text = CHAIN if format == "mjcf" else FINGERS  # whose finger is held, which takes a URDF
+    text = text.replace("<default>", '<option density="1.2"/><default>').replace(
+        'name="q2"', 'name="q2" damping="2" armature="0.1" frictionloss="0.5"'
+    )
+    path = written(tmp_path, text.replace("<joint ", '<joint armature="0.3" ', 1))
     with strangers.short_examination():
         examination = examine(path, "tcp")
-    (mended,) = [finding for finding in examination.findings if finding.mended]
-    assert mended.place == "joint 'f'"
-    folder = tmp_path / "mine"
-    files = write_folder(examination, folder)
-    assert files[1] == folder / "robots" / "elbow.urdf"
-    assert config(folder).arm.model.joint_names == ("q1", "q2", "q3")
+    assert [f.place for f in examination.findings if f.mended] == ([] if format == "mjcf" else ["joint 'f'"])
+    files = write_folder(examination, tmp_path / "mine")
+    assert files[1].suffix == (".xml" if format == "mjcf" else ".urdf")
+    taken = config(tmp_path / "mine")
+    assert taken.arm.model.joint_names == ("q1", "q2", "q3")
+    assert taken.arm.model.armature.tolist() == [0.3, 0.1, 0.3]
+    assert (taken.plant.friction.viscous, taken.plant.friction.coulomb) == ([0.0, 2.0, 0.0], [0.0, 0.5, 0.0])
+    assert caveats_found(taken)["robot_file"].text.endswith(": density of the air of 1.2 in SI units")
+
+
+HOMES = {
+    "0.1 0.5 1": "the keyframe 'home' is taken",
+    "0.1 0.5 3": "the keyframe 'home' is not taken: it has 'q3' at 3 rad, and its limits are -2.96706 to 2.96706",
+    "0.1 0.5 0": "the keyframe 'home' is not taken: it is singular for the tip's position, or nearly so",
+    "0.1 -0.4 1": "the keyframe 'home' is not taken: gravity asks for more there than the effort limits",
+}
+
+
+@pytest.mark.parametrize("posture", HOMES)
+def test_a_keyframe_home_is_the_home_if_it_serves(tmp_path, posture):
+    more = f'<keyframe><key name="home" qpos="{posture}"/></keyframe>'
+    more += '<actuator><motor joint="q2" ctrlrange="-5 5"/></actuator>'
+    path = written(tmp_path, CHAIN.replace("</worldbody>", f"</worldbody>{more}"))
+    with strangers.short_examination():
+        examination = examine(path, None)
+    assert [f.text for f in examination.findings if f.place == "home"] == [HOMES[posture]]
+    taken = examination.start.home.tolist() == [float(value) for value in posture.split()]
+    assert taken == HOMES[posture].endswith("is taken")
+
+
+def test_a_gripper_joint_in_the_config_is_told(tmp_path):
+    with strangers.short_examination():
+        write_folder(examine(written(tmp_path, FINGERS), "tcp"), tmp_path)
+    for override, told in (
+        ("robot.velocity_limits={f: 1}", "robot.velocity_limits.f: it is held fixed; joints: q1, q2, q3"),
+        ("robot.friction.viscous=[1,1,1,1]", "robot.friction.viscous: 4 values for 3 joints (q1, q2, q3); found "),
+        ("robot.armature=[1,1,1,1]", "robot.armature: 4 values for 3 joints (q1, q2, q3); found "),
+        ("robot.home=[0,0.5,1,0]", "robot.home: 4 values for 3 joints (q1, q2, q3); found "),
+    ):
+        with pytest.raises(ConfigError) as error:
+            validate(compose(["robot=elbow", override], [tmp_path]).resolved, [tmp_path])
+        (problem,) = error.value.problems
+        assert problem.startswith(told)
 
 
 def test_an_mjcf_that_is_refused_is_refused(tmp_path):

@@ -152,7 +152,7 @@ def test_a_set_of_one_s_own(tmp_path, macro_urdf):
     path = tmp_path / "arm.urdf"
     path.write_text(macro_urdf)
     armature_file(path).write_text(yaml.safe_dump({"mine": {"source": "me", "joints": {"q9": 0.1}}}))
-    with pytest.raises(ConfigError, match=r"set 'mine' names the joint 'q9', which arm.urdf does not have.*; joints: "):
+    with pytest.raises(ConfigError, match=r"set 'mine' names the joint 'q9': no such joint.*; joints: "):
         read_urdf(path, {}, "mine")
     armature_file(path).write_text("mine: {source: me, joints: {q1: -1}}")
     with pytest.raises(ConfigError, match=r"arm.armature.yaml: mine.joints.q1: .*; found -1"):

@@ -76,7 +76,7 @@ def test_each_joint_that_is_held_is_named_with_what_tied_it(tmp_path):
     path = written(tmp_path, GRIPPER.replace("</mujoco>", f"{KEYFRAME}</mujoco>"))
     said = {f.place: f"{f.text}; {f.mend}" for f in examined(path).findings}
     beside = "it moves beside the way to the tip, and is"
-    home = "where the keyframe 'home' has it"
+    home = "as the keyframe 'home' has it"
     assert said["joint 'left_slide'"] == f"{beside} tied by a tendon 'grip'; hold it fixed at 0.02 m, {home}"
     assert said["joint 'lift'"] == f"{beside} pulled by a muscle 'thumb'; hold it fixed at 0.4 rad, {home}"
     assert said["joint 'twist'"] == f"{beside} tied by a tendon 'cord'; hold it fixed at -0.3 rad, {home}"
