@@ -18,7 +18,7 @@ def dynamics_of(model: Any) -> Mapping[str, FloatArray]:
 
     An actuator turns as fast as its joint times its gear, and so counts by the square of it.
     """
-    gear = np.zeros((model.nu, model.njnt))
+    gear = np.zeros((model.nactuator, model.njnt))
     for joint, actuators in _acting(model).items():
         gear[actuators, joint] = model.actuator_gear[actuators, 0]
     return {
@@ -66,7 +66,7 @@ def _acting(model: Any) -> dict[int, list[int]]:
     """Return the actuators on each joint that has some, by index."""
     acting: dict[int, list[int]] = {}
     on_joints = [int(kind) for kind in ON_JOINTS]
-    for actuator in range(model.nu):
+    for actuator in range(model.nactuator):
         if model.actuator_trntype[actuator] in on_joints:
             acting.setdefault(int(model.actuator_trnid[actuator, 0]), []).append(actuator)
     return acting

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from support.mjcf_arms import CHAIN, disagreement, own_model, written
 
 from runner.errors import ConfigError
-from runner.robots.description import read_urdf
+from runner.robots.description import read_arm, read_urdf
+from runner.robots.joint_dynamics import dynamics_of
 from runner.robots.mjcf import read_mjcf
 from runner.robots.model import RobotModel
 
@@ -210,3 +211,13 @@ def test_mujocos_warnings_are_kept_out_of_the_folder(tmp_path, monkeypatch, capf
     assert [text for text in rest if re.match(r"MuJoCo's warning: .*NaN", text)]
     assert not Path("MUJOCO_LOG.TXT").exists()
     assert capfd.readouterr().err == ""
+
+
+def test_actuators_damp_and_weigh_by_the_square_of_their_gear(tmp_path):
+    text = CHAIN.replace("<joint ", '<joint damping="2" frictionloss="0.5" armature="0.1" ', 1)
+    motors = '<motor joint="q2" gear="3" damping="0.2" armature="0.01"/><motor joint="q2" damping="1" gear="-1"/>'
+    path = written(tmp_path, text.replace("</worldbody>", f"</worldbody><actuator>{motors}</actuator>"))
+    given = dynamics_of(read_arm(path), "arm.xml", 9.81)
+    np.testing.assert_allclose(given.damping, [2.0, 2.0 + 9.0 * 0.2 + 1.0, 2.0], rtol=1e-15)
+    np.testing.assert_allclose(given.armature, [0.1, 0.1 + 9.0 * 0.01, 0.1], rtol=1e-15)
+    assert given.friction.tolist() == [0.5, 0.5, 0.5]
