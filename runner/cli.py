@@ -42,7 +42,7 @@ runner: config-driven experiments for robot-arm control, with reports
   runner calibrate [OVERRIDES]                   calibrate tool or sensor against the truth: calibration=gravity
   runner audit URDF --tip FRAME --jacobian FILE  your own formulas against a robot; also --position, --mass-matrix,
                                                  --gravity
-  runner doctor FILE [--tip FRAME] [--write DIR] [--html DIR]
+  runner doctor FILE [--tip FRAME] [--name NAME] [--write DIR] [--html DIR]
                                                  does a robot of yours fit, what to mend, and a config to start from
   runner example DIR                             copy the examples: an arm, a controller, a paper, a notebook
   latest                                         in place of a DIR: the run, sweep, tuning or report made or found last

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 from omegaconf import DictConfig, OmegaConf
 
@@ -15,6 +15,7 @@ from runner.config.overrides import force
 from runner.config.robot_defaults import complete_stage_arms
 from runner.config.stage_defaults import complete_stages
 from runner.errors import ConfigError
+from runner.paths import conf_dir
 from runner.texts import quoted
 
 
@@ -72,7 +73,8 @@ def from_hydra(
         root: Name of the file in conf/ that it hangs on.
 
     Raises:
-        ConfigError: for an interpolation of a key that does not exist, or a key that is no text.
+        ConfigError: for an interpolation of a key that does not exist, a key that is no text, or a robot of ours whose
+            file a config folder has under the same name.
     """
     try:
         choices = {group: name for group, name in chosen.items() if name is not None and not group.startswith("hydra/")}
@@ -83,12 +85,31 @@ def from_hydra(
         resolved = cast("dict[str, object]", OmegaConf.to_container(config, resolve=True))
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None
-    problems = list(_strange_keys(resolved))
+    problems = [*_strange_keys(resolved), *_mixed_arms(resolved, choices, config_dirs)]
     if problems:
         raise ConfigError(problems)
     put_in_si(resolved, config_dirs)
     take_data_file(resolved, config_dirs)
     return Composed(resolved, tuple(overrides), choices, tuple(config_dirs), root)
+
+
+def _mixed_arms(resolved: Mapping[str, Any], choices: Mapping[str, str], config_dirs: Sequence[Path]) -> Iterator[str]:
+    """Yield a problem for each file of a robot of ours that a config folder has under the same name."""
+    option, robot = choices.get("robot", "").removesuffix(".yaml"), resolved.get("robot")
+    if not (config_dirs and isinstance(robot, Mapping) and (conf_dir() / "robot" / f"{option}.yaml").is_file()):
+        return
+    from runner.robots.description import find_urdf  # for few configs
+
+    stages = robot.get("stages")
+    for arm in stages.values() if isinstance(stages, Mapping) else [robot]:
+        name = arm.get("urdf") if isinstance(arm, Mapping) else None
+        try:
+            ours, found = (find_urdf(str(name), folders) for folders in ((), config_dirs))
+        except ConfigError:
+            continue  # validation tells it
+        if found != ours:
+            named = f"robot.urdf: '{name}' of robot={option} is one of ours"
+            yield f"{named}, and {found} has the same name; rename that file, or choose the robot that it belongs to"
 
 
 def _strange_keys(value: object, place: str = "") -> Iterator[str]:

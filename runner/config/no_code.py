@@ -5,7 +5,7 @@ Hydra would make whatever some of its own keys name, and import the modules that
 
 import contextlib
 import pickle
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +24,7 @@ from runner.config.work_folder import place_in
 from runner.engines import default_plant
 from runner.errors import ConfigError
 from runner.limits import ExcessError, read_text
-from runner.paths import check_inside, ships
+from runner.paths import check_inside, conf_dir, ships
 from runner.texts import quoted
 
 _SWEEPER = (
@@ -69,6 +69,7 @@ def code_refused() -> Iterator[None]:
         if config_path.startswith("/") or ".." in config_path.split("/"):  # for any source, Hydra's own as well
             named = f"{quoted(config_path)}: no config of a folder; a defaults list or an override names it"
             raise ConfigError([f"{named}; allowed: names without '..' and '/' in front"])
+        _refuse_two_of_a_name(self.sources, config_path)
         return load_name(self, config_path)
 
     def load_sound(self: ConfigSource, path: Path, place: str) -> bytes:
@@ -136,6 +137,18 @@ def check_composed(config: DictConfig) -> None:
         found = OmegaConf.to_container(value, resolve=True) if OmegaConf.is_config(value) else value
         if not isinstance(found, kind | None):
             raise ConfigError([f"hydra.sweeper.{key}: must be {wanted}, or null; found {quoted(found)}"])
+
+
+def _refuse_two_of_a_name(sources: Sequence[ConfigSource], config_path: str) -> None:
+    """Refuse an option of a config folder that has the name of one of ours: nobody could say which of them ran."""
+    group, _, option = config_path.rpartition("/")
+    found = [
+        Path(source.path) for source in sources if group and source.scheme() == "file" and source.is_config(config_path)
+    ]
+    own = [folder for folder in found if folder.resolve() != conf_dir()]
+    if own and len(own) < len(found):
+        path = own[0] / ConfigSource._normalize_file_name(place_in(own[0], config_path))
+        raise ConfigError([f"{group}: '{option}' is one of ours, and {path} has the same name; rename that file"])
 
 
 def _check_settings(config: Any, path: Path) -> None:

@@ -1,6 +1,5 @@
 """A config folder to start from: a robot's YAML file and its mended URDF, or its MJCF."""
 
-import re
 from pathlib import Path
 
 import yaml
@@ -30,11 +29,6 @@ robot:
 """
 
 
-def robot_name(examination: Examination) -> str:
-    """Return the name under which the robot is chosen: its own, of lower-case letters, digits and underscores."""
-    return re.sub(r"\W+", "_", examination.name.lower(), flags=re.ASCII).strip("_") or "arm"
-
-
 def write_folder(examination: Examination, folder: Path) -> list[Path]:
     """Write `robot/NAME.yaml` and `robots/NAME.urdf`, or an MJCF as it is, with its files, where it needs no mending.
 
@@ -44,7 +38,7 @@ def write_folder(examination: Examination, folder: Path) -> list[Path]:
     model, start = examination.model, examination.start
     if model is None or start is None:
         raise RunnerError("--write: nothing was written: first mend what is refused above")
-    name = robot_name(examination)
+    name = examination.name
     format, arm = _arm_files(examination, name)
     text = _ROBOT.format(
         name=name,

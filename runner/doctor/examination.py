@@ -12,6 +12,7 @@ from runner.doctor.finding import Finding
 from runner.doctor.joints import check_joints
 from runner.doctor.links import check_links
 from runner.doctor.meshes import check_meshes
+from runner.doctor.names import choose_name
 from runner.doctor.placements import check_placements
 from runner.doctor.postures import (
     check_gravity,
@@ -38,7 +39,7 @@ class Examination:
     """What was found of an arm.
 
     Attributes:
-        name: The robot's own name.
+        name: The name under which the robot is to be chosen; see choose_name.
         source: The file.
         mjcf: What was read of it where it is an MJCF, else None.
         tip: The link that is its tip.
@@ -60,25 +61,27 @@ class Examination:
     dynamics: FileDynamics | None = None
 
 
-def examine(path: Path, wanted_tip: str | None) -> Examination:
+def examine(path: Path, wanted_tip: str | None, wanted_name: str | None = None) -> Examination:
     """Examine a URDF, or an MJCF as the URDF of the same arm.
 
     Args:
         path: The file.
         wanted_tip: Name of the link that is to be the tip; None takes the last one.
+        wanted_name: Name under which the robot is to be chosen; see choose_name.
 
     Raises:
-        RunnerError: if it is none of one tree, or has no such tip.
+        RunnerError: if it is none of one tree, has no such tip, or cannot have the name.
     """
     mjcf = read_mjcf(path) if is_mjcf(path) else None
     original = read_arm(path)
+    name, named = choose_name(path, original.robot.get("name", ""), wanted_name)
     tip = choose_tip(original, wanted_tip)
     tree = copy.deepcopy(original)
-    findings = [*check_placements(tree), *check_meshes(tree, path)]
+    findings = [named, *(Finding("note", "names", text) for text in original.renamed)]
+    findings += [*check_placements(tree), *check_meshes(tree, path)]
     findings += [*check_links(tree), *check_joints(tree, tip), _name_frames(original, tip)]
     findings += [] if mjcf is None else _left_out(mjcf)
     drop_meshes(tree.links)
-    name = tree.robot.get("name") or path.stem
     ET.indent(tree.robot)
     urdf = ET.tostring(tree.robot, encoding="unicode")
     barred = [f for f in findings if f.grade == "refused" and ", mesh " not in f.place]

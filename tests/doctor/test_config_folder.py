@@ -8,22 +8,29 @@ from support import strangers
 from support.strangers import Y, Z
 
 from runner.config.compose import compose
+from runner.config.options import group_options
 from runner.config.validation import validate
-from runner.doctor.config_folder import robot_name, write_folder
+from runner.doctor.config_folder import write_folder
 from runner.doctor.examination import examine
-from runner.errors import RunnerError
+from runner.errors import ConfigError, RunnerError
+from runner.robots import find_urdf
+
+OURS = sorted(group_options("robot"))
 
 
 @pytest.fixture
 def written(tmp_path):
-    """What is written of an arm of a name, whose tip has a name, too."""
+    """What is written of an arm in a file, whose tip has a name, too."""
 
-    def make(name, tip="tip"):
-        text = strangers.chain("NAME", [("revolute", Z), ("revolute", Y), ("revolute", Y)])
-        path = tmp_path / "arm.urdf"
-        path.write_text(text.replace("NAME", name).replace('"tip"', f'"{tip}"'))
+    def make(file, tip="tip", name=None):
+        text = strangers.chain(
+            "model" if "scene" in file else "header", [("revolute", Z), ("revolute", Y), ("revolute", Y)]
+        )
+        path = tmp_path / file
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text.replace('"tip"', f'"{tip}"'))
         with strangers.short_examination():
-            examination = examine(path, None)
+            examination = examine(path, None, name)
         return examination, write_folder(examination, tmp_path / "mine")
 
     return make
@@ -31,25 +38,67 @@ def written(tmp_path):
 
 @pytest.mark.parametrize("tip", ["12", "yes", "tool: 3", "# end", "größe"])
 def test_a_tip_of_any_name_is_taken(written, tmp_path, tip):
-    _, (robot, _) = written("arm", tip)
+    _, (robot, _) = written("lamp.urdf", tip)
     assert yaml.safe_load(robot.read_text())["robot"]["tip"] == tip
-    config = validate(compose(["robot=arm"], [tmp_path / "mine"]).resolved, [tmp_path / "mine"])
+    config = validate(compose(["robot=lamp"], [tmp_path / "mine"]).resolved, [tmp_path / "mine"])
     assert config.arm.model.tip_name == tip
 
 
 @pytest.mark.parametrize(
-    ("name", "file"), [("My Arm (v2)", "my_arm_v2"), ("../../evil", "evil"), ("---", "arm"), ("IRB-120", "irb_120")]
+    ("file", "wanted", "name"),
+    [
+        ("My Arm (v2).urdf", None, "my_arm_v2"),
+        ("IRB-120.urdf.urdf", None, "irb_120"),
+        ("jib/robot.urdf", None, "header"),
+        ("jib/scene.urdf", None, "jib"),
+        ("lamp.urdf", "desk_2", "desk_2"),
+        ("xarm7.urdf", None, "my_xarm7"),
+    ],
 )
-def test_files_are_named_plainly_and_lie_in_the_folder(written, tmp_path, name, file):
-    examination, paths = written(name)
-    assert robot_name(examination) == file
-    assert paths == [tmp_path / "mine" / "robot" / f"{file}.yaml", tmp_path / "mine" / "robots" / f"{file}.urdf"]
+def test_files_are_named_by_the_file_or_its_folder_or_as_wished(written, tmp_path, file, wanted, name):
+    examination, paths = written(file, name=wanted)
+    assert examination.name == name
+    assert paths == [tmp_path / "mine" / "robot" / f"{name}.yaml", tmp_path / "mine" / "robots" / f"{name}.urdf"]
+
+
+@pytest.mark.parametrize(("name", "said"), [("xarm7", "one of our robots"), ("../x", "allowed: "), ("", "allowed: ")])
+def test_a_name_of_ours_or_of_other_letters_is_refused(written, name, said):
+    with pytest.raises(RunnerError, match=f"--name: '{name}'.*{said}"):
+        written("lamp.urdf", name=name)
+
+
+@pytest.mark.parametrize("ours", OURS)
+def test_the_command_printed_runs_the_arm_that_was_examined(written, tmp_path, ours):
+    examination, (_, urdf) = written(f"{ours}.urdf")
+    composed = compose([f"robot={examination.name}"], [tmp_path / "mine"])
+    assert find_urdf(composed.resolved["robot"]["urdf"], composed.config_dirs) == urdf
+    assert urdf.read_text() == f"{examination.urdf}\n"
+
+
+@pytest.mark.parametrize("ours", OURS)
+def test_no_robot_of_a_folder_has_the_name_of_one_of_ours(tmp_path, ours):
+    (tmp_path / "robot").mkdir()
+    (tmp_path / "robot" / f"{ours}.yaml").write_text("# @package _global_\nrobot: {urdf: lamp.urdf}\n")
+    with pytest.raises(
+        ConfigError, match=rf"robot: '{ours}' is one of ours, and .*/robot/{ours}\.yaml has the same name"
+    ):
+        compose([f"robot={ours}"], [tmp_path])
+    assert compose(["robot=macro" if ours == "mini" else "robot=mini"], [tmp_path]).choices["robot"] != ours
+
+
+@pytest.mark.parametrize("ours", OURS)
+def test_no_robot_of_ours_takes_its_arm_from_a_folder(tmp_path, ours):
+    robot = compose([f"robot={ours}"]).resolved["robot"]
+    for arm in robot.get("stages", {"": robot}).values():
+        (tmp_path / arm["urdf"]).write_text(strangers.chain("other", [("revolute", Z), ("revolute", Y)]))
+        with pytest.raises(ConfigError, match=rf"'{arm['urdf']}' of robot={ours} is one of ours, and "):
+            compose([f"robot={ours}"], [tmp_path])
 
 
 def test_a_folder_that_cannot_be_made_is_told(written, tmp_path):
     (tmp_path / "mine").write_text("a file")
-    with pytest.raises(RunnerError, match=r"--write: cannot write .*mine.robot.arm.yaml: .*; nothing was written"):
-        written("arm")
+    with pytest.raises(RunnerError, match=r"--write: cannot write .*mine.robot.lamp.yaml: .*; nothing was written"):
+        written("lamp.urdf")
 
 
 def test_where_a_file_cannot_be_written_none_is_left(written, tmp_path, monkeypatch):
@@ -61,6 +110,6 @@ def test_where_a_file_cannot_be_written_none_is_left(written, tmp_path, monkeypa
         taken.append(file)
 
     monkeypatch.setattr("os.fsync", full)
-    with pytest.raises(RunnerError, match=r"cannot write .*arm.urdf: disk full; free space on its disk; nothing was"):
-        written("arm")
+    with pytest.raises(RunnerError, match=r"cannot write .*lamp.urdf: disk full; free space on its disk; nothing was"):
+        written("lamp.urdf")
     assert not [path for path in (tmp_path / "mine").rglob("*") if path.is_file()]

@@ -13,7 +13,7 @@ import pytest
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.doctor import examination
-from runner.doctor.config_folder import robot_name, write_folder
+from runner.doctor.config_folder import write_folder
 
 _PACKAGE = find_spec("pybullet_data")
 DATA = Path("none" if _PACKAGE is None else _PACKAGE.submodule_search_locations[0])
@@ -91,10 +91,10 @@ def _examine(name):
         pytest.skip("an arm of the pybullet package, which is not installed")
     if name in SHIPPED:
         path, tip = SHIPPED[name]
-        return examination.examine(DATA / path, tip)
+        return examination.examine(DATA / path, tip, name)
     path = folder() / f"{os.getpid()}_{name}.urdf"
     path.write_text(MADE[name])
-    return examination.examine(path, None)
+    return examination.examine(path, None, name)
 
 
 @contextmanager
@@ -110,7 +110,7 @@ def short_examination() -> Iterator[None]:
 def robot(name) -> str:
     """The name under which a stranger stands in the config folder."""
     write_folder(read(name), folder())
-    return robot_name(read(name))
+    return read(name).name
 
 
 @functools.cache

@@ -1,0 +1,45 @@
+"""The name under which a robot is chosen."""
+
+import re
+from pathlib import Path
+
+from runner.config.options import group_options
+from runner.doctor.finding import Finding
+from runner.errors import RunnerError
+
+_GENERAL = {"", "arm", "main", "mjcf", "model", "mujoco_model", "robot", "robots", "scene", "urdf", "xml"}  # of any arm
+
+
+def choose_name(path: Path, header: str, wanted: str | None) -> tuple[str, Finding]:
+    """Return the name of an arm, of lower-case letters, digits and underscores, and what there is to say of it.
+
+    It is the one wanted, else that of the file; where that could be any arm's, the one in the file, else that of the
+    nearest folder around it. It has `my_` in front where a robot of ours has the name.
+
+    Args:
+        path: The arm's file.
+        header: The name in the file.
+        wanted: The name wanted; None for none.
+
+    Raises:
+        RunnerError: if the name wanted is that of one of ours, or holds other letters.
+    """
+    ours = group_options("robot")
+    if wanted is not None:
+        if wanted != _plain(wanted) or not wanted:
+            raise RunnerError(f"--name: '{wanted}'; allowed: lower-case letters, digits and underscores")
+        if wanted in ours:
+            raise RunnerError(f"--name: '{wanted}' is one of our robots; choose another name, such as my_{wanted}")
+        return wanted, Finding("note", "name", f"'{wanted}'")
+    whole = path.resolve()
+    stem = re.sub(r"(\.(urdf|xml|xacro|mjcf))+$", "", whole.name, flags=re.IGNORECASE)
+    names = map(_plain, (stem, header, *(folder.name for folder in whole.parents)))
+    own = next((name for name in names if name not in _GENERAL), "arm")
+    name = f"my_{own}" if own in ours else own
+    said = [f"'{name}'"] + [f"'{own}' is one of ours"] * (name != own)
+    said += [f"the file says '{header}'"] if _plain(header) != own and header else []
+    return name, Finding("note", "name", "; ".join(said), "--name gives another")
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"\W+", "_", name.lower(), flags=re.ASCII).strip("_")
