@@ -31,12 +31,8 @@ def _check_link(tree: UrdfTree, name: str, link: ET.Element) -> list[Finding]:
     absurd = [Finding("refused", place, text) for text in absurd_inertial(link)]
     if absurd:
         return absurd
-    if mass == 0.0:
-        if not any(moments):
-            return []
-        make_massless(link)
-        text = "inertia but no mass: PyBullet drops the inertia, Pinocchio keeps it"
-        return [Finding("finding", place, text, "give it a mass, or zero inertia", True)]
+    if mass == 0.0 and not any(moments):
+        return []
     if not any(moments):
         text = "a point mass: it has a mass and no inertia"
         return (

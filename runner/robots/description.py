@@ -110,7 +110,7 @@ def read_urdf(
     for name in masses:
         if name not in links:
             problems.append(f"robot.masses.{name}: no such link{nearest(name, links)}; links: {', '.join(links)}")
-        elif _mass(links[name]) == 0.0:
+        elif not _mass(links[name]) > 0.0:
             problems.append(f"robot.masses.{name}: link '{name}' is massless in {path.name}; its mass cannot be scaled")
     for name, speed in (velocity_limits or {}).items():
         if name not in tree.chain:
@@ -177,8 +177,10 @@ def _mass(link: ET.Element) -> float:
 
 
 def _bad_inertial(link: ET.Element) -> list[str]:
+    if link.find("inertial") is None:
+        return []  # a frame without mass
     if link.find("inertial/mass") is None:
-        return ["no <inertial><mass>; PyBullet would make it 1 kg: write its mass, or zero mass and zero inertia"]
+        return ["an <inertial> without <mass>: write its mass, in kg"]
     mass = [] if 0.0 <= _mass(link) < math.inf else [f"mass {_mass(link):g} kg; allowed: 0 or more"]
     return [*mass, *absurd_inertial(link)] or _bad_inertia(link)
 
@@ -194,6 +196,4 @@ def _bad_inertia(link: ET.Element) -> list[str]:
         for key, value in values.items()
         if not math.isfinite(value)
     ]
-    if not wrong and _mass(link) == 0.0 and any(values.values()):
-        wrong.append("inertia but no mass; PyBullet would drop it: give it a mass, or zero inertia")
-    return wrong or (impossible_inertia(link) if _mass(link) > 0.0 else [])
+    return wrong or impossible_inertia(link)

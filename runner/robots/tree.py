@@ -2,7 +2,7 @@
 
 import xml.etree.ElementTree as ET
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -26,6 +26,7 @@ class UrdfTree:
         root: Name of the link that nothing bears.
         ties: Joints that do not move freely, with what ties them, as in "mimics 'q1'".
         home: Joint positions of the file's keyframe `home`, in rad or m; empty where it has none.
+        renamed: Joints with a new name because a link has theirs, in words.
     """
 
     robot: ET.Element
@@ -34,6 +35,7 @@ class UrdfTree:
     root: str
     ties: Mapping[str, str] = field(default_factory=dict)
     home: Mapping[str, float] = field(default_factory=dict)
+    renamed: tuple[str, ...] = ()
 
     @property
     def bearers(self) -> dict[str, str]:
@@ -88,15 +90,21 @@ def read_tree(path: Path) -> UrdfTree:
 
 
 def make_tree(robot: ET.Element, path: Path) -> UrdfTree:
-    """Return the tree of links of a URDF's root element; see read_tree for the errors, which name the file."""
+    """Return the tree of links of a URDF's root element; see read_tree for the errors, which name the file.
+
+    In place, a robot without a name gets that of its file, and a joint with the name of a link another one, as engines
+    look both up by name.
+    """
     links = {link.get("name", ""): link for link in robot.findall("link")}
     if robot.tag != "robot" or not links:
         raise ConfigError([f"robot.urdf: {path} is no URDF: it needs a <robot> with links"])
     if path.suffix == ".xacro" or any(element.tag.startswith(_XACRO) for element in robot.iter()):
-        made = f"{path.stem}{'_made' if path.suffix == '.urdf' else ''}.urdf"
+        made = f"{path.name.removesuffix('.xacro').removesuffix('.urdf')}{'_made' * (path.suffix == '.urdf')}.urdf"
         raise ConfigError(
             [f"robot.urdf: {path} holds xacro macros; make a URDF of it first: xacro {path.name} > {made}"]
         )
+    robot.set("name", robot.get("name") or path.stem)
+    renamed = _rename_joints(robot, links)
     joints = {joint.get("name", ""): joint for joint in robot.findall("joint")}
     excess = _excess(robot)
     if excess:
@@ -112,7 +120,7 @@ def make_tree(robot: ET.Element, path: Path) -> UrdfTree:
     if not problems:
         mimics = {name: mimic for name, joint in joints.items() if (mimic := joint.find("mimic")) is not None}
         ties = {name: f"mimics '{mimic.get('joint', '')}'" for name, mimic in mimics.items()}
-        tree = UrdfTree(robot, links, joints, roots[0], ties)
+        tree = UrdfTree(robot, links, joints, roots[0], ties, renamed=renamed)
         circling = _circling(tree)
         if not circling:
             return tree
@@ -157,6 +165,23 @@ def parse_xml(path: Path, key: str = "robot.urdf") -> ET.Element:
         raise ConfigError([f"{key}: {path} is no XML: {error}{hint}"]) from error
     except OSError as error:
         raise ConfigError([f"{key}: {path} cannot be read: {error.strerror or error}"]) from error
+
+
+def _rename_joints(robot: ET.Element, links: Collection[str]) -> tuple[str, ...]:
+    """Give each joint that has the name of a link another one; return what was renamed, in words."""
+    joints, told = robot.findall("joint"), []
+    taken = {*links, *(joint.get("name", "") for joint in joints)}
+    for joint in joints:
+        name = new = joint.get("name", "")
+        if name and name in links:
+            while new in taken:
+                new += "_joint"
+            taken.add(new)
+            for element, key in ((joint, "name"), *((mimic, "joint") for mimic in robot.iterfind("joint/mimic"))):
+                if element.get(key) == name:
+                    element.set(key, new)
+            told.append(f"joint '{name}' is '{new}', beside a link")
+    return tuple(told)
 
 
 def _excess(robot: ET.Element) -> list[str]:

@@ -114,12 +114,18 @@ def test_a_mass_is_kept_to_the_last_bit(written):
     assert inertials(read_urdf(written(robot(inertial(2.0))), {"hand": mass}))["hand"][0] == mass
 
 
-def test_a_missing_inertial_is_refused(written):
-    for hand in ("", "<inertial/>", "<visual/>"):
-        with pytest.raises(
-            ConfigError, match=r"link 'hand' in .* has no <inertial><mass>; PyBullet would make it 1 kg"
-        ):
-            read_urdf(written(robot(hand)), {})
+@pytest.mark.bullet
+@pytest.mark.parametrize("hand", ["", "<visual/>"])
+def test_a_frame_without_inertial_is_massless_in_every_engine(written, hand):
+    urdf = read_urdf(written(robot(hand)), {})
+    assert inertials(urdf)["hand"] == (0.0, dict.fromkeys(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), 0.0))
+    with pytest.raises(ConfigError, match=r"'hand' is massless in arm\.urdf; its mass cannot be scaled"):
+        read_urdf(written(robot(hand)), {"hand": 1.0})
+
+
+def test_an_inertial_without_mass_is_refused(written):
+    with pytest.raises(ConfigError, match=r"link 'hand' in .* has an <inertial> without <mass>: write its mass"):
+        read_urdf(written(robot("<inertial/>")), {})
 
 
 def test_a_mass_without_inertia_is_refused_as_pinocchio_would_leave_it_out(written):
