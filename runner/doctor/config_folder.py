@@ -14,7 +14,7 @@ _ROBOT = """\
 # @package _global_
 # {name}, {joints} joints, from {source} by runner doctor
 defaults:
-  - override /controller: operational_space
+  - override /controller: {controller}
   - override /trajectory: quintic
 
 robot:
@@ -35,9 +35,9 @@ def write_folder(examination: Examination, folder: Path) -> list[Path]:
     Raises:
         RunnerError: if something bars the arm, one of the files is there already, or they cannot be written.
     """
-    model, start = examination.model, examination.start
-    if model is None or start is None:
+    if examination.arm is None:
         raise RunnerError("--write: nothing was written: first mend what is refused above")
+    model, start = examination.arm.model, examination.arm.start
     name = examination.name
     format, arm = _arm_files(examination, name)
     text = _ROBOT.format(
@@ -45,12 +45,13 @@ def write_folder(examination: Examination, folder: Path) -> list[Path]:
         format=format,
         file=next(iter(arm)),
         joints=model.nq,
+        controller="operational_space" if examination.arm.has_mass else "differential_inverse_kinematics",
         source=" ".join(examination.source.name.split()),
         tip=yaml.safe_dump(examination.tip).removesuffix("...\n").strip(),
         home=_list(start.home),
         units=" ".join(dict.fromkeys(model.joint_units)) if len(set(model.joint_units)) == 1 else
         ", ".join(model.joint_units),
-        dynamics=_dynamics(examination.dynamics),
+        dynamics=_dynamics(examination.arm.dynamics),
         goal=_list(start.goal),
         path_size=_digits(0.05 * model.reach),
         natural_frequency=start.natural_frequency,
@@ -74,19 +75,19 @@ def write_folder(examination: Examination, folder: Path) -> list[Path]:
 def _arm_files(examination: Examination, name: str) -> tuple[str, dict[str, bytes]]:
     """Return the key that names the arm's file, and its files by their place in `robots/`, the one named first."""
     mjcf = examination.mjcf
-    if mjcf is None or any(finding.mended for finding in examination.findings):
+    if mjcf is None or any(finding.grade == "fixed" for finding in examination.findings):
         return "urdf", {f"{name}.urdf": f"{examination.urdf}\n".encode()}
     folder = examination.source.resolve().parent
     files = [file.resolve() for file in mjcf.files]
     return "mjcf", {file.relative_to(folder).as_posix(): file.read_bytes() for file in files}
 
 
-def _dynamics(given: FileDynamics | None) -> str:
+def _dynamics(given: FileDynamics) -> str:
     """Return the lines of armature and friction that the file gives the joints."""
     lines = []
-    if given is not None and given.armature.any():
+    if given.armature.any():
         lines.append(f"  armature: {_list(given.armature)}  # kg m^2, of the file\n")
-    if given is not None and (given.damping.any() or given.friction.any()):
+    if given.damping.any() or given.friction.any():
         lines.append("  friction:  # of the file\n")
         lines.append(f"    viscous: {_list(given.damping)}  # N m s/rad, its damping\n")
         lines.append(f"    coulomb: {_list(given.friction)}  # N m\n")

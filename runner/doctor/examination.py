@@ -2,13 +2,14 @@
 
 import copy
 import xml.etree.ElementTree as ET
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from runner.doctor.engines import compare_engines, compare_readings
-from runner.doctor.finding import Finding
+from runner.doctor.engines import compare_engines
+from runner.doctor.finding import Finding, together
 from runner.doctor.joints import check_joints
 from runner.doctor.links import check_links
 from runner.doctor.meshes import check_meshes
@@ -22,7 +23,7 @@ from runner.doctor.postures import (
     describe_workspace,
 )
 from runner.doctor.starting_point import StartingPoint, judge_home, propose
-from runner.doctor.tip import choose_tip, frames_at_the_end
+from runner.doctor.tip import choose_tip, name_tips
 from runner.errors import ConfigError
 from runner.robots.description import drop_meshes, read_arm
 from runner.robots.joint_dynamics import FileDynamics, by_value, dynamics_of
@@ -30,8 +31,26 @@ from runner.robots.mjcf import Mjcf, read_mjcf
 from runner.robots.mjcf_files import is_mjcf
 from runner.robots.model import STANDARD_GRAVITY, RobotModel
 from runner.robots.tree import UrdfTree
+from runner.texts import few
 
 _POSTURES = 300
+
+
+@dataclass(frozen=True)
+class Arm:
+    """An arm that the runner takes.
+
+    Attributes:
+        model: Its rigid-body model.
+        start: Values to start with.
+        has_mass: Whether its joints move mass, so that torques can move it; else only its kinematics are known.
+        dynamics: What the file says of damping, friction and armature.
+    """
+
+    model: RobotModel
+    start: StartingPoint
+    has_mass: bool
+    dynamics: FileDynamics
 
 
 @dataclass(frozen=True)
@@ -43,11 +62,9 @@ class Examination:
         source: The file.
         mjcf: What was read of it where it is an MJCF, else None.
         tip: The link that is its tip.
-        findings: What there is to say, in the order of the examination.
-        urdf: The text of the arm's URDF, mended as far as it can be without a choice, without meshes.
-        model: The arm of that text; None where something bars it.
-        start: Values to start with; None where there is no model.
-        dynamics: What the file says of damping, friction and armature; None where there is no model.
+        findings: What there is to say: what is refused, what was fixed, and notes.
+        urdf: The text of the arm's URDF, fixed as far as it can be without a choice, without meshes.
+        arm: The arm of that text; None where something is refused.
     """
 
     name: str
@@ -56,18 +73,19 @@ class Examination:
     tip: str
     findings: list[Finding]
     urdf: str
-    model: RobotModel | None
-    start: StartingPoint | None
-    dynamics: FileDynamics | None = None
+    arm: Arm | None
 
 
-def examine(path: Path, wanted_tip: str | None, wanted_name: str | None = None) -> Examination:
+def examine(
+    path: Path, wanted_tip: str | None = None, wanted_name: str | None = None, packages: Sequence[Path] = ()
+) -> Examination:
     """Examine a URDF, or an MJCF as the URDF of the same arm.
 
     Args:
         path: The file.
-        wanted_tip: Name of the link that is to be the tip; None takes the last one.
+        wanted_tip: Name of the link that is to be the tip; None for choose_tip to choose.
         wanted_name: Name under which the robot is to be chosen; see choose_name.
+        packages: Folders that hold ROS packages.
 
     Raises:
         RunnerError: if it is none of one tree, has no such tip, or cannot have the name.
@@ -77,40 +95,43 @@ def examine(path: Path, wanted_tip: str | None, wanted_name: str | None = None) 
     name, named = choose_name(path, original.robot.get("name", ""), wanted_name)
     tip = choose_tip(original, wanted_tip)
     tree = copy.deepcopy(original)
-    findings = [named, *(Finding("note", "names", text) for text in original.renamed)]
-    findings += [*check_placements(tree), *check_meshes(tree, path)]
-    findings += [*check_links(tree), *check_joints(tree, tip), _name_frames(original, tip)]
-    findings += [] if mjcf is None else _left_out(mjcf)
+    findings = [named, name_tips(original, tip)]
+    findings += [Finding("note", "names", few(original.renamed))] if original.renamed else []
+    findings += [*check_placements(tree), *check_meshes(tree, path, packages), *check_links(tree)]
+    findings += [*check_joints(tree, tip), *([] if mjcf is None else _left_out(mjcf))]
     drop_meshes(tree.links)
     ET.indent(tree.robot)
     urdf = ET.tostring(tree.robot, encoding="unicode")
-    barred = [f for f in findings if f.grade == "refused" and ", mesh " not in f.place]
+    arm = None if _refused(findings) else _take(tree, path.name, urdf, tip, findings)
+    return Examination(name, path, mjcf, tip, together(findings), urdf, None if _refused(findings) else arm)
+
+
+def _refused(findings: Sequence[Finding]) -> bool:
+    return any(finding.grade == "refused" for finding in findings)
+
+
+def _take(tree: UrdfTree, source: str, urdf: str, tip: str, findings: list[Finding]) -> Arm | None:
+    """Build an arm and look at what it can do; add what is found to the findings. None where that is refused."""
     try:
-        model = None if barred else RobotModel(urdf, tip)
+        model = RobotModel(urdf, tip)
     except ConfigError as error:
         findings += [Finding("refused", "model", problem.removeprefix("robot.urdf: ")) for problem in error.problems]
-        model = None
-    if model is not None and model.nq == 1:
-        text = "one joint moves the tip, and the controllers take arms of two or more"
-        findings.append(Finding("refused", "model", text))
-        model = None
-    if model is None:
-        return Examination(name, path, mjcf, tip, findings, urdf, None, None)
+        return None
+    if model.nq == 1:
+        findings.append(Finding("refused", "model", "one joint moves the tip; controllers take arms of two or more"))
+        return None
     generator, (lower, upper) = np.random.default_rng(0), model.usual_range
     postures = generator.uniform(lower, upper, (_POSTURES, model.nq))
-    bars = [*check_mass_matrix(model, postures), *(f for f in check_tasks(model) if f.grade == "refused")]
-    if bars:
-        return Examination(name, path, mjcf, tip, [*findings, *bars], urdf, None, None)
-    findings += check_gravity(model, postures)
-    if mjcf is None and not any(finding.grade == "refused" for finding in findings):
-        findings += compare_readings(path)
-    findings += compare_engines(urdf, model, generator)
-    findings += [*check_tasks(model), *describe_singular(model, postures), *describe_workspace(model, generator)]
+    findings += [*check_tasks(model), *describe_singular(model, postures)]
+    if _refused(findings):
+        return None
+    massless = check_mass_matrix(tree, model, postures)
+    findings += massless or [*check_gravity(model, postures), *compare_engines(urdf, model, generator)]
+    findings += describe_workspace(model, generator)
     home, said = judge_home(model, tree.home)
-    findings += said
-    dynamics = dynamics_of(tree, path.name, STANDARD_GRAVITY)
-    findings += _taken(dynamics, model)
-    return Examination(name, path, mjcf, tip, findings, urdf, model, propose(model, postures, home), dynamics)
+    dynamics = dynamics_of(tree, source, STANDARD_GRAVITY)
+    findings += [*said, *_taken(dynamics, model)]
+    return Arm(model, propose(model, postures, home), not massless, dynamics)
 
 
 def _left_out(mjcf: Mjcf) -> list[Finding]:
@@ -126,10 +147,3 @@ def _taken(dynamics: FileDynamics, model: RobotModel) -> list[Finding]:
         for what, key, values in dynamics.by_key()
         if values.any()
     ]
-
-
-def _name_frames(tree: UrdfTree, tip: str) -> Finding:
-    frames = frames_at_the_end(tree, tip)
-    others = [frame for frame in frames if frame != tip]
-    mend = f"--tip takes another that the same joints move: {', '.join(others)}" if others else ""
-    return Finding("note", "tip", f"'{tip}'", mend)

@@ -1,35 +1,46 @@
 """One thing that the doctor has to say."""
 
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-Grade = Literal["refused", "finding", "note"]
+from runner.texts import few
+
+Grade = Literal["refused", "fixed", "note"]
+GRADES: tuple[Grade, ...] = ("refused", "fixed", "note")
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One observation with its mend.
+    """One observation with what was or can be done about it.
 
     Attributes:
-        grade: "refused": the runner cannot take the arm so; "finding": it should be mended; "note": good to know.
+        grade: "refused": the runner cannot take the arm so; "fixed": it was changed in the copy that --write makes;
+            "note": good to know.
         place: The link or joint, or what was looked at.
-        text: What was found.
-        mend: What to do about it; "" where nothing needs doing.
-        mended: Whether the copy that `--write` makes is free of it.
+        text: What was found; of what is fixed, as it was.
+        mend: What to do about it, or what was done; "" where nothing needs doing.
     """
 
     grade: Grade
     place: str
     text: str
     mend: str = ""
-    mended: bool = False
 
     def __str__(self) -> str:
-        mend = f"; {self.mend}" if self.mend else ""
-        return f"{self.grade:<8} {self.place}: {self.text}{mend}{' [--write does it]' if self.mended else ''}"
+        return f"{self.grade:<7} {self.place}: {self.text}{'; ' if self.mend else ''}{self.mend}"
 
 
-def exit_code(findings: "list[Finding]") -> int:
-    """Return 2 where something bars the arm, 1 where something is to be mended, 0 where it fits."""
-    grades = {finding.grade for finding in findings}
-    return 2 if "refused" in grades else 1 if "finding" in grades else 0
+def together(findings: Iterable[Finding]) -> list[Finding]:
+    """Return findings by grade, those of several links or joints in the same words as one."""
+    places: dict[tuple[Grade, str, str, str], list[str]] = {}
+    for each in findings:
+        part = re.fullmatch(r"(link|joint) ('.*')", each.place)
+        kind, name = part.groups() if part else (each.place, "")
+        places.setdefault((each.grade, kind, each.text, each.mend), []).append(name)
+    found = [
+        Finding(grade, f"{kind}{'s' if len(names) > 1 and names[0] else ''} {few(names)}".rstrip(), text, mend)
+        for (grade, kind, text, mend), names in places.items()
+    ]
+    return sorted(found, key=lambda each: GRADES.index(each.grade))

@@ -13,53 +13,45 @@ _NO_LIMIT = "1e6"  # what the runner takes for none
 
 
 def check_joints(tree: UrdfTree, tip: str) -> list[Finding]:
-    """Return what is wrong with the joints of an arm, and mend in place what can be without a choice.
+    """Return what is wrong with the joints of an arm, and fix in place what leaves no choice.
 
-    Joints that move and do not lie between base and tip are fixed: the runner takes serial arms.
+    Joints that move and do not lie between base and tip are held: the runner takes serial arms.
     """
-    way = tree.way(tip)
-    fixed = sum(not moves(joint) for joint in tree.joints.values())
-    beside = [name for name, joint in tree.joints.items() if moves(joint) and name not in way]
-    findings = [_fix(tree, name, way) for name in beside]
-    for name in way:
-        if moves(tree.joints[name]):
-            findings += _check_joint(name, tree.joints[name], tree.ties.get(name))
-    if fixed:
-        findings.append(Finding("note", "fixed joints", f"{fixed}: each rides on the link before it"))
+    way, findings = tree.way(tip), []
+    for name, joint in tree.joints.items():
+        if moves(joint):
+            findings += _check_joint(tree, name) if name in way else [_hold(tree, name, way)]
     return findings
 
 
-def _fix(tree: UrdfTree, name: str, way: Collection[str]) -> Finding:
+def _hold(tree: UrdfTree, name: str, way: Collection[str]) -> Finding:
     joint, tie = tree.joints[name], tree.ties.get(name)
     mimic, unit = joint.find("mimic"), "m" if joint.get("type") == "prismatic" else "rad"
-    text = "it moves beside the way to the tip" + (f", and {tie}" if tie else "")
+    text = "moves, but not the tip" + (f", and {tie}" if tie else "")
     if mimic is not None and mimic.get("joint") in way:
         text += ", which moves the tip: its links no longer move with that"
     held = hold(tree, name)
     where = ", as the keyframe 'home' has it" if name in tree.home else ", its limit nearest to zero" if held else ""
-    return Finding("finding", f"joint '{name}'", text, f"hold it fixed at {held:.6g} {unit}{where}", True)
+    return Finding("fixed", f"joint '{name}'", text, f"now held at {held:.6g} {unit}{where}")
 
 
-def _check_joint(name: str, joint: ET.Element, tie: str | None) -> list[Finding]:
-    place, kind = f"joint '{name}'", joint.get("type", "")
-    findings = []
+def _check_joint(tree: UrdfTree, name: str) -> list[Finding]:
+    joint, place, findings = tree.joints[name], f"joint '{name}'", []
+    kind = joint.get("type", "")
     if kind not in ("revolute", "continuous", "prismatic"):
         return [Finding("refused", place, f"it is {kind or 'of no type'}", "allowed: revolute, prismatic or fixed")]
-    if tie:
-        return [
-            Finding("refused", place, f"it {tie}, and engines would let it move freely", "take that out, or fix it")
-        ]
+    if name in tree.ties:
+        text = f"it moves the tip and {tree.ties[name]}, and engines would let it move freely"
+        return [Finding("refused", place, text, "take that out, make it fixed, or choose another --tip")]
     limit = joint.find("limit")
     if limit is None:
         limit = ET.SubElement(joint, "limit")
     if kind == "continuous":
         joint.set("type", "revolute")
         limit.attrib.update(lower=f"-{_NO_LIMIT}", upper=_NO_LIMIT)
-        text = "continuous: Pinocchio gives it two coordinates (nq = nv + 1), PyBullet one"
-        findings.append(Finding("finding", place, text, "make it revolute with wide limits", True))
+        findings.append(Finding("fixed", place, "continuous", f"now revolute up to {_NO_LIMIT} rad: without limits"))
     findings += _check_positions(place, joint, limit)
-    findings += [finding for key in ("effort", "velocity") for finding in _check_limit(place, limit, key, joint)]
-    return findings
+    return findings + [finding for key in ("effort", "velocity") for finding in _check_limit(place, limit, key)]
 
 
 def _check_positions(place: str, joint: ET.Element, limit: ET.Element) -> list[Finding]:
@@ -70,15 +62,16 @@ def _check_positions(place: str, joint: ET.Element, limit: ET.Element) -> list[F
     if joint.get("type") == "prismatic":
         return [Finding("refused", place, f"it slides, with {said}", "give lower and upper, in m")]
     limit.attrib.update(lower=f"-{_NO_LIMIT}", upper=_NO_LIMIT)
-    return [Finding("finding", place, said, "give lower and upper, in rad; wide ones where there are none", True)]
+    return [Finding("fixed", place, said, f"now {_NO_LIMIT} rad to both sides: without limits")]
 
 
-def _check_limit(place: str, limit: ET.Element, key: str, joint: ET.Element) -> list[Finding]:
+def _check_limit(place: str, limit: ET.Element, key: str) -> list[Finding]:
     value = number(limit, key)
     if value > 0.0:
         return []
     limit.set(key, _NO_LIMIT)
-    slides = joint.get("type") == "prismatic"
-    unit = {"effort": "N" if slides else "N m", "velocity": "m/s" if slides else "rad/s"}[key]
-    said = f"no {key} limit" if math.isnan(value) else f"{key} limit {value:g}, with which it could not move"
-    return [Finding("finding", place, said, f"give that of the data sheet, in {unit}; {_NO_LIMIT} for none", True)]
+    if math.isnan(value):
+        return [Finding("note", place, f"no {key} limit", "give that of the data sheet, if it matters")]
+    return [
+        Finding("fixed", place, f"{key} limit {value:g}, at which nothing moves", f"now {_NO_LIMIT}: without limit")
+    ]

@@ -1,49 +1,56 @@
 """The mesh files that a URDF names."""
 
-import xml.etree.ElementTree as ET
+import contextlib
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from runner.doctor.finding import Finding
-from runner.limits import FACES, MESH
 from runner.robots.tree import UrdfTree
+from runner.texts import few, quoted
 
 
-def check_meshes(tree: UrdfTree, urdf: Path) -> list[Finding]:
-    """Return the meshes that are not there, or lie outside the folder of the URDF (or of the ROS package it names).
+def check_meshes(tree: UrdfTree, urdf: Path, packages: Sequence[Path]) -> list[Finding]:
+    """Return the meshes that are not there, or lie outside the folder of the URDF or of their package.
 
-    Runs need none of them: an arm without shapes is drawn by its joints.
+    Args:
+        tree: The arm.
+        urdf: Its file.
+        packages: Folders that hold ROS packages, searched before those around the file.
     """
-    findings: dict[str, Finding] = {}
-    for name, link in tree.links.items():
-        for mesh in link.iter("mesh"):
-            wrong = _check_mesh(mesh, urdf.resolve().parent)
-            if wrong:
-                place = f"link '{name}', mesh '{mesh.get('filename', '')}'"
-                findings.setdefault(place, Finding("refused", place, *wrong, mended=True))
-    return list(findings.values())
+    names = list(dict.fromkeys(mesh.get("filename", "") for link in tree.links.values() for mesh in link.iter("mesh")))
+    wrong: dict[str, list[str]] = {}
+    for name in names:
+        with contextlib.suppress(OSError, RuntimeError):  # a name that is too long, links in a circle
+            wrong.setdefault(_wrong(name, urdf.resolve().parent, packages), []).append(quoted(name))
+    findings = []
+    for said, found in wrong.items():
+        hint = "--package-path DIR names a folder with its package; " if "package://" in found[0] else ""
+        if said:
+            text = f"{len(found)} of {len(names)} {said}: {few(found)}"
+            findings.append(Finding("note", "meshes", text, f"{hint}runs need none, and draw such links as bones"))
+    return findings
 
 
-def _check_mesh(mesh: ET.Element, folder: Path) -> tuple[str, str] | None:
-    name = mesh.get("filename", "").removeprefix("file://")
-    package, inner = None, name
+def _wrong(name: str, folder: Path, packages: Sequence[Path]) -> str:
+    """Return what is wrong with the mesh of a name; "" for nothing."""
+    roots, inner = [folder], name.removeprefix("file://")
     if name.startswith("package://"):
         package, _, inner = name.removeprefix("package://").partition("/")
-    roots = [folder] if package is None else _package_folders(folder, package)
+        roots = list(_package_folders(folder, package, packages))
     for root in roots:
         path = (root / inner).resolve()
-        if not path.is_relative_to(root):
-            return f"it leads out of {root.name}", "put the mesh beside the URDF, and name it from there"
+        if not path.is_relative_to(root.resolve()):
+            return "outside of the folder of its URDF or package"
         if path.is_file():
-            excess = MESH.excess(path.stat().st_size) or FACES.excess(_faces(path))
-            return (f"it {excess}", "write it with fewer triangles, or take the shape out") if excess else None
-    return "no such file", "put it there, or take the shape out"
+            return ""
+    return "not found"
 
 
-def _faces(path: Path) -> int:
-    return path.read_bytes().count(b"\nf") if path.suffix.lower() == ".obj" else 0
-
-
-def _package_folders(folder: Path, package: str) -> list[Path]:
-    """Return where a ROS package may lie: the folder around the URDF of that name, or one beside the URDF."""
-    around = [parent for parent in (folder, *folder.parents) if parent.name == package]
-    return [*around, folder / package, folder]
+def _package_folders(folder: Path, package: str, packages: Sequence[Path]) -> Iterator[Path]:
+    """Yield where a ROS package may lie: in folders named, around the URDF, beside a folder around it, or beside it."""
+    yield from (place / package for place in packages)
+    for around in (folder, *folder.parents):
+        if around.name == package:
+            yield around
+        yield around / package
+    yield folder

@@ -5,8 +5,13 @@ import numpy as np
 from runner.doctor.finding import Finding
 from runner.robots.model import FloatArray, RobotModel
 from runner.robots.task_space import task_directions
+from runner.robots.tree import UrdfTree
+from runner.robots.urdf_values import number
 from runner.robots.workspace import analyse
+from runner.texts import few
 
+_REGULAR = 1e-9  # smallest eigenvalue of a mass matrix with a diagonal of 1
+_NO_INERTIA = "links behind a joint have mass, but no inertia about its axis"
 SINGULAR = 0.1  # of the reach: the smallest singular value below which controllers damp
 
 
@@ -20,7 +25,7 @@ def check_gravity(model: RobotModel, postures: FloatArray) -> list[Finding]:
         torque = "N" if unit == "m" else "N m"
         if need > effort:
             text = f"gravity asks for up to {need:.3g} {torque}, and its effort limit is {effort:.3g} {torque}"
-            findings.append(Finding("finding", f"joint '{name}'", text, "check masses and effort; or keep it upright"))
+            findings.append(Finding("note", f"joint '{name}'", text, "check masses and effort; or keep it upright"))
     if not findings:
         share = largest / model.effort_limits
         most = int(np.argmax(share if share.any() else largest))
@@ -31,13 +36,16 @@ def check_gravity(model: RobotModel, postures: FloatArray) -> list[Finding]:
     return findings
 
 
-def check_mass_matrix(model: RobotModel, postures: FloatArray) -> list[Finding]:
-    """Return whether the mass matrix is positive definite in some postures, shape (N, nq)."""
+def check_mass_matrix(tree: UrdfTree, model: RobotModel, postures: FloatArray) -> list[Finding]:
+    """Return why torques cannot move the arm, whose mass matrix is singular in one of some postures, shape (N, nq)."""
     least = min(float(np.linalg.eigvalsh(_scaled(model.mass_matrix(q)))[0]) for q in postures)
-    if least > 1e-9:
+    if least > _REGULAR:
         return []
-    text = f"the mass matrix is singular (smallest eigenvalue {least:.1e} of its scaled form): joints move no mass"
-    return [Finding("refused", "mass matrix", text, "give the links behind every joint a mass and an inertia")]
+    heavy = {name for name, link in tree.links.items() if number(link.find("inertial/mass"), "value") > 0.0}
+    free = [joint for joint in model.joint_names if not any(joint in tree.way(link) for link in heavy)]
+    why = "no link has a mass" if len(free) == model.nq else f"no mass behind {few(free)}" if free else _NO_INERTIA
+    text = f"{why}: torques cannot move it; the config takes plant=kinematic, whose joints go where they are told"
+    return [Finding("note", "mass", text, "for torques, give the links behind every joint <inertial> with their mass")]
 
 
 def _scaled(M: FloatArray) -> FloatArray:
@@ -53,7 +61,7 @@ def check_tasks(model: RobotModel) -> list[Finding]:
         return [Finding("refused", "tip", text, "choose another by --tip, or add a link at the tool centre point")]
     if position > model.nq:
         text = f"{model.nq} joints move the tip in {position} directions, not independently: no controller of ours fits"
-        return [Finding("finding", "tasks", text, "choose another tip by --tip, or bring a controller of your own")]
+        return [Finding("refused", "tasks", text, "choose another by --tip")]
     where = {3: "in 3 directions", 2: "in a plane", 1: "along a line"}[position]
     turned = f"a pose has {pose} dimensions" + ("" if pose <= model.nq else ", more than there are joints")
     spare = f" with {model.nq - position} to spare" if model.nq > position else ""
@@ -80,7 +88,7 @@ def describe_singular(model: RobotModel, postures: FloatArray) -> list[Finding]:
     worst = postures[int(smallest.argmin())]
     if smallest.max() < 1e-9 * model.reach:
         text = "the tip's position is singular in every posture: a joint's axis passes through it"
-        return [Finding("finding", "singular postures", text, "choose another tip by --tip, or add a link at the tool")]
+        return [Finding("refused", "tip", text, "choose another by --tip, or add a link at the tool centre point")]
     share = float((smallest < SINGULAR * model.reach).mean())
     text = (
         f"{100.0 * share:.0f} % of all postures are singular for the tip's position, or nearly so; the nearest found "
@@ -92,9 +100,9 @@ def describe_singular(model: RobotModel, postures: FloatArray) -> list[Finding]:
 def describe_workspace(model: RobotModel, generator: np.random.Generator) -> list[Finding]:
     """Return between which distances from its first joint the tip can be."""
     found = analyse(model, 200, generator)
-    low, high = found.tips[:, 2].min(), found.tips[:, 2].max()
+    near, far, low, high = np.round([found.inner, found.outer, *np.quantile(found.tips[:, 2], (0.0, 1.0))], 3)
     text = (
-        f"the tip comes {found.inner:.3g} to {found.outer:.3g} m from the first joint at "
-        f"{np.round(model.shoulder, 3).tolist()} m, and was seen at heights from {low:.3g} to {high:.3g} m"
+        f"the tip comes {near:g} to {far:g} m from the first joint at {np.round(model.shoulder, 3).tolist()} m, "
+        f"and was seen at heights from {low:g} to {high:g} m"
     )
     return [Finding("note", "workspace", text)]

@@ -1,43 +1,116 @@
 """Which frame of an arm is its tip, and which others could be."""
 
+import re
+
+from runner.doctor.finding import Finding
 from runner.errors import RunnerError, nearest
-from runner.robots.tree import UrdfTree, moves
+from runner.robots.tree import UrdfTree, end_of, moves
+from runner.texts import few
+
+_PARTS = r"(_?\d*(_?(link|frame|site|point|body))?)"
+_TIPS = (
+    rf"(.*[_/-])?(tcp|tool_?cent(er|re)(_point)?|grasp(_?target)?|grip_site|pinch){_PARTS}",
+    rf"(.*[_/-])?(ee|eef|end_?effector|tool|tip|attachment|tool_?tip|gripper_(tool|frame|base)){_PARTS}",
+    rf"(.*[_/-])?flange{_PARTS}",
+    rf"(.*[_/-])?(hand|palm|gripper){_PARTS}",
+)
+"""Names of frames to which a tool or a hand belongs, the best ones first."""
+_JAW = re.compile(r"jaw|finger|gripper|claw|pinch|grasp|thumb", re.IGNORECASE)
+_FINGERS = re.compile(r"jaw|finger|claw|thumb|grippermover", re.IGNORECASE)
+_WRIST = re.compile(r"wrist|roll|yaw|pitch|rotat|twist", re.IGNORECASE)
+_FEWEST = 3  # joints of an arm, below its hand
 
 
 def choose_tip(tree: UrdfTree, wanted: str | None) -> str:
-    """Return the link that is the tip: the one wanted, or the farthest one behind all joints that move.
+    """Return the link that is the tip: the one wanted, or the best one where the arm ends.
+
+    That is before it branches into fingers, and before a single jaw. Of the links that the same joints move there it is
+    the one whose name says so, else the farthest.
 
     Raises:
-        RunnerError: if there is no such link, nothing moves it, or the tree branches and no tip was named.
+        RunnerError: if there is no such link, nothing moves it, or the tree has several arms and no tip was named.
     """
     if wanted is not None:
         if wanted not in tree.links:
-            raise RunnerError(f"--tip: no link '{wanted}'{nearest(wanted, tree.links)}; links: {', '.join(tree.links)}")
-        if not _moving(tree, wanted):
-            raise RunnerError(f"--tip: no joint moves the link '{wanted}'; choose one of {', '.join(_ends(tree))}")
+            raise RunnerError(f"--tip: no link '{wanted}'{nearest(wanted, tree.links)}; links: {few(list(tree.links))}")
+        if not moving(tree, wanted):
+            raise RunnerError(f"--tip: no joint moves the link '{wanted}'; choose one of {few(_offered(tree))}")
         return wanted
-    every = [name for name, joint in tree.joints.items() if moves(joint)]
-    if not every:
-        raise RunnerError(f"{tree.robot.get('name', 'the robot')} has no joint that moves: it is no arm")
-    behind_all = [link for link in tree.links if len(_moving(tree, link)) == len(every)]
-    if behind_all:
-        return max(behind_all, key=lambda link: len(tree.way(link)))
-    ways = "; ".join(f"{link} behind {len(_moving(tree, link))} of {len(every)} joints" for link in _ends(tree))
+    if not any(map(moves, tree.joints.values())):
+        raise RunnerError(f"{tree.robot.get('name')} has no joint that moves: it is no arm")
+    ends = _ends(tree)
+    if len(ends) == 1:
+        return frames_at(tree, ends[0])[0]
+    ways = "; ".join(f"{tip} behind {len(moving(tree, tip))} joints" for tip in _offered(tree))
     raise RunnerError(
-        f"{tree.robot.get('name', 'the robot')} branches, and the runner takes serial arms: name the tip by --tip "
-        f"FRAME, and the joints beside the way to it are held fixed; ends: {ways}"
+        f"{tree.robot.get('name')} branches, and the runner takes serial arms: name the tip by --tip FRAME, and the "
+        f"joints beside the way to it are held fixed; ends: {ways}"
     )
 
 
-def frames_at_the_end(tree: UrdfTree, tip: str) -> list[str]:
-    """Return the links that the same joints move as the tip, the tip included, in the file's order."""
-    way = _moving(tree, tip)
-    return [link for link in tree.links if _moving(tree, link) == way]
+def name_tips(tree: UrdfTree, tip: str) -> Finding:
+    """Return which link is the tip, and which others could be: with the same joints, or with more or fewer."""
+    same = [frame for frame in frames_at(tree, tip) if frame != tip]
+    told = [f"--tip takes another that the same joints move: {few(same)}"] if same else []
+    way = moving(tree, tip)
+    beside = [name for name, joint in tree.joints.items() if moves(joint) and name not in way]
+    behind = {
+        end_of(tree.joints[name], "child"): name
+        for name in beside
+        if set(way) < set(tree.way(end_of(tree.joints[name], "child")))
+    }
+    if behind:
+        told.append(f"or one behind further joints: {few([f'{link} ({joint})' for link, joint in behind.items()])}")
+    return Finding("note", "tip", f"'{tip}', moved by {len(way)} joints", "; ".join(told))
 
 
-def _moving(tree: UrdfTree, link: str) -> list[str]:
+def frames_at(tree: UrdfTree, link: str) -> list[str]:
+    """Return the links that the same joints move as a link, itself included, the best tip first."""
+    way = moving(tree, link)
+    links = [each for each in reversed(tree.links) if moving(tree, each) == way]  # of equal ones the last
+    return sorted(links, key=lambda each: _order(tree, each))
+
+
+def moving(tree: UrdfTree, link: str) -> list[str]:
+    """Return the joints that move a link, from the base outwards."""
     return [name for name in tree.way(link) if moves(tree.joints[name])]
 
 
+def _order(tree: UrdfTree, link: str) -> tuple[int, int]:
+    """Return what sorts links as tips: by name, then the farthest first."""
+    named = [] if _FINGERS.search(link) else [name for name in _TIPS if re.fullmatch(name, link.lower())]
+    return _TIPS.index(named[0]) if named else len(_TIPS), -len(tree.way(link))
+
+
+def _offered(tree: UrdfTree) -> list[str]:
+    return [frames_at(tree, end)[0] for end in _ends(tree) if moving(tree, end)]
+
+
 def _ends(tree: UrdfTree) -> list[str]:
-    return [link for link in tree.ends if _moving(tree, link)]
+    """Return the links where an arm ends: one, unless several branches could be the arm."""
+    behind: dict[str, int] = {}  # most joints that move behind one another, from each joint on
+    for end in tree.ends:
+        count = 0
+        for joint in reversed(tree.way(end)):
+            count += moves(tree.joints[joint])
+            behind[joint] = max(count, behind.get(joint, 0))
+    borne: dict[str, list[str]] = {}
+    for joint in sorted(filter(behind.get, behind), key=behind.__getitem__, reverse=True):
+        borne.setdefault(end_of(tree.joints[joint], "parent"), []).append(joint)
+    found, starts = [], [tree.root]
+    while starts:
+        link, before, joints = starts[0], len(moving(tree, starts[0])), borne.get(starts.pop(0), [])
+        longest, second = (*(behind[joint] for joint in joints), 0, 0)[:2]
+        hand = before >= _FEWEST and second > 0 and longest < before and longest - second <= 1
+        if not joints or hand or (before >= _FEWEST and longest == 1 and _is_jaw(tree, joints[0])):
+            found.append(link)
+        else:
+            one = not second or (second < _FEWEST and longest - second > 1)
+            starts += [end_of(tree.joints[joint], "child") for joint in (joints[:1] if one else joints)]
+    return found
+
+
+def _is_jaw(tree: UrdfTree, joint: str) -> bool:
+    """Tell whether a joint that moves is called a jaw, or the link that it moves is."""
+    named = _JAW.search(joint) and not _WRIST.search(joint)
+    return moves(tree.joints[joint]) and bool(named or _FINGERS.search(end_of(tree.joints[joint], "child")))

@@ -1,12 +1,13 @@
 """PyBullet's physics servers: who has one, and those that wait for the next plant of the same arm."""
 
+import re
 import tempfile
 import xml.etree.ElementTree as ET
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from runner.engine_output import caught_output, quiet_stderr
 from runner.errors import ConfigError
-from runner.plants.bullet_reading import words
 
 with quiet_stderr():  # PyBullet announces its build time
     import pybullet
@@ -96,7 +97,7 @@ class PhysicsServers:
                 said.insert(0, str(error))
         if said:
             pybullet.disconnect(client)
-            raise ConfigError([f"robot.urdf: PyBullet does not take it as it is: {'; '.join(words(said))}"])
+            raise ConfigError([f"robot.urdf: PyBullet does not take it as it is: {'; '.join(_words(said))}"])
         return Server(client, body, urdf, used=False)
 
     def _empty(self) -> int:
@@ -117,3 +118,9 @@ def _in_short_lines(urdf: str) -> str:
     root = ET.fromstring(urdf)  # noqa: S314 - our own text, checked when it was read
     ET.indent(root)
     return ET.tostring(root, encoding="unicode")
+
+
+def _words(said: Sequence[str]) -> list[str]:
+    """Return what PyBullet printed without the places in its own source."""
+    parts = re.split(r"b3\w+\[[^\]]*\]:", " ".join(said))
+    return list(dict.fromkeys(part.strip() for part in parts if part.strip()))

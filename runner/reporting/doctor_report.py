@@ -3,6 +3,7 @@
 import numpy as np
 
 from runner.doctor.examination import Examination
+from runner.doctor.finding import GRADES
 from runner.drawing import arm_motion
 from runner.provenance import versions
 from runner.quantities import number
@@ -18,21 +19,16 @@ _SECONDS = 1.5  # for each joint
 
 def doctor_document(found: Examination) -> Document:
     """Return the report on an examination."""
-    counts = {grade: sum(f.grade == grade for f in found.findings) for grade in ("refused", "finding", "note")}
-    verdict = (
-        "cannot be used as it is"
-        if counts["refused"]
-        else "can be used once what is found below is mended"
-        if counts["finding"]
-        else "can be used as it is"
-    )
-    sections = [Section("Findings", (_findings(found),))]
-    if found.model is not None and found.start is not None:
-        drawn = _swings(found, found.model, found.start.home)
-        sections = [Section("The robot", (drawn,)), *sections, Section("Its joints", (_joints(found.model),))]
+    counts = {grade: sum(f.grade == grade for f in found.findings) for grade in GRADES}
+    if found.arm is not None:
+        verdict = "fits" if found.arm.has_mass else "fits, as joints that go where they are told"
+        drawn = _swings(found, found.arm.model, found.arm.start.home)
+        sections = [Section("The robot", (drawn,)), Section("Findings", (_findings(found),))]
+        sections.append(Section("Its joints", (_joints(found.arm.model),)))
     else:
-        notice = Notice("failure", "No model", "The robot cannot be built until what is refused below is mended.")
-        sections = [Section("The robot", (notice,)), *sections]
+        verdict = "is refused"
+        notice = Notice("failure", "No model", "The robot cannot be taken until what is refused below is mended.")
+        sections = [Section("The robot", (notice,)), Section("Findings", (_findings(found),))]
     rows = [("file", found.source.name), *versions().items()]
     return Document(
         title=f"Robot {found.name}",
@@ -40,7 +36,7 @@ def doctor_document(found: Examination) -> Document:
         abstract=f"The robot {verdict}.",
         key_numbers=[
             ("that bar the robot", str(counts["refused"]), "refused"),
-            ("to be mended", str(counts["finding"]), "findings"),
+            ("changed in the copy", str(counts["fixed"]), "fixed"),
             ("good to know", str(counts["note"]), "notes"),
         ],
         sections=[*sections, Section("Made with", (Provenance(rows),))],
@@ -50,14 +46,8 @@ def doctor_document(found: Examination) -> Document:
 
 
 def _findings(found: Examination) -> Table:
-    rows = [[each.grade, *literals((each.place, each.text, each.mend)), _yes(each.mended)] for each in found.findings]
-    return Table(
-        "What was found, with the mend.", ["grade", "where", "what", "mend", "mended by --write"], rows, badges=(0,)
-    )
-
-
-def _yes(value: bool) -> str:
-    return "yes" if value else ""
+    rows = [[each.grade, *literals((each.place, each.text, each.mend))] for each in found.findings]
+    return Table("What was found, and what was done or can be.", ["grade", "where", "what", "done"], rows, badges=(0,))
 
 
 def _swings(found: Examination, model: RobotModel, home: FloatArray) -> Playback:

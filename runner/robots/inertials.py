@@ -146,7 +146,7 @@ def add_payload(links: Mapping[str, ET.Element], payload: Payload) -> None:
 
 def impossible_inertia(link: ET.Element) -> list[str]:
     """Return what is wrong with a link's inertia that no rigid body has; PyBullet takes zero in its place."""
-    moments = np.linalg.eigvalsh(_tensor(link))
+    moments = principal_moments(link)
     listed = ", ".join(f"{moment:.3g}" for moment in moments)
     if moments[0] < -_ROUNDING * moments[2]:
         return [f"an inertia that is not positive definite (principal moments {listed} kg m^2): no body has it"]
@@ -156,6 +156,11 @@ def impossible_inertia(link: ET.Element) -> list[str]:
             "PyBullet would take zero for all"
         ]
     return []
+
+
+def principal_moments(link: ET.Element) -> np.ndarray:
+    """Return a link's principal moments of inertia about its centre of mass, shape (3,), in kg m^2, ascending."""
+    return np.asarray(np.linalg.eigvalsh(_tensor(link)))
 
 
 def mend_inertia(link: ET.Element) -> None:

@@ -255,15 +255,6 @@ class RobotModel:
         return origin
 
 
-def joint_names_of(urdf: str) -> tuple[str, ...]:
-    """Return the joints that move in a URDF's text, of any tree, in Pinocchio's order.
-
-    Raises:
-        ConfigError: if the URDF cannot be built.
-    """
-    return tuple(_build(urdf).names)[1:]
-
-
 def _build(urdf: str) -> pin.Model:
     model, said = _read(urdf)
     if said:  # of a shape that is unknown to Pinocchio: none is part of a model

@@ -49,7 +49,7 @@ _TABLE = """
         endpoint=loop.endpoint failures joint_torques recorder sensors
     metrics: __init__=metrics.__init__ contact=metrics.contact context effort family positioning reaching summary
         tracking
-    plants: __init__=plants.__init__ armature=plants.armature bullet bullet_reading bullet_servers
+    plants: __init__=plants.__init__ armature=plants.armature bullet bullet_servers
         computation=plants.computation decoupled end_points=plants.end_points flexible_around flexible_config
         flexible_joints=plants.flexible_joints flexible_links=plants.flexible_links friction kinds=plants.kinds
         kinematic load motion=plants.motion motor_friction mujoco mujoco_model payload_changes plant=plants.plant rk4

@@ -101,7 +101,7 @@ def _examine(name):
 def short_examination() -> Iterator[None]:
     """Let the doctor compare no engines and search no workspace, which takes 1 s and changes no config."""
     with pytest.MonkeyPatch.context() as patch:
-        for left_out in ("compare_readings", "compare_engines", "describe_singular", "describe_workspace"):
+        for left_out in ("compare_engines", "describe_singular", "describe_workspace"):
             patch.setattr(examination, left_out, lambda *_: [])
         yield
 
