@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import cast
 
 from omegaconf import DictConfig, OmegaConf
 
@@ -93,7 +93,9 @@ def from_hydra(
     return Composed(resolved, tuple(overrides), choices, tuple(config_dirs), root)
 
 
-def _mixed_arms(resolved: Mapping[str, Any], choices: Mapping[str, str], config_dirs: Sequence[Path]) -> Iterator[str]:
+def _mixed_arms(
+    resolved: Mapping[str, object], choices: Mapping[str, str], config_dirs: Sequence[Path]
+) -> Iterator[str]:
     """Yield a problem for each file of a robot of ours that a config folder has under the same name."""
     option, robot = choices.get("robot", "").removesuffix(".yaml"), resolved.get("robot")
     if not (config_dirs and isinstance(robot, Mapping) and (conf_dir() / "robot" / f"{option}.yaml").is_file()):

@@ -16,7 +16,7 @@ PAIRS = [
 def test_controllers_lead_strangers(simulated_stranger, name, controller):
     trace = simulated_stranger(name, f"controller={controller}")
     assert trace.failure is None
-    assert np.abs(trace.error).max() < 1e-3 * strangers.read(name).model.reach
+    assert np.abs(trace.error).max() < 1e-3 * strangers.read(name).arm.model.reach
 
 
 @pytest.fixture(scope="module")
@@ -41,4 +41,4 @@ def simulated_stranger():
 )  # the most kinds of joints
 def test_the_plants_agree_on_strangers(simulated_stranger, name):
     default, rk4 = (simulated_stranger(name, f"plant={plant}") for plant in ("default", "rk4"))
-    np.testing.assert_allclose(default.tip, rk4.tip, rtol=0, atol=1e-5 * strangers.read(name).model.reach)
+    np.testing.assert_allclose(default.tip, rk4.tip, rtol=0, atol=1e-5 * strangers.read(name).arm.model.reach)
