@@ -13,7 +13,7 @@ def test_from_a_stranger_s_urdf_to_a_report_in_three_commands(cli, tmp_path):
     examined = cli("doctor", KUKA, "--write", "mine")
     assert examined.code == 0
     assert examined.out.splitlines()[-2:] == ["runner --config-dir mine robot=lbr_iiwa", "mine"]
-    assert len((tmp_path / "mine/robot/lbr_iiwa.yaml").read_text().splitlines()) <= 15
+    assert len((tmp_path / "mine/robot/lbr_iiwa.yaml").read_text().splitlines()) <= 18
     ran = cli("--config-dir", "mine", "robot=lbr_iiwa", "duration=0.2")
     assert ran.code == 0
     assert runner.open_run(ran.folder).metrics["max_tracking_error"].median < 1e-4
