@@ -25,7 +25,7 @@ from runner.doctor.postures import (
 from runner.doctor.starting_point import StartingPoint, judge_home, propose
 from runner.doctor.tip import choose_tip, name_tips
 from runner.errors import ConfigError
-from runner.robots.description import drop_meshes, read_arm
+from runner.robots.description import drop_shapes, read_arm
 from runner.robots.joint_dynamics import FileDynamics, by_value, dynamics_of
 from runner.robots.mjcf import Mjcf, read_mjcf
 from runner.robots.mjcf_files import is_mjcf
@@ -99,7 +99,7 @@ def examine(
     findings += [Finding("note", "names", few(original.renamed))] if original.renamed else []
     findings += [*check_placements(tree), *check_meshes(tree, path, packages), *check_links(tree)]
     findings += [*check_joints(tree, tip), *([] if mjcf is None else _left_out(mjcf))]
-    drop_meshes(tree.links)
+    drop_shapes(tree.links)
     ET.indent(tree.robot)
     urdf = ET.tostring(tree.robot, encoding="unicode")
     arm = None if _refused(findings) else _take(tree, path.name, urdf, tip, findings)

@@ -129,16 +129,23 @@ def read_urdf(
     for payload in payloads:
         if payload.mass:
             add_payload(links, payload)
-    drop_meshes(links)
+    drop_shapes(links)
     return ET.tostring(tree.robot, encoding="unicode")
 
 
-def drop_meshes(links: Mapping[str, ET.Element]) -> None:
-    """Take shapes that are meshes out of links: a stored run keeps no files of theirs, and needs none."""
+def drop_shapes(links: Mapping[str, ET.Element]) -> None:
+    """Take shapes out of links that no run needs: meshes, whose files it does not keep, and those without a size."""
     for link in links.values():
         for shape in (*link.findall("visual"), *link.findall("collision")):
-            if shape.find("geometry/mesh") is not None:
+            if shape.find("geometry/mesh") is not None or _is_flat(shape):
                 link.remove(shape)
+
+
+def _is_flat(shape: ET.Element) -> bool:
+    """Tell whether a shape has a size of zero or less, which MuJoCo refuses."""
+    solids = shape.findall("geometry/*")
+    words = [word for solid in solids for key in ("size", "radius", "length") for word in solid.get(key, "").split()]
+    return any(number(ET.Element("size", value=word), "value") <= 0.0 for word in words)
 
 
 def _check_joints(path: Path, tree: UrdfTree) -> list[str]:

@@ -84,3 +84,18 @@ def test_a_joint_with_the_name_of_a_link_gets_another(tmp_path):
     np.testing.assert_array_equal(model.tip_pose(q), other.tip_pose(q))
     np.testing.assert_array_equal(model.frame_poses(q, model.joint_names), other.frame_poses(q, other.joint_names))
     np.testing.assert_array_equal(model.frame_poses(q, ("a", "b")), other.frame_poses(q, ("a", "b")))
+
+
+def test_a_shape_without_size_is_left_out(tmp_path):
+    path = written(tmp_path / "arm.urdf", ARMS["frames at both ends"])
+    shapes = (
+        '<box size="0 0 0"/>',
+        '<cylinder radius="0.1" length="0"/>',
+        '<sphere radius="-1"/>',
+        '<sphere radius="1"/>',
+    )
+    text = "".join(f"<collision><geometry>{shape}</geometry></collision>" for shape in shapes)
+    path.write_text(path.read_text().replace('<link name="b">', f'<link name="b">{text}'))
+    urdf = read_urdf(path, {})
+    assert urdf.count("<collision>") == 1
+    Mujoco(urdf, RobotModel(urdf, "tip"), 1e-4, 1, "euler", LEAST).close()
