@@ -151,7 +151,7 @@ def test_what_a_folder_names_and_does_not_exist_is_told(paper, old, new, message
 def test_a_robot_is_needed_for_its_truths(paper):
     with pytest.raises(RunnerError, match="names no 'robot'"):
         audit(paper(PAPER.replace("robot: two.urdf\n", "")))
-    with pytest.raises(RunnerError, match="a truth of a model needs a 'robot'; robots: combined, macro"):
+    with pytest.raises(RunnerError, match="a truth of a model needs a 'robot'; robots: combined, fr3, gen3"):
         audited_arm("", "", (), paper())
 
 

@@ -5,6 +5,7 @@ import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -22,7 +23,7 @@ SHIPPED = {
     "kuka": ("kuka_iiwa/model.urdf", None),
     "xarm6": ("xarm/xarm6_robot.urdf", None),
     "xarm6_gripper": ("xarm/xarm6_with_gripper.urdf", "link6"),
-    "panda": ("franka_panda/panda.urdf", "panda_grasptarget"),
+    "franka": ("franka_panda/panda.urdf", "panda_grasptarget"),
     "planar_two": ("TwoJointRobot_w_fixedJoints.urdf", None),
     "pendulum": ("pendulum5.urdf", None),
 }
@@ -117,7 +118,7 @@ def robot(name) -> str:
 def read(name):
     """The doctor's examination of a stranger, the short one."""
     with short_examination():
-        return _examine(name)
+        return replace(_examine(name), name=name)
 
 
 def config(name, *overrides):

@@ -26,7 +26,7 @@ from runner.robots.task_space import task_directions
 ROBOTS = ["macro", "mini", "combined", "xarm7", "meca500", "planar"]
 # Strangers, as the doctor gives them: spatial, planar, sliding, and of 30 joints.
 STRANGE = [
-    *((name, "position") for name in ("kuka", "panda", "xarm6", "planar_two", "pendulum", "crane", "mixed", "snake")),
+    *((name, "position") for name in ("kuka", "franka", "xarm6", "planar_two", "pendulum", "crane", "mixed", "snake")),
     *((name, "pose") for name in ("kuka", "pendulum", "scara", "gantry", "mixed")),
 ]
 REDUNDANT = [
@@ -37,7 +37,7 @@ REDUNDANT = [
     ("operational_space", "kuka", "pose"),
     ("operational_space", "pendulum", "position"),
     ("operational_space", "mixed", "position"),
-    ("whole_body", "panda", "position"),
+    ("whole_body", "franka", "position"),
 ]
 TIP_LAWS = [
     *REDUNDANT,

@@ -9,7 +9,7 @@ from runner.compiled import compile
 from runner.plants.rk4 import Rk4
 
 
-@pytest.mark.parametrize("name", ["macro", "mini", "combined", "xarm7", "meca500", "panda", "crane", "mixed"])
+@pytest.mark.parametrize("name", ["macro", "mini", "combined", "xarm7", "meca500", "franka", "crane", "mixed"])
 def test_whole_motions_are_those_of_pinocchio(name, monkeypatch):
     ours = name not in strangers.STRANGERS
     arm = checked(f"robot={name}").arm if ours else strangers.config(name).arm
