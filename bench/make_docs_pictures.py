@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/concepts.md into docs/pictures: `python -m bench.make_docs_pictures`.
+"""Draws the pictures of the docs into docs/pictures: `python -m bench.make_docs_pictures`.
 
 The control structure is that of the controller's own graph, and the pairs are those of a sweep made here, so that the
 pictures show what the runner does.
@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import runner
+from bench.robot_pictures import robots
 from runner.controllers.graph import ControlGraph, Edge, Node
 from runner.controllers.operational_space_graph import operational_space_graph
 from runner.drawing import block_diagram, palette
@@ -119,6 +120,7 @@ PICTURES: dict[str, Callable[[], str]] = {
     "ticks": ticks,
     "pairs": pairs,
     "operational_space": operational_space,
+    "robots": robots,
 }
 
 

@@ -135,9 +135,10 @@ def test_a_missing_report_is_told(tmp_path):
     assert "none.html is missing: `python -m bench.gallery` makes it" in ended.stderr
 
 
-def test_every_picture_of_the_concepts_is_one_that_is_drawn():
-    shown = re.findall(r"!\[.+\]\(pictures/(\w+)\.svg\)", (ROOT / "docs" / "concepts.md").read_text())
-    assert set(shown) == set(PICTURES)
+def test_every_picture_of_the_docs_is_one_that_is_drawn():
+    pages = [page.read_text() for page in (ROOT / "docs").glob("*.md")]
+    shown = {name for page in pages for name in re.findall(r"!\[.+\]\(pictures/(\w+)\.svg\)", page)}
+    assert shown == set(PICTURES)
     for name in shown:
         text = (ROOT / "docs" / "pictures" / f"{name}.svg").read_text()
         assert ElementTree.fromstring(text).tag.endswith("svg")

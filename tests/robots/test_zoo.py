@@ -1,5 +1,7 @@
 """Every shipped robot on random postures within its joint limits: dynamics against differences."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -101,6 +103,15 @@ def test_a_payload_adds_the_torque_of_its_weight_and_its_inertia(name, model):
         np.testing.assert_allclose(
             loaded.mass_matrix(q) - model.mass_matrix(q), mass * J_load.T @ J_load, rtol=0, atol=1e-12
         )
+
+
+def test_the_list_tells_joints_reach_and_payload(name, model):
+    told = re.search(r": (\d+) joints, reach ([\d.]+) m, payload (not stated|[\d.]+ kg); ", group_options("robot")[name])
+    joints, reach, payload = told.groups()
+    rated = config_of(name).rated_payload
+    assert (int(joints), payload) == (model.nq, "not stated" if rated is None else f"{rated:g} kg")
+    # A data sheet counts from the shoulder to the wrist or the flange; the links together are longer.
+    assert 0.7 * model.reach < float(reach) < 1.005 * model.reach
 
 
 def test_home_is_inside_the_limits(name, model):
