@@ -106,8 +106,9 @@ def test_a_payload_adds_the_torque_of_its_weight_and_its_inertia(name, model):
 
 
 def test_the_list_tells_joints_reach_and_payload(name, model):
-    told = re.search(r": (\d+) joints, reach ([\d.]+) m, payload (not stated|[\d.]+ kg); ", group_options("robot")[name])
-    joints, reach, payload = told.groups()
+    told = group_options("robot")[name]
+    found = re.search(r": (\d+) joints, reach ([\d.]+) m, payload (not stated|[\d.]+ kg); ", told)
+    joints, reach, payload = found.groups()
     rated = config_of(name).rated_payload
     assert (int(joints), payload) == (model.nq, "not stated" if rated is None else f"{rated:g} kg")
     # A data sheet counts from the shoulder to the wrist or the flange; the links together are longer.
