@@ -45,10 +45,10 @@ def _sheet() -> Figure:
         for place, (_, outline, color) in enumerate(sorted(faces, key=lambda face: face[0])):
             axes.fill(*(size * outline + shift).T, fc=color, ec=INK, lw=0.3, zorder=2.0 + 1e-4 * place, clip_on=False)
         label = name if size == 1.0 else f"{name} (x {size:g})"
-        write(axes, np.array([column * _WIDE, -row * _HIGH - 0.09]), label, size=9.0)
+        write(axes, np.array([column * _WIDE, -row * _HIGH - 0.09]), label, halo=False)
     low = -(rows - 1) * _HIGH - 0.2
     axes.plot([-0.5, 0.0], [low, low], color=GREY, lw=1.2, solid_capstyle="butt")
-    write(axes, np.array([0.13, low]), "0.5 m", size=7.5, color=GREY)
+    write(axes, np.array([0.13, low]), "0.5 m", size=7.5, color=GREY, halo=False)
     axes.set(xlim=(-0.5 * _WIDE, (_COLUMNS - 0.5) * _WIDE), ylim=(low - 0.06, _HIGH - 0.1))
     return figure
 
