@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.robots.mjcf_joints import HOME, ON_JOINTS, actuator_name, is_motor
+from runner.robots.mjcf_ties import free_joints
 from runner.robots.mjcf_urdf import joint_name
 from runner.robots.model import STANDARD_GRAVITY
 from runner.texts import few
@@ -31,9 +32,8 @@ class LeftOut:
 def refused_parts(spec: Any) -> Iterator[str]:
     """Yield what no arm of ours has, of MuJoCo's specification of a file, with its names and what to do about it."""
     yield from _listed("mocap bodies", [b for b in spec.bodies if b.mocap], "take them out")
-    for kind, text in ((mujoco.mjtJoint.mjJNT_FREE, "free joints"), (mujoco.mjtJoint.mjJNT_BALL, "ball joints")):
-        joints = [joint for joint in spec.joints if joint.type == kind]
-        yield from _listed(text, joints, "an arm stands on the world, and its joints are hinges and slides")
+    balls = [joint for joint in spec.joints if joint.type == mujoco.mjtJoint.mjJNT_BALL]
+    yield from _listed("ball joints", balls, "the joints of an arm are hinges and slides")
 
 
 def refused_shapes(spec: Any) -> Iterator[str]:
@@ -71,6 +71,9 @@ def _of_motion(spec: Any, model: Any) -> Iterator[str]:
     afloat = [body.name or "one without a name" for body in spec.bodies if body.gravcomp]
     if afloat:
         yield f"gravity compensation (gravcomp) of the bodies {few(afloat)}, which weigh here"
+    free = [joint.parent.name or "one without a name" for joint in free_joints(spec)]
+    if free:
+        yield f"free joints of the bodies {few(free)}, which stand still here"
     option = spec.option
     for text, value in (("density", option.density), ("viscosity", option.viscosity)):
         if value:

@@ -9,21 +9,32 @@ import numpy as np
 
 from runner.robots.mjcf_joints import ON_JOINTS
 
-_MUSCLE = mujoco.mjtDyn.mjDYN_MUSCLE
+_MUSCLE, _FREE = mujoco.mjtDyn.mjDYN_MUSCLE, mujoco.mjtJoint.mjJNT_FREE
 
 
 def take_out_ties(spec: Any) -> list[tuple[Any, str]]:
-    """Take equality constraints, tendons and muscles out of a specification, and the actuators that are on no joint.
+    """Take out of a specification its equality constraints, tendons, muscles, free joints, and what acts on no joint.
 
     Returns:
         Each joint that one of them acts on, as an element of the specification, with its words.
     """
     found = (*_of_equalities(spec), *_of_tendons(spec), *_of_muscles(spec))
-    ties = [(joint, text) for text, joints in found for joint in joints]
-    others = [each for each in spec.actuators if each.trntype not in ON_JOINTS or each.dyntype == _MUSCLE]
-    for element in (*others, *spec.equalities, *spec.tendons):
+    ties = [(joint, text) for text, joints in found for joint in joints if joint.type != _FREE]
+    free = free_joints(spec)
+    names = [joint.name for joint in free if joint.name]
+    others = [
+        each
+        for each in spec.actuators
+        if each.trntype not in ON_JOINTS or each.dyntype == _MUSCLE or each.target in names
+    ]
+    for element in (*others, *spec.equalities, *spec.tendons, *free):
         spec.delete(element)
     return ties
+
+
+def free_joints(spec: Any) -> list[Any]:
+    """Return the joints that let a body of a specification go anywhere."""
+    return [joint for joint in spec.joints if joint.type == _FREE]
 
 
 def other_ties(model: Any) -> Iterator[tuple[int, str]]:

@@ -14,14 +14,11 @@ def beside(text, where="</worldbody>"):
 
 
 SECOND = '<body name="other"><joint name="p" axis="0 1 0"/><geom size="0.1 0.1"/></body></worldbody>'
+FREE = SECOND.replace('<joint name="p" axis="0 1 0"/>', '<freejoint name="f"/>')
 REFUSED = {
     "mocap bodies": (
         CHAIN.replace("</worldbody>", '<body name="hand2" mocap="true"/></worldbody>'),
         "holds mocap bodies: 'hand2'",
-    ),
-    "free joints": (
-        CHAIN.replace("</worldbody>", SECOND.replace('<joint name="p" axis="0 1 0"/>', "<freejoint/>")),
-        "holds free joints: one of the body 'other'; an arm stands on the world",
     ),
     "ball joints": (CHAIN.replace('name="q2"', 'name="q2" type="ball"'), "holds ball joints: 'q2'"),
     "several trees": (CHAIN.replace("</worldbody>", SECOND), "branches: p move beside q1, q2, q3; allowed: a serial"),
@@ -64,6 +61,10 @@ LEFT_OUT = {
     "damping that grows": (
         CHAIN.replace('name="q1"', 'name="q1" damping="2 0.5"'),
         "damping that grows with the speed: q1",
+    ),
+    "a body that is free": (
+        beside('<actuator><motor joint="f" gear="1 0 0 0 0 0"/></actuator>').replace("</worldbody>", FREE),
+        "free joints of the bodies other, which stand still here",
     ),
     "weight that is borne": (
         CHAIN.replace('name="fore"', 'name="fore" gravcomp="0.5"'),
