@@ -151,6 +151,26 @@ def test_what_moves_beside_the_way_is_held(examined):
     assert examination.arm.model.mass == pytest.approx(6.0)  # what stands on the base does not move
 
 
+def test_a_finger_that_mimics_is_held_without_its_mimic(examined):
+    fingers = "".join(
+        strangers.link(name, 0.1, 0.1)
+        + strangers.joint(2, "prismatic", X, 0.1, (0.01, 0.04))
+        .replace('name="q3"', f'name="{name}"')
+        .replace('<child link="l3"/>', f'<child link="{name}"/>{mimic}')
+        for name, mimic in (("f1", ""), ("f2", '<mimic joint="f1"/>'), ("f3", '<mimic joint="q2"/>'))
+    )
+    examination = examined(CLEAN.replace("</robot>", fingers + "</robot>"), "tip")
+    beside, held = "moves, but not the tip", "now held at 0.01 m, its limit nearest to zero"
+    follows = "which moves the tip: its links no longer move with that"
+    assert [str(each) for each in examination.findings if each.grade == "fixed"] == [
+        f"fixed   joint 'f1_joint': {beside}; {held}",
+        f"fixed   joint 'f2_joint': {beside}, and mimics 'f1_joint'; {held}",
+        f"fixed   joint 'f3_joint': {beside}, and mimics 'q2', {follows}; {held}",
+    ]
+    assert "mimic" not in examination.urdf
+    assert examination.arm.model.joint_names == ("q1", "q2", "q3")
+
+
 def test_a_mimicking_joint_on_the_way_bars_the_arm(found):
     text = CLEAN.replace('<child link="l2"/>', '<child link="l2"/><mimic joint="q1"/>')
     assert found(text, "joint 'q2'").text == "it moves the tip and mimics 'q1', and engines would let it move freely"
