@@ -26,7 +26,8 @@ Face = tuple[float, FloatArray, str]
 
 def robots() -> str:
     """Draw the ten arms to one scale, but the SO-101 at twice its size."""
-    return re.sub(r"(\.\d)\d{5}\b", r"\1", _sheet())  # tenths of a point, for a small file
+    # Tenths of a point, for a small file; the scale of letters keeps its digits.
+    return re.sub(r"(?<!scale\(0)(\.\d)\d{5}\b", r"\1", _sheet())
 
 
 @drawing
