@@ -75,6 +75,7 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _tell(tuning: "Tuning") -> int:
+    from runner.tuning.study import at_ends
     from runner.tuning.trial import best
 
     trials, objectives = tuning.trials, tuning.study.objectives
@@ -86,6 +87,8 @@ def _tell(tuning: "Tuning") -> int:
             for objective, value in zip(objectives, trials[number].values, strict=True)
         )
         print(f"best: {values} with {shlex.join(tuning.study.trial_overrides(trials[number]))}")
+    for sentence in at_ends(tuning):
+        print(f"runner: {sentence}", file=sys.stderr)
     progress.begin(PREPARING)
     report.main([str(tuning.folder)])
     return 0 if failed < len(trials) else 1

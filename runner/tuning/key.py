@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 from hydra.core.override_parser.types import IntervalSweep, Override, RangeSweep, Transformer
 
@@ -14,6 +14,7 @@ RANGES = (
 )
 
 _INSIDE = 0.618  # of the way from low to high: a place that no round number of a user stands at
+_NEAR_END = 0.02  # of the range
 _DIGITS = 9  # of a value, so that a trial's command can be read and typed
 _DIGITS_ON_GRID = 12
 
@@ -62,6 +63,12 @@ class Key:
             found = self.low + round((proposed - self.low) / self.step) * self.step
             return round(found) if self.integer else float(f"{found:.{_DIGITS_ON_GRID}g}")
         return min(max(float(f"{proposed:.{_DIGITS}g}"), self.low), self.high)
+
+    def end_near(self, value: float) -> Literal["lower", "upper"] | None:
+        """Return the end of the range within 2 % of which a value lies on the key's scale; None away from both."""
+        low, high, at = (math.log(each) if self.log else each for each in (self.low, self.high, value))
+        share = (at - low) / (high - low)
+        return "lower" if share <= _NEAR_END else "upper" if share >= 1.0 - _NEAR_END else None
 
     def override(self, value: float) -> str:
         """Return the override that sets it."""

@@ -11,7 +11,7 @@ from runner.store.seal import DamagedError, read_json, sealed_json
 from runner.store.sweep import write_jobs
 from runner.tuning.key import Key
 from runner.tuning.objective import Objective
-from runner.tuning.trial import Trial
+from runner.tuning.trial import Trial, best
 
 _FILE = "tuning.json"
 _MEND = "the tuning's command makes it again"
@@ -74,6 +74,27 @@ class Tuning:
     folder: Path
     study: Study
     trials: Sequence[Trial]
+
+
+def at_ends(tuning: Tuning) -> list[str]:
+    """Return a sentence for each end of a range near which the best trial lies, or some trials of the front."""
+    study, numbers = tuning.study, best(tuning.trials, tuning.study.objectives)
+    found = []
+    for key in study.keys:
+        values = [tuning.trials[number].params[key.name] for number in numbers]
+        for end in ("lower", "upper"):
+            near = [value for value in values if key.end_near(value) == end]
+            which = (
+                f"the best value, {values[0]:.3g}, lies"
+                if len(values) == 1
+                else f"{len(near)} of {len(values)} best values lie"
+            )
+            if near:
+                found.append(
+                    f"{key.name}: {which} within 2 % of the {end} end of its range ({key.low:.3g} to {key.high:.3g}). "
+                    "A wider range may give a better one."
+                )
+    return found
 
 
 def journal_path(folder: Path) -> Path:

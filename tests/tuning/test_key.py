@@ -71,6 +71,24 @@ def test_probes_are_both_ends_and_a_value_that_nobody_would_type():
     assert Key("a", 1, 5, None, False, True).probes == (1, 3, 5)
 
 
+@pytest.mark.parametrize(
+    ("log", "value", "end"),
+    [
+        (False, 1.0, "lower"),
+        (False, 2.9, "lower"),
+        (False, 3.1, None),
+        (False, 98.9, None),
+        (False, 99.1, "upper"),
+        (True, 1.09, "lower"),
+        (True, 1.10, None),
+        (True, 91.0, None),
+        (True, 92.0, "upper"),
+    ],
+)
+def test_a_value_is_near_an_end_within_two_per_cent_of_the_range_on_its_scale(log, value, end):
+    assert Key("a", 1.0, 101.0 if not log else 100.0, None, log, False).end_near(value) == end
+
+
 def test_the_override_gives_the_very_value():
     value = 0.1 + 0.2
     assert float(Key("a.b", 0.0, 1.0, None, False, False).override(value).partition("=")[2]) == value

@@ -17,7 +17,7 @@ from runner.reporting.tuning import best_trials, front, history, keys
 from runner.reporting.tuning.subject import Subject, key_label, key_value
 from runner.store import Sweep, open_run
 from runner.sweeps.measurements import Measurements, measure_sweep
-from runner.tuning.study import Tuning
+from runner.tuning.study import Tuning, at_ends
 
 _MOST_FAILURES = 40
 
@@ -81,8 +81,10 @@ def _abstract(subject: Subject) -> str:
     text = f"{len(subject.trials)} trials over {names}; {len(subject.trials) - len(subject.good)} of them failed."
     if len(subject.best) == 1:
         trial = subject.best[0]
-        return f"{text} Best is trial {trial}: {subject.outcome(trial)}, with {subject.settings(trial)}."
-    return f"{text} {len(subject.best)} trials stand on the Pareto front." if subject.best else text
+        text += f" Best is trial {trial}: {subject.outcome(trial)}, with {subject.settings(trial)}."
+    elif subject.best:
+        text += f" {len(subject.best)} trials are on the Pareto front."
+    return " ".join([text, *at_ends(subject.tuning)])
 
 
 def _goals(subject: Subject) -> str:

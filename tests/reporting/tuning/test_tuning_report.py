@@ -8,11 +8,13 @@ import pytest
 
 from runner.errors import StoreError
 from runner.reporting.document import Curves, Notice, Playback, RunList, Table, Text
+from runner.reporting.markup import literal
 from runner.reporting.tuning import history
 from runner.reporting.tuning.report import tuning_document
 from runner.reporting.tuning.subject import Subject
 from runner.tuning.objective import Objective
 from runner.tuning.run import tune
+from runner.tuning.study import at_ends
 from runner.tuning.trial import Trial
 
 GOALS = (Objective("peak_torque", "minimize"), Objective("rms_torque", "maximize"))
@@ -94,6 +96,14 @@ def test_one_objective_has_one_best_trial_and_no_trade_off(tuning):
     assert made.cover is not None
     command = blocks(best, Table)[0].origin.command
     assert command.endswith(f"controller.damping_ratio={one.trials[place].params['controller.damping_ratio']!r}")
+
+
+def test_the_first_paragraph_says_which_key_ends_at_the_end_of_its_range(tuning):
+    first, *others = tuning.trials
+    lowest = judged(replace(first, params=first.params | {"controller.natural_frequency": 5.0}))  # the least torque
+    ended = replace(tuning, trials=[lowest, *others])
+    assert at_ends(ended)
+    assert document(ended).abstract.endswith(literal(" ".join(at_ends(ended))))
 
 
 def test_the_history_never_gets_worse(tuning):
