@@ -86,6 +86,8 @@ class Map:
         contours: Whether it shows lines of equal value in place of cells.
         hints: What the reader is told of each cell, row by row, or none.
         runs: Hash of the run behind each cell, row by row, or none.
+        low: Lower end of the interval of each value, shape (rows, columns); NaN where it has none. None if none has.
+        high: Upper end, likewise.
     """
 
     title: str
@@ -99,6 +101,8 @@ class Map:
     contours: bool = False
     hints: Sequence[str] = ()
     runs: Sequence[str] = ()
+    low: FloatArray | None = None
+    high: FloatArray | None = None
 
 
 class CurveFigure(Protocol):

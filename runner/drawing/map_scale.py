@@ -13,6 +13,7 @@ CONTOURS = 10
 """About how many lines of equal value a map shows."""
 MOST_PARTED = 20
 """Most cells beside each other that are parted by white lines."""
+_EQUAL = 0.02  # of the largest value: smaller differences get next to no colour
 _SMALLEST, _LARGEST = 1e-4, 1e4  # of values without a power of ten
 _MOST_PRINTED = 10  # cells beside each other whose values can be read
 
@@ -26,16 +27,26 @@ def scaled(values: FloatArray, log: bool) -> FloatArray:
 
 
 def value_range(figure: MapFigure) -> tuple[float, float]:
-    """Return the ends of the scale of colours, as scaled."""
-    everything = np.concatenate([np.zeros(0), *(scaled(panel.values, figure.log).ravel() for panel in figure.panels)])
+    """Return the ends of the scale of colours, as scaled.
+
+    The scale spans the intervals of the values and at least 2 % of the largest one, so that full contrast stands for a
+    difference that can be told.
+    """
+    parts = [part for panel in figure.panels for part in (panel.values, panel.low, panel.high) if part is not None]
+    everything = np.concatenate([np.zeros(0), *(scaled(part, figure.log).ravel() for part in parts)])
     finite = everything[np.isfinite(everything)]
-    return (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    if not finite.any():
+        return (0.0, 1.0)
+    low, high = float(finite.min()), float(finite.max())
+    least = -math.log10(1.0 - _EQUAL) if figure.log else _EQUAL * max(abs(low), abs(high))
+    room = 0.5 * max(0.0, least - (high - low))
+    return low - room, high + room
 
 
 def scale_marks(figure: MapFigure) -> tuple[list[float], list[str]]:
     """Return where the scale of colours is marked, as scaled, and with which values."""
     low, high = value_range(figure)
-    places = np.linspace(low, high, 5 if high > low else 1)
+    places = np.linspace(low, high, 5)
     values = 10.0**places if figure.log else places
     digits = digits_between(values[0], values[-1])
     plain = _plain(values)

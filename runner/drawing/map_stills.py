@@ -102,8 +102,7 @@ def _figure(maps: MapFigure, sheet: Sheet) -> Figure:
     ]
     total = sum(heights) or height
     figure = Figure(figsize=(sheet.width, total))
-    low, high = value_range(maps)
-    colors = Normalize(low, high if high > low else low + 1.0)
+    colors = Normalize(*value_range(maps))
     tops = [sum(heights[:index]) + max(frame.top for frame in row) for index, row in enumerate(rows)]
     for top, row in zip(tops, rows, strict=True):
         for number, frame in enumerate(row):
@@ -130,8 +129,11 @@ def _draw_map(axes: Axes, frame: _Frame, maps: MapFigure, colors: Normalize) -> 
     axes.grid(False)
     rows, columns = values.shape
     if panel.contours:
-        axes.contourf(values, CONTOURS, cmap=_COLORS, norm=colors)
-        axes.contour(values, CONTOURS, colors="white", linewidths=0.5)
+        levels = np.linspace(*value_range(maps), CONTOURS + 1)
+        axes.contourf(values, levels, cmap=_COLORS, norm=colors)
+        crossed = levels[(levels > np.nanmin(values)) & (levels < np.nanmax(values))]
+        if crossed.size:
+            axes.contour(values, crossed, colors="white", linewidths=0.5)
     else:
         # Cells are centred on whole numbers, as curves over them expect.
         edges = np.arange(columns + 1) - 0.5, np.arange(rows + 1) - 0.5

@@ -33,9 +33,15 @@ def map_in_readable_units(figure: MapOf) -> MapOf:
     if found is None:
         return figure
     values = np.concatenate([np.zeros(1), *(panel.values.ravel() for panel in figure.panels)])
-    factor, name = fitting(float(np.abs(values[np.isfinite(values)]).max()), found[1])
-    panels = [replace(panel, values=factor * panel.values) for panel in figure.panels]
-    label = f"{figure.value_label[: found.start()]}({name})"
+    factor, unit = fitting(float(np.abs(values[np.isfinite(values)]).max()), found[1])
+    panels = [
+        replace(
+            panel,
+            **{name: factor * part for name in ("values", "low", "high") if (part := getattr(panel, name)) is not None},
+        )
+        for panel in figure.panels
+    ]
+    label = f"{figure.value_label[: found.start()]}({unit})"
     scaled: MapOf = replace(figure, value_label=label, panels=panels)  # type: ignore[type-var]
     return scaled
 

@@ -41,7 +41,7 @@ def _map(panel: Map, block: Maps, low: float, high: float) -> Json:
         "y": rows,
         "z": [[None if np.isnan(value) else round(float(value), 9) for value in row] for row in colors],
         "zmin": low,
-        "zmax": high if high > low else low + 1.0,
+        "zmax": high,
         "colorscale": "Viridis",
         "colorbar": {
             "thickness": 10,

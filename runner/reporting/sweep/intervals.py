@@ -6,7 +6,6 @@ import numpy as np
 
 from runner.reporting.document import Curves, Panel, Series
 from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_names
-from runner.statistics import median_interval
 from runner.sweeps.measurements import Axis, FloatArray
 
 _MOST_LINES = 6
@@ -26,12 +25,12 @@ def cells_with_intervals(subject: Subject, metric: str) -> Curves | None:
     count = len(other[0].values) if other else 1
     if count > _MOST_LINES or count * len(along.values) > _MOST_INTERVALS:
         return None
-    curves = []
+    low, high = subject.ends(metric)
+    values, curves = (low, subject.medians[metric], high), []
     for group in range(count):
         cells = np.flatnonzero(groups == group)
         cells = cells[np.argsort(along.level[cells], kind="stable")].tolist()
-        ends = np.array([_interval(subject, metric, cell) for cell in cells]).reshape(-1, 3)
-        low, median, high = np.where(np.isfinite(ends), ends, np.nan).T
+        low, median, high = (np.where(np.isfinite(each), each, np.nan)[cells] for each in values)
         name = f"{other[0].name} = {other[0].text(group)}" if other else ""
         x = places(along)[along.level[cells]]
         hints, runs = subject.hints(cells), subject.hashes(cells)
@@ -44,15 +43,6 @@ def cells_with_intervals(subject: Subject, metric: str) -> Curves | None:
     interval = f"its 95 % interval by the bootstrap over the repetitions ({n}), if enough"
     caption = f"Median of each cell; shaded, or a bar, {interval}."
     return Curves(caption, [panel], columns=1)
-
-
-def _interval(subject: Subject, metric: str, cell: int) -> tuple[float, float, float]:
-    values = subject.measurements.of_cell(metric, cell)
-    if not values.size:
-        return (np.nan, np.nan, np.nan)
-    interval = median_interval(values)
-    low, high = (np.nan if end is None else end for end in (interval.low, interval.high))
-    return (low, interval.median, high)
 
 
 def at_texts(series: Series) -> list[Series]:

@@ -56,13 +56,14 @@ def chosen(subject: Subject) -> list[Axis]:
 
 def _maps(subject: Subject, metric: str, x: Axis, y: Axis, others: Sequence[Axis]) -> Maps:
     """Return a map for each combination of the values of the other axes, as tasks or arms are not to be averaged."""
-    medians, columns = subject.medians[metric], 1
+    of = medians, low, _ = subject.medians[metric], *subject.ends(metric)
+    columns = 1
     pooled = next((axis for axis in subject.axes if axis.name == POOLED and axis not in (x, y)), None)
     what = "Median of each cell" if pooled is None else (
         f"Of the medians of the cells of {len(pooled.values)} seeds the middle one, of an even number the lower"
     )  # fmt: skip
     if not others:
-        cells = _map(subject, metric, x, y, range(len(medians)), "")
+        cells = _map(subject, of, x, y, range(len(medians)), "")
         panels = [cells]
         if metric == subject.metrics[0] and _has_contours(x, y, cells.values):
             panels.append(replace(cells, contours=True))
@@ -72,7 +73,7 @@ def _maps(subject: Subject, metric: str, x: Axis, y: Axis, others: Sequence[Axis
         combinations = np.unique(levels, axis=0)
         shown = spaced(len(combinations), _MOST_MULTIPLES)
         panels = [
-            _map(subject, metric, x, y, np.flatnonzero((levels == some).all(axis=1)).tolist(),
+            _map(subject, of, x, y, np.flatnonzero((levels == some).all(axis=1)).tolist(),
                  ", ".join(f"{axis.name} = {axis.text(int(level))}"
                            for axis, level in zip(others, some, strict=True)))
             for some in combinations[shown]
@@ -83,20 +84,24 @@ def _maps(subject: Subject, metric: str, x: Axis, y: Axis, others: Sequence[Axis
         if len(shown) < len(combinations):
             what += f" ({len(shown)} of {len(combinations)}, evenly chosen; All runs has the others)"
     crosses = " A cross marks failed runs." if any(panel.failed.any() for panel in panels) else ""
-    caption = literal(f"{what}: {metric_titles.title(metric)}.{crosses}")
+    scale = " The colours span the 95 % intervals of the medians." if np.isfinite(low).any() else ""
+    caption = literal(f"{what}: {metric_titles.title(metric)}.{crosses}{scale}")
     return Maps(caption, subject.label(metric), panels, spans_decades(medians), columns)
 
 
-def _map(subject: Subject, metric: str, x: Axis, y: Axis, cells: Sequence[int], title: str) -> Map:
+def _map(subject: Subject, of: Sequence[FloatArray], x: Axis, y: Axis, cells: Sequence[int], title: str) -> Map:
+    """Return a map of some cells; `of` has the median of each cell and the ends of its interval."""
     shape = (len(y.values), len(x.values))
     members: list[list[int]] = [[] for _ in range(shape[0] * shape[1])]
     for cell in cells:
         members[int(y.level[cell]) * shape[1] + int(x.level[cell])].append(cell)
-    medians, statuses = subject.medians[metric], subject.measurements.statuses
+    statuses = subject.measurements.statuses
     single = all(len(some) == 1 for some in members)
-    values = np.array([medians[some[0]] if single else _median(medians[some]) for some in members]).reshape(shape)
+    values, low, high = (
+        np.array([each[some[0]] if single else _median(each[some]) for some in members]).reshape(shape) for each in of
+    )
     failed = np.array([any(statuses[cell] != "ok" for cell in some) for some in members]).reshape(shape)
-    pointed = [some[0] for some in members] if single and len(medians) <= _MOST_POINTED else []
+    pointed = [some[0] for some in members] if single and len(statuses) <= _MOST_POINTED else []
     return Map(
         title,
         axis_label(x),
@@ -108,6 +113,8 @@ def _map(subject: Subject, metric: str, x: Axis, y: Axis, cells: Sequence[int], 
         theory.lines(x, y),
         hints=subject.hints(pointed),
         runs=subject.hashes(pointed),
+        low=low,
+        high=high,
     )
 
 

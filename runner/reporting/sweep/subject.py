@@ -71,6 +71,18 @@ class Subject:
         """What the axes do to each metric compared, over all repetitions of all cells."""
         return {metric: self._analyse(self.measurements.values[metric]) for metric in self.metrics}
 
+    def ends(self, metric: str) -> tuple[FloatArray, FloatArray]:
+        """Return the ends of the 95 % interval of each cell's median, shape (cells,); NaN where repetitions are few."""
+        from runner.statistics import SMALLEST_SAMPLE, median_intervals
+
+        ordered = np.sort(self.measurements.values[metric], axis=1)  # NaN, which is no repetition, comes last
+        counts = np.sum(~np.isnan(ordered), axis=1)
+        low, high = np.full((2, len(ordered)), np.nan)
+        for count in np.unique(counts[counts >= SMALLEST_SAMPLE]):
+            cells = counts == count
+            low[cells], high[cells] = median_intervals(ordered[cells, :count])
+        return low, high
+
     def _analyse(self, values: FloatArray) -> "EffectAnalysis":
         from runner.statistics import axis_effects  # SciPy, a second, which the end of a sweep does without
 

@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 
 from runner.controllers.force_stability import force_loop_limit
-from runner.reporting.document import FloatArray, Map, Maps, Series
-from runner.reporting.figures import model_of, origin
+from runner.reporting.document import FloatArray, Series
+from runner.reporting.figures import model_of
 from runner.reporting.run_values import median
 from runner.robots.effective_mass import tip_mobility
 from runner.store import Run
@@ -15,7 +15,6 @@ from runner.works.thesis.force import rise_time
 
 _BANDWIDTH = float(np.sqrt(np.sqrt(2.0) - 1.0))  # over omega_c, of a critically damped loop, at -3 dB
 _POSTURES = 1000
-_GRID = 13  # angles of a joint
 
 
 def rungs(runs: Mapping[str, Run], run: str, name: str, color: int) -> list[Series]:
@@ -50,26 +49,6 @@ def least_gain(run: Run) -> float:
             gained = 0.5 * (more - less + (more - less).T)
             least = min(least, float(np.linalg.eigvalsh(gained)[0] / np.trace(more)))
     return least
-
-
-def gained_over_postures(runs: Mapping[str, Run], run: str, caption: str) -> Maps:
-    """Return maps of the least that each stage adds to how the tip yields, over its trace, by Macro's joints 2 and 3.
-
-    The other joints are at home; a map for what the Macro adds, and one for what the Mini adds to a third stage.
-    """
-    model, firsts, angles = model_of(runs[run]), _firsts(runs[run]), np.linspace(-np.pi, np.pi, _GRID)
-    names = [f"{np.degrees(angle):.0f}" for angle in angles]
-    least = np.empty((len(firsts) - 1, _GRID, _GRID))
-    for row, column in np.ndindex(_GRID, _GRID):
-        q = np.concatenate([[0.0, angles[column], angles[row]], np.full(model.nq - 3, 0.5)])
-        yields = [tip_mobility(model, q, first) for first in firsts]
-        for stage, (more, less) in enumerate(pairwise(yields)):
-            least[stage, row, column] = np.linalg.eigvalsh(0.5 * (more - less + (more - less).T))[0] / np.trace(more)
-    labels = "joint 2 (deg)", "joint 3 (deg)"
-    kept = np.zeros((_GRID, _GRID), bool)
-    titles = ["what the Macro adds", "what the Mini adds"][: len(least)]
-    maps = [Map(title, *labels, names, names, own, kept) for title, own in zip(titles, least, strict=True)]
-    return Maps(caption, "least eigenvalue over trace", maps, False, len(maps), origin(runs[run]))
 
 
 def force_rise_time(run: Run) -> float:

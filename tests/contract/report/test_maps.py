@@ -50,6 +50,26 @@ def test_all_maps_share_one_scale():
     assert {(spec["traces"][0]["zmin"], spec["traces"][0]["zmax"]) for spec in maps_spec(block)} == {(1.0, 5.0)}
 
 
+@pytest.mark.parametrize("log", [False, True])
+def test_a_difference_below_two_per_cent_gets_no_full_contrast(log):
+    low, high = value_range(one_map([[0.28272, 0.282794]], log))
+    ends = 10.0 ** np.array([low, high]) if log else np.array([low, high])
+    assert ends == pytest.approx([0.28272 * 0.99, 0.282794 * 1.01], rel=2e-4)
+
+
+def test_the_scale_spans_the_intervals_of_the_values_in_their_unit():
+    block = one_map([[4.13e-3, 4.69e-3]], low=np.array([[2.8e-3, np.nan]]), high=np.array([[8e-3, np.inf]]))
+    assert value_range(block) == (2.8e-3, 8e-3)
+    (heat,) = maps_spec(block)[0]["traces"]
+    assert (heat["zmin"], heat["zmax"]) == pytest.approx((2.8, 8.0))
+
+
+def test_lines_of_equal_value_divide_the_scale_and_not_what_cannot_be_told_apart():
+    ragged = 1.0 + 1e-12 * np.arange(9.0).reshape(3, 3)
+    drawn = [map_stills.draw(one_map(values, contours=True)) for values in (ragged, np.arange(9.0).reshape(3, 3))]
+    assert [text.count("#ffffff") > drawn[0].count("#ffffff") for text in drawn] == [False, True]
+
+
 def test_the_logarithm_is_coloured_and_the_value_is_written():
     block = replace(one_map([[1e-4, 1e-2]], log=True), value_label="torque (N m)")
     (spec,) = maps_spec(block)
