@@ -15,6 +15,7 @@ from runner.reporting.document import Curves, Document, Maps, Picture, Playback
 from runner.reporting.markup import Literal, spans
 from runner.reporting.outline import blocks
 from runner.reporting.places import Places
+from runner.reporting.series_colors import colored
 from runner.store.atomic import write_atomically
 
 _WIDTH, _HEIGHT = re.compile(r'\bwidth="([\d.]+)pt"'), re.compile(r'\bheight="([\d.]+)pt"')
@@ -28,6 +29,7 @@ def figures_of(document: Document) -> dict[str, Figure]:
     A name is the figure's address in the HTML report, such as figure-3-5 where it has a number and s1-figure-2 where it
     has none, and the first words of its caption.
     """
+    document = colored(document)
     places = Places(document)
     return {
         f"{places.of(block)}-{_slug(block.caption)}".strip("-"): block
