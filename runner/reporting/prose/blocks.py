@@ -110,15 +110,16 @@ def each(
     unit: str,
     *patterns: str,
     only: Callable[[Run], bool] | None = None,
+    levels: Mapping[str, str] | None = None,
 ) -> list[Measured]:
     """Return a metric, or what a function gives, of each run that patterns stand for; see of_run and largest.
 
     The words have axes in braces; without any, the name of the run follows them. With `only` it is of the runs of
-    which this function is true alone.
+    which this function is true alone. `levels` has words for levels of the axes.
     """
     return [
         Measured(
-            called(words, one.levels, {}) if axes_of(words) else f"{words} of {one.name}",
+            called(words, one.levels, levels or {}) if axes_of(words) else f"{words} of {one.name}",
             None if one.run.status == "failed" else number_of(what, one.run),
             unit,
         )

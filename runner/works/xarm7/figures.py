@@ -111,24 +111,23 @@ def first_at_limit(run: Run) -> str:
 
 
 def ticks_at_a_limit(run: Run) -> str:
-    """Return at which share of the ticks some joint is at its effort limit, as a cell of a table."""
-    return f"{100.0 * float(run.metrics['saturation_fraction']['median']):.3g} %"
+    """Return the share of the ticks at which a joint is at its effort limit, as a cell of a table."""
+    return f"{clipped_share(run):.3g} %"
 
 
-def clipped_share(run: Run) -> float | None:
-    """Return at which share of the ticks the shoulder is at its effort limit, in per cent; None without a tick."""
-    shoulder = _at_limits(run)[:, SHOULDER]
-    return 100.0 * float(shoulder.mean()) if shoulder.size else None
+def clipped_share(run: Run) -> float:
+    """Return the share of the ticks at which a joint is at its effort limit, in per cent."""
+    return 100.0 * float(run.metrics["saturation_fraction"]["median"])
 
 
 def clipped_ticks(run: Run) -> float:
-    """Return at how many ticks the shoulder is at its effort limit."""
-    return float(_at_limits(run)[:, SHOULDER].sum())
+    """Return the number of ticks at which a joint is at its effort limit."""
+    return float(_at_limits(run).any(axis=1).sum())
 
 
 def last_clipped(run: Run) -> float | None:
-    """Return the last time at which the shoulder is at its effort limit, in s; None where it never is."""
-    times = run.trace["t"].to_numpy()[:-1][_at_limits(run)[:, SHOULDER]]
+    """Return the last time at which a joint is at its effort limit, in s; None if there is none."""
+    times = run.trace["t"].to_numpy()[:-1][_at_limits(run).any(axis=1)]
     return float(times[-1]) if times.size else None
 
 

@@ -18,6 +18,7 @@ from runner.works.xarm7.parts.xarm7_as_printed import PrintedJacobian
 from runner.works.xarm7.printed_kinematics import random_postures
 
 _COUNT, _SEED = 1000, 7  # of the random postures
+_ZERO = 7  # palette index of singular values that are zero but for rounding
 _METRICS = ("max_tracking_error", "cross_track_error", "peak_joint_speed")
 
 
@@ -103,7 +104,7 @@ def singular_values(runs: Mapping[str, Run], task: str) -> list[Series]:
     values = np.linalg.svd(J.transpose(0, 2, 1) @ J, compute_uv=False)
     names = [*(f"singular value {k + 1}" for k in range(rows)), "zero, rounded", *[""] * (6 - rows)]
     return [
-        Series(name, _y(run), own, "line" if k < rows else "dotted", color=min(k, rows))
+        Series(name, _y(run), own, "line" if k < rows else "dotted", color=k if k < rows else _ZERO)
         for k, (name, own) in enumerate(zip(names, values.T, strict=True))
     ]
 

@@ -52,6 +52,8 @@ def test_each_run_gives_a_value_that_conditions_call_by_words_with_axes_or_by_it
     ]
     (twice,) = each(runs, "twice the error", lambda one: 2.0 * one.metrics["error"]["median"], "m", "line/1")
     assert (twice.name, twice.value) == ("twice the error of line/1", 1.0)
+    slow, _ = each(runs, "error, {rate}", "error", "m", "line/{rate}", levels={"1": "slow"})
+    assert slow.name == "error, slow"
 
 
 def test_a_signal_is_drawn_over_another_one():
