@@ -5,6 +5,8 @@ import re
 import pytest
 from support.pages import ROOT, complaints, follow, has_python, pages, steps, wrong_snippets
 
+from runner.config.options import group_options
+
 README = ROOT / "README.md"
 FOLLOWED = [page for page in pages() if steps(page) or has_python(page)]
 ALL = [*pages(), *(page for page in sorted(ROOT.glob("*.md")) if page != README)]
@@ -52,3 +54,15 @@ def test_links_and_pictures_lead_to_files():
 def test_no_page_shows_the_name_of_a_stored_folder():
     named = [f"{page.name}: {name}" for page in pages() for name in re.findall(r"\b[0-9a-f]{24}\b", page.read_text())]
     assert named == []  # it follows from the source, and is another one tomorrow
+
+
+def test_the_page_on_configs_names_all_options_of_a_group_or_says_that_there_are_more():
+    rows = re.findall(r"^\| `(\w+)`[^|]* \| ([^|]+) \|", (ROOT / "docs" / "configs.md").read_text(), re.M)
+    named = {group: " ".join(options for other, options in rows if other == group) for group, _ in rows}
+    assert {group for group, options in named.items() if "..." in options} == {"robot", "experiment"}
+    missing = {
+        group: set(group_options(group)) - set(re.findall(r"\w+", options))
+        for group, options in named.items()
+        if "..." not in options
+    }
+    assert {group: left for group, left in missing.items() if left} == {}
