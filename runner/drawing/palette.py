@@ -7,8 +7,8 @@ Any two of a palette are 20 or more apart in CIELAB for readers who see all colo
 LIGHT = ("#0d4d8f", "#bb3a29", "#218e68", "#bb7c00", "#8a6bd4", "#1897b3", "#7b063b", "#4e6270")
 DARK = ("#0e7ad2", "#f7816b", "#73dda2", "#efb945", "#9facff", "#75b9d3", "#ca6b90", "#b9e4e0")
 
-MEANINGS = {"stable": 2, "unstable": 1}
-"""Palette index of a curve whose name says how it went: green and red."""
+MEANINGS = {"stable": 2, "unstable": 3}
+"""Palette index of a curve whose name says how it went: green and orange."""
 
 DESIRED = "#8a929c"
 """Colour of a desired path, which belongs to no body."""

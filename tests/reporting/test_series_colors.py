@@ -35,10 +35,10 @@ def test_a_name_keeps_its_colour_from_figure_to_figure():
     assert second["Mini"] != second.get("third")
 
 
-def test_stable_is_green_and_unstable_red_whatever_else_a_figure_has():
+def test_stable_is_green_and_unstable_orange_whatever_else_a_figure_has():
     for found in colors(colored(document(["bound", "stable", "unstable"], ["unstable"], ["map", "bound", "stable"]))):
         assert found.get("stable", 2) == 2
-        assert found.get("unstable", 1) == 1
+        assert found.get("unstable", 3) == 3
         assert len(set(found.values())) == len(found)
 
 

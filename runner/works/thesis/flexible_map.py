@@ -70,8 +70,8 @@ def stable_and_not(
         ]
     )
     return [
-        Series(name, points[kind, 0], points[kind, 1], "points", color=color)
-        for name, kind, color in (("stable", ~grows, 2), ("unstable", grows, 3))
+        Series(name, points[kind, 0], points[kind, 1], "points")
+        for name, kind in (("stable", ~grows), ("unstable", grows))
     ]
 
 
