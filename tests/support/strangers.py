@@ -5,7 +5,6 @@ import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -118,7 +117,7 @@ def robot(name) -> str:
 def read(name):
     """The doctor's examination of a stranger, the short one."""
     with short_examination():
-        return replace(_examine(name), name=name)
+        return _examine(name)
 
 
 def config(name, *overrides):
