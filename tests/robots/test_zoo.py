@@ -4,11 +4,13 @@ import re
 
 import numpy as np
 import pytest
+import yaml
 
 from runner.config.arms import build_robot
 from runner.config.compose import compose
 from runner.config.options import group_options
 from runner.config.robot import OneArmConfig, StagedRobotConfig
+from runner.paths import robots_dir
 
 ZOO = sorted(group_options("robot"))
 SAMPLES = 20
@@ -117,6 +119,19 @@ def test_the_list_tells_joints_reach_and_payload(name, model):
 
 def test_home_is_inside_the_limits(name, model):
     assert model.limit_margins(robot(name).home).min() > 0.1
+
+
+SETS = [
+    (path.name.split(".")[0], path.suffixes[0][1:], name)
+    for path in sorted(robots_dir().glob("*.*.yaml"))
+    for name in yaml.safe_load(path.read_text())
+]
+
+
+@pytest.mark.parametrize(("name", "key", "set_"), SETS)
+def test_every_named_set_makes_an_arm_of_positive_mass_matrix(name, key, set_):
+    arm = robot(name, f"robot.{key}={set_}").model
+    assert min(np.linalg.eigvalsh(arm.mass_matrix(q))[0] for q in postures(arm)) > 0.0
 
 
 @pytest.mark.parametrize(("name", "rated"), [("xarm7", 3.5), ("meca500", 0.5), ("meca500_r4", 0.5)])
