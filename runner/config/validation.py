@@ -34,6 +34,7 @@ from runner.plants.kinds import HasServo, TurnsBases
 from runner.registry import KindConfig
 from runner.robots.model import STANDARD_GRAVITY
 from runner.robots.robot import Robot, end_points
+from runner.texts import few
 from runner.trajectories import TRAJECTORIES, Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
 from runner.trajectories.kinds import HasStart
@@ -63,6 +64,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.torque_limits, arm)
     problems.recall(check_points, arm, groups.trajectory)
     problems.recall(_check_commands, groups.plant, groups.controller)
+    problems.recall(_check_mass, arm, groups.plant)
     steps = problems.recall(count_steps, arm, groups.plant, groups.controller)
     problems.report()
     # What follows is made from parts that are sound, each for itself. Parts of the user's may remember other runs.
@@ -147,6 +149,17 @@ def _check_commands(plant: PlantConfig, controller: ControllerConfig) -> None:
                 "positions; take another plant or controller"
             ]
         )
+
+
+def _check_mass(arm: Robot, plant: PlantConfig) -> None:
+    """Refuse torques where there is nothing that they could move: MuJoCo would move its least inertia."""
+    model = arm.model
+    bodies = zip(model.joint_names, list(model.pin_model.inertias)[1:], model.armature, strict=True)
+    moved = [name for name, body, armature in bodies if armature or body.mass or body.inertia.any()]
+    free = model.joint_names[model.joint_names.index(moved[-1]) + 1 :] if moved else model.joint_names
+    if free and PLANTS.commands(plant.kind) == "torque":
+        told = f"robot: no mass behind {few(free)}, so torques cannot move it; give the links there <inertial>"
+        raise ConfigError([f"{told}, or take plant=kinematic controller=differential_inverse_kinematics"])
 
 
 def _is_parallel(arm: Robot, plant: PlantConfig) -> bool:

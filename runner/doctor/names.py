@@ -7,7 +7,20 @@ from runner.config.options import group_options
 from runner.doctor.finding import Finding
 from runner.errors import RunnerError
 
-_GENERAL = {"", "arm", "main", "mjcf", "model", "mujoco_model", "robot", "robots", "scene", "urdf", "xml"}  # of any arm
+_GENERAL = {
+    "arm_",
+    "arm",
+    "main",
+    "mjcf",
+    "model",
+    "mujoco_model",
+    "robot",
+    "robots",
+    "scene",
+    "urdf",
+    "xml",
+}  # of any arm
+_WORDS = {"false", "n", "no", "null", "off", "on", "true", "y", "yes"}  # that YAML takes for something else
 
 
 def choose_name(path: Path, header: str, wanted: str | None) -> tuple[str, Finding]:
@@ -26,8 +39,8 @@ def choose_name(path: Path, header: str, wanted: str | None) -> tuple[str, Findi
     """
     ours = group_options("robot")
     if wanted is not None:
-        if wanted != _plain(wanted) or not wanted:
-            raise RunnerError(f"--name: '{wanted}'; allowed: lower-case letters, digits and underscores")
+        if wanted != _plain(wanted):
+            raise RunnerError(f"--name: '{wanted}'; allowed: a lower-case letter, then such, digits and underscores")
         if wanted in ours:
             raise RunnerError(f"--name: '{wanted}' is one of our robots; choose another name, such as my_{wanted}")
         return wanted, Finding("note", "name", f"'{wanted}'")
@@ -42,4 +55,5 @@ def choose_name(path: Path, header: str, wanted: str | None) -> tuple[str, Findi
 
 
 def _plain(name: str) -> str:
-    return re.sub(r"\W+", "_", name.lower(), flags=re.ASCII).strip("_")
+    plain = re.sub(r"\W+", "_", name.lower(), flags=re.ASCII).strip("_")
+    return f"arm_{plain}" if plain in _WORDS or not plain[:1].isalpha() else plain

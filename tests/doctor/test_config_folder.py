@@ -1,12 +1,14 @@
 """Config folders that the doctor writes: names of files and folders."""
 
 import errno
+import re
 
 import pytest
 import yaml
 from support import strangers
 from support.strangers import Y, Z
 
+import runner
 from runner.config.compose import compose
 from runner.config.options import group_options
 from runner.config.validation import validate
@@ -54,6 +56,8 @@ def test_a_tip_of_any_name_is_taken(written, tmp_path, tip):
         ("jib/scene.urdf", None, "jib"),
         ("lamp.urdf", "desk_2", "desk_2"),
         ("xarm7.urdf", None, "my_xarm7"),
+        ("6700.urdf", None, "arm_6700"),
+        ("no.urdf", None, "arm_no"),
     ],
 )
 def test_files_are_named_by_the_file_or_its_folder_or_as_wished(written, tmp_path, file, wanted, name):
@@ -62,7 +66,9 @@ def test_files_are_named_by_the_file_or_its_folder_or_as_wished(written, tmp_pat
     assert paths == [tmp_path / "mine" / "robot" / f"{name}.yaml", tmp_path / "mine" / "robots" / f"{name}.urdf"]
 
 
-@pytest.mark.parametrize(("name", "said"), [("xarm7", "one of our robots"), ("../x", "allowed: "), ("", "allowed: ")])
+@pytest.mark.parametrize(
+    ("name", "said"), [("xarm7", "one of our robots"), ("../x", "allowed: "), ("", "allowed: "), ("7", "allowed: ")]
+)
 def test_a_name_of_ours_or_of_other_letters_is_refused(written, name, said):
     with pytest.raises(RunnerError, match=f"--name: '{name}'.*{said}"):
         written("lamp.urdf", name=name)
@@ -99,6 +105,21 @@ def test_no_robot_of_ours_takes_its_arm_from_a_folder(tmp_path, ours):
         (tmp_path / arm["urdf"]).write_text(strangers.chain("other", [("revolute", Z), ("revolute", Y)]))
         with pytest.raises(ConfigError, match=rf"'{arm['urdf']}' of robot={ours} is one of ours, and "):
             compose([f"robot={ours}"], [tmp_path])
+
+
+def test_an_arm_without_mass_runs_as_it_is_written_and_refuses_torques(tmp_path):
+    text = strangers.chain("lamp", [("revolute", Z), ("revolute", Y), ("revolute", Y)])
+    (tmp_path / "lamp.urdf").write_text(re.sub("<inertial>.*?</inertial>", "", text))
+    with strangers.short_examination():
+        write_folder(examine(tmp_path / "lamp.urdf"), tmp_path / "mine")
+    run = runner.run("robot=lamp", "duration=0.2", config_dirs=tmp_path / "mine")
+    assert (run.status, run.config["plant"]["kind"]) == ("ok", "kinematic")
+    assert run.metrics["max_tracking_error"].median < 1e-6
+    torques = compose(["robot=lamp", "controller=computed_torque", "plant=mujoco"], [tmp_path / "mine"])
+    with pytest.raises(
+        ConfigError, match=r"robot: no mass behind q1, q2, q3, so torques cannot move it; .* plant=kinem"
+    ):
+        validate(torques.resolved, torques.config_dirs)
 
 
 def test_a_folder_that_cannot_be_made_is_told(written, tmp_path):
