@@ -1,6 +1,6 @@
 """From a robot's config to its rigid-body model: reading URDFs and mounting arms on each other."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -9,6 +9,7 @@ import numpy as np
 from runner.config.per_joint import expand
 from runner.config.robot import ArmConfig, RobotConfig, StageConfig
 from runner.errors import ConfigError
+from runner.paths import conf_dir
 from runner.robots.armature import armature_file
 from runner.robots.description import find_file, find_urdf, mjcf_of, read_arm, read_urdf
 from runner.robots.inertials import Payload, set_file
@@ -120,6 +121,29 @@ def find_arm(key: str, arm: ArmConfig, config_dirs: Sequence[Path]) -> Path:
     if arm.urdf and is_mjcf(path):
         raise ConfigError([f"{key}.urdf: {path} is an MJCF; name it at {key}.mjcf"])
     return path
+
+
+def mixed_arms(resolved: Mapping[str, object], option: str, config_dirs: Sequence[Path]) -> Iterator[str]:
+    """Yield a problem for each file of a robot of ours that a config folder has under the same name.
+
+    Args:
+        resolved: The config as plain data.
+        option: The option chosen in the group robot.
+        config_dirs: Config folders of the user's.
+    """
+    option, robot = option.removesuffix(".yaml"), resolved.get("robot")
+    if not (isinstance(robot, Mapping) and (conf_dir() / "robot" / f"{option}.yaml").is_file()):
+        return
+    stages = robot.get("stages")
+    for arm in stages.values() if isinstance(stages, Mapping) else [robot]:
+        name = arm.get("urdf") if isinstance(arm, Mapping) else None
+        try:
+            ours, found = (find_urdf(str(name), folders) for folders in ((), config_dirs))
+        except ConfigError:
+            continue  # validation tells it
+        if found != ours:
+            named = f"robot.urdf: '{name}' of robot={option} is one of ours"
+            yield f"{named}, and {found} has the same name; rename that file, or choose the robot that it belongs to"
 
 
 @contextmanager

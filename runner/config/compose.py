@@ -15,7 +15,6 @@ from runner.config.overrides import force
 from runner.config.robot_defaults import complete_stage_arms
 from runner.config.stage_defaults import complete_stages
 from runner.errors import ConfigError
-from runner.paths import conf_dir
 from runner.texts import quoted
 
 
@@ -85,33 +84,16 @@ def from_hydra(
         resolved = cast("dict[str, object]", OmegaConf.to_container(config, resolve=True))
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None
-    problems = [*_strange_keys(resolved), *_mixed_arms(resolved, choices, config_dirs)]
+    problems = list(_strange_keys(resolved))
+    if config_dirs:
+        from runner.config.arms import mixed_arms  # loads Pinocchio
+
+        problems += mixed_arms(resolved, choices.get("robot", ""), config_dirs)
     if problems:
         raise ConfigError(problems)
     put_in_si(resolved, config_dirs)
     take_data_file(resolved, config_dirs)
     return Composed(resolved, tuple(overrides), choices, tuple(config_dirs), root)
-
-
-def _mixed_arms(
-    resolved: Mapping[str, object], choices: Mapping[str, str], config_dirs: Sequence[Path]
-) -> Iterator[str]:
-    """Yield a problem for each file of a robot of ours that a config folder has under the same name."""
-    option, robot = choices.get("robot", "").removesuffix(".yaml"), resolved.get("robot")
-    if not (config_dirs and isinstance(robot, Mapping) and (conf_dir() / "robot" / f"{option}.yaml").is_file()):
-        return
-    from runner.robots.description import find_urdf  # for few configs
-
-    stages = robot.get("stages")
-    for arm in stages.values() if isinstance(stages, Mapping) else [robot]:
-        name = arm.get("urdf") if isinstance(arm, Mapping) else None
-        try:
-            ours, found = (find_urdf(str(name), folders) for folders in ((), config_dirs))
-        except ConfigError:
-            continue  # validation tells it
-        if found != ours:
-            named = f"robot.urdf: '{name}' of robot={option} is one of ours"
-            yield f"{named}, and {found} has the same name; rename that file, or choose the robot that it belongs to"
 
 
 def _strange_keys(value: object, place: str = "") -> Iterator[str]:
