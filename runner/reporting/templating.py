@@ -30,7 +30,7 @@ VERDICT_SIGNS = {
     "unreadable": "?",
     "definition": "–",
     "refused": "✕",
-    "finding": "!",
+    "fixed": "!",
     "note": "–",
 }
 """A sign beside each verdict, for readers who see no colours."""
