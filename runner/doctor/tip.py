@@ -41,7 +41,8 @@ def choose_tip(tree: UrdfTree, wanted: str | None) -> str:
     ends = _ends(tree)
     if len(ends) == 1:
         return frames_at(tree, ends[0])[0]
-    ways = "; ".join(f"{tip} behind {len(moving(tree, tip))} joints" for tip in _offered(tree))
+    counts = {tip: len(moving(tree, tip)) for tip in _offered(tree)}
+    ways = "; ".join(f"{tip} behind {count} joint{'s' * (count != 1)}" for tip, count in counts.items())
     raise RunnerError(
         f"{tree.robot.get('name')} branches, and the runner takes serial arms: name the tip by --tip FRAME, and the "
         f"joints beside the way to it are held fixed; ends: {ways}"
