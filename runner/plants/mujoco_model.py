@@ -15,6 +15,7 @@ from runner.robots.tool_link import TOOL_MOUNT
 _COMPILER = {"fusestatic": "false", "discardvisual": "false", "inertiafromgeom": "false"}
 _LEFT_OUT = {"joint": "dynamics", "link": "visual"}
 _ROUNDING = 1e-15  # of a moment of inertia
+_LEAST_OF_TENSOR = 1e-14  # kg m^2
 FORCE, MOMENT, WALL = "reaction_force", "reaction_moment", "wall"
 """Names of what is beside the arm: sensors of the reaction in a tool's mount, and a wall that its shapes can touch."""
 
@@ -48,6 +49,8 @@ def read_spec(urdf: str, least_inertia: float, armature: Mapping[str, float]) ->
     for body in spec.bodies:
         if body.joints:
             _give_inertia(body, least_inertia)
+        elif _is_flat(body):
+            _give_inertia(body, 0.0)
     for joint in spec.joints:
         joint.armature = armature.get(joint.name, 0.0)
     _put_up_wall(spec)
@@ -72,13 +75,23 @@ def _refused(error: ValueError) -> ConfigError:
     return ConfigError([f"robot.urdf: MuJoCo does not take it as it is: {' '.join(str(error).split())}"])
 
 
+def _is_flat(body: Any) -> bool:
+    """Tell whether a body has next to no inertia about an axis, which MuJoCo refuses in a tensor."""
+    moments = np.linalg.eigvalsh(_tensor(body))
+    return bool(moments[0] < _LEAST_OF_TENSOR and moments.any())
+
+
+def _tensor(body: Any) -> Any:
+    xx, yy, zz, xy, xz, yz = np.nan_to_num(body.fullinertia)  # NaN where all are zero
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
 def _give_inertia(body: Any, least: float) -> None:
     """Give a moving link the least mass and inertia where it has less, and let no moment exceed the others' sum.
 
     By rounding that of a disc may, which MuJoCo refuses.
     """
-    xx, yy, zz, xy, xz, yz = np.nan_to_num(body.fullinertia)  # NaN where all are zero
-    moments, axes = np.linalg.eigh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    moments, axes = np.linalg.eigh(_tensor(body))
     moments = np.maximum(moments, least)
     moments[0] = max(moments[0], (1.0 + _ROUNDING) * moments[2] - moments[1])
     axes[:, 0] *= np.linalg.det(axes)  # right-handed

@@ -1,5 +1,7 @@
 """Links without mass and names used twice: mass matrices and motion of PyBullet and MuJoCo against Pinocchio."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -99,3 +101,15 @@ def test_a_shape_without_size_is_left_out(tmp_path):
     urdf = read_urdf(path, {})
     assert urdf.count("<collision>") == 1
     Mujoco(urdf, RobotModel(urdf, "tip"), 1e-4, 1, "euler", LEAST).close()
+
+
+def test_a_rod_that_is_fixed_on_the_arm_is_taken_by_mujoco(tmp_path):
+    arm = (HEAVY, HEAVY, HEAVY, HEAVY, (1.0, 0.05))
+    path = written(tmp_path / "arm.urdf", arm)
+    text, rod = path.read_text(), '<inertia ixx="0.05" iyy="0.05" izz="{}" ixy="0" ixz="0" iyz="0"/>'
+    tip = text.index('<link name="tip">')
+    for izz in ("0", "-1e-9", "1e-20"):  # by rounding below 0
+        path.write_text(text[:tip] + re.sub("<inertia .*?/>", rod.format(izz), text[tip:], count=1))
+        urdf = read_urdf(path, {})
+        model = RobotModel(urdf, "tip")
+        assert np.all(off(Mujoco(urdf, model, 1e-4, 1, "euler", LEAST), model) < [1e-8, 1e-8])
