@@ -27,9 +27,9 @@ PRESETS = ("sound", "as_reported")
 
 _POSITIONING = ("settling_time", "steady_state_error", "peak_torque", "saturation_fraction")
 _WHOLE_MOVE = ("overshoot", "cross_track_error", "energy", "control_effort")
-_TRACKING = (*_POSITIONING, *_WHOLE_MOVE, "max_tracking_error", "rms_tracking_error")
-_LINE = ("max_tracking_error", "rms_tracking_error", "peak_joint_speed", "peak_torque")
-_FOLLOWED = ("max_tracking_error", "rms_tracking_error", "peak_torque", "torque_chatter")
+_TRACKING = (*_POSITIONING, *_WHOLE_MOVE, "max_axis_error", "rms_tracking_error")
+_LINE = ("max_axis_error", "rms_tracking_error", "peak_joint_speed", "peak_torque")
+_FOLLOWED = ("max_axis_error", "rms_tracking_error", "peak_torque", "torque_chatter")
 METRICS = {
     # What the Macro's goal move does on the whole depends on the branch that it takes: no band would mean much.
     "thesis/figure_3_5": _POSITIONING,
@@ -39,9 +39,9 @@ METRICS = {
     "thesis/figure_4_4": _TRACKING,
     "thesis/figure_5_8": ("settling_time", "steady_state_error"),
     "thesis/figure_5_10": ("settling_time", "steady_state_error"),
-    "thesis/figure_5_12": ("max_tracking_error", "rms_tracking_error", "steady_state_error"),
-    "thesis/figure_5_13": ("max_tracking_error", "rms_tracking_error"),
-    "thesis/macro_alone": ("macro_max_tracking_error", "macro_steady_state_error"),
+    "thesis/figure_5_12": ("max_axis_error", "rms_tracking_error", "steady_state_error"),
+    "thesis/figure_5_13": ("max_axis_error", "rms_tracking_error"),
+    "thesis/macro_alone": ("macro_max_axis_error", "macro_steady_state_error"),
     "xarm7/three_joints": _LINE,
     "xarm7/round_posture": _LINE,
     "xarm7/seven_joints": (*_LINE, "cross_track_error"),
@@ -52,7 +52,7 @@ METRICS = {
     "meca500/push": ("peak_force", "peak_joint_speed"),
     "meca500/wall": ("peak_force", "steady_force", "peak_joint_speed"),
     "meca500/hand": ("peak_force", "peak_joint_speed"),
-    "meca500/circle": ("max_tracking_error", "rms_tracking_error", "peak_joint_speed", "peak_torque"),
+    "meca500/circle": ("max_axis_error", "rms_tracking_error", "peak_joint_speed", "peak_torque"),
 }
 # Wider than the seeds tell, in the metric's unit: plant, velocity estimate and rounding change the branch of the
 # saturated transient, and move its median by 0.3 s of the run's 4 s. The Mini is the Macro scaled, times by a tenth.
@@ -78,18 +78,18 @@ _STAGED = {
     ("figure_5_8", "as_reported", "steady_state_error"): _BASE_ENCODERS,
     ("figure_5_10", "sound", "steady_state_error"): f"{_BASE_ENCODERS}, and more once the Mini is stretched",
     ("figure_5_10", "as_reported", "steady_state_error"): "the Macro's sag once the Mini is stretched",
-    ("figure_5_12", "sound", "max_tracking_error"): _BASE_ENCODERS,
+    ("figure_5_12", "sound", "max_axis_error"): _BASE_ENCODERS,
     ("figure_5_12", "sound", "rms_tracking_error"): _BASE_ENCODERS,
     ("figure_5_12", "sound", "steady_state_error"): _BASE_ENCODERS,
-    ("figure_5_12", "as_reported", "max_tracking_error"): "the Mini's lag behind a series of goals",
+    ("figure_5_12", "as_reported", "max_axis_error"): "the Mini's lag behind a series of goals",
     ("figure_5_12", "as_reported", "rms_tracking_error"): "the Mini's lag behind a series of goals",
     ("figure_5_12", "as_reported", "steady_state_error"): _BASE_ENCODERS,
-    ("figure_5_13", "sound", "max_tracking_error"): "what is left where the Mini is stretched, late in the motion",
+    ("figure_5_13", "sound", "max_axis_error"): "what is left where the Mini is stretched, late in the motion",
     ("figure_5_13", "sound", "rms_tracking_error"): _BASE_ENCODERS,
-    ("figure_5_13", "as_reported", "max_tracking_error"): "the Macro's lag, as the Mini is stretched",
+    ("figure_5_13", "as_reported", "max_axis_error"): "the Macro's lag, as the Mini is stretched",
     ("figure_5_13", "as_reported", "rms_tracking_error"): "the Macro's lag, as the Mini is stretched",
-    ("macro_alone", "sound", "macro_max_tracking_error"): _BASE_AXIS,
-    ("macro_alone", "as_reported", "macro_max_tracking_error"): _BASE_AXIS,
+    ("macro_alone", "sound", "macro_max_axis_error"): _BASE_AXIS,
+    ("macro_alone", "as_reported", "macro_max_axis_error"): _BASE_AXIS,
     ("macro_alone", "sound", "macro_steady_state_error"): "the Mini's weight, which the Macro does not know, and noise",
     ("macro_alone", "as_reported", "macro_steady_state_error"): _SAG,
 }
@@ -119,7 +119,7 @@ _TOUCH = {
     ("wall", "peak_force"): "the law's mass and damping arrive at the wall with the speed of the approach",
     ("wall", "steady_force"): "the springs of law and wall in series",
     ("hand", "peak_force"): "damping at the hand's peak speed, and the law's mass",
-    ("circle", "max_tracking_error"): "what the law gives way to the push, and its servos",
+    ("circle", "max_axis_error"): "what the law gives way to the push, and its servos",
     ("circle", "rms_tracking_error"): "what the law gives way to the push, and its servos",
     ("circle", "peak_torque"): "the arm's weight and inertia on servos",
 }
@@ -132,7 +132,7 @@ def explain_touch(experiment: str, metric: str) -> str:
 
 # Reasons of what computed torque does with masses, friction and noise at once.
 _WRONG = {
-    "max_tracking_error": "the unknown friction and wrong masses, against the stiffness of the loop",
+    "max_axis_error": "the unknown friction and wrong masses, against the stiffness of the loop",
     "rms_tracking_error": "the unknown friction and wrong masses, against the stiffness of the loop",
     "peak_torque": "weight, motion, and the encoders' noise through the velocity gain",
     "torque_chatter": "the encoders' noise through the velocity gain",
@@ -162,7 +162,7 @@ def explain(experiment: str, preset: str, metric: str, zero: bool) -> str:
         "cross_track_error": _BASE_AXIS if limited else _NOISE if sound else _SAG,
         "energy": _SUM,
         "control_effort": _SUM,
-        "max_tracking_error": _BASE_AXIS if limited else _NOISE if sound else _LAG,
+        "max_axis_error": _BASE_AXIS if limited else _NOISE if sound else _LAG,
         "rms_tracking_error": _LAG if not sound else _BASE_AXIS if limited else _NOISE,
     }
     if experiment == "thesis/figure_4_4":

@@ -8,6 +8,7 @@ from runner.trajectories.trajectory import Trajectory, joint_reference
 
 UNITS = {
     "max_tracking_error": "m",
+    "max_axis_error": "m",
     "rms_tracking_error": "m",
     "rms_tracking_error_last_period": "m",
     "cross_track_error": "m",
@@ -19,7 +20,8 @@ UNITS = {
 def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
     """Return the tracking errors; those over 0..t_f are absent for a goal.
 
-    - max_tracking_error, and _x, _y, _z: largest axis error over 0..t_f.
+    - max_tracking_error: largest norm of the error over 0..t_f; with _x, _y or _z, largest error on that axis.
+    - max_axis_error: largest error on any axis over 0..t_f.
     - rms_tracking_error: root mean square of the error's norm over 0..t_f.
     - rms_tracking_error_last_period: likewise over the last period of a periodic motion, where a run has two or more.
     - cross_track_error: largest distance to the path taken as a curve, over the whole run.
@@ -35,8 +37,9 @@ def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
     axes = np.abs(error).max(axis=2)
     squared = _squared(error)
     return {
-        "max_tracking_error": axes.max(axis=1),
+        "max_tracking_error": np.sqrt(squared.max(axis=1)),
         **{f"max_tracking_error_{axis}": axes[:, index] for index, axis in enumerate("xyz")},
+        "max_axis_error": axes.max(axis=1),
         "rms_tracking_error": np.sqrt(squared.sum(axis=1) / ticks),
         **_of_last_period(traces, context, _squared(traces.error)),
         **cross_track,

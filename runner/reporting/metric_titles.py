@@ -11,6 +11,7 @@ TITLES = {
     "steady_state_error": "steady-state error",
     "overshoot": "overshoot",
     "max_tracking_error": "largest tracking error",
+    "max_axis_error": "largest tracking error on one axis",
     "rms_tracking_error": "rms tracking error",
     "rms_tracking_error_last_period": "rms tracking error, last period",
     "cross_track_error": "largest distance from the path",

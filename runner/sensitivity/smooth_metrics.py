@@ -85,9 +85,12 @@ def _of_tip(trace: Trace, tip: FloatArray, context: MetricContext) -> dict[str, 
     if trajectory.tracked:
         ticks = int(np.searchsorted(trace.t, trajectory.duration + 1e-9, side="right"))
         on_way = slice(0, ticks)
-        found["max_tracking_error"] = largest(on_way, slice(0, 3))
+        norm = np.linalg.norm(error[on_way], axis=1)
+        row = int(np.argmax(norm))
+        found["max_tracking_error"] = _ratio(-tip[:, row] @ error[row], norm[row])
         for axis, letter in enumerate("xyz"):
             found[f"max_tracking_error_{letter}"] = largest(on_way, slice(axis, axis + 1))
+        found["max_axis_error"] = largest(on_way, slice(0, 3))
         rms = np.sqrt((error[on_way] ** 2).sum() / ticks)
         found["rms_tracking_error"] = _ratio(-np.einsum("ta,pta->p", error[on_way], tip[:, on_way]), ticks * rms)
     goal, end = trajectory.goal, trace.t[-1] - STEADY_WINDOW

@@ -107,7 +107,7 @@ def test_any_repetition_is_simulated_again(more, tmp_path):
     run = runner.run(*WORDS, *more, outputs=tmp_path)
     frames = [run.trace(repetition) for repetition in range(3)]
     assert list(frames[2].columns) == list(frames[0].columns)
-    for frame, largest in zip(frames, run.metrics["max_tracking_error"].values, strict=True):
+    for frame, largest in zip(frames, run.metrics["max_axis_error"].values, strict=True):
         error = frame[["error_x", "error_y", "error_z"]].to_numpy()
         assert np.abs(error).max() == largest
     assert not frames[1].equals(frames[2])

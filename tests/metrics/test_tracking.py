@@ -17,13 +17,22 @@ T = np.arange(401) * 0.01
 TRACKED = MetricContext(Quintic(START, END, 3.0), 0.02, 0.01)
 
 
-def test_largest_error_over_the_motion_by_axis(hand_made_trace):
+def test_largest_error_over_the_motion_of_the_norm_and_by_axis(hand_made_trace):
     error = np.zeros((len(T), 3))
-    error[10] = [0.1, 0.0, -0.2]
-    error[20] = [-0.3, 0.05, 0.0]
+    error[10] = [0.2, 0.1, -0.2]  # the largest norm, at another tick than the largest axis error
+    error[20] = [-0.25, 0.05, 0.0]
     found = evaluate(hand_made_trace(T, tip=-error), TRACKED)
-    expected = {"": 0.3, "_x": 0.3, "_y": 0.05, "_z": 0.2}
+    expected = {"": 0.3, "_x": 0.25, "_y": 0.1, "_z": 0.2}
     assert {key: found[f"max_tracking_error{key}"] for key in expected} == pytest.approx(expected)
+    assert found["max_axis_error"] == pytest.approx(0.25)
+
+
+def test_the_root_mean_square_is_never_above_the_largest(hand_made_trace):
+    tip = np.random.default_rng(0).normal(size=(len(T), 3))
+    for scale in (tip, np.ones_like(tip)):
+        found = evaluate(hand_made_trace(T, tip=scale), TRACKED)
+        assert found["rms_tracking_error"] <= found["max_tracking_error"] * (1.0 + 1e-15)
+        assert found["max_axis_error"] < found["max_tracking_error"] < 3**0.5 * found["max_axis_error"] * (1.0 + 1e-15)
 
 
 @pytest.mark.parametrize(("tick", "counts"), [(0, True), (300, True), (301, False)])

@@ -22,6 +22,7 @@ def test_no_two_metrics_have_one_title():
     [
         ("max_tracking_error", "largest tracking error"),
         ("max_tracking_error_x", "largest tracking error, x"),
+        ("max_axis_error", "largest tracking error on one axis"),
         ("saturation_fraction_q12", "share of ticks at a torque limit, joint 12"),
         ("macro_settling_time", "Macro: settling time"),
         ("macro_max_tracking_error_z", "Macro: largest tracking error, z"),

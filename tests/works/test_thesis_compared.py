@@ -33,7 +33,7 @@ def run(error=1.0, ticks=400, settling=1.5, rest=0.008, plant="bullet", caveats=
             "metrics": {
                 "settling_time": metric(settling, "s"),
                 "steady_state_error": metric(rest),
-                "max_tracking_error": metric(error),
+                "max_axis_error": metric(error),
                 "saturation_fraction": metric(0.3, "1"),
             },
             "failure": None,
@@ -65,7 +65,7 @@ def test_the_words_of_a_takeaway_follow_the_numbers(before, after, words):
 
 
 def test_a_takeaway_tells_metrics_in_the_order_asked_for():
-    told = takeaway(["settling_time", "max_tracking_error"], both(run(settling=1.0), run(settling=2.0, error=0.1)))
+    told = takeaway(["settling_time", "max_axis_error"], both(run(settling=1.0), run(settling=2.0, error=0.1)))
     assert "settles 2 times later, after 2 s in place of 1 s, and the tip strays 10 times less from its path" in told
 
 

@@ -17,7 +17,7 @@ def plant_step(run: Run) -> float:
 
 
 def tracking_error_apart(runs: Mapping[str, Run], plant: str, other: str) -> list[Measured]:
-    """Return the difference of the largest tracking errors on two plants on each arm, as a share."""
+    """Return the difference of the largest axis errors on two plants on each arm, as a share."""
     return [
         Measured(f"{plant} from {other}, {arm}", _apart(one.run, runs[f"closed/{arm}/{other}"]))
         for one in found(runs, f"closed/{{arm}}/{plant}")
@@ -35,7 +35,7 @@ def distances(runs: Mapping[str, Run], plant: str, other: str) -> list[Measured]
 
 
 def common_digits(run: Run, other: Run) -> str:
-    """Return how many digits of the largest tracking error two runs have in common, as a cell of a table."""
+    """Return how many digits of the largest axis error two runs have in common, as a cell of a table."""
     off = _apart(run, other)
     return "all" if off == 0.0 else "–" if math.isnan(off) else str(max(math.floor(-math.log10(off)), 0))
 

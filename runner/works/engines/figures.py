@@ -32,8 +32,8 @@ def exact(what: Told, digits: int = 2) -> Callable[..., str]:
 
 
 def tracking_error(run: Run) -> float | None:
-    """Return the largest tracking error of a run, in m."""
-    return median(run, "max_tracking_error")
+    """Return the largest axis error of a run, in m."""
+    return median(run, "max_axis_error")
 
 
 def tip_distance(run: Run, reference: Run) -> float:

@@ -122,7 +122,7 @@ class Compared:
             if claim.metric == "settling_time":
                 lines.append(_line([value, value], [seen, -seen], _told(claim)))
             elif seen / APART < value < APART * seen:
-                lines += self._levels(claim, 0.0 if claim.metric == "max_tracking_error" else self._end - _AT_REST)
+                lines += self._levels(claim, 0.0 if claim.metric == "max_axis_error" else self._end - _AT_REST)
         return self._panel(title, "error (m)", [*curves, *lines])
 
     def _levels(self, claim: PublishedClaim, start: float) -> list[Series]:

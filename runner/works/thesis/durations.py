@@ -19,8 +19,8 @@ def printed_range(claim: int, low: float, high: float) -> list[Series]:
 
 
 def duration_of(runs: Mapping[str, Run], pattern: str, error: Measured, words: str) -> Measured:
-    """Return at which duration, between those of a pattern's runs, the largest tracking error is that given."""
+    """Return at which duration, between those of a pattern's runs, the largest axis error is that given."""
     tried = found(runs, pattern)
-    errors = values((one.run for one in tried), "max_tracking_error")
+    errors = values((one.run for one in tried), "max_axis_error")
     times = [float(one.levels["t_f"]) for one in tried]
     return Measured(words, float(np.interp(-float(error.value or 0.0), -errors, times)), "s")

@@ -11,7 +11,7 @@ from runner.reporting.run_values import median
 from runner.reporting.words import PLANT
 from runner.store import Run
 
-_METRICS = {"settling_time": "settles after", "steady_state_error": "rests within", "max_tracking_error": "strays by"}
+_METRICS = {"settling_time": "settles after", "steady_state_error": "rests within", "max_axis_error": "strays by"}
 
 
 def step_of_both(named: Mapping[str, Run], metrics: Sequence[str]) -> str:

@@ -182,8 +182,8 @@ def around_the_break(runs: Mapping[str, Run], payload: str) -> tuple[str, str]:
     is broken, both are one.
     """
     names = [one.name for one in found(runs, f"mass/{{mass}}/{payload}")]
-    limit = median(runs[f"mass/0.2/{payload}"], "max_tracking_error")
-    errors = [median(runs[name], "max_tracking_error") for name in names]
+    limit = median(runs[f"mass/0.2/{payload}"], "max_axis_error")
+    errors = [median(runs[name], "max_axis_error") for name in names]
     broken = [error is None or limit is None or error > _BROKEN * limit for error in errors]
     first = broken.index(True) if any(broken) else len(names)
     return names[max(first - 1, 0)], names[min(first, len(names) - 1)]

@@ -22,7 +22,7 @@ def ratio_of(runs: Mapping[str, Run], name: str) -> float:
 def heavier_than(runs: Mapping[str, Run], name: str, payload: str) -> list[Measured]:
     """Return the tip error with each Mini that is heavier than that of a run."""
     return [
-        measured(one.run, "max_tracking_error", f"tip error, {one.levels['mass']} kg, payload {payload}")
+        measured(one.run, "max_axis_error", f"tip error, {one.levels['mass']} kg, payload {payload}")
         for one in found(runs, f"mass/{{mass}}/{payload}")
         if ratio(one.run) > ratio(runs[name])
     ]

@@ -25,7 +25,7 @@ def effectiveness(runs: Mapping[str, Run]) -> list[list[str]]:
             PRESET[preset],
             name,
             *(cell(runs[f"{goal}/{preset}"], f"{stage}{metric}") for metric in ("settling_time", _REST)),
-            *(cell(runs[f"{track}/{preset}"], f"{stage}{metric}") for metric in ("max_tracking_error", _REST)),
+            *(cell(runs[f"{track}/{preset}"], f"{stage}{metric}") for metric in ("max_axis_error", _REST)),
         ]
         for preset in PRESETS
         for name, goal, track, stage in _ARMS

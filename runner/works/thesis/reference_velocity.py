@@ -29,7 +29,7 @@ def lag(run: Run) -> float | None:
 
 def times_worse(zero: Run, full: Run) -> float | None:
     """Return the tracking error of one run over that of another; None where one is missing or zero."""
-    large, small = (median(run, "max_tracking_error") for run in (zero, full))
+    large, small = (median(run, "max_axis_error") for run in (zero, full))
     return large / small if large is not None and small else None
 
 

@@ -18,7 +18,7 @@ _POSTURES = 1000
 
 
 def rungs(runs: Mapping[str, Run], run: str, name: str, color: int) -> list[Series]:
-    """Return the largest tracking error of each stage's end point of a run, in m, as points at 1, 2, ..."""
+    """Return the largest axis error of each stage's end point of a run, in m, as points at 1, 2, ..."""
     errors = [median(runs[run], metric) for metric in _errors(runs[run])]
     return [Series(name, np.arange(1.0, 1.0 + len(errors)), np.array(errors), "points_line", color=color)]
 
@@ -78,7 +78,7 @@ def felt_by_the_tip(consistent: bool) -> Callable[[Run], float]:
 
 def _errors(run: Run) -> list[str]:
     *carriers, _ = run.config["robot"]["stages"]
-    return [*(f"{name}_max_tracking_error" for name in carriers), "max_tracking_error"]
+    return [*(f"{name}_max_axis_error" for name in carriers), "max_axis_error"]
 
 
 def _firsts(run: Run) -> list[int]:

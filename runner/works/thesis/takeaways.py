@@ -10,7 +10,7 @@ _ALIKE = 1.1  # ratio up to which two values are called the same
 _WORDS = {
     "settling_time": ("the tip settles", "sooner", "as soon", "later", "after"),
     "steady_state_error": ("the tip rests", "closer to the goal", "as close to the goal", "farther from it", "within"),
-    "max_tracking_error": ("the tip strays", "less from its path", "as far from its path", "farther from it", "by"),
+    "max_axis_error": ("the tip strays", "less from its path", "as far from its path", "farther from it", "by"),
 }
 
 
@@ -18,7 +18,7 @@ def takeaway(metrics: Sequence[str], named: Mapping[str, Run]) -> str:
     """Return how metrics differ between two presets, in a sentence, such as "... the tip rests 22 times closer ...".
 
     Args:
-        metrics: Some of settling_time, steady_state_error and max_tracking_error; the first one is told first.
+        metrics: Some of settling_time, steady_state_error and max_axis_error; the first one is told first.
         named: The run under each of the two presets, by the preset's words.
     """
     first, second = named.values()

@@ -57,13 +57,13 @@ def lag_at(runs: Mapping[str, Run], run: str) -> Callable[[float], float]:
 
 def late_by(run: Run) -> float | None:
     """Return the largest axis error of a run over the closed form of its lag."""
-    error = median(run, "max_tracking_error")
+    error = median(run, "max_axis_error")
     return None if error is None else error / lag(run)
 
 
 def power_of_the_rate(slow: Run, fast: Run) -> float | None:
     """Return by which power of the commands' rate the largest axis error falls from one run to another."""
-    errors = values((slow, fast), "max_tracking_error")
+    errors = values((slow, fast), "max_axis_error")
     periods = [run.config["controller"]["period"] for run in (slow, fast)]
     return float(np.log(errors[0] / errors[1]) / np.log(periods[0] / periods[1])) if errors.all() else None
 

@@ -19,7 +19,7 @@ from runner.works.xarm7.printed_kinematics import random_postures
 
 _COUNT, _SEED = 1000, 7  # of the random postures
 _ZERO = 7  # palette index of singular values that are zero but for rounding
-_METRICS = ("max_tracking_error", "cross_track_error", "peak_joint_speed")
+_METRICS = ("max_axis_error", "cross_track_error", "peak_joint_speed")
 
 
 @dataclass(frozen=True)
@@ -249,7 +249,7 @@ def _outcome(run: Run) -> list[str]:
 def with_the_inverse(runs: Mapping[str, Run]) -> dict[str, int]:
     """Return how many runs take the inverse as printed, how many of them follow the line, and how many end early."""
     ours = [one.run for one in found(runs, "printed/{task}/{case=as printed|inverse alone}")]
-    errors = [(median(run, "max_tracking_error"), line_length(run)) for run in ours]
+    errors = [(median(run, "max_axis_error"), line_length(run)) for run in ours]
     following = sum(error is not None and error < 0.1 * length for error, length in errors)
     return {"many": len(ours), "following": following, "ended": sum(run.failure is not None for run in ours)}
 

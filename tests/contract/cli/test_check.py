@@ -84,7 +84,7 @@ def test_a_changed_controller_falls_short_of_the_shipped_reference(cli):
     run = cli("experiment=thesis/figure_3_10", "preset=as_reported", *overrides).folder
     ending = cli("check", run)
     assert ending.code == 1
-    assert "max_tracking_error" in ending.out
+    assert "max_axis_error" in ending.out
 
 
 def test_without_a_shipped_reference_the_way_out_is_named(cli, copy_run):

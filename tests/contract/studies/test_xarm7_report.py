@@ -90,7 +90,7 @@ def test_seven_joints_meet_what_is_asked_of_them(runs, preset):
         metrics = runs[f"{name}/{preset}"].metrics
         assert metrics["cross_track_error"]["median"] < 1e-4
         if preset == "sound":
-            assert metrics["max_tracking_error"]["median"] < 1e-5
+            assert metrics["max_axis_error"]["median"] < 1e-5
 
 
 def test_both_values_of_x_are_reached_with_room_at_every_joint(document):

@@ -82,7 +82,7 @@ def test_the_shortest_motion_drifts_around_a_circle_and_not_along_a_line(planned
 @pytest.mark.parametrize("rate", [25, 100])
 def test_the_lag_is_the_closed_form(planned: Make, rate: int) -> None:
     run = planned(f"rates/kinematic/as_reported/{rate}")
-    assert run.metrics["max_tracking_error"]["median"] == pytest.approx(lag(run, rate), rel=2e-3)
+    assert run.metrics["max_axis_error"]["median"] == pytest.approx(lag(run, rate), rel=2e-3)
 
 
 def test_the_sag_is_the_closed_form_where_the_servo_is_stiff(planned: Make) -> None:
@@ -140,6 +140,6 @@ def test_the_torque_laws_hold_the_line_without_load_and_lose_it_above_what_the_s
     planned: Make, law: str
 ) -> None:
     unloaded = planned(f"torque/{law}/0")
-    assert unloaded.metrics["max_tracking_error"]["median"] < TORQUE_BOUND
+    assert unloaded.metrics["max_axis_error"]["median"] < TORQUE_BOUND
     assert first_saturation(unloaded) is None
-    assert planned(f"torque/{law}/3.5").metrics["max_tracking_error"]["median"] > TORQUE_BOUND
+    assert planned(f"torque/{law}/3.5").metrics["max_axis_error"]["median"] > TORQUE_BOUND
