@@ -6,6 +6,7 @@ from fnmatch import fnmatchcase
 from typing import Any
 
 from runner.reporting.document import Block, Notice, Section, Table, Text
+from runner.reporting.job import distinct
 from runner.reporting.markup import literal
 from runner.store import Run
 
@@ -93,4 +94,5 @@ def _row(rule: str, why: str, expected: Sequence[ExpectedCaveat], runs: Mapping[
     if not found:
         return None
     _, worst, text = max(found)
-    return [literal(rule.replace("_", " ")), str(len(found)), literal(f"{worst}: {text}"), why]
+    count = len(distinct({name: runs[name] for _, name, _ in found}))
+    return [literal(rule.replace("_", " ")), str(count), literal(f"{worst}: {text}"), why]

@@ -5,9 +5,11 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from runner.errors import RunnerError, nearest
+from runner.store import Calibration, Run
 
 PRESETS = ("as_reported", "sound")
 Thing = TypeVar("Thing")
+Stored = TypeVar("Stored", Run, Calibration)
 
 
 @dataclass(frozen=True)
@@ -56,3 +58,8 @@ class Made(dict[str, Thing]):
         if name in self.dropped:
             raise LeftOutError(f"{name}: {self.dropped[name]}")
         raise RunnerError(f"the work has no run or calibration '{name}'{nearest(name, [*self, *self.missing])}")
+
+
+def distinct(named: Mapping[str, Stored]) -> list[Stored]:
+    """Return runs or calibrations, each once: one may have several names. Reports count these."""
+    return list({each.hash: each for each in named.values()}.values())

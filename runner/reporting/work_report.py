@@ -7,7 +7,7 @@ from runner.reporting.citing import citing_section
 from runner.reporting.claims import WORDS
 from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text, Verdicts
 from runner.reporting.expected_caveats import ExpectedCaveat, caveats_section, unexpected_caveats
-from runner.reporting.job import LeftOutError, Made, MissingError
+from runner.reporting.job import LeftOutError, Made, MissingError, distinct
 from runner.reporting.markup import literal, literals
 from runner.reporting.outline import numbered
 from runner.reporting.run_report import provenance
@@ -53,16 +53,16 @@ def work_document(
 def _notes(chapters: Sequence[Section], runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> list[str]:
     """Return what the words of verdicts mean, where there are any, and how many caveats the runs have."""
     judged = any(isinstance(block, Verdicts) for each in numbered(chapters) for block in each.section.blocks)
-    carrying = sum(bool(run.caveats) for run in runs.values())
+    everything = distinct(runs)
+    carrying = sum(bool(run.caveats) for run in everything)
     strange = len(unexpected_caveats(runs, expected))
     told = f"{strange} caveats are not expected" if strange else "all of them expected and explained"
-    caveats = f"Caveats: {carrying} of {len(runs)} runs carry some, {told}." if carrying else ""
+    caveats = f"Caveats: {carrying} of {len(everything)} runs carry some, {told}." if carrying else ""
     return [*([WORDS] if judged else []), *([caveats] if caveats else [])]
 
 
 def _where_from(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration], code: str) -> Section:
-    count = len({run.hash for run in runs.values()})
-    found = len({calibration.hash for calibration in calibrations.values()})  # one may have several names
+    count, found = len(distinct(runs)), len(distinct(calibrations))
     more, folders = (f" and {found} calibrations", " and outputs/calibrations") if calibrations else ("", "")
     text = (
         f"{count} runs{more} lie behind this report, each stored with its config, trace and metrics under "

@@ -14,7 +14,7 @@ from runner.reporting.checklist import load_checklist
 from runner.reporting.cover import cover
 from runner.reporting.document import Cover, Document, Section, Text
 from runner.reporting.expected_caveats import ExpectedCaveat
-from runner.reporting.job import Job, Jobs
+from runner.reporting.job import Job, Jobs, distinct
 from runner.reporting.work_report import work_document
 from runner.store import Calibration, Run
 from runner.works.about import read_about
@@ -175,17 +175,16 @@ class Work:
             cover=self._cover(runs),
             bibtex=self.about.bibtex,
         )
-        return replace(made, sections=[*self._by_profile(), *made.sections])
+        return replace(made, sections=[*self._by_profile(runs), *made.sections])
 
-    def _by_profile(self) -> Iterator[Section]:
+    def _by_profile(self, runs: Mapping[str, Run]) -> Iterator[Section]:
         """Yield what the profile makes otherwise than the whole work; nothing where that is nothing."""
-        dropped, repetitions = len(self.dropped()), self._profile.repetitions if self._profile else None
-        if not dropped and repetitions is None:
+        dropped, repetitions = self.dropped(), self._profile.repetitions if self._profile else None
+        if not (dropped or repetitions):
             return
-        made = len(self.jobs()) + len(self.calibrations())
-        less = f" and leaves out {dropped:,} of the whole work" if dropped else ""
+        less = " and leaves out some of the whole work" if dropped else ""
         each = f" Every run has {repetitions} repetitions." if repetitions else ""
-        text = f"The profile {self.profile} makes {made:,} runs{less}.{each}"
+        text = f"The profile {self.profile} takes {len(distinct(runs)):,} runs{less}.{each}"
         yield Section("Made with a profile", (Text(text),))
 
     def _cover(self, runs: Mapping[str, Run]) -> Cover | None:

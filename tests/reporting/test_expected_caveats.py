@@ -1,5 +1,7 @@
 """Caveats that a work expects, against those of runs that are made up here."""
 
+from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -22,7 +24,7 @@ from runner.works.work import load_work
 def run_with(*rules):
     """Return a run with caveats by rule and value."""
     caveats = [{"rule": rule, "text": f"{rule} of {value:g} $", "value": value} for rule, value in rules]
-    return made_up_run(caveats=caveats)
+    return replace(made_up_run(caveats=caveats), folder=Path(f"{rules}"))
 
 
 RUNS = {
@@ -30,11 +32,12 @@ RUNS = {
     "fast/as_reported": run_with(("saturation", 0.6), ("chatter", 0.2)),
     "slow/sound": run_with(),
 }
+CHATTERS = ExpectedCaveat("chatter", "*/as_reported", "Noise.")
 SATURATED = ExpectedCaveat("saturation", "fast/*", "The limit is what the section is about.")
 
 
 def test_a_caveat_is_expected_of_the_runs_that_a_pattern_names():
-    assert unexpected_caveats(RUNS, [SATURATED, ExpectedCaveat("chatter", "*/as_reported", "Noise.")]) == []
+    assert unexpected_caveats(RUNS, [SATURATED, CHATTERS]) == []
     lines = unexpected_caveats(RUNS, [SATURATED])
     assert lines == ["fast/as_reported: caveat chatter, which the work does not expect: chatter of 0.2 $"]
     assert len(unexpected_caveats(RUNS, [ExpectedCaveat("saturation", "fast/sound", "Why.")])) == 2
@@ -46,6 +49,11 @@ def test_the_section_tells_how_many_and_the_worst_and_warns_of_others():
     assert warning.title == "1 caveat that this work does not expect"
     assert isinstance(table, Table)
     assert table.rows == [["saturation", "2", "fast/as_reported: saturation of 0.6 $$", SATURATED.why]]
+
+
+def test_a_run_of_two_names_is_counted_once():
+    (table,) = caveats_section({**RUNS, "fast/again": RUNS["fast/sound"]}, [SATURATED, CHATTERS]).blocks
+    assert [row[:2] for row in table.rows] == [["saturation", "2"], ["chatter", "1"]]
 
 
 def test_a_work_without_caveats_says_so():

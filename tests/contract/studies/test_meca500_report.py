@@ -83,6 +83,10 @@ def test_html_and_pdf_are_written(document, tmp_path):
     assert pdf.read_bytes().startswith(b"%PDF")
 
 
-def test_calibrations_are_counted_once_though_some_have_several_names(document):
+def test_runs_and_calibrations_are_counted_once_though_some_have_several_names(document, made_meca500):
     texts = [block.text for block in blocks_of(document, Text) if "calibrations lie behind this report" in block.text]
     assert re.findall(r"and (\d+) calibrations", texts[0]) == ["36"]
+    runs = len({run.hash for run in made_meca500.runs.values()})
+    assert runs < len(made_meca500.runs)
+    assert texts[0].startswith(f"{runs} runs and")
+    assert any(f"of {runs} runs carry some" in note for note in document.notes)
