@@ -84,6 +84,8 @@ class PublishedClaim(StrictModel):
         reason: What the comparison shows; inline mathematics between dollar signs.
         like: Set where the source compares in words: the run that it is said to be like.
         bound: Set where another number of the source speaks against this one.
+        longer: Begin of the name of a run of the same motion that lasts longer, which shows whether the verdict hangs
+            on the end of the run; empty for none.
     """
 
     number: int
@@ -99,6 +101,7 @@ class PublishedClaim(StrictModel):
     reason: str
     bound: Bound | None = None
     like: Likeness | None = None
+    longer: str = ""
 
     @model_validator(mode="after")
     def _check_comparison(self) -> Self:

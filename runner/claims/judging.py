@@ -52,7 +52,8 @@ def verdict_on(claim: PublishedClaim, claims: Sequence[PublishedClaim], simulate
     printed = compared_with(claim, simulated)
     if printed is None:
         return None
-    return judge(printed, simulated(*simulated_by(claim)), expected(claim, claims, simulated))
+    verdict = judge(printed, simulated(*simulated_by(claim)), expected(claim, claims, simulated))
+    return "differs" if claim.like is not None and verdict != "matches" else verdict
 
 
 def _other(bound: Bound, claims: Sequence[PublishedClaim]) -> PublishedClaim:

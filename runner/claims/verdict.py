@@ -9,14 +9,16 @@ from numpy.typing import NDArray
 from runner.claims.claim import Extent
 
 FACTOR = 1.5
-"""By which factor the simulated value may differ from a printed one that holds: the sources read theirs off plots."""
+"""By which factor a simulated value may differ from a printed one that it matches: sources read theirs off plots."""
 
-Verdict = Literal["holds", "better", "worse", "contradicts itself"]
-CONTRADICTION: Verdict = "contradicts itself"
+Verdict = Literal[
+    "matches", "differs", "smaller than printed", "larger than printed", "source contradicts itself", "undecided"
+]
+CONTRADICTION: Verdict = "source contradicts itself"
 
 
 def judge(printed: float, measured: float | None, bound: float | None = None) -> Verdict:
-    """Return the verdict on a published number for which less is better (times and errors).
+    """Return the verdict on a published number, a time or an error.
 
     Args:
         printed: The printed value.
@@ -24,14 +26,14 @@ def judge(printed: float, measured: float | None, bound: float | None = None) ->
         bound: What other numbers of the same source lead one to expect at most, where there is such a bound.
 
     Returns:
-        "contradicts itself" when even the bound, widened by FACTOR, stays below the printed value; else "holds" within
-        FACTOR, "better" below and "worse" above it.
+        "source contradicts itself" when even the bound, widened by FACTOR, stays below the printed value; else
+        "matches" within FACTOR, "smaller than printed" below it, and "larger than printed" above it.
     """
     if bound is not None and bound * FACTOR < printed:
         return CONTRADICTION
     if measured is None or measured > printed * FACTOR:
-        return "worse"
-    return "better" if measured < printed / FACTOR else "holds"
+        return "larger than printed"
+    return "smaller than printed" if measured < printed / FACTOR else "matches"
 
 
 def judge_motion(
@@ -46,13 +48,10 @@ def judge_motion(
         desired: Desired path at the same times, shape (T, 3), in m.
 
     Returns:
-        "contradicts itself" when the source's own desired path is another motion; else "holds" where the tip
-        moves as told, and "worse" where it does not. Where the source says that it fails, "holds" when it does and
-        "better" when not.
+        "source contradicts itself" when its own desired path is another motion; else "matches" where the tip moves as
+        told, or fails to where the source says so, and "differs" where not.
     """
     met = all(extent.met(tip) for extent in extents)
-    if fails:
-        return "better" if met else "holds"
-    if not all(extent.met(desired) for extent in extents):
+    if not fails and not all(extent.met(desired) for extent in extents):
         return CONTRADICTION
-    return "holds" if met else "worse"
+    return "matches" if met != fails else "differs"

@@ -1,13 +1,11 @@
 """What a report shows of a claim: what the source says, what the runs give, and the verdict."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Literal
 
-from runner import claims
+from runner.claims import Verdict
 
-Verdict = claims.Verdict | Literal["not run"]
-StatementVerdict = Literal["holds", "no longer holds", "not testable here"]
 EquationVerdict = Literal["correct", "correct after repair", "wrong as printed", "unreadable", "definition"]
 
 
@@ -18,14 +16,16 @@ class ClaimResult:
     Attributes:
         preset: Name of the preset; empty where there is one way to take the claim.
         measured: Median and spread over the seeds, formatted with unit, such as "1.41 s (1.12 to 1.77)".
-        verdict: Whether the printed value holds.
+        verdict: How it compares with what the source says.
         words: What the preset is called.
+        hangs: What the verdict hangs on, such as the engine, and what it would be otherwise; empty for nothing.
     """
 
     preset: str
     measured: str
-    verdict: Verdict | StatementVerdict | EquationVerdict
+    verdict: Verdict | EquationVerdict
     words: str = ""
+    hangs: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

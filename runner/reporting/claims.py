@@ -1,32 +1,47 @@
 """A work's published numbers and statements beside the stored runs, with verdicts."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import partial
 
 import numpy as np
 
-from runner.claims import FACTOR, PublishedClaim, PublishedStatement, Verdict, judge_motion
-from runner.claims.judging import scaled, simulated_by, verdict_on
+from runner.claims import CONTRADICTION, FACTOR, PublishedClaim, PublishedStatement, Verdict, judge_motion
+from runner.claims.judging import Simulated, scaled, simulated_by, verdict_on
+from runner.metrics.positioning import STEADY_WINDOW
 from runner.quantities import quantity, ranged, spread
-from runner.reporting.claim import Claim, ClaimResult, EquationVerdict, StatementVerdict
+from runner.reporting.claim import Claim, ClaimResult, EquationVerdict
 from runner.reporting.figures import columns
 from runner.reporting.job import MissingError
 from runner.reporting.run_values import median
+from runner.reporting.words import PLANT
 from runner.store import Run
 
-RULE = (
-    f"A printed number holds when the simulated median lies within a factor of {FACTOR:g} of it; the simulation is "
-    "better below that, and worse above it or without a value. The source contradicts itself where another of its "
-    "numbers, widened by that factor, stays below the printed one, or where the path that it prescribes is another "
-    "motion than the stated one."
-)
-"""What the words of a verdict mean."""
-WORDS = (
-    f"holds: within a factor of {FACTOR:g} of the printed number; better: smaller than that; worse: larger, or without "
-    "a value; contradicts itself: another number of the source speaks against it."
-)
-"""The same in one line."""
 _DIGITS = 4  # at least as many as a source prints
+
+
+def legend(claims: Sequence[PublishedClaim]) -> str:
+    """Return what the words of the verdicts on a work's claims mean: of the kinds of claims that it has."""
+    numbers, motions = [claim for claim in claims if claim.metric], [claim for claim in claims if claim.extents]
+    told = []
+    if numbers:
+        told += [
+            f"A printed number matches when the simulated median lies within a factor of {FACTOR:g} of it; else that "
+            "is smaller or larger than printed, larger also when most repetitions have no value. A run that failed "
+            "leaves it undecided."
+        ]
+    if any(claim.like for claim in numbers):
+        told += ["A comparison in words matches within the same factor, and differs otherwise."]
+    if any(claim.bound for claim in numbers):
+        told += ["The source contradicts itself where another of its numbers, so widened, stays below the printed one."]
+    if motions:
+        told += [
+            "A stated motion matches when the tip moves as told, to half a unit of the last printed digit, and differs "
+            "otherwise. The source contradicts itself where the path that it prescribes is another motion."
+        ]
+    if any(claim.fails for claim in motions):
+        told += ["A stated failure matches when the simulation fails, too."]
+    return " ".join(told)
 
 
 def judged_claims(claims: Sequence[PublishedClaim], runs: Mapping[str, Run], presets: Mapping[str, str]) -> list[Claim]:
@@ -44,7 +59,7 @@ def judged_claims(claims: Sequence[PublishedClaim], runs: Mapping[str, Run], pre
 
 
 def judged_statements(
-    statements: Sequence[PublishedStatement], judged: Mapping[str, tuple[StatementVerdict | EquationVerdict, str]]
+    statements: Sequence[PublishedStatement], judged: Mapping[str, tuple[Verdict | EquationVerdict, str]]
 ) -> list[Claim]:
     """Return each statement with its verdict, numbered in order.
 
@@ -106,13 +121,54 @@ class _Claimed:
         )
 
     def _finding(self, preset: str) -> ClaimResult:
-        claim, run = self._claim, self._run(_named(self._claim), preset)
-        verdict = self._of_motion(run) if claim.extents else self._of_number(preset)
-        words = self._presets[preset]
-        if run.status == "failed":
-            return ClaimResult(preset, run.failure_text, verdict, words)
-        shown = self._moved(run) if claim.extents else spread(run.metrics[claim.metric], claim.value)
-        return ClaimResult(preset, shown, verdict, words)
+        claim, run, words = self._claim, self._run(_named(self._claim), preset), self._presets[preset]
+        failed = run.status == "failed"
+        if claim.extents:
+            shown = run.failure_text if failed else self._moved(run)
+            return ClaimResult(preset, shown, self._of_motion(run), words)
+        verdict = self._of_number(partial(self._median, preset), preset)
+        if failed:
+            undecided: Verdict = verdict if verdict == CONTRADICTION else "undecided"
+            return ClaimResult(preset, run.failure_text, undecided, words)
+        return ClaimResult(
+            preset, spread(run.metrics[claim.metric], claim.value), verdict, words, self._hangs(run, preset, verdict)
+        )
+
+    def _hangs(self, run: Run, preset: str, verdict: Verdict) -> dict[str, str]:
+        """Return what a verdict on a number hangs on: what else was made in its place would be judged otherwise."""
+        claim, told = self._claim, dict[str, str]()
+        alone = [self._with(preset, None if np.isnan(value) else value) for value in run.values(claim.metric).tolist()]
+        error = run.plant_error or {}
+        there = error.get("metrics", {}).get(claim.metric)
+        if there is not None and (other := self._with(preset, there["value"])) != alone[0]:
+            told["the engine"] = f"repetition 0 on {PLANT[error['plant']]}: {self._shown(there['value'])}, {other}"
+        others = Counter(other for other in alone if other != verdict)
+        if others:
+            told["the seed"] = ", ".join(
+                f"{count} of {len(alone)} repetitions alone: {other}" for other, count in others.items()
+            )
+        if claim.longer and (text := self._lasting(run, preset, verdict)):
+            told["the end of the run"] = text
+        return told
+
+    def _lasting(self, run: Run, preset: str, verdict: Verdict) -> str:
+        """Return what becomes of a claim's number in a run that lasts longer; nothing where it stays as it is."""
+        longer = self._run(self._claim.longer, preset)
+        value = median(longer, self._claim.metric)
+        (end, lost), (_, own_lost) = map(_reach_lost, (longer, run))
+        over, other = f"over {quantity(end, 's')}", self._with(preset, value)
+        if other != verdict:
+            return f"{over}: {self._shown(value)}, {other}"
+        gone = lost - own_lost > STEADY_WINDOW and verdict != "larger than printed"
+        return f"{over} the target is out of reach for {quantity(lost - own_lost, 's')} more" if gone else ""
+
+    def _shown(self, value: float | None) -> str:
+        return "no value" if value is None else quantity(value, self._claim.unit)
+
+    def _with(self, preset: str, value: float | None) -> Verdict:
+        """Return the verdict with another value in place of the claim's own."""
+        own = simulated_by(self._claim)
+        return self._of_number(lambda *key: value if key == own else self._median(preset, *key), preset)
 
     def _of_motion(self, run: Run) -> Verdict:
         tip, desired = columns(run.trace, "tip"), columns(run.trace, "desired")
@@ -124,8 +180,8 @@ class _Claimed:
         paths = {extent.axis: tip[:, "xyz".index(extent.axis)] for extent in self._claim.extents}
         return ", ".join(f"{axis} {path.min():.4f} to {path.max():.4f} m" for axis, path in paths.items())
 
-    def _of_number(self, preset: str) -> Verdict:
-        verdict = verdict_on(self._claim, self._claims, partial(self._median, preset))
+    def _of_number(self, simulated: Simulated, preset: str) -> Verdict:
+        verdict = verdict_on(self._claim, self._claims, simulated)
         if verdict is None:
             raise MissingError(f"claim {self._claim.number}: there is nothing to compare it with under {preset}")
         return verdict
@@ -165,6 +221,12 @@ class _Claimed:
 
 def _named(claim: PublishedClaim) -> str:
     return simulated_by(claim)[0]
+
+
+def _reach_lost(run: Run) -> tuple[float, float]:
+    """Return when a run ends, and how long its target is out of a stage's reach, in s."""
+    end = float(run.trace["t"].iloc[-1])
+    return end, end * (median(run, "reach_loss_fraction") or 0.0)
 
 
 def _printed(claim: PublishedClaim) -> str:

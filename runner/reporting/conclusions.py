@@ -60,8 +60,9 @@ def conclusions(
 
 
 def _verdict(claim: Claim) -> dict[str, object]:
-    ours: Sequence[dict[str, str]] = [
+    ours = [
         {"preset": found.preset, "way": found.words, "measured": found.measured, "verdict": found.verdict}
+        | {"hangs": dict(found.hangs)}
         for found in claim.findings
     ]
     return {"claim": claim.number, "statement": claim.statement, "printed": claim.printed, "ours": ours}

@@ -204,12 +204,14 @@ class Verdicts:
     Attributes:
         caption: What is listed; inline mathematics as in Text.
         rows: The claims, in the order of the source; each with as many findings.
+        legend: What the words of the verdicts mean, in a few sentences; inline mathematics likewise.
         origin: Command and commit.
     """
 
     block: ClassVar[str] = "verdicts"
     caption: str
     rows: Sequence[Claim]
+    legend: str = ""
     origin: Origin = field(default_factory=Origin)
 
     @property

@@ -1,21 +1,18 @@
 """How many claims of a report hold: the verdicts counted, and where each stands."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from runner.claims import CONTRADICTION
-from runner.reporting.document import Document, Equations, Verdicts
+from runner.reporting.claim import ClaimResult
+from runner.reporting.document import Block, Document, Equations, Verdicts
 from runner.reporting.equation import FOLDED, SHOWN
 from runner.reporting.outline import blocks
 from runner.reporting.places import claim_place, verdict_place
 
-_OF_SEVERAL = {
-    "holds": "hold",
-    "no longer holds": "no longer hold",
-    CONTRADICTION: "contradict themselves",
-}
+_OF_SEVERAL = {"matches": "match", "differs": "differ"}
 
 
 class Square(NamedTuple):
@@ -50,12 +47,13 @@ class Tally:
 
     @property
     def words(self) -> str:
-        """The counts in words, such as "12 of 16 hold, 3 better, 1 contradicts itself"."""
+        """The counts in words, such as "12 of 16 match, 3 smaller than printed, 1: source contradicts itself"."""
+        told: list[str] = []
         total = sum(count for _, count in self.counts)
-        told = [
-            f"{count} {_OF_SEVERAL.get(verdict, verdict) if count > 1 else verdict}" for verdict, count in self.counts
-        ]
-        return ", ".join([told[0].replace(" ", f" of {total} ", 1), *told[1:]]) if told else ""
+        for verdict, count in self.counts:
+            number = f"{count}{'' if told else f' of {total}'}{':' * (verdict == CONTRADICTION)}"
+            told.append(f"{number} {_OF_SEVERAL.get(verdict, verdict) if count > 1 else verdict}")
+        return ", ".join(told)
 
 
 def tallies(document: Document) -> list[Tally]:
@@ -67,11 +65,8 @@ def _tallies(document: Document) -> Iterator[Tally]:
     for block in blocks(document):
         if isinstance(block, Verdicts):
             for number, way in enumerate(block.ways):
-                found = [(row.number, row.findings[number].verdict) for row in block.rows]
-                squares = tuple(
-                    Square(claim, verdict, claim_place(claim), f"Claim {claim}: {verdict}") for claim, verdict in found
-                )
-                yield Tally(way, squares, _counted(verdict for _, verdict in found))
+                squares = tuple(_square(row.number, row.findings[number]) for row in block.rows)
+                yield Tally(way, squares, _counted(square.verdict for square in squares))
         if isinstance(block, Equations):
             counts = _counted(row.verdict for row in block.rows)
             squares = tuple(
@@ -80,6 +75,23 @@ def _tallies(document: Document) -> Iterator[Tally]:
                 if (count := dict(counts).get(verdict, 0))
             )
             yield Tally(block.source or "equations", squares, counts)
+
+
+def _square(claim: str, found: ClaimResult) -> Square:
+    hangs = f"; hangs on {', '.join(found.hangs)}" if found.hangs else ""
+    words = f"Claim {claim}: {found.verdict}{hangs}"
+    return Square(claim + "*" * bool(found.hangs), found.verdict, claim_place(claim), words)
+
+
+def hanging(document_blocks: Iterable[Block]) -> str:
+    """Return which claims have a verdict that hangs on more than they say, and on what; empty for none."""
+    found: dict[str, list[str]] = {}
+    for block in document_blocks:
+        for row in block.rows if isinstance(block, Verdicts) else ():
+            for what in dict.fromkeys(what for result in row.findings for what in result.hangs):
+                found.setdefault(what, []).append(row.number)
+    told = "; ".join(f"on {what}: claim {', '.join(claims)}" for what, claims in found.items())
+    return f"* Verdicts that hang {told}." if told else ""
 
 
 def _counted(verdicts: Iterator[str]) -> tuple[tuple[str, int], ...]:

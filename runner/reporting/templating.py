@@ -5,7 +5,6 @@ from functools import cache
 
 import jinja2
 
-from runner.claims import CONTRADICTION
 from runner.expressions.typesetting import matrix, symbol, typeset
 from runner.paths import templates_dir
 from runner.reporting.document import Origin
@@ -17,13 +16,12 @@ from runner.reporting.symbols import symbols_in
 from runner.texts import plain
 
 VERDICT_SIGNS = {
-    "holds": "✓",
-    "better": "▲",
-    "worse": "▼",
-    CONTRADICTION: "≠",
-    "no longer holds": "✕",
-    "not testable here": "–",
-    "not run": "–",
+    "matches": "=",
+    "differs": "≠",
+    "smaller than printed": "<",
+    "larger than printed": ">",
+    "source contradicts itself": "!",
+    "undecided": "?",
     "correct": "✓",
     "correct after repair": "✓",
     "wrong as printed": "✕",

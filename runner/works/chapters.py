@@ -11,13 +11,13 @@ from typing import Any
 from runner import progress
 from runner.audit.audit import audit
 from runner.audit.sources import Source
-from runner.claims import FACTOR, Verdict, load_claims
+from runner.claims import CLAIMS, FACTOR, Verdict, load_claims
 from runner.errors import RunnerError
 from runner.limits import CHAPTER, read_text
 from runner.progress.stages import CHAPTERS
 from runner.reporting.audit.report import rows
 from runner.reporting.claim import Claim
-from runner.reporting.claims import RULE, judged_claims
+from runner.reporting.claims import judged_claims, legend
 from runner.reporting.document import Equations, Origin, Section, Verdicts
 from runner.reporting.findings import Finding
 from runner.reporting.job import Made
@@ -111,8 +111,8 @@ class Chapters:
             "presets": presets,
             "claims": self._claims,
             "claims_that": self._claims_that,
-            "verdicts": lambda caption: Verdicts(caption, self._claims()),
-            "verdict_rule": RULE,
+            "verdicts": lambda caption: Verdicts(caption, self._claims(), self._legend()),
+            "verdict_rule": self._legend(),
             "verdict_factor": FACTOR,
             "equations": self._equations,
         }
@@ -132,6 +132,10 @@ class Chapters:
 
     def _claims(self) -> list[Claim]:
         return judged_claims(load_claims(self._folder), self._runs, self._about.presets)
+
+    def _legend(self) -> str:
+        """Return what the words of its verdicts mean; nothing where it has no claims."""
+        return legend(load_claims(self._folder)) if (self._folder / CLAIMS).is_file() else ""
 
     def _claims_that(self, verdict: Verdict, words: str) -> Measured:
         """Return of how many claims this is the verdict under every preset; conditions call it by the words."""

@@ -15,12 +15,15 @@ def given(values: Mapping[str, float | None]) -> Simulated:
     return lambda experiment, _metric: values[experiment.rpartition("/")[2]]
 
 
-@pytest.mark.parametrize(("value", "verdict"), [(0.044, "holds"), (0.01, "better"), (0.1, "worse"), (None, "worse")])
+@pytest.mark.parametrize(
+    ("value", "verdict"),
+    [(0.044, "matches"), (0.01, "smaller than printed"), (0.1, "larger than printed"), (None, "larger than printed")],
+)
 def test_a_number_is_held_against_the_printed_one(value: float | None, verdict: str) -> None:
     assert verdict_on(ERROR, CLAIMS, given({"figure_3_10": value})) == verdict
 
 
-@pytest.mark.parametrize(("like", "verdict"), [(0.1, "holds"), (0.01, "worse"), (1.0, "better"), (None, None)])
+@pytest.mark.parametrize(("like", "verdict"), [(0.1, "matches"), (0.01, "differs"), (1.0, "differs"), (None, None)])
 def test_a_likeness_is_held_against_the_other_run(like: float | None, verdict: str | None) -> None:
     simulated = given({"figure_5_13": 0.11, "macro_alone": like})
     assert compared_with(ALIKE, simulated) == like
@@ -28,7 +31,7 @@ def test_a_likeness_is_held_against_the_other_run(like: float | None, verdict: s
 
 
 @pytest.mark.parametrize(
-    ("macro", "bound", "verdict"), [(1.3, 0.14, CONTRADICTION), (2.5, 0.25, "holds"), (None, 0.14, CONTRADICTION)]
+    ("macro", "bound", "verdict"), [(1.3, 0.14, CONTRADICTION), (2.5, 0.25, "matches"), (None, 0.14, CONTRADICTION)]
 )
 def test_a_bound_is_the_larger_of_what_is_printed_and_simulated(
     macro: float | None, bound: float, verdict: str

@@ -12,8 +12,8 @@ OLD = {
     "thesis": {
         "title": "The thesis",
         "verdicts": [
-            {"claim": "1", "ours": [{"preset": "sound", "measured": "1.3 s", "verdict": "holds"}]},
-            {"claim": "2", "ours": [{"preset": "", "measured": "2 mm", "verdict": "worse"}]},
+            {"claim": "1", "ours": [{"preset": "sound", "measured": "1.3 s", "verdict": "matches"}]},
+            {"claim": "2", "ours": [{"preset": "", "measured": "2 mm", "verdict": "larger than printed"}]},
         ],
         "findings": [{"title": "It follows", "text": "By 2 mm.", "holds": True}],
         "equations": [{"number": "3.4", "place": "page 3", "title": "Axis", "verdict": "correct"}],
@@ -46,13 +46,13 @@ def test_nothing_changed(new):
 
 def test_each_kind_is_told_with_what_it_was_and_is(new):
     thesis = new["thesis"]
-    thesis["verdicts"][0]["ours"][0] = {"preset": "sound", "measured": "2.6 s", "verdict": "worse"}
+    thesis["verdicts"][0]["ours"][0] = {"preset": "sound", "measured": "2.6 s", "verdict": "larger than printed"}
     thesis["findings"][0]["holds"] = False
     thesis["equations"][0]["verdict"] = "wrong as printed"
     thesis["caveats"] = [{"run": "goal", "rule": "chatter", "text": "joint q1 jumps"}]
     told = [(change.kind, change.name, change.old, change.new) for change in changes(OLD, new)]
     assert told == [
-        ("verdict", "thesis: claim 1, sound", "holds", "worse"),
+        ("verdict", "thesis: claim 1, sound", "matches", "larger than printed"),
         ("finding", "thesis: It follows", "holds", "no longer holds"),
         ("equation", "thesis: 3.4, page 3: Axis", "correct", "wrong as printed"),
         ("caveat", "thesis: goal: saturation", "joint q1 in 20 %", None),

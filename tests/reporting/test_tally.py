@@ -4,7 +4,7 @@ from support.sample_document import equations
 
 from runner.reporting.claim import Claim, ClaimResult
 from runner.reporting.document import Document, Section, Verdicts
-from runner.reporting.tally import tallies
+from runner.reporting.tally import hanging, tallies
 
 
 def claim(number, *verdicts):
@@ -14,15 +14,29 @@ def claim(number, *verdicts):
 
 
 def test_verdicts_are_counted_for_each_way_with_the_place_of_each_claim():
-    rows = [claim("1", "holds", "better"), claim("2", "worse", "better"), claim("3", "holds", "worse")]
+    rows = [
+        claim("1", "matches", "smaller than printed"),
+        claim("2", "larger than printed", "smaller than printed"),
+        claim("3", "matches", "larger than printed"),
+    ]
     first, second = tallies(Document("", "", "", [Section("A", [Verdicts("All.", rows)])], ""))
-    assert (first.way, first.words) == ("way 0", "2 of 3 hold, 1 worse")
+    assert (first.way, first.words) == ("way 0", "2 of 3 match, 1 larger than printed")
     assert first.squares == (
-        ("1", "holds", "claim-1", "Claim 1: holds"),
-        ("2", "worse", "claim-2", "Claim 2: worse"),
-        ("3", "holds", "claim-3", "Claim 3: holds"),
+        ("1", "matches", "claim-1", "Claim 1: matches"),
+        ("2", "larger than printed", "claim-2", "Claim 2: larger than printed"),
+        ("3", "matches", "claim-3", "Claim 3: matches"),
     )
-    assert (second.way, second.words) == ("way 1", "2 of 3 better, 1 worse")
+    assert (second.way, second.words) == ("way 1", "2 of 3 smaller than printed, 1 larger than printed")
+
+
+def test_a_verdict_that_hangs_on_something_has_a_star_and_a_line():
+    found = ClaimResult("", "1", "matches", hangs={"the engine": "2 s"})
+    verdicts = Verdicts("All.", [Claim("7", "It holds", "page 1", "1", [found], ""), claim("8", "matches")])
+    (tally,) = tallies(Document("", "", "", [Section("A", [verdicts])], ""))
+    assert [square[0] for square in tally.squares] == ["7*", "8"]
+    assert tally.squares[0].words == "Claim 7: matches; hangs on the engine"
+    assert hanging([verdicts]) == "* Verdicts that hang on the engine: claim 7."
+    assert hanging([Verdicts("All.", [claim("8", "matches")])]) == ""
 
 
 def test_equations_are_counted_alone():

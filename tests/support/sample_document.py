@@ -127,7 +127,7 @@ def document(text: str = "words") -> Document:
                     text,
                     text,
                     text,
-                    [ClaimResult(text, text, "holds", text), ClaimResult(text, text, "contradicts itself", text)],
+                    [ClaimResult(text, text, "matches", text), ClaimResult(text, text, "differs", text, {text: text})],
                     text,
                     text,
                 )

@@ -61,7 +61,7 @@ def test_only_the_minis_settling_time_is_held_against_another_printed_number():
 
 
 def test_an_unknown_key_of_a_claim_is_refused():
-    entry = CLAIMS[0].model_dump() | {"verdict": "holds"}
+    entry = CLAIMS[0].model_dump() | {"verdict": "matches"}
     with pytest.raises(ValidationError, match="verdict"):
         PublishedClaim.model_validate(entry)
 
@@ -69,16 +69,16 @@ def test_an_unknown_key_of_a_claim_is_refused():
 @pytest.mark.parametrize(
     ("measured", "verdict"),
     [
-        (2.0, "holds"),
-        (2.0 * FACTOR, "holds"),
-        (2.0 * FACTOR * (1 + 1e-12), "worse"),
-        (2.0 / FACTOR, "holds"),
-        (2.0 / FACTOR * (1 - 1e-12), "better"),
-        (0.0, "better"),
-        (None, "worse"),
+        (2.0, "matches"),
+        (2.0 * FACTOR, "matches"),
+        (2.0 * FACTOR * (1 + 1e-12), "larger than printed"),
+        (2.0 / FACTOR, "matches"),
+        (2.0 / FACTOR * (1 - 1e-12), "smaller than printed"),
+        (0.0, "smaller than printed"),
+        (None, "larger than printed"),
     ],
 )
-def test_a_number_holds_within_a_factor(measured, verdict):
+def test_a_number_matches_within_a_factor(measured, verdict):
     assert judge(2.0, measured) == verdict
 
 
@@ -88,10 +88,10 @@ def test_a_number_holds_within_a_factor(measured, verdict):
         (0.1, 0.1, CONTRADICTION),
         (None, 0.1, CONTRADICTION),
         (2.0, 2.0 / FACTOR * (1 - 1e-12), CONTRADICTION),
-        (2.0, 2.0 / FACTOR, "holds"),
-        (0.1, 10.0, "better"),
-        (None, 10.0, "worse"),
-        (2.0, None, "holds"),
+        (2.0, 2.0 / FACTOR, "matches"),
+        (0.1, 10.0, "smaller than printed"),
+        (None, 10.0, "larger than printed"),
+        (2.0, None, "matches"),
     ],
 )
 def test_a_number_beyond_what_another_one_allows_contradicts_it(measured, bound, verdict):

@@ -65,13 +65,13 @@ def test_what_contradicts_the_desired_path_cannot_hold():
 
 
 def test_a_tip_that_leaves_the_line_is_worse():
-    assert judge_motion([X, Y], False, LINE, LINE) == "holds"
-    assert judge_motion([X, Y], False, moved(x=1e-3), LINE) == "worse"
+    assert judge_motion([X, Y], False, LINE, LINE) == "matches"
+    assert judge_motion([X, Y], False, moved(x=1e-3), LINE) == "differs"
 
 
 def test_a_failure_that_is_told_holds_when_it_fails():
-    assert judge_motion([X, Y], True, moved(y=0.1), LINE) == "holds"
-    assert judge_motion([X, Y], True, LINE, LINE) == "better"
+    assert judge_motion([X, Y], True, moved(y=0.1), LINE) == "matches"
+    assert judge_motion([X, Y], True, LINE, LINE) == "differs"
 
 
 def test_a_claim_is_compared_in_one_way():

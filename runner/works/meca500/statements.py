@@ -4,13 +4,17 @@ from collections.abc import Mapping
 from typing import Any
 
 from runner.audit.audit import audit
-from runner.claims import load_statements
-from runner.reporting.claim import EquationVerdict, StatementVerdict
+from runner.claims import Verdict, load_statements
+from runner.reporting.claim import EquationVerdict
 from runner.reporting.claims import judged_statements
 from runner.reporting.document import Verdicts
 from runner.works.chapters import Concluded
 
 _SAMPLES = 200
+_LEGEND = (
+    "A statement matches when every condition of the findings on it is met, and differs when one is not. It is "
+    "undecided when nothing here measures it. Equations are correct or wrong as printed by the audit."
+)
 
 
 def said(concluded: Concluded, chapter: str) -> Mapping[str, Any]:
@@ -19,9 +23,9 @@ def said(concluded: Concluded, chapter: str) -> Mapping[str, Any]:
     return {**values, "holds": all(each.holds for each in findings)}
 
 
-def verdict(*holds: bool) -> StatementVerdict:
-    """Return the verdict on what holds where all of some findings do."""
-    return "holds" if all(holds) else "no longer holds"
+def verdict(*holds: bool) -> Verdict:
+    """Return the verdict on a statement that is true where all of some findings hold."""
+    return "matches" if all(holds) else "differs"
 
 
 def audited(equation: str) -> EquationVerdict:
@@ -29,6 +33,6 @@ def audited(equation: str) -> EquationVerdict:
     return next(each.verdict for each in audit("meca500", _SAMPLES) if each.entry.id == equation)
 
 
-def statements(caption: str, judged: Mapping[str, tuple[StatementVerdict | EquationVerdict, str]]) -> Verdicts:
+def statements(caption: str, judged: Mapping[str, tuple[Verdict | EquationVerdict, str]]) -> Verdicts:
     """Return each statement with its verdict and what was measured, by its name."""
-    return Verdicts(caption, judged_statements(load_statements("meca500"), judged))
+    return Verdicts(caption, judged_statements(load_statements("meca500"), judged), _LEGEND)

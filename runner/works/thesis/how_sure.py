@@ -46,7 +46,7 @@ def turned(runs: Mapping[str, Run], caption: str, given: Sequence[Judged]) -> Ta
 
 
 def around_printed(runs: Mapping[str, Run], caption: str, given: Sequence[Judged]) -> Curves:
-    """Return simulated values over what they are compared with, between the factors within which a claim holds."""
+    """Return simulated values over what they are compared with, between the factors within which a claim matches."""
     numbers = list(dict.fromkeys(each.claim.number for each in given))
     series: list[Series] = []
     for color, (preset, words) in enumerate(PRESET.items()):
@@ -56,7 +56,7 @@ def around_printed(runs: Mapping[str, Run], caption: str, given: Sequence[Judged
         x = np.array([numbers.index(each.claim.number) for each in shown]) + _BESIDE * (2 * color - 1)
         series += at_texts(Series(words, x, middle, "points", low, high, color))
     across = np.array([-0.5, len(numbers) - 0.5])
-    limits = (("a claim holds in between", FACTOR), ("", 1.0 / FACTOR))
+    limits = (("a claim matches in between", FACTOR), ("", 1.0 / FACTOR))
     series += [Series(name, across, np.full(2, factor), "dotted", color=7) for name, factor in limits]
     names = [str(each) for each in numbers]
     panel = Panel("", "claim", "simulated over printed", series, y_log=True, x_names=names)
@@ -113,7 +113,7 @@ def median_of(given: Sequence[Judged], claim: int, preset: str, words: str) -> M
 
 
 def turns_at(given: Sequence[Judged], claim: int, words: str) -> Measured:
-    """Return above which value a claim is judged worse."""
+    """Return above which value a claim is judged larger than printed."""
     chosen = next(each.claim for each in given if each.claim.number == claim)
     return Measured(words, None if chosen.value is None else FACTOR * chosen.value, chosen.unit)
 

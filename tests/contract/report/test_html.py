@@ -149,7 +149,7 @@ def test_data_and_pictures_are_packed_and_named_by_their_places():
 
 def test_claims_figures_and_tables_are_places_that_texts_lead_to():
     origin = Origin("figure 3.5", "runner experiment=a/b")
-    claim = Claim("3", "It settles", "page 1", "1 s", [ClaimResult("", "1 s", "holds")], "", "runner experiment=a/b")
+    claim = Claim("3", "It settles", "page 1", "1 s", [ClaimResult("", "1 s", "matches")], "", "runner experiment=a/b")
     told = Text("claim 3 is judged by figure 3.5; figure 9.9 is not here")
     blocks = [told, Verdicts("All.", [claim]), curves("seen", origin=origin)]
     page = html.render(Document("", "", "", [Section("A", blocks)], ""))

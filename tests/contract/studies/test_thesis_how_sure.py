@@ -64,7 +64,7 @@ def test_one_seed_turns_by_its_own_value_and_a_group_by_the_binomial(some: Run) 
     worse = 120
     values = [5e-4] * (SEEDS - worse) + [9e-4] * worse  # claim 9 holds up to 6e-4
     each = judged_by(some, 9, list(np.random.default_rng(1).permutation(values)))
-    assert (each.verdict, each.own_verdict) == ("holds", "holds")
+    assert (each.verdict, each.own_verdict) == ("matches", "matches")
     assert each.otherwise(each.alone) == worse
     # The mean of the two middle ones is judged: with half of the draws beyond, it is 7e-4 and worse.
     exact = float(stats.binom.sf(OWN // 2 - 1, OWN, worse / SEEDS))
@@ -75,7 +75,7 @@ def test_one_seed_turns_by_its_own_value_and_a_group_by_the_binomial(some: Run) 
 
 def test_a_seed_without_a_value_is_worse(some: Run) -> None:
     each = judged_by(some, 8, [1.0] * (SEEDS - 7) + [None] * 7)
-    assert [verdict for verdict in each.alone if verdict != "holds"] == ["worse"] * 7
+    assert [verdict for verdict in each.alone if verdict != "matches"] == ["larger than printed"] * 7
     assert each.quantiles().tolist() == [1.0, 1.0, np.inf]
 
 
@@ -83,7 +83,7 @@ def test_what_a_claim_is_like_has_the_same_seeds(some: Run) -> None:
     """Two runs that go up and down together are alike in every seed, however far their seeds are apart."""
     values = np.random.default_rng(2).uniform(0.01, 1.0, SEEDS)
     each = judged_by(some, 16, list(values), like=list(values))
-    assert set(each.alone) == {"holds"}
+    assert set(each.alone) == {"matches"}
     apart = judged_by(some, 16, list(values), like=list(values[::-1]))
     assert apart.otherwise(apart.alone) > SEEDS // 4
 
@@ -92,8 +92,8 @@ def test_a_bound_is_that_of_the_same_seeds(some: Run) -> None:
     """Claim 5 contradicts claim 1 but for seeds in which the Macro itself takes long: 0.1 of 2 s or more."""
     slow = [1.4] * (SEEDS - 30) + [2.5] * 30
     each = judged_by(some, 5, [0.3] * SEEDS, bound=slow)
-    assert each.verdict == "contradicts itself"
-    assert [verdict for verdict in each.alone if verdict != each.verdict] == ["holds"] * 30
+    assert each.verdict == "source contradicts itself"
+    assert [verdict for verdict in each.alone if verdict != each.verdict] == ["matches"] * 30
 
 
 def test_the_share_of_seeds_has_its_interval() -> None:

@@ -57,7 +57,7 @@ def test_every_number_has_a_finding_for_each_preset(document):
 def test_the_minis_settling_time_contradicts_the_macros(document):
     (claims,) = blocks_of(document, Verdicts)
     claim = next(claim for claim in claims.rows if claim.number == "5")
-    assert [finding.verdict for finding in claim.findings] == ["contradicts itself", "contradicts itself"]
+    assert [finding.verdict for finding in claim.findings] == ["source contradicts itself", "source contradicts itself"]
 
 
 def test_every_claim_leads_to_a_figure_that_the_report_shows(document):
@@ -71,7 +71,7 @@ def test_the_first_screen_shows_the_arm_and_counts_the_verdicts(document):
     assert "<animate" in document.cover.moving
     assert [tally.way for tally in tallies(document)] == list(PRESET.values())
     assert [len(tally.squares) for tally in tallies(document)] == [17, 17]
-    assert document.notes[0].startswith("holds: ")
+    assert document.notes[0].startswith("A printed number matches when ")
 
 
 def test_what_the_plants_step_is_worth_is_told_of_every_compared_figure(document):

@@ -65,8 +65,8 @@ def test_the_checklist_finds_a_place_for_everything(document):
 def test_the_verdicts(document):
     (claims,) = blocks_of(document, Verdicts)
     verdicts = {claim.number: [f.verdict for f in claim.findings] for claim in claims.rows}
-    same = {number: ["holds", "holds"] for number in "123467"}
-    assert verdicts == {**same, "5": ["contradicts itself", "contradicts itself"]}
+    same = {number: ["matches", "matches"] for number in "123467"}
+    assert verdicts == {**same, "5": ["source contradicts itself", "source contradicts itself"]}
     for claim in claims.rows:
         assert tuple(finding.preset for finding in claim.findings) == PRESETS
 
