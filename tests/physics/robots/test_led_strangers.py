@@ -26,7 +26,8 @@ def simulated_stranger():
     from runner.simulation import simulate
 
     def make(name, *overrides):
-        config = strangers.config(name, *overrides, "trajectory.duration=1", "duration=0.6")
+        free = ("robot.friction.viscous=0", "robot.friction.coulomb=0")  # no law knows the friction of the files
+        config = strangers.config(name, *overrides, *free, "trajectory.duration=1", "duration=0.6")
         loop = assemble(config)
         try:
             return simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0))
