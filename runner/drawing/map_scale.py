@@ -13,7 +13,8 @@ CONTOURS = 10
 """About how many lines of equal value a map shows."""
 MOST_PARTED = 20
 """Most cells beside each other that are parted by white lines."""
-_EQUAL = 0.02  # of the largest value: smaller differences get next to no colour
+EQUAL = 0.02
+"""Share of the largest value below which a difference is not to fill a scale."""
 _SMALLEST, _LARGEST = 1e-4, 1e4  # of values without a power of ten
 _MOST_PRINTED = 10  # cells beside each other whose values can be read
 
@@ -38,7 +39,11 @@ def value_range(figure: MapFigure) -> tuple[float, float]:
     if not finite.any():
         return (0.0, 1.0)
     low, high = float(finite.min()), float(finite.max())
-    least = -math.log10(1.0 - _EQUAL) if figure.log else _EQUAL * max(abs(low), abs(high))
+    return widened(low, high, -math.log10(1.0 - EQUAL) if figure.log else EQUAL * max(abs(low), abs(high)))
+
+
+def widened(low: float, high: float, least: float) -> tuple[float, float]:
+    """Return a range about the same middle that is at least so wide."""
     room = 0.5 * max(0.0, least - (high - low))
     return low - room, high + room
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from runner.drawing.map_scale import EQUAL, widened
 from runner.reporting.document import Curves, Panel, Series
 from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_names
 from runner.sweeps.measurements import Axis, FloatArray
@@ -65,4 +66,9 @@ def axis_panel(title: str, axis: Axis, y_label: str, series: list[Series], y: Fl
     """Return a panel over one axis of the sweep, logarithmic where its values, or the ordinates, span decades."""
     names = value_names(axis) if axis.numbers is None else ()
     x_log = axis.numbers is not None and spans_decades(axis.numbers)
-    return Panel(title, axis_label(axis), y_label, series, x_log, spans_decades(y), x_names=names)
+    edges = [edge for each in series for edge in (each.y, each.low, each.high) if edge is not None]
+    drawn = np.concatenate([edge[np.isfinite(edge)] for edge in edges])
+    least = EQUAL * float(np.abs(drawn).max(initial=0.0))
+    close = drawn.size and np.ptp(drawn) < least  # such differences are not to fill the panel
+    y_range = widened(float(drawn.min()), float(drawn.max()), least) if close else None
+    return Panel(title, axis_label(axis), y_label, series, x_log, spans_decades(y), y_range=y_range, x_names=names)

@@ -18,6 +18,7 @@ from runner.works.thesis.judged import DRAWN, Judged, judge_by_seeds
 
 _RUNS = "sure/{figure}/{preset}/{seeds}"
 _BESIDE = 0.12  # of a claim's place, so that the bars of both presets are seen
+_COLORS = {"as_reported": 1, "sound": 0}  # palette indices, as in all figures of the report
 
 
 def judged(runs: Mapping[str, Run]) -> list[Judged]:
@@ -49,12 +50,12 @@ def around_printed(runs: Mapping[str, Run], caption: str, given: Sequence[Judged
     """Return simulated values over what they are compared with, between the factors within which a claim matches."""
     numbers = list(dict.fromkeys(each.claim.number for each in given))
     series: list[Series] = []
-    for color, (preset, words) in enumerate(PRESET.items()):
+    for side, (preset, words) in zip((-1, 1), PRESET.items(), strict=True):
         shown = [each for each in given if each.preset == preset and each.values.size and each.printed]
         ends = np.array([each.quantiles() / (each.printed or 1.0) for each in shown]).reshape(-1, 3)
         middle, low, high = np.where(np.isfinite(ends), ends, np.nan).T
-        x = np.array([numbers.index(each.claim.number) for each in shown]) + _BESIDE * (2 * color - 1)
-        series += at_texts(Series(words, x, middle, "points", low, high, color))
+        x = np.array([numbers.index(each.claim.number) for each in shown]) + _BESIDE * side
+        series += at_texts(Series(words, x, middle, "points", low, high, _COLORS[preset]))
     across = np.array([-0.5, len(numbers) - 0.5])
     limits = (("a claim matches in between", FACTOR), ("", 1.0 / FACTOR))
     series += [Series(name, across, np.full(2, factor), "dotted", color=7) for name, factor in limits]

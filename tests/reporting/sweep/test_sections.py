@@ -8,6 +8,7 @@ from support.sample_sweep import measurements, noisy, two_axes
 
 from runner.reporting.document import Curves, Maps, Notice, Table, Text
 from runner.reporting.sweep import axes, distributions, effects, failures, maps
+from runner.reporting.sweep.intervals import cells_with_intervals
 from runner.reporting.sweep.subject import choose
 from runner.sweeps.differing import Difference
 
@@ -217,3 +218,23 @@ def test_failed_runs_are_listed_with_where_they_lie():
     assert [row[1:] for row in runs.rows] == [
         [f"noise.position={noise}, torque_limits.max=20", "diverged, at once"] for noise in ("0.0001", "0.001")
     ]
+
+
+@pytest.mark.parametrize(("apart", "y_range"), [(0.001, (0.990495, 1.010505)), (0.1, None)])
+def test_cells_that_differ_by_less_than_two_per_cent_do_not_fill_their_panel(apart, y_range):
+    error = noisy(lambda step: 1.0 + apart * step, repetitions=1, scatter=0.0)
+    figure = cells_with_intervals(choose(measurements({"plant.step": [1e-3, 2e-3]}, {"rms": error})), "rms")
+    assert figure.panels[0].y_range == (None if y_range is None else pytest.approx(y_range, abs=1e-5))
+
+
+def test_a_map_has_the_interval_of_each_cell_and_none_of_few_repetitions():
+    block, *_ = blocks(maps.section(two_axes()), Maps)
+    low, high = two_axes().ends("max_tracking_error")
+    (panel, *_) = block.panels
+    assert sorted(panel.low.ravel()) == sorted(low)
+    assert sorted(panel.high.ravel()) == sorted(high)
+    assert ((panel.low <= panel.values) & (panel.values <= panel.high)).all()
+    assert block.caption.endswith("The colours span the 95 % intervals of the medians.")
+    block, *_ = blocks(maps.section(two_axes(rms=noisy(lambda noise, limit: 1.0 + noise, repetitions=5))), Maps)
+    assert np.isnan(block.panels[0].low).all()
+    assert "span" not in block.caption
