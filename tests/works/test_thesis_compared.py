@@ -138,7 +138,7 @@ def test_motions_that_part_are_told_with_what_became_of_them():
         "goes another way from 0.4 s on, 0.5 m away at 0.9 s, and"
     )
     assert "settles after 1.4 s, outside the 1.63 to 1.63 s of PyBullet's 1 repetitions" in told
-    assert told.endswith("claim 8 would read holds in place of worse.")
+    assert told.endswith("claim 8 would read matches in place of larger than printed.")
     assert "PyBullet against Runge-Kutta" in why
     assert (
         step_of_both(named, ["overshoot"])
