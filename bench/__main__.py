@@ -14,6 +14,7 @@ NAMES = (
     "derivatives",
     "caveats",
     "around",
+    "answers",
     "repetitions",
     "cold_start",
     "reproduce",

@@ -74,6 +74,7 @@ def sweep(
     Raises:
         RunnerError: for a config that cannot be run, before any run is made; if another sweep is at work there.
     """
+    from runner.sweeps.finer_step import work_out_sweep
     from runner.sweeps.grid import Grid
     from runner.sweeps.loading import Loader
     from runner.sweeps.run import Engine, run_sweep
@@ -86,7 +87,10 @@ def sweep(
     plan = Grid([*(f"{key}={value}" for key, value in brought.items()), *texts], loader)
     with workers_only_work():
         ended = run_sweep(plan, engine, _command(["-m"], folders, texts))
-    return Sweep(store.open_sweep(ended.folder))
+    sweep = store.open_sweep(ended.folder)
+    if not ended.left:
+        work_out_sweep(sweep)
+    return Sweep(sweep)
 
 
 @door

@@ -147,18 +147,19 @@ class Sweep:
 
     @door
     def compare(
-        self, axis: str, within: str | Sequence[str] = (), metrics: str | Sequence[str] | None = None
+        self, axis: str, within: str | Sequence[str] | None = None, metrics: str | Sequence[str] | None = None
     ) -> "pd.DataFrame":
         """Return how the values of an axis differ from its first one, in pairs of runs that differ in nothing else.
 
-        The columns are the axes compared within; first and second, the two values; metric and unit; difference, the
-        median of second minus first over the repetitions, low and high, the ends of its 95 % interval, n the number of
-        pairs; effect, from -1 (smaller in every pair) to 1; p; and the verdict in words. What is swept beyond that is
-        pooled pair by pair.
+        The columns are the axes compared within, "all" where over all of them; first and second, the two values; metric
+        and unit; difference, second minus first (Hodges-Lehmann), low and high, the ends of its interval, n the number
+        of pairs; effect, from -1 (smaller in every pair) to 1; p, corrected (Holm); and the word: what may be said. The
+        interval excludes zero exactly if p is below 0.05. What is swept beyond that is pooled: a draw counts once.
 
         Args:
             axis: The axis, such as "controller".
-            within: Axes within each combination of whose values it is compared; none for all others but the seed.
+            within: Axes within each combination of whose values it is compared; None for over all others, and then
+                within all of them but the seed.
             metrics: Names of metrics; None for all.
 
         Raises:
@@ -167,24 +168,32 @@ class Sweep:
         import pandas as pd
 
         from runner.comparison.levels import levels
+        from runner.reporting.answers import Asked, judge
+        from runner.reporting.sweep.subject import first_screen, whole_metrics
 
-        inside = [within] if isinstance(within, str) else list(within)
+        inside = [within] if isinstance(within, str) else within
+        compared = levels(self._measurements, axis, inside, metrics=self._names(metrics))
+        first = first_screen(self._names(metrics) if metrics else whole_metrics(self._measurements.values))
+        answers = judge([Asked(one.metric, one.unit, one.comparison) for one in compared], first)
+        known = dict.fromkeys((name for found in compared for name in found.pair.at), "all")
+        missing = (np.nan, np.nan)
         rows = [
             {
+                **known,
                 **found.pair.at,
                 "first": found.pair.first,
                 "second": found.pair.second,
                 "metric": found.metric,
                 "unit": found.unit,
-                "difference": found.comparison.difference.median,
-                "low": found.comparison.difference.low,
-                "high": found.comparison.difference.high,
-                "n": found.comparison.difference.n,
+                "difference": found.comparison.difference,
+                "low": (answer.interval or missing)[0],
+                "high": (answer.interval or missing)[1],
+                "n": found.comparison.n,
                 "effect": found.comparison.effect,
-                "p": found.comparison.p_value,
-                "verdict": found.comparison.verdict,
+                "p": answer.p_value,
+                "word": answer.word,
             }
-            for found in levels(self._measurements, axis, inside, metrics=self._names(metrics))
+            for found, answer in zip(compared, answers, strict=True)
         ]
         return pd.DataFrame(rows).astype({"low": float, "high": float, "p": float})
 

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 from runner.texts import one_line
 
 if TYPE_CHECKING:
-    from runner.statistics import Comparison
+    from runner.reporting.answers import Answer
 
-COMPARED = ("95 % interval", "n", "effect", "p")
-"""Columns of what `comparison_cells` returns, between the difference and the verdict."""
+COMPARED = ("interval", "n", "effect", "p")
+"""Columns of what `answer_cells` returns, between the difference and the word."""
 
 
 def aligned(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
@@ -25,16 +25,16 @@ def number(value: float | None) -> str:
     return "-" if value is None else f"{value:.5g}"
 
 
-def comparison_cells(comparison: "Comparison") -> list[str]:
-    """Return the difference, what COMPARED names, and the verdict of a comparison."""
-    difference, p_value = comparison.difference, comparison.p_value
+def answer_cells(answer: "Answer") -> list[str]:
+    """Return the difference, what COMPARED names, and the word of an answer, in SI units."""
+    found, interval = answer.comparison, answer.interval
     return [
-        number(difference.median),
-        f"{number(difference.low)} to {number(difference.high)}",
-        str(difference.n),
-        f"{comparison.effect:.2f}",
-        "-" if p_value is None else f"{p_value:.2g}",
-        comparison.verdict,
+        number(found.difference),
+        "-" if interval is None else " to ".join(map(number, interval)),
+        str(found.n),
+        f"{found.effect:.2f}",
+        "-" if answer.p_value is None else f"{answer.p_value:.2g}",
+        answer.word,
     ]
 
 

@@ -39,11 +39,14 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--metrics", type=_names, metavar="NAME,NAME", help="compare these metrics alone")
     parser.add_argument("--by", metavar="AXIS", help="of one sweep: compare the levels of this axis")
     parser.add_argument(
-        "--within", type=_names, metavar="AXIS,AXIS", help="within each level of these; default: of all"
+        "--within",
+        type=_names,
+        metavar="AXIS,AXIS",
+        help="within each level of these; default: over all others and within each",
     )
     parser.add_argument("--columns", type=Path, metavar="FILE", help="of a recording: which signal each column holds")
     options = parser.parse_args(arguments)
-    metrics, within = options.metrics or (), options.within or ()
+    metrics, within = options.metrics or (), options.within or None
     quiet_environment()
     from runner import store
 

@@ -4,10 +4,11 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from runner.commands.columns import COMPARED, aligned, comparison_cells, letter, number
+from runner.commands.columns import COMPARED, aligned, answer_cells, letter, number
 from runner.texts import one_line
 
 if TYPE_CHECKING:
+    from runner.comparison.side import Side
     from runner.store import Run
 
 # What a result may follow from beside its config; date, machine and command tell nothing about the physics.
@@ -37,9 +38,13 @@ def _print_two(a: "Run", b: "Run", name: str, metrics: Sequence[str], end: str) 
     from runner.comparison.beyond import beyond
     from runner.comparison.cells import one_cell
     from runner.comparison.side import side_of_run
+    from runner.sweeps.finer_step import work_out
 
+    for run in (a, b):
+        work_out(run.folder.parent.parent, [run])
+    sides = side_of_run("A", a), side_of_run(name, b)
     print(one_line(f"A  {_headline(a)}"), one_line(f"{name}  {_headline(b)}"), "", sep="\n")
-    found = beyond(side_of_run("A", a), side_of_run(name, b), one_cell())
+    found = beyond(*sides, one_cell())
     print(one_line(found.in_words("A", name)))
     print(_differing("config", store.simulated_part(a.config), store.simulated_part(b.config), name))
     if a.urdf != b.urdf:
@@ -48,7 +53,7 @@ def _print_two(a: "Run", b: "Run", name: str, metrics: Sequence[str], end: str) 
     print(_caveats(a, b, name), end="\n\n")
     header = ["metric", "unit", "A", name, f"{name} - A", f"{name} / A"]
     print(aligned([header, *_metric_rows(a, b, metrics)], indent=""))
-    print(f"\n{_paired(a, b, name, metrics)}", end=end)
+    print(f"\n{_paired(*sides, metrics)}", end=end)
 
 
 def _headline(run: "Run") -> str:
@@ -97,34 +102,35 @@ def _metric_rows(a: "Run", b: "Run", metrics: Sequence[str]) -> Iterator[list[st
         yield [name, unit, *map(number, (found_a, found_b, difference, ratio))]
 
 
-def _paired(a: "Run", b: "Run", name: str, metrics: Sequence[str]) -> str:
+def _paired(a: "Side", b: "Side", metrics: Sequence[str]) -> str:
     """Return the comparison of two runs on the same seeds, repetition by repetition, or why there is none."""
-    seeds, counts = (a.config["seed"], b.config["seed"]), (a.record["repetitions"], b.record["repetitions"])
-    if seeds[0] != seeds[1]:
-        return f"not compared in pairs: seed {seeds[0]} and seed {seeds[1]} share no noise"
-    from runner.comparison.words import NOISE_ALONE, at_once, noise_alone
+    from runner.comparison.cells import one_cell
+    from runner.comparison.pairs import compare, share_seeds
+    from runner.comparison.words import NOISE_ALONE, noise_alone
+    from runner.reporting.answers import EXPLAINED, Asked, judge
+    from runner.reporting.sweep.subject import first_screen, whole_metrics
     from runner.statistics import SMALLEST_SAMPLE
 
-    if min(counts) < SMALLEST_SAMPLE:
-        return f"not compared in pairs: {min(counts)} repetitions in common, and {SMALLEST_SAMPLE} are needed"
-    both = [metric for metric in metrics or a.metrics if metric in a.metrics and metric in b.metrics]
+    one, other = a.measurements, b.measurements
+    pairs = one_cell().pairs
+    if not share_seeds(one, other, pairs).all():
+        return f"not compared in pairs: seed {one.seeds[0]} and seed {other.seeds[0]} share no noise"
+    count = min(one.repetitions, other.repetitions)
+    if count < SMALLEST_SAMPLE:
+        return f"not compared in pairs: {count} repetitions in common, and {SMALLEST_SAMPLE} are needed"
+    both = [name for name in metrics or one.values if name in one.values and name in other.values]
     if not both:
         return "not compared in pairs: no metric is in both"
-    rows = [_paired_row(metric, a, b, min(counts)) for metric in both]
-    header = ["metric", "unit", f"{name} - A", *COMPARED, f"{name} is"]
-    head = (
-        f"medians of the differences in {min(counts)} pairs on the same seeds (effect 1: {name} is larger in all of "
-        "them):"
+    asked = [Asked(name, one.units[name], found) for name in both if (found := compare(one, other, name, pairs))]
+    first = first_screen(metrics or whole_metrics(both))
+    answers = judge(asked, first)
+    rows = [[answer.metric, answer.unit, *answer_cells(answer)] for answer in answers]
+    alone = noise_alone([config for side in (one, other) for config, _ in side.configs])
+    return "\n".join(
+        [
+            *(answer.sentence(a.name, b.name) for answer in answers if answer.metric in first),
+            aligned([["metric", "unit", f"{b.name} - {a.name}", *COMPARED, f"{b.name} is"], *rows]),
+            EXPLAINED,
+            *([NOISE_ALONE] if alone else []),
+        ]
     )
-    alone = noise_alone([a.config, b.config])
-    return "\n".join([head, aligned([header, *rows]), at_once(len(rows)), *([NOISE_ALONE] if alone else [])])
-
-
-def _paired_row(name: str, a: "Run", b: "Run", pairs: int) -> list[str]:
-    import numpy as np
-
-    from runner.statistics import compare_paired
-
-    of_a, of_b = (run.values(name)[:pairs] for run in (a, b))
-    of_a, of_b = (np.where(np.isnan(side), np.inf, side) for side in (of_a, of_b))
-    return [name, a.metrics[name]["unit"], *comparison_cells(compare_paired(of_a, of_b))]

@@ -4,14 +4,18 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from runner.commands.columns import COMPARED, aligned, comparison_cells, letter, number
+from runner.commands.columns import COMPARED, aligned, answer_cells, letter, number
 from runner.comparison.beyond import Beyond, Value
 from runner.comparison.caveats import SideCaveat, caveats_of
 from runner.comparison.cells import label_text
-from runner.comparison.side import open_side
+from runner.comparison.side import open_side, stored_part
 from runner.comparison.summary import cells_told, size_told
 from runner.comparison.sweeps import MetricComparison, SweepComparison, compare_sweeps
-from runner.comparison.words import NOISE_ALONE, POOLED, at_once
+from runner.comparison.words import NOISE_ALONE, POOLED
+from runner.reporting.answers import EXPLAINED, Asked, judge
+from runner.reporting.sweep.subject import first_screen, whole_metrics
+from runner.store import open_sweep
+from runner.sweeps.finer_step import work_out_sweep
 from runner.texts import one_line
 
 _NAMED = 3  # cells of one sweep alone
@@ -28,15 +32,17 @@ def print_sweeps(folders: Sequence[Path], metrics: Sequence[str]) -> None:
         RunnerError: If two share no cell, or have no such metric.
         StoreError: If one cannot be read.
     """
+    for folder in folders:
+        work_out_sweep(stored_part(open_sweep(folder))[0])
     sides = [open_side(letter(place), folder) for place, folder in enumerate(folders)]
     for side in sides:
         for damage in side.damage:
             print(f"runner: {damage}", file=sys.stderr)
     found = [compare_sweeps(sides[0], side, metrics) for side in sides[1:]]
-    print("\n\n".join("\n".join(_lines(one)) for one in found))
+    print("\n\n".join("\n".join(_lines(one, metrics)) for one in found))
 
 
-def _lines(found: SweepComparison) -> Iterator[str]:
+def _lines(found: SweepComparison, metrics: Sequence[str]) -> Iterator[str]:
     a, b = found.a, found.b
     for side in (a, b):
         yield one_line(f"{side.name}  {side.folder}  {size_told(side)}")
@@ -47,9 +53,12 @@ def _lines(found: SweepComparison) -> Iterator[str]:
     caveats = [*caveats_of(a), *caveats_of(b)]
     yield f"caveats:\n{aligned(list(map(_caveat, caveats)))}" if caveats else "no caveats"
     yield ""
+    first = first_screen(metrics or whole_metrics([one.metric for one in found.pooled]))
+    answers = judge([Asked(one.metric, one.unit, one.comparison) for one in found.pooled], first)
+    yield from (answer.sentence(a.name, b.name) for answer in answers if answer.metric in first)
     n = len(found.matched.labels)
     over = "in the one cell" if n == 1 else f"over all {n} cells"
-    yield f"every metric {over}: medians of the differences of the pairs on the same seeds"
+    yield f"every metric {over}, on the same seeds"
     header = [
         "metric",
         "unit",
@@ -58,15 +67,18 @@ def _lines(found: SweepComparison) -> Iterator[str]:
         f"{b.name} - {a.name}",
         *COMPARED,
         f"{b.name} is",
-        "cells smaller, larger",
+        "cells below, above 0",
     ]
-    yield aligned([header, *(_row(one) for one in found.pooled)], indent="")
+    rows = [[*_head(one), *answer_cells(answer), f"{one.below}, {one.above}"]
+            for one, answer in zip(found.pooled, answers, strict=True)]  # fmt: skip
+    yield aligned([header, *rows], indent="")
     if found.cells:
         yield ""
-        yield f"cells that differ most, in relation to the size of the metric (of {found.candidates}):"
-        yield aligned([["cell", *header[:-1]], *([label_text(one.cell), *_row(one)[:-1]] for one in found.cells)])
+        yield f"largest differences in one cell, relative to the metric (chosen from {found.candidates}, not tested):"
+        rows = [[label_text(one.cell), *_head(one), number(one.comparison.difference)] for one in found.cells]
+        yield aligned([["cell", *header[:5]], *rows])
     yield ""
-    yield f"effect 1: {b.name} is larger in every pair, -1: smaller. {POOLED} {at_once(found.comparisons)}"
+    yield f"{POOLED} {EXPLAINED}"
     if found.noise_alone:
         yield NOISE_ALONE
 
@@ -90,12 +102,5 @@ def _caveat(found: SideCaveat) -> list[str]:
     return [found.side, found.rule, f"{found.count} of {found.cells} cells", found.worst]
 
 
-def _row(one: MetricComparison) -> list[str]:
-    return [
-        one.metric,
-        one.unit,
-        number(one.a),
-        number(one.b),
-        *comparison_cells(one.comparison),
-        f"{one.smaller}, {one.larger}",
-    ]
+def _head(one: MetricComparison) -> list[str]:
+    return [one.metric, one.unit, *map(number, one.comparison.medians)]

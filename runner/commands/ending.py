@@ -102,29 +102,28 @@ def tell_sweep(ended: "Ended") -> int:
 
 
 def _tell_cells(ended: "Ended") -> None:
-    """Print how many runs were made, which cell is the best, and what may be typed next."""
+    """Print how many runs were made, what may be said of them, and what may be typed next."""
     from runner import store
+    from runner.reporting.sweep.question import in_short
     from runner.reporting.sweep.subject import choose
+    from runner.sweeps.finer_step import work_out_sweep
     from runner.sweeps.measurements import measure_sweep
 
     made, failed = len(ended.ends) - ended.stored, len(ended.failures)
     runs = "1 run" if len(ended.ends) == 1 else f"{len(ended.ends)} runs"
     text = f"{runs}: {made} made, {ended.stored} stored before, {failed or 'none'} of them failed"
-    best, kept = None, ""
+    told, kept = "", ""
     if len(ended.names) <= _MOST_RANKED and not (ended.left or failed == len(ended.names)):
         sweep = store.open_sweep(ended.folder)
+        work_out_sweep(sweep)
         subject = choose(measure_sweep(sweep))
-        best = subject.best
+        told = in_short(subject)
         if sweep.spec:
             from runner.reporting.sweep.spec import summary  # imports what draws, which takes long
 
             kept = summary(subject, sweep)
-    if best is not None:
-        metric, value, cell = best
-        text += f"; least {metric}: {value} (median), {cell}"
-    print(one_line(f"runner: {text}"), file=sys.stderr)
-    if kept:
-        print(f"runner: {kept}", file=sys.stderr)
+    for line in filter(None, (text, told, kept)):
+        print(one_line(f"runner: {line}"), file=sys.stderr)
     here = ended.outputs.resolve() == outputs_dir().resolve()
     name = WORD if here else str(ended.folder)
     compared = next((axis.name for axis in _axes(ended) if axis.name != "seed"), None)

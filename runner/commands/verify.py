@@ -127,6 +127,12 @@ def _benchmark(path: Path) -> None:
     read_json(path, "its command measures it again")
 
 
+def _finer(path: Path) -> None:
+    from runner.store.finer import read_finer
+
+    read_finer(path.parents[1], path.stem)
+
+
 # Of each folder what lies in it, the files without which that is unfinished, and what reads it.
 _KINDS: dict[str, tuple[str, Sequence[str], Callable[[Path], None]]] = {
     "runs": ("[!.]*", ["metrics.json"], _run),
@@ -136,4 +142,5 @@ _KINDS: dict[str, tuple[str, Sequence[str], Callable[[Path], None]]] = {
     "calibrations": ("[!.]*", ["result.json"], _calibration),
     "benchmarks": ("[!.]*.json", [], _benchmark),
     "claims": ("[!.]*.json", [], _benchmark),
+    "finer": ("[!.]*.json", [], _finer),
 }

@@ -52,7 +52,7 @@ class LevelComparison:
 
 
 def levels(
-    measurements: Measurements, axis: str, within: Sequence[str] = (), metrics: Sequence[str] = ()
+    measurements: Measurements, axis: str, within: Sequence[str] | None = None, metrics: Sequence[str] = ()
 ) -> list[LevelComparison]:
     """Compare the levels of one axis of a sweep: each with the first one, in every metric.
 
@@ -61,9 +61,9 @@ def levels(
     Args:
         measurements: The sweep.
         axis: The axis, such as "controller".
-        within: Axes within each combination of whose levels the comparison is made; empty for all others but the
-            seed. Cells of the remaining axes are pooled pair by pair: the two cells of a pair have the same levels of
-            all other axes and the same seed, and are compared repetition by repetition.
+        within: Axes within each combination of whose levels the comparison is made; None for over all others, and then
+            within all of them but the seed. Cells of the remaining axes are pooled: the two cells of a pair have the
+            same levels of all other axes and the same seed, and the pairs of one draw count once.
         metrics: Names of metrics; empty for all.
 
     Raises:
@@ -71,6 +71,8 @@ def levels(
     """
     check_metrics(metrics, measurements.values)
     pairs = level_pairs(measurements, axis, within)
+    if within is None and any(pair.at for pair in pairs):
+        pairs = [*level_pairs(measurements, axis, ()), *pairs]
     if not pairs:
         raise RunnerError(
             f"{axis}: no two cells differ in it alone and share their seed, so none are compared in pairs; sweep it "
@@ -78,22 +80,27 @@ def levels(
         )
     found = []
     for name in dict.fromkeys(metrics or measurements.values):
-        values = measurements.values[name]
-        compared = [(pair, compare(values, values, pair.cells)) for pair in pairs]
+        compared = [(pair, compare(measurements, measurements, name, pair.cells)) for pair in pairs]
         unit = measurements.units[name]
         found += [LevelComparison(axis, pair, name, unit, result) for pair, result in compared if result is not None]
     return found
 
 
-def level_pairs(measurements: Measurements, axis: str, within: Sequence[str] = ()) -> list[LevelPair]:
-    """Return the pairs of levels that `levels` compares, without comparing them; none where no two share seeds.
+def level_pairs(measurements: Measurements, axis: str, within: Sequence[str] | None = None) -> list[LevelPair]:
+    """Return pairs of levels of an axis without comparing them; none where no two share seeds.
+
+    Args:
+        measurements: The sweep.
+        axis: The axis.
+        within: Axes within each combination of whose levels they stand; None for all others but the seed.
 
     Raises:
         RunnerError: If the sweep has no such axis.
     """
     chosen = _named(measurements, axis)
     others = [other for other in measurements.axes if other is not chosen]
-    shown = [_named(measurements, name) for name in within] or [other for other in others if other.name != SEED]
+    inner = [other.name for other in others if other.name != SEED] if within is None else within
+    shown = [_named(measurements, name) for name in inner]
     if chosen in shown:
         raise RunnerError(f"{axis}: is compared, so it cannot be compared within, too")
     groups: dict[tuple[int, ...], list[int]] = {}

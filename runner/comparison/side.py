@@ -10,7 +10,7 @@ import numpy as np
 from runner.comparison.pairs import Cells
 from runner.errors import StoreError
 from runner.store import Finished, Run, Sweep, open_sweep
-from runner.sweeps.measurements import Measurements, measure, measure_sweep
+from runner.sweeps.measurements import Measurements, measure, measure_sweep, with_finer
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def open_side(name: str, folder: Path) -> Side:
         DamagedError: If it is damaged.
     """
     sweep = open_sweep(folder)
-    part, damage = _stored_part(sweep)
+    part, damage = stored_part(sweep)
     if not len(part.hashes):
         raise StoreError(f"{folder}: none of its {len(sweep.hashes)} cells is stored; continue with: {sweep.command}")
     missing = len(sweep.hashes) - len(part.hashes)
@@ -73,10 +73,11 @@ def open_side(name: str, folder: Path) -> Side:
 
 def side_of_run(name: str, run: Run) -> Side:
     """Return a run as a sweep of one cell."""
-    return Side(name, run.folder, str(run.provenance["command"]), measure([()], [run]))
+    measured = with_finer(measure([()], [run]), run.folder.parent.parent)
+    return Side(name, run.folder, str(run.provenance["command"]), measured)
 
 
-def _stored_part(sweep: Sweep) -> tuple[Sweep, Sequence[str]]:
+def stored_part(sweep: Sweep) -> tuple[Sweep, Sequence[str]]:
     """Return a sweep with those of its cells that are stored, and what is damaged."""
     finished = Finished(sweep.outputs)
     ends = {name: finished.outcome(name) is not None for name in set(sweep.hashes)}

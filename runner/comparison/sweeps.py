@@ -8,7 +8,7 @@ import numpy as np
 
 from runner.comparison.beyond import Beyond, beyond
 from runner.comparison.cells import Matched, match
-from runner.comparison.pairs import CellPairs, compare, paired_values
+from runner.comparison.pairs import CellPairs, compare
 from runner.comparison.side import Side
 from runner.comparison.words import noise_alone
 from runner.errors import RunnerError
@@ -18,7 +18,7 @@ from runner.sweeps.measurements import FloatArray
 from runner.sweeps.metric_names import check_metrics, is_part
 
 MOST_MOVEMENTS = 12
-"""Cells that are named as those that differ most."""
+"""Cells with the largest differences that are named."""
 
 _MOST_OF_ONE = 3  # of them in one metric
 
@@ -30,21 +30,17 @@ class MetricComparison:
     Attributes:
         metric: Its name.
         unit: Its unit.
-        a: Median in the first, over all values that are compared.
-        b: Median in the second.
-        comparison: The second against the first, over the pairs of values.
-        smaller: Number of cells in which the median of the differences is below zero.
-        larger: Number of cells in which it is above zero.
+        comparison: The second against the first, draw by draw.
+        below: Number of cells in which the median of the differences is below zero.
+        above: Number of cells in which it is above zero.
         cell: Label of the cell, where it is of one; empty over all cells.
     """
 
     metric: str
     unit: str
-    a: float
-    b: float
     comparison: Comparison
-    smaller: int
-    larger: int
+    below: int
+    above: int
     cell: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -58,8 +54,8 @@ class SweepComparison:
         matched: Which cells belong together.
         beyond: What differs between these.
         pooled: Each metric over all cells.
-        cells: The cells that differ most in a metric, in relation to its size; the largest first.
-        candidates: How many cells and metrics these are the largest of.
+        cells: The cells with the largest differences in a metric, in relation to its size; the largest first.
+        candidates: How many cells and metrics these were chosen from.
         noise_alone: Whether repetitions differ in their noise alone, as mismatch.spread is 0 in both.
     """
 
@@ -71,11 +67,6 @@ class SweepComparison:
     cells: Sequence[MetricComparison]
     candidates: int
     noise_alone: bool
-
-    @property
-    def comparisons(self) -> int:
-        """How many comparisons were made, with those that the cells which differ most were chosen from."""
-        return len(self.pooled) + self.candidates
 
 
 def compare_sweeps(a: Side, b: Side, metrics: Sequence[str] = ()) -> SweepComparison:
@@ -115,18 +106,16 @@ def by_cell(found: SweepComparison, metric: str) -> list[MetricComparison]:
 
 
 def _compared(a: Side, b: Side, name: str, pairs: CellPairs, cell: Mapping[str, str]) -> MetricComparison | None:
-    values = a.measurements.values[name], b.measurements.values[name]
-    comparison = compare(*values, pairs)
+    comparison = compare(a.measurements, b.measurements, name, pairs)
     if comparison is None:
         return None
-    first, second = (float(np.median(some)) for some in paired_values(*values, pairs))
-    moved = _median_differences(*values, pairs)
-    smaller, larger = int(np.sum(moved < -ROUNDING)), int(np.sum(moved > ROUNDING))
-    return MetricComparison(name, a.measurements.units[name], first, second, comparison, smaller, larger, cell)
+    moved = _median_differences(a.measurements.values[name], b.measurements.values[name], pairs)
+    below, above = int(np.sum(moved < -ROUNDING)), int(np.sum(moved > ROUNDING))
+    return MetricComparison(name, a.measurements.units[name], comparison, below, above, cell)
 
 
 def _movements(a: Side, b: Side, names: Sequence[str], matched: Matched) -> tuple[list[MetricComparison], int]:
-    """Return the cells that differ most, and how many there are in all metrics; none where only one cell is."""
+    """Return the cells with the largest differences, and of how many in all metrics; none where only one cell is."""
     count = len(matched.labels)
     if count < 2:
         return [], 0

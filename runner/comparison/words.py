@@ -8,24 +8,15 @@ NOISE_ALONE = (
     "do, not what another arm or another error of the model would."
 )
 
-
 POOLED = (
-    "Over all cells each pair counts alike. If some cells are smaller and others larger, that number describes none of "
-    "them."
+    "Over all cells each draw counts once, by the mean of its cells. If the difference is above zero in some cells and "
+    "below in others, that number describes none of them."
 )
 
 
 def counted(count: int, one: str, many: str) -> str:
     """Return a number with what is counted, such as "1 cell is" or "2 cells are"."""
     return f"{count} {one if count == 1 else many}"
-
-
-def at_once(comparisons: int) -> str:
-    """Return what the number of comparisons means for what each of them says."""
-    return (
-        f"Comparisons made: {comparisons}; none is corrected for the others. Where two cells do not differ p falls "
-        "below 0.05 in at most one test in twenty: of many comparisons some may by chance."
-    )
 
 
 def noise_alone(configs: Iterable[Mapping[str, Any]]) -> bool:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from runner.quantities import spread
+from runner.quantities import quantity, spread
 from runner.reporting.metric_titles import title
 from runner.store import Run
 
@@ -45,8 +45,8 @@ def key_metrics(run: Run, most: int) -> Sequence[KeyMetric]:
     return [_in_words(name, run) for name in key_names(run)[:most]]
 
 
-def least(runs: Sequence[Run]) -> tuple[str, int] | None:
-    """Return the metric that says most of the task that some runs share, and the place of the run with the least of it.
+def shared_range(runs: Sequence[Run]) -> tuple[str, str] | None:
+    """Return the title of the first metric of the task that some runs share, and the range of its medians.
 
     None where their tasks are told by different metrics, or no run has a value of it.
     """
@@ -54,9 +54,10 @@ def least(runs: Sequence[Run]) -> tuple[str, int] | None:
     if len(names) != 1:
         return None
     (name,) = names
-    values = [run.metrics.get(name, {}).get("median") for run in runs]
-    found = [(value, place) for place, value in enumerate(values) if value is not None]
-    return (name, min(found)[1]) if found else None
+    values = [found[name]["median"] for run in runs if name in (found := run.metrics)]
+    ends = [value for value in values if value is not None]
+    unit = next(run.metrics[name]["unit"] for run in runs if name in run.metrics)
+    return (title(name), f"{quantity(min(ends), unit)} to {quantity(max(ends), unit)}") if ends else None
 
 
 def key_names(run: Run) -> Sequence[str]:

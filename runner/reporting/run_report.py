@@ -13,7 +13,7 @@ from runner.reporting.changed_keys import changed_keys, flatten
 from runner.reporting.cover import cover
 from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import desired_motion, playback, torque_and_error
-from runner.reporting.key_metrics import key_metrics, least
+from runner.reporting.key_metrics import key_metrics, shared_range
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
 from runner.reporting.plant_step import describe_plant, percent
@@ -49,16 +49,11 @@ def run_document(runs: Sequence[Run]) -> Document:
 
 
 def _numbers_of_several(runs: Sequence[Run]) -> list[tuple[str, str, str]]:
-    """Return how many runs there are and failed, and the best one where the same metric tells of all tasks."""
+    """Return how many runs there are and failed, and the range of medians where one metric tells of all tasks."""
     failed = [f"run {number}" for number, run in enumerate(runs, start=1) if run.status == "failed"]
     numbers = [("runs", str(len(runs)), ""), ("failed", str(len(failed)), ", ".join(failed))]
-    best = least(runs)
-    if best is not None:
-        metric, place = best
-        found = runs[place].metrics[metric]
-        value = quantity(found["median"], found["unit"])
-        numbers.append((f"least {title(metric)}, median", value, f"run {place + 1}: {_name(runs[place])}"))
-    return numbers
+    found = shared_range(runs)
+    return numbers if found is None else [*numbers, (*found, "medians of the runs")]
 
 
 def _of_one(run: Run, date: str) -> Document:

@@ -1,9 +1,9 @@
 """What repeated runs allow to be said: intervals, paired comparisons, and which axis of a sweep matters."""
 
 from runner.statistics.effects import PERMUTATIONS, Effect, EffectAnalysis, axis_effects
-from runner.statistics.holm import holm
+from runner.statistics.holm import holm, holm_levels
 from runner.statistics.interval import SMALLEST_SAMPLE, Interval, median_interval, median_intervals
-from runner.statistics.paired import Comparison, compare_paired
+from runner.statistics.paired import Comparison, compare_paired, fewest_pairs, subtract
 
 __all__ = [
     "PERMUTATIONS",
@@ -14,7 +14,10 @@ __all__ = [
     "Interval",
     "axis_effects",
     "compare_paired",
+    "fewest_pairs",
     "holm",
+    "holm_levels",
     "median_interval",
     "median_intervals",
+    "subtract",
 ]

@@ -25,3 +25,22 @@ def holm(p_values: Sequence[float]) -> FloatArray:
     corrected = np.empty(len(given))
     corrected[order] = np.minimum(1.0, np.maximum.accumulate(given[order] * np.arange(len(given), 0, -1)))
     return corrected
+
+
+def holm_levels(p_values: Sequence[float], alpha: float) -> FloatArray:
+    """Return the level at which Holm's procedure decides each test of a family: it rejects what is below its level.
+
+    The k-th smallest p-value of m is held against alpha / (m + 1 - k); after the first that is not below, all that
+    follow are decided at that same level.
+
+    Args:
+        p_values: Those of the tests, shape (m,).
+        alpha: Probability of one or more false rejections.
+    """
+    given = np.asarray(p_values, dtype=float)
+    order = np.argsort(given, kind="stable")
+    steps = alpha / np.arange(len(given), 0, -1)
+    kept = np.flatnonzero(given[order] >= steps)
+    levels = np.empty(len(given))
+    levels[order] = np.minimum(steps, steps[kept[0]]) if kept.size else steps
+    return levels

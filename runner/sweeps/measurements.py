@@ -1,7 +1,9 @@
 """All that a sweep measured, cell by cell: swept axes, status, and every metric in every repetition."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +13,7 @@ from runner import progress
 from runner.progress.stages import READING
 from runner.store import Run, Sweep
 from runner.store.axes import GridOverrides
+from runner.store.finer import finer_names, read_finer
 from runner.store.sweep import InShard
 from runner.sweeps.differing import Difference, Resolved
 from runner.sweeps.gathering import Gathered
@@ -65,6 +68,7 @@ class Measurements:
         seeds: Seed of each cell; empty where all have the same.
         differences: Resolved config values that differ between cells beyond the axes.
         configs: Each resolved config with the cells that have it; these may differ in their seed.
+        finer: Each metric in the first repetitions on a finer step of the plant, as `values`; NaN where not known.
     """
 
     axes: Sequence[Axis]
@@ -80,8 +84,17 @@ class Measurements:
     seeds: Sequence[int] | NDArray[np.int64] = ()
     differences: Sequence[Difference] = ()
     configs: Sequence[tuple[Mapping[str, Any], NDArray[np.intp]]] = ()
+    finer: Mapping[str, FloatArray] = field(default_factory=dict)
 
-    @property
+    @cached_property
+    def copies(self) -> NDArray[np.bool_]:
+        """Whether the repetitions of each cell, of several, are alike in every metric, as nothing is drawn."""
+        alike = np.full(len(self.hashes), self.repetitions > 1)
+        for values in self.values.values():
+            alike &= ((values == values[:, :1]) | np.isnan(values)).all(axis=1)
+        return alike
+
+    @cached_property
     def draws(self) -> NDArray[np.intp]:
         """Number of the random draws behind each value, shape (cells, repetitions).
 
@@ -157,7 +170,26 @@ def measure_sweep(sweep: Sweep) -> Measurements:
         else:
             gathered.add_run(*found)
             progress.step()
-    return _measured(sweep.overrides, gathered)
+    return with_finer(_measured(sweep.overrides, gathered), sweep.outputs)
+
+
+def with_finer(measurements: Measurements, outputs: Path) -> Measurements:
+    """Return measurements with what a finer step of the plant gave, of those cells of which that is stored.
+
+    Raises:
+        DamagedError: if a file is not as it was written.
+    """
+    known = finer_names(outputs)
+    cells = [cell for cell, name in enumerate(measurements.hashes) if name in known] if known else []
+    if not cells:
+        return measurements
+    rows = [(cell, read_finer(outputs, measurements.hashes[cell])) for cell in cells]
+    width = max((len(row) for _, metrics in rows for row in metrics.values()), default=0)
+    finer = {name: np.full((len(measurements.hashes), width), np.nan) for name in measurements.values}
+    for cell, metrics in rows:
+        for name in finer.keys() & metrics.keys():
+            finer[name][cell, : len(metrics[name])] = metrics[name]
+    return replace(measurements, finer=finer)
 
 
 def _measured(overrides: Sequence[Sequence[str]], gathered: Gathered) -> Measurements:

@@ -21,6 +21,7 @@ from runner.latest import note
 from runner.plugins import in_use
 from runner.progress.stages import SIMULATING, SOON
 from runner.store.atomic import remove_leftovers
+from runner.store.finer import FOLDER as FINER
 from runner.store.names import Names
 from runner.sweeps.differing import Resolved
 from runner.sweeps.ends import Ends
@@ -301,7 +302,7 @@ def clean(rules: Rules, names: Sequence[str]) -> None:
     """Remove what killed processes left behind, now or earlier: temporary files, and folders without metrics."""
     shutil.rmtree(_scratch(rules), ignore_errors=True)
     runs = rules.outputs / "runs"
-    for folder in (rules.sweep, rules.sweep / "logs", rules.outputs / "shards", runs):
+    for folder in (rules.sweep, rules.sweep / "logs", rules.outputs / "shards", rules.outputs / FINER, runs):
         remove_leftovers(folder)
     there = {entry.name for entry in os.scandir(runs)} if runs.is_dir() else set()
     for name in there.intersection(names):

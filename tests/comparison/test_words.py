@@ -2,16 +2,12 @@
 
 import pytest
 
-from runner.comparison.words import at_once, counted, noise_alone
+from runner.comparison.words import counted, noise_alone
 
 
 @pytest.mark.parametrize(("count", "text"), [(0, "0 cells are"), (1, "1 cell is"), (2, "2 cells are")])
 def test_a_number_goes_with_what_is_counted(count, text):
     assert counted(count, "cell is", "cells are") == text
-
-
-def test_the_number_of_comparisons_is_told():
-    assert at_once(7).startswith("Comparisons made: 7; none is corrected")
 
 
 def test_nothing_but_noise_is_drawn_where_no_config_has_a_spread():

@@ -5,8 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from runner.comparison.cells import Matched, label_text
-from runner.comparison.sweeps import MetricComparison, SweepComparison, by_cell
+from runner.comparison.sweeps import SweepComparison, by_cell
 from runner.quantities import labelled
+from runner.reporting.answers import Answer, Asked, judge
 from runner.reporting.comparison.metrics import shown
 from runner.reporting.document import Block, Curves, Panel, Series, Table
 from runner.reporting.markup import literal, literals
@@ -21,7 +22,7 @@ _MOST_CELLS = 24
 def blocks(found: SweepComparison, wanted: Sequence[str]) -> list[Block]:
     """Return a figure of the first metrics that differ, or of the first ones."""
     known = shown(found, wanted)
-    moved = [one for one in known if one.smaller or one.larger] or known
+    moved = [one for one in known if one.below or one.above] or known
     chosen = [one.metric for one in moved[:MOST_METRICS]]
     a, b = found.a.name, found.b.name
     many = len(found.matched.labels) > _MOST_CELLS
@@ -29,8 +30,8 @@ def blocks(found: SweepComparison, wanted: Sequence[str]) -> list[Block]:
     caption = (
         f"Median of each cell in {b} against that in {a}; on the line both are the same."
         if many
-        else f"Median of the differences {b} - {a} in each cell, with its 95 % interval by the bootstrap over the "
-        "repetitions, if these are enough; below the line it is smaller in " + f"{b}."
+        else f"Difference {b} - {a} in each cell with its interval over the repetitions, if these are enough: each "
+        "panel is a family of comparisons."
     )
     figure = Curves(literal(f"{caption} No point stands where it is beyond every number."), panels)
     return [figure] if many or not _numbered(found.matched) else [figure, _cells(found.matched)]
@@ -55,11 +56,12 @@ def _differences(found: SweepComparison, metric: str) -> Panel:
     labels = [label_text(label) for label in matched.labels]
     compared = by_cell(found, metric)
     x = np.array([labels.index(label_text(one.cell)) for one in compared], dtype=float)
-    ends = np.array([_ends(one) for one in compared], dtype=float).reshape(-1, 3)
+    answers = judge([Asked(one.metric, one.unit, one.comparison) for one in compared], [metric])
+    ends = np.array([_ends(answer) for answer in answers], dtype=float).reshape(-1, 3)
     low, median, high = np.where(np.isfinite(ends), ends, np.nan).T
     gap = np.full(len(x), np.nan)
     edge = np.array([-0.5, len(labels) - 0.5])
-    hints = [f"{label_text(one.cell)}: {one.comparison.verdict}" for one in compared]
+    hints = [f"{label_text(one.cell)}: {answer.word}" for one, answer in zip(compared, answers, strict=True)]
     series = [
         Series("", edge, np.zeros(2), "dotted", color=1),
         Series("", np.repeat(x, 3), np.column_stack([low, high, gap]).ravel(), color=0),
@@ -74,10 +76,9 @@ def _differences(found: SweepComparison, metric: str) -> Panel:
     return Panel(f"{name[:1].upper()}{name[1:]}", across, label, series, x_names=names)
 
 
-def _ends(one: MetricComparison) -> tuple[float, float, float]:
-    difference = one.comparison.difference
-    low, high = (np.nan if end is None else end for end in (difference.low, difference.high))
-    return (low, difference.median, high)
+def _ends(answer: Answer) -> tuple[float, float, float]:
+    low, high = answer.interval or (np.nan, np.nan)
+    return (low, answer.comparison.difference, high)
 
 
 def _against(found: SweepComparison, metric: str) -> Panel:

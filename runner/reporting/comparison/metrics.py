@@ -1,17 +1,17 @@
-"""Tables of every metric of two sweeps, over all cells and in those that differ most."""
+"""Tables of every metric of two sweeps, over all cells and in those with the largest differences."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from runner.comparison.cells import label_text
 from runner.comparison.sweeps import MetricComparison, SweepComparison
-from runner.comparison.words import POOLED, at_once
+from runner.comparison.words import POOLED
 from runner.quantities import quantity
+from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, judge
 from runner.reporting.document import Block, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
-from runner.reporting.sweep.pairs import HEADER, columns
-from runner.reporting.sweep.subject import whole_metrics
+from runner.reporting.sweep.subject import first_screen, whole_metrics
 
 
 def shown(found: SweepComparison, wanted: Sequence[str]) -> list[MetricComparison]:
@@ -20,42 +20,52 @@ def shown(found: SweepComparison, wanted: Sequence[str]) -> list[MetricCompariso
     return [by_name[name] for name in (wanted or whole_metrics(by_name)) if name in by_name]
 
 
+def answers(found: SweepComparison, wanted: Sequence[str]) -> dict[str, Answer]:
+    """Return the answer over all cells in each metric, those of the first screen first."""
+    first = first_screen([one.metric for one in shown(found, wanted)])
+    asked = [Asked(one.metric, one.unit, one.comparison) for one in found.pooled]
+    judged = {answer.metric: answer for answer in judge(asked, first)}
+    return {name: judged[name] for name in dict.fromkeys([*first, *judged])}
+
+
 def blocks(found: SweepComparison, wanted: Sequence[str]) -> list[Block]:
-    """Return what is compared and how, the table over all cells, and that of those which differ most."""
+    """Return what is compared and how, the table over all cells, and that of those with the largest differences."""
     a, b = found.a.name, found.b.name
     whole = shown(found, wanted)
     parts = [one for one in found.pooled if one not in whole]
-    text = (
-        f"Both have the same seeds, and are compared repetition by repetition: median of the difference {b} - {a} and "
-        f"its 95 % interval by the bootstrap over n pairs; effect (rank-biserial correlation, 1 where {b} is larger "
-        f"in every pair, -1 where it is smaller); p of the signed-rank test. {POOLED} {at_once(found.comparisons)}"
-    )
-    tables: list[Block] = [Text(text), _table("Every metric over all cells that both have.", found, whole)]
+    text = f"The difference is {b} - {a}. {EXPLAINED} {POOLED}"
+    judged = answers(found, wanted)
+    tables: list[Block] = [Text(text), _table("Every metric over all cells that both have.", found, whole, judged)]
     if parts:
-        tables.append(_table("Metrics of one direction or joint, likewise.", found, parts, folded=True))
+        tables.append(_table("Metrics of one direction or joint, likewise.", found, parts, judged, folded=True))
     if found.cells:
         caption = (
-            "Cells that differ most, in relation to the size of the metric: "
-            f"the first of {found.candidates}, at most three of a metric."
+            "Largest differences in one cell, in relation to the size of the metric: chosen from "
+            f"{found.candidates}, at most three of a metric; not tested."
         )
-        rows = [[literal(label_text(one.cell)), *_row(one)] for one in found.cells]
-        header = ["cell", "metric", a, b, *HEADER, literal(f"{b} is")]
-        tables.append(Table(caption, header, rows, tuple(range(2, 4 + len(HEADER)))))
+        rows = [[literal(label_text(one.cell)), *_row(one), _median(one.comparison.difference, one.unit)]
+                for one in found.cells]  # fmt: skip
+        tables.append(Table(caption, ["cell", "metric", a, b, "difference"], rows, (2, 3, 4)))
     return tables
 
 
-def _table(caption: str, found: SweepComparison, some: Sequence[MetricComparison], folded: bool = False) -> Table:
+def _table(
+    caption: str,
+    found: SweepComparison,
+    some: Sequence[MetricComparison],
+    judged: Mapping[str, Answer],
+    folded: bool = False,
+) -> Table:
     a, b = found.a.name, found.b.name
     many = len(found.matched.labels) > 1
-    header = ["metric", a, b, *HEADER, literal(f"{b} is"), *(["cells smaller, larger"] if many else [])]
-    rows = [[*_row(one), *([f"{one.smaller}, {one.larger}"] if many else [])] for one in some]
+    header = ["metric", a, b, *HEADER, literal(f"{b} is"), *(["cells below, above 0"] if many else [])]
+    rows = [[*_row(one), *judged[one.metric].cells, *([f"{one.below}, {one.above}"] if many else [])] for one in some]
     return Table(caption, header, rows, tuple(range(1, 3 + len(HEADER))), folded=folded)
 
 
 def _row(one: MetricComparison) -> list[str]:
-    medians = (_median(one.a, one.unit), _median(one.b, one.unit))
-    return [literal(title(one.metric)), *medians, *columns(one.comparison, one.unit), one.comparison.verdict]
+    return [literal(title(one.metric)), *(_median(median, one.unit) for median in one.comparison.medians)]
 
 
 def _median(value: float, unit: str) -> str:
-    return quantity(value, unit) if math.isfinite(value) else "never"
+    return quantity(value, unit) if math.isfinite(value) else "beyond every number"

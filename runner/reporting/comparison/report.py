@@ -11,7 +11,7 @@ from runner.reporting.comparison import differing, figures, metrics
 from runner.reporting.document import Block, Code, Document, Items, Notice, Provenance, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
-from runner.reporting.sweep.pairs import columns
+from runner.reporting.sweep.subject import first_screen
 
 
 def comparison_document(sides: Sequence[Side], wanted: Sequence[str] = ()) -> Document:
@@ -32,7 +32,7 @@ def comparison_document(sides: Sequence[Side], wanted: Sequence[str] = ()) -> Do
     return Document(
         title=f"{len(sides)} sweeps compared",
         subtitle=literal(", ".join(f"{side.name}: {side.folder.resolve().name}" for side in sides)),
-        abstract=literal(" ".join(_abstract(sides, found))),
+        abstract=literal(" ".join(_abstract(found, wanted))),
         sections=[_sides(sides), *compared, _caveats(sides), _made(sides)],
         date=max(max(side.measurements.provenance["made on"]) for side in sides),
         key_numbers=_key_numbers(found[0], wanted),
@@ -40,9 +40,14 @@ def comparison_document(sides: Sequence[Side], wanted: Sequence[str] = ()) -> Do
     )
 
 
-def _abstract(sides: Sequence[Side], found: Sequence[SweepComparison]) -> list[str]:
+def _abstract(found: Sequence[SweepComparison], wanted: Sequence[str]) -> list[str]:
     noise = [NOISE_ALONE] if any(one.noise_alone for one in found) else []
-    return [*(one.beyond.in_words(one.a.name, one.b.name) for one in found), *noise]
+    told = [one.beyond.in_words(one.a.name, one.b.name) for one in found]
+    for one in found:
+        judged = metrics.answers(one, wanted)
+        first = first_screen([each.metric for each in metrics.shown(one, wanted)])
+        told += [judged[name].sentence(one.a.name, one.b.name) for name in first]
+    return [*told, *noise]
 
 
 def _key_numbers(found: SweepComparison, wanted: Sequence[str]) -> list[tuple[str, str, str]]:
@@ -55,10 +60,9 @@ def _key_numbers(found: SweepComparison, wanted: Sequence[str]) -> list[tuple[st
     names = found.beyond.names
     more = f" and {len(names) - 1} more" if len(names) > 1 else ""
     numbers.append((f"{a} and {b} differ in", counted(len(names), "value", "values"), "".join([*names[:1], more])))
-    first = metrics.shown(found, wanted)[0]
-    difference, interval, n, *_ = columns(first.comparison, first.unit)
-    told = f"95 % interval {interval}, {n} pairs: {first.comparison.verdict}"
-    return [*numbers, (f"{title(first.metric)}, {b} - {a}", difference, told)]
+    first = next(iter(metrics.answers(found, wanted).values()))
+    difference, interval, n, *_ = first.cells
+    return [*numbers, (f"{title(first.metric)}, {b} - {a}", difference, f"{interval}, {n} pairs: {first.word}")]
 
 
 def _sides(sides: Sequence[Side]) -> Section:

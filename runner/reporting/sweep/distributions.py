@@ -63,7 +63,7 @@ def _in_order(subject: Subject, metric: str) -> Curves:
     medians = subject.medians[metric][ranked]
     hints, runs = subject.hints(ranked), subject.hashes(ranked)
     series = Series("", rank, medians, "points_line", low, high, hints=hints, runs=runs)
-    panel = Panel("", "cells from best to worst", subject.label(metric), [series], y_log=spans_decades(values.ravel()))
+    panel = Panel("", "cells in order", subject.label(metric), [series], y_log=spans_decades(values.ravel()))
     return Curves(
         "Median of each cell in order; shaded the range of its repetitions, from their 5 % to their 95 % quantile. "
         + QUANTILE_RULE,

@@ -1,4 +1,4 @@
-"""Which axis matters: shares of the variation with permutation tests, and main effects."""
+"""What the axes do: shares of the variation with permutation tests, and main effects."""
 
 import numpy as np
 
@@ -25,24 +25,17 @@ def section(subject: Subject) -> Section:
         blocks += [
             figure for figure in (cells_with_intervals(subject, metric) for metric in subject.metrics[:2]) if figure
         ]
-    return Section("Which axis matters", blocks)
+    return Section("Effects of the axes", blocks)
 
 
-def summary(subject: Subject) -> str:
-    """Return in a sentence which axis matters most to the first metric."""
-    main = [effect for effect in subject.effects[subject.metrics[0]].effects if len(effect.axes) == 1]
-    strongest = max(main, key=lambda effect: effect.share)
-    if strongest.p_value is None:
-        return f"No axis can be said to matter for the {title(subject.metrics[0])}: {strongest.remark}."
-    said = (
-        f"{strongest.axes[0]} explains {_percent(strongest.share)} of the variation of the {title(subject.metrics[0])}"
-    )
-    if strongest.p_value > 0.05:
-        return f"{said}, the most of all axes, but no more than chance may (p = {strongest.p_value:.2g})."
-    along = [found.key for found in subject.measurements.differences if strongest.axes[0] in found.axes]
-    named = ", ".join(along[:3]) + (f" and {len(along) - 3} more" if len(along) > 3 else "")
-    beside = f" With it go {named}, which may be the cause: see Also differs." if along else ""
-    return f"{said}, the most of all axes (p = {strongest.p_value:.2g}).{beside}"
+def shared(subject: Subject) -> list[str]:
+    """Return in a sentence which share of the variation of the first metric the draws of the repetitions make."""
+    metric = subject.metrics[0]
+    found = subject.effects[metric].shared
+    if found is None:
+        return []
+    drawn = f"{_percent(found)} of the variation of the {title(metric)} lies between the repetitions"
+    return [f"{drawn}: all cells share what is drawn for one."]
 
 
 def _table(analyses: dict[str, EffectAnalysis]) -> Table:

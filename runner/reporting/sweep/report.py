@@ -1,4 +1,4 @@
-"""The report on a sweep: axes, effects, maps, trade-off, distributions, best and worst, failures, all runs."""
+"""The report on a sweep: the answers, axes, effects, maps, trade-off, distributions, failures, all runs."""
 
 import shlex
 from collections.abc import Sequence
@@ -8,7 +8,6 @@ import numpy as np
 
 from runner.reporting.document import Document, Provenance, RunList, Section, Text
 from runner.reporting.markup import literal
-from runner.reporting.metric_titles import title
 from runner.reporting.sweep import (
     axes,
     caveats,
@@ -21,12 +20,13 @@ from runner.reporting.sweep import (
     spec,
     tradeoff,
 )
+from runner.reporting.sweep.question import ask, range_told, sentences, too_few
 from runner.reporting.sweep.subject import Subject, choose
 from runner.store import Sweep
 from runner.sweeps.measurements import measure_sweep
 
 MOST_RUNS = 5000
-"""Runs that the list of a report holds; of more, the best and the worst."""
+"""Runs that the list of a report holds; of more, those at both ends of the order."""
 
 _MOST_VALUES = 100  # of what made the runs
 _NAMED = 3  # cells that failed, on the first screen
@@ -62,8 +62,8 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
         sections.append(tradeoff.section(subject, traded))
     if ranked:
         sections.append(distributions.section(subject))
-        best, worst = replace(sweep, hashes=[measurements.hashes[cell] for cell in (ranked[0], ranked[-1])]).runs()
-        sections.append(extremes.section(subject, best, worst))
+        low, high = replace(sweep, hashes=[measurements.hashes[cell] for cell in (ranked[0], ranked[-1])]).runs()
+        sections.append(extremes.section(subject, low, high))
     if any(status != "ok" for status in measurements.statuses):
         sections.append(failures.section(subject))
     sections.append(_all_runs(subject, sweep, runs_address))
@@ -80,17 +80,15 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
 
 
 def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
-    """Return how many cells there are and failed, and the best one of the first metric with its value."""
+    """Return how many cells there are and failed, and the range of the medians of the first metric."""
     failed = [cell for cell, status in enumerate(subject.measurements.statuses) if status != "ok"]
     count = len(subject.measurements.hashes)
     numbers = [("cells", str(count), f"repetitions in each: {subject.measurements.repetitions}")]
     names = "; ".join(subject.cell_name(cell) for cell in failed[:_NAMED])
     more = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
     numbers.append(("failed", str(len(failed)), names + more))
-    if subject.best is not None:
-        metric, least, cell = subject.best
-        numbers.append((f"least {metric}, median", least, cell))
-    return numbers
+    found = range_told(subject)
+    return numbers if found is None else [*numbers, (found[0], found[1], "medians of the cells")]
 
 
 def _abstract(subject: Subject, sweep: Sweep) -> str:
@@ -103,23 +101,23 @@ def _abstract(subject: Subject, sweep: Sweep) -> str:
     doubted = sum(bool(found) for found in measurements.caveats)
     if doubted:
         texts.append(f"{doubted} of {cells} cells have caveats.")
-    ranked = subject.ranked
     if sweep.spec:
         texts.append(spec.summary(subject, sweep))
-    if ranked and subject.axes:
-        metric = subject.metrics[0]
-        texts.append(f"Least {title(metric)}: {subject.cell_name(ranked[0])}; most: {subject.cell_name(ranked[-1])}.")
-        texts.append(effects.summary(subject))
+    if subject.ranked and subject.axes:
+        few = too_few(subject)
+        question = None if few else ask(subject)
+        texts += [few] if few else [] if question is None else sentences(question, subject)
+        texts += effects.shared(subject)
     return " ".join(texts)
 
 
 def _all_runs(subject: Subject, sweep: Sweep, address: str) -> Section:
     measurements = subject.measurements
     order = subject.order
-    caption = "All runs, from best to worst; medians of each."
+    caption = "All runs, in the order of the first metric; medians of each."
     if len(order) > MOST_RUNS:
         order = np.concatenate([order[: MOST_RUNS // 2], order[-MOST_RUNS // 2 :]])
-        caption = f"The {MOST_RUNS // 2} best and the {MOST_RUNS // 2} worst of {len(measurements.hashes)} runs."
+        caption = f"The first and the last {MOST_RUNS // 2} of {len(measurements.hashes)} runs by the first metric."
     names = list(dict.fromkeys([*subject.metrics, *measurements.values]))
     medians = [subject.medians[name][order] for name in names]
     shown = [(name, measurements.units[name]) for name in names]

@@ -92,7 +92,7 @@ class Subject:
 
     @cached_property
     def order(self) -> NDArray[np.intp]:
-        """The cells from best to worst by the first metric, failed ones last."""
+        """The cells by ascending median of the first metric, failed ones last."""
         failed = np.array([status != "ok" for status in self.measurements.statuses])
         if not self.metrics:
             return np.argsort(failed, kind="stable")
@@ -100,20 +100,11 @@ class Subject:
 
     @property
     def ranked(self) -> list[int]:
-        """The cells that did not fail and have a number for the first metric, from best to worst."""
+        """The cells that did not fail and have a number for the first metric, by ascending median."""
         if not self.metrics:
             return []
         medians, statuses = self.medians[self.metrics[0]], self.measurements.statuses
         return [cell for cell in self.order.tolist() if np.isfinite(medians[cell]) and statuses[cell] == "ok"]
-
-    @property
-    def best(self) -> tuple[str, str, str] | None:
-        """The first metric, its median in the best cell, and that cell, in words; None where nothing is ranked."""
-        if not (self.ranked and self.axes):
-            return None
-        metric, cell = self.metrics[0], self.ranked[0]
-        value = quantity(float(self.medians[metric][cell]), self.measurements.units[metric])
-        return title(metric), value, self.cell_name(cell)
 
     def label(self, metric: str) -> str:
         """Return the title of a metric with its unit, as on the axis of a figure."""
@@ -170,6 +161,12 @@ def choose(measurements: Measurements, wanted: Sequence[str] = ()) -> Subject:
 def whole_metrics(known: Collection[str]) -> list[str]:
     """Return metrics without those of one direction or joint, errors first, as they are compared."""
     return [name for name in dict.fromkeys([*_PREFERRED, *known]) if name in known and not is_part(name)]
+
+
+def first_screen(metrics: Sequence[str]) -> list[str]:
+    """Return the metrics of a first screen, of some in order: the first, and what it costs or else the second."""
+    costs = [name for name in COSTS if name in metrics[1:]] or metrics[1:]
+    return [*metrics[:1], *costs[:1]]
 
 
 def value_names(axis: Axis) -> list[str]:

@@ -59,9 +59,9 @@ def section(subject: Subject, metrics: tuple[str, str]) -> Section:
         spans_decades(a),
         spans_decades(b),
     )
-    text = f"The front has {len(best)} of {len(present)} cells: along it one metric gets better and the other worse."
+    text = f"The front has {len(best)} of {len(present)} cells: along it one median falls and the other grows. No test."
     if len(best) == 1:
-        text = "One cell is best in both."
+        text = "One cell has the lowest median of both. No test."
     blocks: list[Block] = [
         Text(text),
         Curves(

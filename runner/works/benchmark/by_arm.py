@@ -16,7 +16,7 @@ def section(runs: Mapping[str, Run]) -> Section:
     """Return the chapter."""
     text = (
         "The first table of each arm names the law with the smallest error, the next one, and the laws that the best "
-        "one is shown to be ahead of, with whichever of their tunings. A law is ahead from a hundredth on: by the "
+        "one is shown to be ahead of, with whichever of their tunings. A law is ahead from 2 % on: by the "
         "whole 95 % interval of the ratio on the same seeds, and by tests corrected for all comparisons on the arm "
         "(Holm). Where nothing is drawn there is no interval, and it is ahead if it is so along every path. Errors are "
         "root mean squares of the tip's distance from where it should be, of the median seed, and the geometric mean "

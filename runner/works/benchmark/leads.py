@@ -8,12 +8,12 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.statistics import Comparison, compare_paired, holm
+from runner.reporting.answers import ALPHA, SHARE
+from runner.statistics import Comparison, compare_paired, holm, holm_levels
 
 FloatArray = NDArray[np.float64]
 
-_SIGNIFICANCE = 0.05
-_LEAST = 1.01  # ratio of errors; less is no lead
+_LEAST = 1.0 / (1.0 - SHARE)  # ratio of errors; less is no lead
 
 
 @dataclass(frozen=True)
@@ -60,11 +60,12 @@ class Lead:
         law: The law with the smaller error.
         other: The other one.
         factor: The other's error over its own.
-        interval: From the lowest to the highest end of the 95 % intervals of the other's error over its own, on the
-            same seeds, over all pairs of a tuning of the one and a tuning of the other; None where nothing is drawn.
+        interval: From the lowest to the highest end of the intervals of the other's error over its own, on the same
+            seeds, over all pairs of a tuning of the one and a tuning of the other, at the level at which its test was
+            decided; None where nothing is drawn.
         p_value: The largest over these pairs, corrected for all comparisons on the arm; None likewise.
-        shown: Whether it is ahead by a hundredth at least with whichever tunings: by interval and corrected test, or
-            along every path where nothing is drawn.
+        shown: Whether it may be called ahead with whichever tunings: by the corrected test and more than the share that
+            an answer needs, or along every path where nothing is drawn.
     """
 
     law: str
@@ -84,7 +85,8 @@ def leads(ranked: Mapping[str, Sequence[Entry]]) -> dict[str, dict[tuple[str, st
     pairs = {(name, a.law, b.law): (a, b) for name, laws in ranked.items() for a, b in itertools.combinations(laws, 2)}
     compared = {key: _compared(a, b) for key, (a, b) in pairs.items()}
     drawn = {key: max(p_values) for key, each in compared.items() if (p_values := _p_values(each))}
-    corrected = dict(zip(drawn, holm(list(drawn.values())).tolist(), strict=True))
+    p_values = list(drawn.values())
+    corrected = dict(zip(drawn, zip(holm(p_values), holm_levels(p_values, ALPHA), strict=True), strict=True))
     made: dict[str, dict[tuple[str, str], Lead]] = {name: {} for name in ranked}
     for (name, law, other), (a, b) in pairs.items():
         key = (name, law, other)
@@ -110,13 +112,14 @@ def _p_values(compared: Sequence[Comparison]) -> list[float]:
     return [each.p_value for each in compared if each.p_value is not None]
 
 
-def _lead(a: Entry, b: Entry, compared: Sequence[Comparison], p_value: float | None) -> Lead:
+def _lead(a: Entry, b: Entry, compared: Sequence[Comparison], decided: tuple[float, float] | None) -> Lead:
     with np.errstate(invalid="ignore"):  # two laws that both failed
         factor = float(np.float64(b.score) / a.score)
-        if p_value is None:
+        if decided is None:
             along_all = b.errors.min(axis=0) > _LEAST * a.errors.max(axis=0)
             return Lead(a.law, b.law, factor, None, None, bool(np.all(along_all)))
-    low = min(each.difference.low or 0.0 for each in compared)
-    high = max(each.difference.high or 0.0 for each in compared)
-    shown = p_value < _SIGNIFICANCE and low > np.log(_LEAST)
-    return Lead(a.law, b.law, factor, (float(np.exp(low)), float(np.exp(high))), p_value, shown)
+    p_value, level = decided
+    ends = [each.interval(level) or (-np.inf, np.inf) for each in compared]
+    low, high = min(low for low, _ in ends), max(high for _, high in ends)
+    shown = bool(p_value < ALPHA and min(each.difference for each in compared) > np.log(_LEAST))
+    return Lead(a.law, b.law, factor, (float(np.exp(low)), float(np.exp(high))), float(p_value), shown)

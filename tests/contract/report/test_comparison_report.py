@@ -45,7 +45,8 @@ def test_the_first_screen_says_what_differs_how_many_cells_match_and_by_how_much
     assert cells[:2] == ("cells in both", "4")
     assert differ[1:] == ("1 value", "noise.position")
     assert first[:2] == ("rms tracking error, B - A", "0.250 m")
-    assert "32 pairs: larger" in first[2]
+    assert "8 pairs: larger" in first[2]
+    assert "B is larger than A by 0.25 m" in document.abstract
 
 
 def test_a_confounded_comparison_is_marked_before_any_number(document):
@@ -62,13 +63,13 @@ def test_the_differing_values_stand_in_a_table_with_units(document):
 
 
 def test_every_metric_stands_in_a_table_and_parts_of_it_folded(document):
-    whole, parts_ = (block for block in parts(document.sections, Table) if "cells smaller, larger" in block.header)
+    whole, parts_ = (block for block in parts(document.sections, Table) if "cells below, above 0" in block.header)
     assert [row[0] for row in whole.rows] == ["rms tracking error"]
     assert whole.rows[0][-2:] == ["larger", "0, 4"]
     assert parts_.folded
     assert [row[0] for row in parts_.rows] == ["largest torque, joint 1"]
     text = next(block.text for block in parts(document.sections, Text) if "signed-rank" in block.text)
-    assert "Comparisons made: 6; none is corrected" in text
+    assert "p is corrected within the family (Holm)" in text
 
 
 def test_each_cell_stands_in_the_figure_with_its_interval(document):

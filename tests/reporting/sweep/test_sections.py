@@ -45,14 +45,6 @@ def test_what_differs_beyond_the_axes_stands_beside_them():
     assert len(blocks(axes.section(plain, ""), Table)) == 1
 
 
-def test_an_axis_that_matters_names_what_goes_with_it():
-    keys = ["a", "b", "c", "d"]
-    found = [Difference(key, ("torque_limits.max",), [("20", "1"), ("40, 60, 80", "2")]) for key in keys]
-    subject = choose(replace(two_axes().measurements, differences=found))
-    assert "With it go a, b, c and 1 more, which may be the cause: see Also differs." in effects.summary(subject)
-    assert "go " not in effects.summary(two_axes())
-
-
 def test_failures_and_few_repetitions_are_said_at_once():
     sample = {"rms": noisy(lambda noise, limit: 1.0 + noise, repetitions=5)}
     failure, warning = blocks(axes.section(two_axes(failed=[0], **sample), ""), Notice)
@@ -60,26 +52,20 @@ def test_failures_and_few_repetitions_are_said_at_once():
     assert warning.title == "Too few repetitions for intervals: 5 of 6"
 
 
-def test_the_axis_that_matters_is_named():
+def test_the_share_of_each_axis_is_told():
     subject = two_axes()
-    assert "torque_limits.max explains 82 %" in effects.summary(subject)  # by hand: logs of 2^i 3^-j
     (table,) = blocks(effects.section(subject), Table)
     assert [row[0] for row in table.rows] == [
         "noise.position",
         "torque_limits.max",
         "noise.position × torque_limits.max",
     ]
-    assert table.rows[1][1] == "82 % (p = 0.001)"
+    assert table.rows[1][1] == "82 % (p = 0.001)"  # by hand: logs of 2^i 3^-j
 
 
 def test_the_share_by_hand():
     i, j = np.meshgrid(np.arange(3) * np.log(2), np.arange(4) * np.log(3), indexing="ij")
     assert j.var() / (i.var() + j.var()) == pytest.approx(0.82, abs=0.005)
-
-
-def test_chance_is_called_chance():
-    subject = two_axes(rms=noisy(lambda noise, limit: 1.0, repetitions=6))
-    assert "no more than chance may" in effects.summary(subject)
 
 
 def shared_seeds(repetitions=8):
@@ -99,6 +85,8 @@ def test_what_seeds_share_is_no_scatter_between_cells():
     (first, *_) = subject.effects["rms"].effects
     assert first.p_value == 0.001
     assert "permutes within a repetition only" in text
+    (told,) = effects.shared(subject)
+    assert told.startswith("96 % of the variation of the rms lies between the repetitions")
     own = replace(subject.measurements, seeds=range(12))
     alone = choose(own)
     assert alone.effects["rms"].effects[0].p_value > 0.05

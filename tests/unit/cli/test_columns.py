@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from runner.commands.columns import COMPARED, aligned, comparison_cells, letter
+from runner.commands.columns import COMPARED, aligned, answer_cells, letter
+from runner.reporting.answers import Asked, judge
 from runner.statistics import compare_paired
 
 
@@ -14,12 +15,14 @@ def test_no_cell_speaks_to_the_terminal():
     assert aligned([["robot.name", "\x1b]0;title\x07", "two\nlines"]]) == r"  robot.name  \x1b]0;title\x07  two\nlines"
 
 
-def test_a_comparison_fills_its_columns():
-    shifted = comparison_cells(compare_paired(np.arange(6.0), np.arange(6.0) + 2.0))
+def test_an_answer_fills_its_columns():
+    samples = (np.arange(6.0), np.arange(6.0) + 2.0), (np.zeros(2), np.ones(2))
+    shifted, few = (
+        answer_cells(judge([Asked("energy", "J", compare_paired(*each))], ["energy"])[0]) for each in samples
+    )
     assert shifted == ["2", "2 to 2", "6", "1.00", "0.031", "larger"]
     assert len(shifted) == 1 + len(COMPARED) + 1
-    few = comparison_cells(compare_paired(np.zeros(2), np.ones(2)))
-    assert few == ["1", "- to -", "2", "1.00", "-", "too few pairs to say (2 of 6)"]
+    assert few == ["1", "-", "2", "1.00", "-", "too few pairs to say (2 of 6)"]
 
 
 def test_folders_are_called_by_letters():

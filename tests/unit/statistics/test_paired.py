@@ -1,9 +1,9 @@
-"""Paired comparison: effect, interval and p-value against samples whose difference is known."""
+"""Paired comparison: estimate, effect and pairs that are needed against samples whose difference is known."""
 
 import numpy as np
 import pytest
 
-from runner.statistics import SMALLEST_SAMPLE, compare_paired
+from runner.statistics import SMALLEST_SAMPLE, compare_paired, fewest_pairs
 
 
 def pairs(n, shift, noise=0.1, seed=0):
@@ -14,20 +14,21 @@ def pairs(n, shift, noise=0.1, seed=0):
 
 def test_pairing_finds_a_difference_far_below_the_spread():
     comparison = compare_paired(*pairs(20, -0.3))
-    assert comparison.verdict == "smaller"
-    assert comparison.difference.low < -0.3 < comparison.difference.high
+    low, high = comparison.interval(0.05)
+    assert low < -0.3 < high < 0.0
     assert comparison.effect < -0.9
     assert comparison.p_value < 1e-3
+    assert comparison.correlation > 0.99
 
 
 def test_exchange_of_the_two_turns_every_sign():
     a, b = pairs(20, 0.2)
     there, back = compare_paired(a, b), compare_paired(b, a)
-    assert there.verdict == "larger"
-    assert back.verdict == "smaller"
-    assert back.difference.median == -there.difference.median
+    assert back.difference == -there.difference
     assert back.effect == -there.effect
     assert back.p_value == there.p_value
+    assert back.interval(0.05) == tuple(-end for end in reversed(there.interval(0.05)))
+    assert back.medians == there.medians[::-1]
 
 
 @pytest.mark.parametrize(("sign", "effect"), [(1.0, 1.0), (-1.0, -1.0)])
@@ -36,49 +37,53 @@ def test_the_effect_is_one_when_all_pairs_agree(sign, effect):
     assert compare_paired(a, a + sign * (1.0 + a)).effect == effect
 
 
-def test_the_effect_by_hand():
-    # Differences -1, 2, 3, 4: ranks 1 | 2 + 3 + 4 of 10.
-    assert compare_paired(np.zeros(4), np.array([-1.0, 2.0, 3.0, 4.0])).effect == pytest.approx(0.8)
-
-
-def test_without_a_difference_one_in_twenty_is_shown():
-    verdicts = [compare_paired(*pairs(10, 0.0, seed=seed)).verdict for seed in range(300)]
-    shown = np.mean([verdict != "no difference shown" for verdict in verdicts])
-    assert 0.0 < shown < 0.05 + 3 * np.sqrt(0.05 * 0.95 / 300)
-
-
-def test_equal_samples_do_not_differ():
-    a = np.arange(8.0)
-    comparison = compare_paired(a, a)
-    assert (comparison.effect, comparison.p_value) == (0.0, 1.0)
-    assert comparison.verdict == "no difference shown"
-
-
 def test_two_values_beyond_every_number_are_equal_and_one_is_the_largest_difference():
     a = np.array([1.0, 2.0, 3.0, np.inf, 5.0, 6.0, 7.0, np.inf])
     b = np.array([2.0, 3.0, 4.0, np.inf, 6.0, 7.0, 8.0, 1.0])
     comparison = compare_paired(a, b)
-    assert comparison.difference.median == 1.0
-    assert comparison.effect == pytest.approx((21 - 7) / 28)  # six ranks 1 to 6 against the rank 7
+    assert comparison.differences.tolist() == [1.0, 1.0, 1.0, 0.0, 1.0, 1.0, 1.0, -np.inf]
+    assert comparison.lost == (2, 1)
+    assert comparison.difference == 1.0
 
 
-def test_few_pairs_are_said_to_be_few():
+def test_few_pairs_have_no_p_value_and_no_interval():
     comparison = compare_paired(np.zeros(5), np.ones(5))
-    assert comparison.verdict == "too few pairs to say (5 of 6)"
+    assert (comparison.n, comparison.difference) == (5, 1.0)
     assert comparison.p_value is None
-    assert comparison.difference.median == 1.0
+    assert comparison.interval(0.5) is None
 
 
 @pytest.mark.parametrize("n", [SMALLEST_SAMPLE, SMALLEST_SAMPLE + 1])
 def test_from_the_smallest_sample_on_there_is_a_p_value(n):
-    comparison = compare_paired(np.zeros(n), np.arange(1.0, n + 1.0))
-    assert comparison.verdict == "larger"
-    assert comparison.p_value == 2.0 ** (1 - n)
+    assert compare_paired(np.zeros(n), np.arange(1.0, n + 1.0)).p_value == 2.0 ** (1 - n)
 
 
-def test_the_number_of_pairs_decides_not_that_of_those_which_differ():
-    comparison = compare_paired(np.zeros(6), np.array([0.0, 0.0, 0.0, 0.0, 1.0, 2.0]))
-    assert comparison.p_value == 0.5
+@pytest.mark.parametrize(
+    ("level", "n"), [(0.05, 6), (2.0**-5, 7), (0.0312, 7), (0.0313, 6), (0.05 / 12, 9), (0.05 / 92, 12)]
+)
+def test_the_fewest_pairs_are_those_whose_smallest_p_is_below_the_level(level, n):
+    assert fewest_pairs(level) == n
+    assert 2.0 ** (1 - n) < level <= 2.0 ** (2 - n)
+
+
+def test_the_pairs_that_are_needed_show_the_difference_in_four_of_five_samples():
+    a, b = pairs(5000, 0.0, noise=1.0, seed=1)
+    count = compare_paired(a, b).pairs_needed(0.5, 0.05)
+    assert count == pytest.approx((1.960 + 0.842) ** 2 / 0.5**2 * np.pi / 3.0, rel=0.08)
+    shown = [compare_paired(*pairs(count, 0.5, noise=1.0, seed=seed)).p_value < 0.05 for seed in range(400)]
+    assert 0.74 < np.mean(shown) < 0.92
+
+
+def test_the_closer_pairs_go_together_the_fewer_are_needed():
+    loose, close = (compare_paired(*pairs(50, 0.0, noise)) for noise in (5.0, 0.5))
+    assert loose.correlation < close.correlation
+    assert loose.pairs_needed(1.0, 0.05) > 10 * close.pairs_needed(1.0, 0.05)
+    assert compare_paired(np.arange(8.0), np.arange(8.0)).pairs_needed(1.0, 0.05) == 6
+
+
+@pytest.mark.parametrize("difference", [0.0, np.nan])
+def test_of_no_difference_no_number_of_pairs_is_told(difference):
+    assert compare_paired(*pairs(8, 0.0)).pairs_needed(difference, 0.05) is None
 
 
 @pytest.mark.parametrize(("a", "b"), [(np.zeros(3), np.zeros(4)), (np.zeros(0), np.zeros(0))])

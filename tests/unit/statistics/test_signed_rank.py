@@ -1,4 +1,4 @@
-"""Signed-rank test: its exact distribution against all choices of signs, and against SciPy where that is exact."""
+"""Signed ranks: p against all choices of signs and SciPy, the interval against p, both with ties and zeros."""
 
 import itertools
 
@@ -6,75 +6,102 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from runner.statistics.signed_rank import EXACT_UP_TO, signed_rank
+from runner.statistics.signed_rank import EXACT_UP_TO, SignedRanks
+
+LEVELS = (0.2, 0.05, 0.0125, 0.003)
 
 
-def counted_p_value(differences):
-    """Share of all choices of signs with a smaller sum of ranks that is as small as the observed one."""
+def signs(n):
+    return np.array(list(itertools.product([-1.0, 1.0], repeat=n)))
+
+
+@pytest.mark.parametrize("n", range(1, 11))
+def test_without_ties_p_counts_all_choices_of_signs(n):
+    differences = np.random.default_rng(n).normal(0.5, 2.0, n)
     ranks = stats.rankdata(np.abs(differences))
-    signs = np.array(list(itertools.product([False, True], repeat=len(ranks))))
-    positive = signs @ ranks
-    smaller = np.minimum(positive, ranks.sum() - positive)
+    smaller = np.minimum((signs(n) > 0.0) @ ranks, (signs(n) < 0.0) @ ranks)
     observed = min(ranks[differences > 0].sum(), ranks[differences < 0].sum())
-    return np.mean(smaller <= observed)
+    assert SignedRanks(differences).p_value == np.mean(smaller <= observed)
 
 
-@pytest.mark.parametrize("n", range(1, 13))
-def test_the_p_value_counts_all_choices_of_signs_with_ties_or_without(n):
-    rng = np.random.default_rng(n)
-    for decimals in (0, 1, 9):
-        differences = rng.normal(0.5, 2.0, n).round(decimals)
-        differences[differences == 0.0] = 1.0
-        assert signed_rank(differences)[1] == counted_p_value(differences)
-
-
-@pytest.mark.parametrize("n", [6, 20, 50])
+@pytest.mark.parametrize("n", [6, 20, 50, EXACT_UP_TO])
 def test_without_ties_it_is_the_exact_one_of_scipy(n):
     for seed in range(5):
-        differences = np.random.default_rng([n, seed]).normal(0.3, 1.0, n)
-        assert signed_rank(differences)[1] == pytest.approx(
-            stats.wilcoxon(differences, method="exact").pvalue, rel=1e-14
-        )
+        differences = np.random.default_rng([n, seed]).normal(0.3 / np.sqrt(n), 1.0, n)
+        expected = stats.wilcoxon(differences, method="exact").pvalue
+        assert SignedRanks(differences).p_value == pytest.approx(expected, rel=1e-12)
 
 
-def test_ties_of_fourteen_differences_have_their_exact_p_value_and_not_that_of_the_normal_law():
-    differences = np.concatenate([[1.0], np.full(8, 2.0), np.full(5, -2.0)])
-    assert signed_rank(differences)[1] == counted_p_value(differences)
-    assert signed_rank(differences)[1] == pytest.approx(0.424, abs=5e-4)
-    assert stats.wilcoxon(differences, method="approx").pvalue == pytest.approx(0.386, abs=5e-4)
+def test_beyond_that_number_it_is_the_normal_law_of_scipy():
+    differences = np.random.default_rng(0).normal(0.1, 1.0, EXACT_UP_TO + 1)
+    expected = stats.wilcoxon(differences, method="approx").pvalue
+    assert SignedRanks(differences).p_value == pytest.approx(expected, rel=1e-12)
 
 
-def test_equal_sizes_by_hand():
-    """Ranks 2, 2, 2 and 4 with one -2: sums of 2 or less are 0 and three times 2, on both sides of 16 choices."""
-    assert signed_rank(np.array([5.0, 5.0, -5.0, 9.0])) == ((8.0 - 2.0) / 10.0, 8.0 / 16.0)
+@pytest.mark.parametrize(
+    "sizes",
+    [
+        [1.0] * 8,
+        [1, 1, 1, 2, 2, 3, 4, 4],
+        [0, 0, 1, 1, 2, 3, 4, 5],
+        [0] * 6 + [1, 2],
+        [1, 2, 3, np.inf, np.inf, np.inf],
+    ],
+    ids=str,
+)
+def test_ties_zeros_and_infinities_keep_the_level(sizes):
+    """If neither sign is preferred, p is below a level in no more than that share of the choices of signs."""
+    found = np.array([SignedRanks(each * np.array(sizes, dtype=float)).p_value for each in signs(len(sizes))])
+    for level in (*LEVELS, *found):
+        assert np.mean(found <= level) <= level
 
 
-def test_differences_of_zero_are_left_out():
-    moved = np.array([3.0, -1.0, 2.0, 2.0, 7.0])
-    assert signed_rank(np.insert(moved, [0, 2, 5], 0.0)) == signed_rank(moved)
-    assert signed_rank(np.zeros(3)) == (0.0, 1.0)
+@pytest.mark.parametrize("n", [6, 8, 13, 40])
+def test_the_interval_excludes_zero_exactly_if_p_is_below_its_level(n):
+    shown = 0
+    for seed in range(300):
+        rng = np.random.default_rng([n, seed])
+        differences = rng.standard_t(2, n) + rng.choice([0.0, 1.0])
+        if seed % 3:
+            differences = differences.round()  # ties and zeros
+        if seed % 5 == 0:
+            differences[0] = rng.choice([np.inf, -np.inf])
+        ranks = SignedRanks(differences)
+        for level in LEVELS:
+            ends = ranks.interval(level)
+            excludes = ends is not None and not ends[0] <= 0.0 <= ends[1]
+            assert excludes == (ranks.p_value < level)
+            shown += excludes
+    assert shown > 50
 
 
-def test_infinite_differences_are_the_largest_and_equal():
-    finite = np.array([1.0, -2.0, 3.0, 9.0, -9.0, 9.0])
-    assert signed_rank(np.where(np.abs(finite) == 9.0, np.copysign(np.inf, finite), finite)) == signed_rank(finite)
+def test_the_interval_misses_the_difference_as_often_as_its_level_says():
+    level, n, count = 0.05, 12, 4000
+    samples = np.random.default_rng(3).normal(1.0, 1.0, (count, n))
+    ends = np.array([SignedRanks(sample).interval(level) for sample in samples])
+    missed = np.mean((ends[:, 0] > 1.0) | (ends[:, 1] < 1.0))
+    assert 0.03 < missed < level + 3.0 * np.sqrt(level * (1 - level) / count)
 
 
-def test_all_of_one_sign_has_the_smallest_p_value_up_to_the_last_exact_number():
+def test_estimate_and_effect_by_hand():
+    """Walsh averages of -1, 2, 3, 4: -1, .5, 1, 1.5, 2, 2.5, 3, 3, 3.5, 4."""
+    ranks = SignedRanks(np.array([-1.0, 2.0, 3.0, 4.0]))
+    assert ranks.estimate == 2.25
+    assert ranks.effect == pytest.approx(0.8)
+    assert SignedRanks(np.array([1.0, np.inf, np.inf])).estimate == np.inf
+    assert SignedRanks(np.array([np.inf, -np.inf])).estimate == 0.0
+
+
+def test_all_of_one_sign_has_the_smallest_p_value_and_no_difference_has_the_largest():
     for n in (1, 2, 40, EXACT_UP_TO):
-        assert signed_rank(np.arange(1.0, n + 1.0)) == (1.0, min(1.0, 2.0 ** (1 - n)))
-        assert signed_rank(np.full(n, -0.5)) == (-1.0, min(1.0, 2.0 ** (1 - n)))
+        assert SignedRanks(np.arange(1.0, n + 1.0)).p_value == min(1.0, 2.0 ** (1 - n))
+        assert SignedRanks(np.full(n, -0.5)).p_value == min(1.0, 2.0 ** (1 - n))
+    nothing = SignedRanks(np.zeros(8))
+    assert (nothing.estimate, nothing.effect, nothing.p_value) == (0.0, 0.0, 1.0)
+    assert nothing.interval(0.05) == (0.0, 0.0)
 
 
-def test_beyond_that_number_it_is_the_normal_law_of_scipy_and_near_the_exact_one():
-    rng = np.random.default_rng(0)
-    longest = rng.normal(0.1, 1.0, EXACT_UP_TO + 1).round(1)
-    longest[longest == 0.0] = 0.05
-    for sign in (1.0, -1.0):
-        assert signed_rank(sign * longest)[1] == pytest.approx(
-            stats.wilcoxon(longest, method="approx").pvalue, rel=1e-12
-        )
-    exact = longest[:EXACT_UP_TO]
-    assert 0.05 < signed_rank(exact)[1] < 0.9
-    assert signed_rank(exact)[1] != stats.wilcoxon(exact, method="approx").pvalue
-    assert signed_rank(exact)[1] == pytest.approx(stats.wilcoxon(exact, method="approx").pvalue, rel=4e-3)
+def test_with_too_few_pairs_for_a_level_there_is_no_interval():
+    differences = np.arange(1.0, 9.0)
+    assert SignedRanks(differences).interval(0.01) == (1.0, 8.0)  # p is 2 / 2^8, 0.0078
+    assert SignedRanks(differences).interval(0.0078) is None

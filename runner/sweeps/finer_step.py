@@ -1,0 +1,102 @@
+"""The plant's own error in a difference: the runs that are compared, made again on a finer step with the same seeds.
+
+Runs of PyBullet and MuJoCo are made again on Runge-Kutta, those of Runge-Kutta with half of their step. Both sides of
+a comparison err alike where they move alike, so that the error of a difference is not that of a run.
+"""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from runner import progress, store
+from runner.batch_blocks import simulate_blocks, threads_allowed
+from runner.config.compose import Composed
+from runner.config.run import RunConfig
+from runner.config.validation import validate
+from runner.errors import RunnerError
+from runner.plant_error import COMPARED, PLANT, hindrance, on_runge_kutta
+from runner.statistics.interval import SMALLEST_SAMPLE
+from runner.store import Run, Sweep
+from runner.store.finer import FloatArray, finer_names, write_finer
+from runner.sweeps.measurements import axes_of
+
+DRAWS = 8
+"""Repetitions that are made again, the first ones: what the step leaves scatters far less than what is drawn."""
+
+MOST_RUNS = 200
+"""Of more runs none is made again."""
+
+_SEED = "seed"
+
+
+def work_out_sweep(sweep: Sweep) -> None:
+    """Store what a finer step changes in the cells of a sweep, where they can be compared and are not too many.
+
+    Raises:
+        StoreError: if a run is missing or damaged, or the disk does not take the result.
+    """
+    if len(sweep.hashes) <= MOST_RUNS and any(axis.name != _SEED for axis in axes_of(sweep.overrides)[0]):
+        work_out(sweep.outputs, sweep.runs())
+
+
+def work_out(outputs: Path, runs: Iterable[Run]) -> None:
+    """Store what a finer step changes in some runs, of those of which it is not known.
+
+    What another version or another file of the robot made is left out, and so are all where they have fewer
+    repetitions and seeds than a comparison needs.
+
+    Raises:
+        StoreError: if a run is damaged, or the disk does not take the result.
+    """
+    given = list(runs)
+    draws = sum({int(run.config["seed"]): int(run.record["repetitions"]) for run in given}.values())
+    known = finer_names(outputs)
+    left = [run for run in given if run.hash not in known and run.status == "ok"]
+    if draws < SMALLEST_SAMPLE or len(given) > MOST_RUNS or not left:
+        return
+    progress.begin("trying a finer step", None, len(left), "runs")
+    for run in left:
+        made = _made(run)
+        if made is not None:
+            write_finer(outputs, run.hash, *made)
+        progress.step()
+
+
+def _made(run: Run) -> tuple[str, Mapping[str, FloatArray]] | None:
+    """Return why a run has no finer step, and its metrics on it; None where it cannot be made as it was."""
+    try:
+        config = validate(run.config, run.config_dirs)
+        if store.run_hash(run.config, config.arm.urdf) != run.hash:
+            return None
+        if reason := _hindrance(config):
+            return reason, {}
+        resolved = _finer(run.config, config)
+        composed = Composed(resolved, (), {}, tuple(run.config_dirs))
+        result = simulate_blocks((validate(resolved, run.config_dirs), composed), threads_allowed())
+    except RunnerError:
+        return None
+    if result is None:
+        return "a part of it is not compiled", {}
+    lost = np.full(resolved["repetitions"], np.inf)
+    return "", {
+        name: np.array(result.metrics[name].values, dtype=float) if name in result.metrics else lost
+        for name in run.metrics
+    }
+
+
+def _hindrance(config: RunConfig) -> str:
+    kind = config.plant.kind
+    if reason := hindrance(config.environment.kind):
+        return reason
+    return "" if kind in COMPARED or kind.startswith(PLANT) else f"plant={kind} has no finer step"
+
+
+def _finer(given: Mapping[str, Any], config: RunConfig) -> dict[str, Any]:
+    """Return the config of the same run on a finer step, the first repetitions alone."""
+    if config.plant.kind in COMPARED:
+        resolved = on_runge_kutta(given)
+    else:
+        resolved = {**given, "plant": {**given["plant"], "step": config.timing.step / 2}}
+    return {**resolved, "repetitions": min(int(given["repetitions"]), DRAWS), "plant_error": False}

@@ -1,0 +1,80 @@
+"""What a sweep asks and answers first, from sweeps whose differences are known."""
+
+from dataclasses import replace
+
+import numpy as np
+from support.sample_sweep import measurements
+
+from runner.reporting.sweep.question import ask, in_short, sentences, too_few
+from runner.reporting.sweep.subject import choose
+from runner.sweeps.differing import Difference
+
+AXES = {"noise.position": [1e-4, 1e-3], "controller": ["computed_torque", "operational_space"]}
+
+
+def drawn(repetitions, *key):
+    return np.random.default_rng([repetitions, *key]).normal(size=repetitions)
+
+
+def sweep(repetitions=8, axes=AXES, **metrics):
+    """Laws that err alike but for their draws, and whose torques turn over between the levels of noise."""
+    given = metrics or {
+        "max_tracking_error": lambda noise, law, *_: np.exp(drawn(repetitions) + 0.3 * drawn(repetitions, law)),
+        "peak_torque": lambda noise, law, *_: 50.0 + law * (20.0 if noise else -10.0) + drawn(repetitions, law, noise),
+    }
+    return choose(measurements(axes, given))
+
+
+def test_asked_is_about_choices_overall_and_at_each_value_of_the_axis_that_spreads_most():
+    axes = {**AXES, "torque_limits.max": [20.0, 40.0]}
+    given = {"max_tracking_error": lambda noise, law, limit: 1.0 + limit + 0.1 * noise + drawn(8, law) / 100.0}
+    question = ask(choose(measurements(axes, given)))
+    assert (question.axis, question.within) == ("controller", "torque_limits.max")
+    assert [pair.at for pair, _ in question.overall] == [{}]
+    assert [pair.at for pair, _ in question.at] == [{"torque_limits.max": "20"}, {"torque_limits.max": "40"}]
+    assert {answer.comparison.n for _, answers in question.overall for answer in answers} == {8}
+
+
+def test_no_winner_is_named_where_pairs_show_none_and_what_turns_over_is_told():
+    subject = sweep()
+    error, torque = sentences(ask(subject), subject)
+    assert "no difference between computed_torque and operational_space is shown" in error
+    assert "smaller" not in error
+    assert "operational_space is smaller by" in torque
+    assert "at noise.position=0.0001, larger by" in torque
+
+
+def test_the_end_of_a_sweep_tells_the_first_answer():
+    assert in_short(sweep()).startswith("Largest tracking error: no difference between computed_torque and")
+
+
+def test_a_shown_difference_names_what_goes_with_the_axis():
+    plain = sweep()
+    keys = ["a", "b", "c", "d"]
+    found = [Difference(key, ("controller",), [("computed_torque", "1"), ("operational_space", "2")]) for key in keys]
+    subject = replace(plain, measurements=replace(plain.measurements, differences=found))
+    told = sentences(ask(subject), subject)[-1]
+    assert told == "With controller go a, b, c and 1 more, which may be the cause: see Also differs."
+
+
+def test_too_few_repetitions_say_what_they_cannot_show_and_name_no_cell():
+    subject = sweep(repetitions=5)
+    expected = "With 5 pairs no difference can be shown: 6 are the fewest, as by repetitions=6."
+    assert too_few(subject) == expected
+    assert expected in in_short(subject)
+    assert "computed_torque" not in in_short(subject)
+    assert too_few(sweep(repetitions=6)) == ""
+
+
+def test_of_several_values_the_first_three_are_told():
+    laws = ["a", "b", "c", "d", "e", "f"]
+    given = {"max_tracking_error": lambda law: 1.0 + law + drawn(20, law) / 100.0}
+    subject = choose(measurements({"controller": laws}, given))
+    told = sentences(ask(subject), subject)
+    assert [text.split(" ")[3] for text in told[:3]] == ["b", "c", "d"]
+    assert told[3] == "2 more values of controller stand in the tables of pairs."
+    assert in_short(subject).startswith("largest tracking error: medians from ")
+
+
+def test_without_two_cells_that_share_their_seeds_nothing_is_asked():
+    assert ask(choose(measurements({"seed": [0.0, 1.0]}, {"max_tracking_error": lambda seed: drawn(8, seed)}))) is None

@@ -1,0 +1,134 @@
+"""What may be said of a comparison: each word against pairs that are given, and its agreement with interval and p."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bench.answers import CASES, false_answers, same_law, true_answers
+from runner.quantities import ROUNDING
+from runner.reporting.answers import ALPHA, Asked, judge
+from runner.statistics import compare_paired
+
+N = 8
+APART = np.linspace(0.9, 1.1, N)  # differences of one sign
+
+
+def asked(differences, metric="rms_tracking_error", size=1.0, unit="m", error=None):
+    a = np.full(len(differences), size)
+    return Asked(metric, unit, replace(compare_paired(a, a + differences), error=error))
+
+
+def one(*given, **more):
+    (answer,) = judge([asked(*given, **more)], ["rms_tracking_error"])
+    return answer
+
+
+@pytest.mark.parametrize(("sign", "word"), [(1.0, "larger"), (-1.0, "smaller")])
+def test_a_difference_that_is_shown_and_matters_is_said(sign, word):
+    answer = one(sign * 0.5 * APART)
+    assert (answer.word, answer.sign, answer.p_value) == (word, sign, 2.0**-7)
+
+
+@pytest.mark.parametrize("size", [1e-5, 1.0, 1e4])
+def test_up_to_two_per_cent_of_the_larger_median_is_no_answer(size):
+    almost, more = (size * share / (1.0 - share) * (1.0 + 1e-6 * APART) for share in (0.019999, 0.020001))
+    assert one(almost, size=size).word == "less than 2 % apart"
+    assert one(more, size=size).word == "larger"
+    assert one(-0.020001 * size * (1.0 + 1e-6 * APART), size=size).word == "smaller"
+
+
+def test_of_a_fraction_it_is_two_hundredths():
+    told = {"metric": "saturation_fraction", "unit": "1", "size": 0.001}
+    assert one(0.0199 * (1 + 1e-6 * APART), **told).word == "less than 0.02 apart"
+    assert one(0.0201 * (1 + 1e-6 * APART), **told).word == "larger"
+
+
+def test_what_the_plants_step_leaves_is_no_answer_and_is_told():
+    assert one(0.5 * APART, error=0.6).word == "below what the plant's step leaves (0.6 m)"
+    assert one(0.5 * APART, error=0.4).word == "larger"
+    assert one(0.5 * APART, error=np.inf).sign == 0
+    assert "error in it is not known" in one(0.5 * APART).sentence("a", "b")
+    assert "not known" not in one(0.5 * APART, error=0.4).sentence("a", "b")
+
+
+def test_rounding_of_nothing_is_no_answer():
+    assert one(0.9 * ROUNDING * np.ones(N), size=0.0).word == "no more than rounding"
+    assert one(1.1 * ROUNDING * np.ones(N), size=0.0).word == "larger"
+
+
+def test_fewer_than_six_pairs_say_what_they_cannot_show():
+    answer = one(APART[:5])
+    assert answer.word == "too few pairs to say (5 of 6)"
+    assert answer.sentence("a", "b").endswith("At least 6 pairs are needed.")
+    assert (answer.p_value, answer.interval, answer.sign) == (None, None, 0)
+
+
+def test_too_few_pairs_for_so_many_comparisons_say_how_many_would_do():
+    few = judge([asked(APART)] * 7, ["rms_tracking_error"])  # .0078 times 7 is above .05, times 6 below
+    assert {answer.word for answer in few} == {"too few pairs for 7 comparisons (8 of 9)"}
+    assert few[0].sentence("a", "b").endswith("At least 9 pairs are needed.")
+    enough = judge([asked(APART)] * 6, ["rms_tracking_error"])
+    assert {answer.word for answer in enough} == {"larger"}
+
+
+def test_pairs_that_show_nothing_say_how_many_would_do_from_their_correlation():
+    rng = np.random.default_rng(1)
+    a = rng.normal(10.0, 1.0, 20)
+    (answer,) = judge([Asked("rms_tracking_error", "m", compare_paired(a, a + rng.normal(0.0, 1.0, 20)))], [])
+    text = answer.sentence("a", "b")
+    found = answer.comparison
+    assert f"correlate by {found.correlation:.2f}: about {found.pairs_needed(answer.least, ALPHA)} would" in text
+    assert text.startswith("Rms tracking error: no difference between a and b is shown")
+
+
+def test_a_metric_without_a_value_in_some_draws_says_in_how_many():
+    a, b = np.ones(N), np.where(np.arange(N) < 3, np.inf, 1.5)
+    (answer,) = judge([Asked("settling_time", "s", compare_paired(a, b))], [])
+    assert "no value in 0 and 3 of 8 draws" in answer.sentence("a", "b")
+
+
+def test_the_first_metric_the_others_of_the_first_screen_and_the_rest_are_families():
+    names = ["rms_tracking_error", *["peak_torque"] * 4, *["energy"] * 2]
+    found = judge([asked(APART, metric=name) for name in names], ["rms_tracking_error", "peak_torque"])
+    assert [answer.family for answer in found] == [1, 4, 4, 4, 4, 2, 2]
+    assert [answer.p_value * 128 for answer in found] == [1, 4, 4, 4, 4, 2, 2]
+
+
+def test_word_interval_and_p_never_contradict():
+    said = 0
+    for seed in range(400):
+        rng = np.random.default_rng(seed)
+        family = [asked((rng.standard_t(2, 10) + rng.choice([0.0, 2.0])).round(seed % 3)) for _ in range(5)]
+        for answer in judge(family, ["rms_tracking_error"]):
+            low, high = answer.interval or (-np.inf, np.inf)
+            assert (answer.p_value < ALPHA) == (low > 0.0 or high < 0.0)
+            assert answer.sign in (0, np.sign(low) if low > 0.0 else -1 if high < 0.0 else 0)
+            assert (answer.word == "no difference shown") <= (answer.p_value >= ALPHA)
+            said += answer.sign != 0
+    assert said > 100
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_of_sweeps_of_equal_laws_few_say_a_winner(case):
+    assert max(false_answers(CASES[case], 300)) <= 0.06 + 3.0 * np.sqrt(0.06 * 0.94 / 300)
+
+
+def test_one_law_in_another_floating_point_order_is_never_smaller():
+    assert same_law(40) == 0
+
+
+def test_a_difference_of_the_size_of_its_scatter_is_said():
+    assert true_answers(100) >= 0.9
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", CASES)
+def test_of_two_thousand_sweeps_of_equal_laws_a_winner_is_said_in_six_per_cent_at_most(case):
+    assert max(false_answers(CASES[case], 2000)) <= 0.06
+
+
+@pytest.mark.slow
+def test_of_a_thousand_no_law_beats_itself_and_what_is_there_is_found():
+    assert same_law(1000) == 0
+    assert true_answers(2000) >= 0.95
