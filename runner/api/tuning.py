@@ -79,7 +79,7 @@ class Tuning:
                 f"{objective.metric} {quantity(value, objective.unit)}"
                 for objective, value in zip(study.objectives, trial.values, strict=True)
             )
-            lines.append(f"best: {told} with {', '.join(key.override(trial.params[key.name]) for key in study.keys)}")
+            lines.append(f"chosen: {told} with {', '.join(key.override(trial.params[key.name]) for key in study.keys)}")
         return lines
 
     def __repr__(self) -> str:

@@ -75,6 +75,7 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _tell(tuning: "Tuning") -> int:
+    from runner.reporting.answers import CHOSEN
     from runner.tuning.study import at_ends
     from runner.tuning.trial import best
 
@@ -86,8 +87,8 @@ def _tell(tuning: "Tuning") -> int:
             f"{objective.metric} {value:.5g} {objective.unit}".strip()
             for objective, value in zip(objectives, trials[number].values, strict=True)
         )
-        print(f"best: {values} with {shlex.join(tuning.study.trial_overrides(trials[number]))}")
-    for sentence in at_ends(tuning):
+        print(f"chosen: {values} with {shlex.join(tuning.study.trial_overrides(trials[number]))}")
+    for sentence in (*at_ends(tuning), *([CHOSEN] if failed < len(trials) else [])):
         print(f"runner: {sentence}", file=sys.stderr)
     progress.begin(PREPARING)
     report.main([str(tuning.folder)])

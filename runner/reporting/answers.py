@@ -32,6 +32,12 @@ EXPLAINED = (
     f"error in it and above {100 * SHARE:g} % of the larger median, or {SHARE:g} of a fraction."
 )
 
+CHOSEN = (
+    "The trial was chosen by its own draws and may look better than it is. To compare it, run it and another one with "
+    "another seed."
+)
+"""What is said of the trial that a tuning chose: none is called the best."""
+
 HEADER = ("difference", "interval", "n", "effect", "p")
 """Columns between the names of what is compared and the word."""
 

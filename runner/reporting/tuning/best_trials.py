@@ -26,7 +26,7 @@ def section(subject: Subject, runs: Mapping[int, Run], commands: Mapping[int, st
         _trial(subject, trial, [] if one else objectives, runs[trial], commands[trial])
         for trial, objectives in subject.best_by_objective().items()
     ]
-    return Section("Best trial" if one else "Best in each objective", (), sections)
+    return Section("Chosen trial" if one else "Chosen by each objective", (), sections)
 
 
 def _trial(subject: Subject, trial: int, objectives: Sequence[Objective], run: Run, command: str) -> Section:

@@ -28,7 +28,7 @@ def section(subject: Subject) -> Section:
     text = f"On the front stand {len(front)} of {len(subject.good)} good trials: none of them gets better in one "
     text += "objective without another getting worse."
     blocks: list[Block] = [
-        Text("One trial is best in every objective." if len(front) == 1 else text),
+        Text("Every objective chooses the same trial." if len(front) == 1 else text),
         Curves("Good trials and the Pareto front.", panels, columns=1 if pair else 2),
         _table(subject),
     ]

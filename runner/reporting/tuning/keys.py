@@ -22,7 +22,7 @@ def section(subject: Subject) -> Section:
             x = np.array([subject.trials[trial].params[key.name] for trial in subject.good], dtype=float)
             series = [
                 Series("trials", x, y, "points", hints=hints, runs=runs),
-                Series("best", x[best], y[best], "points", hints=best_hints, runs=best_runs),
+                Series("chosen", x[best], y[best], "points", hints=best_hints, runs=best_runs),
             ]
             panels.append(
                 Panel("", key_label(key), label(objective), series, key.log, spans_decades(y), (key.low, key.high))
@@ -39,7 +39,7 @@ def _importance(subject: Subject) -> Block:
         return Text("Of fewer than 20 good trials it cannot be said which key matters.")
     rows = [[key.name, *(f"{100 * shares[key.name]:.0f} %" for shares in found)] for key in subject.keys]
     caption = (
-        "Importance of the keys: how far the values of each among the best tenth of the good trials differ from those "
+        "Importance of the keys: how far the values of each in the leading tenth of the good trials differ from those "
         "among all of them, in shares (PED-ANOVA). Where trials crowd, it says what still decides there."
     )
     header = ["key", *(title(objective.metric) for objective in subject.objectives)]

@@ -9,6 +9,7 @@ import numpy as np
 
 from runner.config.key_units import key_unit
 from runner.quantities import quantity
+from runner.reporting.answers import CHOSEN
 from runner.reporting.cover import cover
 from runner.reporting.document import Document, FloatArray, Notice, Origin, Provenance, RunList, Section, Table, Text
 from runner.reporting.markup import literal, literals
@@ -46,7 +47,7 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
         runs = {place: open_run(sweep.outputs / "runs" / subject.trials[place].run) for place in places}
         commands = {place: _command(tuning.study.trial_overrides(subject.trials[place])) for place in places}
         sections.append(best_trials.section(subject, runs, commands))
-        shown = cover(runs[places[0]], f"The motion of trial {places[0]}, the best.")
+        shown = cover(runs[places[0]], f"The motion of trial {places[0]}, the chosen one.")
     if len(subject.good) < len(subject.trials):
         sections.append(_failures(subject))
     sections.append(_all_runs(subject, sweep, made, measurements, folder))
@@ -65,14 +66,14 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
 
 
 def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
-    """Return how many trials there are, and the best value of each objective with the keys that give it."""
+    """Return how many trials there are, and the chosen value of each objective with the keys that give it."""
     failed = len(subject.trials) - len(subject.good)
     numbers = [("trials", str(len(subject.trials)), f"{failed} of them failed" if failed else "none failed")]
     for place, objectives in (subject.best_by_objective() if subject.good else {}).items():
         for objective in objectives:
             value = subject.trials[place].values[list(subject.objectives).index(objective)]
-            best = f"trial {place}: {subject.settings(place)}"
-            numbers.append((f"best {title(objective.metric)}", quantity(value, objective.unit), best))
+            chosen = f"trial {place}: {subject.settings(place)}"
+            numbers.append((f"{title(objective.metric)}, chosen", quantity(value, objective.unit), chosen))
     return numbers
 
 
@@ -81,10 +82,10 @@ def _abstract(subject: Subject) -> str:
     text = f"{len(subject.trials)} trials over {names}; {len(subject.trials) - len(subject.good)} of them failed."
     if len(subject.best) == 1:
         trial = subject.best[0]
-        text += f" Best is trial {trial}: {subject.outcome(trial)}, with {subject.settings(trial)}."
+        text += f" Chosen is trial {trial}: {subject.outcome(trial)}, with {subject.settings(trial)}."
     elif subject.best:
         text += f" {len(subject.best)} trials are on the Pareto front."
-    return " ".join([text, *at_ends(subject.tuning)])
+    return " ".join([text, *at_ends(subject.tuning), *([CHOSEN] if subject.best else [])])
 
 
 def _goals(subject: Subject) -> str:

@@ -15,13 +15,13 @@ _WIDE = 6  # conditions that stand in one table
 def section(runs: Mapping[str, Run]) -> Section:
     """Return the chapter."""
     text = (
-        "The first table of each arm names the law with the smallest error, the next one, and the laws that the best "
-        "one is shown to be ahead of, with whichever of their tunings. A law is ahead from 2 % on: by the "
-        "whole 95 % interval of the ratio on the same seeds, and by tests corrected for all comparisons on the arm "
-        "(Holm). Where nothing is drawn there is no interval, and it is ahead if it is so along every path. Errors are "
-        "root mean squares of the tip's distance from where it should be, of the median seed, and the geometric mean "
-        "over paths and tunings. A repetition that failed counts as an error beyond every number; the share of these "
-        "stands beside."
+        "The first table of each arm names the law with the smallest error, the next one, and the laws that it is "
+        "shown to be ahead of, with whichever of their tunings. A law is ahead if its error is smaller by more than "
+        "2 % on the same seeds, by tests corrected for all comparisons on the arm (Holm); intervals have the level "
+        "of their test. Where nothing is drawn there is no interval, and it is ahead if it is so along every path. "
+        "Errors are root mean squares of the tip's distance from where it should be, of the median seed, and the "
+        "geometric mean over paths and tunings. A repetition that failed counts as an error beyond every number; the "
+        "share of these stands beside."
     )
     return Section("Arm by arm", (Text(text),), [_arm(runs, arm) for arm in arms_of(runs)])
 

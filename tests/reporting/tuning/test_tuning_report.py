@@ -67,7 +67,7 @@ def test_the_report_has_its_parts(tuning):
         "History",
         "Trade-off",
         "Keys",
-        "Best in each objective",
+        "Chosen by each objective",
         "All runs",
         "Provenance",
     ]
@@ -75,7 +75,7 @@ def test_the_report_has_its_parts(tuning):
     (table,) = blocks(section(made, "What was tuned"), Table)
     assert table.origin.command == "runner tune ..."
     assert table.rows[0] == ["controller.natural_frequency (rad/s)", "5", "80", "logarithmic", "any"]
-    for best in section(made, "Best in each objective").sections:
+    for best in section(made, "Chosen by each objective").sections:
         assert len(blocks(best, Playback)) == 1
 
 
@@ -87,11 +87,11 @@ def test_one_objective_has_one_best_trial_and_no_trade_off(tuning):
     )
     made = document(one)
     assert "Trade-off" not in titles(made)
-    (best,) = section(made, "Best trial").sections
+    (best,) = section(made, "Chosen trial").sections
     place = min(range(22), key=lambda number: one.trials[number].values)
     assert best.title == f"Trial {place}"
     (_, trials, _), (what, _, settings) = made.key_numbers
-    assert (trials, what.startswith("best ")) == ("22", True)
+    assert (trials, what.endswith(", chosen")) == ("22", True)
     assert settings.startswith(f"trial {place}: ")
     assert made.cover is not None
     command = blocks(best, Table)[0].origin.command
