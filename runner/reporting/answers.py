@@ -33,10 +33,10 @@ EXPLAINED = (
 )
 
 CHOSEN = (
-    "The trial was chosen by its own draws and may look better than it is. To compare it, run it and another one with "
-    "another seed."
+    "Trials are chosen by their own draws and may look better than they are. To compare one, run it and another one "
+    "with another seed."
 )
-"""What is said of the trial that a tuning chose: none is called the best."""
+"""What is said of the trials that a tuning chose: none is called the best."""
 
 HEADER = ("difference", "interval", "n", "effect", "p")
 """Columns between the names of what is compared and the word."""
@@ -123,21 +123,24 @@ class Answer:
             self.word,
         ]
 
-    def sentence(self, first: str, second: str) -> str:
-        """Return in one or two sentences how the second compares with the first in this metric.
+    def sentence(self, first: str, second: str, beside: str = "") -> str:
+        """Return in some sentences how the second compares with the first in this metric, and how many pairs would do.
 
         Args:
             first: What the first is called.
             second: What the second is called.
+            beside: What stands between the two, with a space before it.
         """
         name = title(self.metric)
-        head = f"{name[:1].upper()}{name[1:]}: "
+        head, told = f"{name[:1].upper()}{name[1:]}:", self._evidence()
         if self.sign:
             unknown = "" if self.comparison.error is not None else "; the plant's own error in it is not known"
-            return f"{head}{second} is {self.word} than {first} by {self.amount} ({self._evidence()}{unknown})."
+            return f"{head} {second} is {self.word} than {first} by {self.amount} ({told}{unknown}).{beside}"
         if self.word == "no difference shown":
-            return f"{head}no difference between {first} and {second} is shown ({self._evidence()}).{self._would_do()}"
-        return f"{head}{second} and {first}: {self.word} ({self._evidence()}).{self._would_do()}"
+            said = f"no difference between {first} and {second} is shown"
+        else:
+            said = f"{second} and {first}: {self.word}"
+        return f"{head} {said} ({told}).{beside}{self._would_do()}"
 
     @property
     def amount(self) -> str:

@@ -77,7 +77,7 @@ class Tuning:
 
 
 def at_ends(tuning: Tuning) -> list[str]:
-    """Return a sentence for each end of a range near which the best trial lies, or some trials of the front."""
+    """Return a sentence for each end of a range near which the chosen trial lies, or some of several."""
     study, numbers = tuning.study, best(tuning.trials, tuning.study.objectives)
     found = []
     for key in study.keys:
@@ -85,9 +85,9 @@ def at_ends(tuning: Tuning) -> list[str]:
         for end in ("lower", "upper"):
             near = [value for value in values if key.end_near(value) == end]
             which = (
-                f"the best value, {values[0]:.3g}, lies"
+                f"the chosen value, {values[0]:.3g}, lies"
                 if len(values) == 1
-                else f"{len(near)} of {len(values)} best values lie"
+                else f"{len(near)} of {len(values)} chosen values lie"
             )
             if near:
                 found.append(

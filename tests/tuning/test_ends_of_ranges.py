@@ -23,7 +23,7 @@ def tuning(values, objectives):
 @pytest.mark.parametrize(("best", "end"), [(0.5, "lower"), (0.519, "lower"), (1.49, "upper")])
 def test_the_best_value_at_an_end_is_named(best, end):
     assert at_ends(tuning([best, 1.5], GOALS[:1])) == [
-        f"controller.damping_ratio: the best value, {best:.3g}, lies within 2 % of the {end} end of its range "
+        f"controller.damping_ratio: the chosen value, {best:.3g}, lies within 2 % of the {end} end of its range "
         "(0.5 to 1.5). A wider range may give a better one."
     ]
 
@@ -35,5 +35,5 @@ def test_between_the_ends_and_without_a_good_trial_there_is_nothing_to_say():
 
 def test_of_a_front_the_values_at_each_end_are_counted():
     lower, upper = at_ends(tuning([0.5, 1.0, 0.51, 1.5], GOALS))
-    assert "2 of 4 best values lie within 2 % of the lower end" in lower
-    assert "1 of 4 best values lie within 2 % of the upper end" in upper
+    assert "2 of 4 chosen values lie within 2 % of the lower end" in lower
+    assert "1 of 4 chosen values lie within 2 % of the upper end" in upper

@@ -73,7 +73,7 @@ def sentences(question: Question, subject: Subject) -> list[str]:
     told = []
     for pair, answers in question.overall[:_MOST_TOLD]:
         for answer in answers:
-            told.append(answer.sentence(pair.first, pair.second) + _at(question, pair, answer.metric))
+            told.append(answer.sentence(pair.first, pair.second, _at(question, pair, answer.metric)))
     left = len(question.overall) - _MOST_TOLD
     if left > 0:
         told.append(f"{left} more values of {question.axis} stand in the tables of pairs.")
@@ -91,7 +91,7 @@ def in_short(subject: Subject) -> str:
     question = None if few else ask(subject)
     if question is not None and len(question.overall) == 1:
         ((pair, answers),) = question.overall
-        return answers[0].sentence(pair.first, pair.second) + _at(question, pair, answers[0].metric)
+        return answers[0].sentence(pair.first, pair.second, _at(question, pair, answers[0].metric))
     found = range_told(subject)
     return f"{found[0]}: medians from {found[1]}. {few}".rstrip() if found else ""
 
