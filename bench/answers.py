@@ -83,9 +83,9 @@ def _said(metrics: dict[str, FloatArray]) -> tuple[bool, bool]:
 
 
 def _reordered(rng: np.random.Generator) -> FloatArray:
-    """Return rms values of one trace, summed up from its start and from its end."""
-    trace = rng.normal(size=(_LEVELS, _SEEDS, 50)) ** 2
-    return np.sqrt(np.stack([np.cumsum(trace, axis=2)[..., -1], np.cumsum(trace[..., ::-1], axis=2)[..., -1]]))
+    """Return control efforts of one trace, of some 10^6 N^2 m^2 s, summed up from its largest and from its least."""
+    trace = np.sort(1e4 * rng.normal(size=(_LEVELS, _SEEDS, 100)) ** 2, axis=2)
+    return np.stack([np.cumsum(trace[..., ::-1], axis=2)[..., -1], np.cumsum(trace, axis=2)[..., -1]])
 
 
 def _rounding(rng: np.random.Generator) -> FloatArray:
