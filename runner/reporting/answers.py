@@ -136,11 +136,10 @@ class Answer:
         if self.sign:
             unknown = "" if self.comparison.error is not None else "; the plant's own error in it is not known"
             return f"{head} {second} is {self.word} than {first} by {self.amount} ({told}{unknown}).{beside}"
+        said = f"{second} and {first}: {self.word}; {told}"
         if self.word == "no difference shown":
-            said = f"no difference between {first} and {second} is shown"
-        else:
-            said = f"{second} and {first}: {self.word}"
-        return f"{head} {said} ({told}).{beside}{self._would_do()}"
+            said = f"no difference between {first} and {second} is shown ({told})"
+        return f"{head} {said}.{beside}{self._would_do()}"
 
     @property
     def amount(self) -> str:
