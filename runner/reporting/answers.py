@@ -103,7 +103,8 @@ class Answer:
         if size <= ROUNDING:
             return "no more than rounding"
         if found.error is not None and size <= found.error:
-            return f"below what the plant's step leaves ({quantity(found.error, self.unit, 2)})"
+            left = quantity(found.error, self.unit, 2) if np.isfinite(found.error) else "a run fails on a finer step"
+            return f"below what the plant's step leaves ({left})"
         if size <= self.least:
             return f"less than {SHARE:g} apart" if "fraction" in self.metric else f"less than {100 * SHARE:g} % apart"
         return "smaller" if self.sign < 0 else "larger"

@@ -47,7 +47,7 @@ def test_of_a_fraction_it_is_two_hundredths():
 def test_what_the_plants_step_leaves_is_no_answer_and_is_told():
     assert one(0.5 * APART, error=0.6).word == "below what the plant's step leaves (0.6 m)"
     assert one(0.5 * APART, error=0.4).word == "larger"
-    assert one(0.5 * APART, error=np.inf).sign == 0
+    assert one(0.5 * APART, error=np.inf).word == "below what the plant's step leaves (a run fails on a finer step)"
     assert "error in it is not known" in one(0.5 * APART).sentence("a", "b")
     assert "not known" not in one(0.5 * APART, error=0.4).sentence("a", "b")
 
