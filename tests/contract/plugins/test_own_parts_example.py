@@ -157,10 +157,10 @@ def test_a_calibration_takes_our_wrist_sensor_alone(cli):
 
 
 COMMANDS = [
-    line.strip()
+    line.strip().removeprefix("$ ")
     for page in sorted((HERE.parent.parent / "docs").glob("*.md"))
     for line in page.read_text(encoding="utf-8").splitlines()
-    if line.startswith("    runner --plugin") and "examples/own_parts" in line
+    if line.strip().removeprefix("$ ").startswith("runner --plugin") and "examples/own_parts" in line
 ]
 
 
