@@ -12,6 +12,7 @@ from runner.texts import few
 
 _REGULAR = 1e-9  # smallest eigenvalue of a mass matrix with a diagonal of 1
 _NO_INERTIA = "links behind a joint have mass, but no inertia about its axis"
+_CONDITION = 10.0  # of a Jacobian, above which a posture counts as nearly singular
 SINGULAR = 0.1  # of the reach: the smallest singular value below which controllers damp
 
 
@@ -69,7 +70,12 @@ def check_tasks(model: RobotModel) -> list[Finding]:
 
 
 def smallest_singular_values(model: RobotModel, postures: FloatArray, pose: bool) -> FloatArray:
-    """Return the smallest singular value of the task's Jacobian at postures, shape (N, nq) to (N,), in m.
+    """Return the smallest singular value of the task's Jacobian at postures, shape (N, nq) to (N,), in m."""
+    return _singular_values(model, postures, pose)[:, -1]
+
+
+def _singular_values(model: RobotModel, postures: FloatArray, pose: bool) -> FloatArray:
+    """Return the singular values of the task's Jacobian at postures, shape (N, nq) to (N, k), the largest first, in m.
 
     Turns count as the way that they move a point a reach away, and so do slides against turns.
     """
@@ -77,22 +83,23 @@ def smallest_singular_values(model: RobotModel, postures: FloatArray, pose: bool
     rows = np.where(directions[:, :3].any(axis=1), 1.0, model.reach)
     columns = np.where(model.slides, model.reach, 1.0)
     J = [rows[:, None] * (directions @ model.tip_jacobian(q)[: directions.shape[1]]) * columns for q in postures]
-    return np.asarray(np.linalg.svd(np.array(J), compute_uv=False)[:, -1])
+    return np.asarray(np.linalg.svd(np.array(J), compute_uv=False))
 
 
 def describe_singular(model: RobotModel, postures: FloatArray) -> list[Finding]:
     """Return how much of some postures, shape (N, nq), is nearly singular for the tip's position."""
     if model.nq < len(task_directions(model, pose=False)):
         return []
-    smallest = smallest_singular_values(model, postures, pose=False)
+    values = _singular_values(model, postures, pose=False)
+    smallest = values[:, -1]
     worst = postures[int(smallest.argmin())]
     if smallest.max() < 1e-9 * model.reach:
         text = "the tip's position is singular in every posture: a joint's axis passes through it"
         return [Finding("refused", "tip", text, "choose another by --tip, or add a link at the tool centre point")]
-    share = float((smallest < SINGULAR * model.reach).mean())
+    share = float((values[:, 0] > _CONDITION * smallest).mean())
     text = (
-        f"{100.0 * share:.0f} % of all postures are singular for the tip's position, or nearly so; the nearest found "
-        f"is q = {np.round(worst, 2).tolist()}"
+        f"in {100.0 * share:.0f} % of all postures the Jacobian of the tip's position has a condition number above "
+        f"{_CONDITION:g}; the nearest to a singular one that was found is q = {np.round(worst, 2).tolist()}"
     )
     return [Finding("note", "singular postures", text, "keep paths away, or singularity_damping above 0")]
 
