@@ -6,7 +6,8 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.registry import StrictModel
-from runner.robots.mismatch import scaled, with_models
+from runner.robots.mismatch import scaled
+from runner.robots.robot import with_models
 
 
 class OneLinkConfig(StrictModel):

@@ -1,7 +1,6 @@
 """The steps of an arm with flexible joints as compiled code: the classical Runge-Kutta scheme on links and motors."""
 
 from collections.abc import Callable, Sequence
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,10 +9,10 @@ from runner.compiled.algebra import ArmAlgebra
 from runner.compiled.arm import known
 from runner.compiled.code import ROWS, STATE, Part
 from runner.compiled.engine import MOST_JOINTS, evaluator
-from runner.compiled.motion import Mover, step_scalars
+from runner.compiled.motion import ArmCode, Mover
 from runner.compiled.places import Places
-from runner.compiled.program import Expressed, FloatArray, Frame, program
-from runner.compiled.structure import Values, any_number, arm_pattern
+from runner.compiled.program import FloatArray
+from runner.compiled.structure import any_number, arm_pattern
 from runner.compiled.vectors import Vector
 from runner.robots.model import RobotModel
 
@@ -63,7 +62,7 @@ class _FlexibleMover(Mover):
         return [*super().acceleration(q[:n], v[:n], pushed), *motors]
 
 
-class CompiledFlexibleStep:
+class CompiledFlexibleStep(ArmCode):
     """The steps of one arm with flexible joints, without friction, as compiled code.
 
     Args:
@@ -82,36 +81,26 @@ class CompiledFlexibleStep:
         motors: FloatArray,
         step: float,
     ) -> None:
-        self._model, self._step, self._on = model.copy(), step, np.flatnonzero(flexible).tolist()
+        super().__init__(model, step)
+        self._on = np.flatnonzero(flexible).tolist()
         self._springs = stiffness[flexible], damping[flexible], motors[flexible]
 
-    @cached_property
-    def _frame(self) -> Frame:
-        """The code with its arrays, compiled when the first step is taken."""
-        model, n, on = self._model, self._model.nq, self._on
+    def _names(self) -> tuple[str, str]:
+        springs = [known(own, any_number) for own in self._springs]
+        pattern = f"flexible step {arm_pattern(self._model)} {self._on} {springs!r}"
+        return pattern, f"the motion of {self._model.nq} joints with springs"
 
-        def scalars(number: Callable[[float], Any]) -> tuple[Any, Springs]:
-            return step_scalars(model, self._step, number), Springs(*(known(own, number) for own in self._springs))
+    def _scalars(self, number: Callable[[float], Any]) -> tuple[Any, ...]:
+        return *super()._scalars(number), Springs(*(known(own, number) for own in self._springs))
 
-        def express() -> Expressed:
-            at, parts = Places(), list[Part]()
-            (gravity, h, constants), springs = scalars(at.number)
-            at.take(STATE, 2 * (n + len(on)))
-            given = at.take(ROWS, 2 * n + len(on))[1]
-            algebra = ArmAlgebra(constants._replace(gravity=gravity))
-            _FlexibleMover(algebra, on, n, springs, given, at).move(given[:n], h, parts)
-            return Expressed([], parts, at.widths, [])
-
-        values = Values()
-        scalars(values.number)
-        pattern = f"flexible step {arm_pattern(model)} {on} {[known(own, any_number) for own in self._springs]!r}"
-        frame = program(pattern, f"the motion of {n} joints with springs", express, 1).frame(1, last=-1)
-        frame.pars[:, 0] = values.values
-        return frame
-
-    def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector in the base frame, shape (3,), in m/s^2."""
-        self._frame.pars[:3, 0] = gravity
+    def _express(self, at: Places) -> list[Part]:
+        parts, n, on = list[Part](), self._model.nq, self._on
+        gravity, h, constants, springs = self._scalars(at.number)
+        at.take(STATE, 2 * (n + len(on)))
+        given = at.take(ROWS, 2 * n + len(on))[1]
+        algebra = ArmAlgebra(constants._replace(gravity=gravity))
+        _FlexibleMover(algebra, on, n, springs, given, at).move(given[:n], h, parts)
+        return parts
 
     def advance(self, state: FloatArray, tau: FloatArray, load: FloatArray, free: FloatArray, steps: int) -> FloatArray:
         """Return the state after some steps under held torques.

@@ -1,5 +1,6 @@
 """How arms move between two ticks, as code: the classical Runge-Kutta scheme under held torques, less friction."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -224,39 +225,61 @@ def _put(space: str, first: int, values: Vector) -> Block:
     return Block([(space, first + index, value) for index, value in enumerate(values)])
 
 
-class CompiledStep:
-    """The steps of one arm without friction, as compiled code.
+class ArmCode(ABC):
+    """Code about one arm, compiled when it is asked first, whose gravity can change.
 
     Args:
         model: The arm.
-        step: Integration step, in s.
+        step: Integration step, in s; 0 where nothing is integrated.
     """
 
-    def __init__(self, model: RobotModel, step: float) -> None:
+    def __init__(self, model: RobotModel, step: float = 0.0) -> None:
         self._model, self._step = model.copy(), step
 
     @cached_property
     def _frame(self) -> Frame:
-        """The code with its arrays, compiled when the first step is taken."""
-        model, n = self._model, self._model.nq
+        """The code with its arrays."""
 
         def express() -> Expressed:
-            at, parts = Places(), list[Part]()
-            gravity, h, constants = step_scalars(model, self._step, at.number)
-            at.take(STATE, 2 * n)
-            algebra = ArmAlgebra(constants._replace(gravity=gravity))
-            Mover(algebra, 0, n, n, at).move(at.take(ROWS, n)[1], h, parts)
-            return Expressed([], parts, at.widths, [])
+            at = Places()
+            return Expressed([], self._express(at), at.widths, [])
 
         values = Values()
-        step_scalars(model, self._step, values.number)
-        frame = program(f"step {arm_pattern(model)}", f"the motion of {n} joints", express, 1).frame(1, last=-1)
+        self._scalars(values.number)
+        frame = program(*self._names(), express, 1).frame(1, last=-1)
         frame.pars[:, 0] = values.values
         return frame
+
+    @abstractmethod
+    def _names(self) -> tuple[str, str]:
+        """Return the pattern of the code, and what is compiled; see program."""
+
+    @abstractmethod
+    def _express(self, at: Places) -> list[Part]:
+        """Return what the code does, whose numbers are taken as `_scalars` takes them."""
+
+    def _scalars(self, number: Callable[[float], Any]) -> tuple[Any, ...]:
+        """Return the numbers of the code as `number` makes them; gravity comes first."""
+        return step_scalars(self._model, self._step, number)
 
     def set_gravity(self, gravity: FloatArray) -> None:
         """Take another gravity vector in the base frame, shape (3,), in m/s^2."""
         self._frame.pars[:3, 0] = gravity
+
+
+class CompiledStep(ArmCode):
+    """The steps of one arm without friction, as compiled code."""
+
+    def _names(self) -> tuple[str, str]:
+        return f"step {arm_pattern(self._model)}", f"the motion of {self._model.nq} joints"
+
+    def _express(self, at: Places) -> list[Part]:
+        parts, n = list[Part](), self._model.nq
+        gravity, h, constants = self._scalars(at.number)
+        at.take(STATE, 2 * n)
+        algebra = ArmAlgebra(constants._replace(gravity=gravity))
+        Mover(algebra, 0, n, n, at).move(at.take(ROWS, n)[1], h, parts)
+        return parts
 
     def advance(self, q: FloatArray, v: FloatArray, tau: FloatArray, steps: int) -> None:
         """Go on by some steps under held torques, in place: shapes (nq,), in rad, rad/s and N m."""
@@ -267,42 +290,20 @@ class CompiledStep:
         q[:], v[:] = state[:n], state[n:]
 
 
-class CompiledLinksTorque:
-    """The torques of links whose motors take A ddq of them, as compiled code; see runner/plants/armature.py.
+class CompiledLinksTorque(ArmCode):
+    """The torques of links whose motors take A ddq of them, as compiled code; see runner/plants/armature.py."""
 
-    Args:
-        model: The arm, with its armature A.
-    """
+    def _names(self) -> tuple[str, str]:
+        return f"links' torque {arm_pattern(self._model)}", f"the armature of {self._model.nq} joints"
 
-    def __init__(self, model: RobotModel) -> None:
-        self._model = model.copy()
-
-    @cached_property
-    def _frame(self) -> Frame:
-        """The code with its arrays, compiled when it is asked first."""
-        model, n = self._model, self._model.nq
-
-        def express() -> Expressed:
-            at = Places()
-            gravity, _, constants = step_scalars(model, 0.0, at.number)
-            q, v = (at.take(STATE, n)[1] for _ in range(2))
-            first, tau = at.take(ROWS, n)
-            mover = Mover(ArmAlgebra(constants._replace(gravity=gravity)), 0, n, n, at)
-            motors = [
-                times(body.armature, a) for body, a in zip(constants.bodies, mover.acceleration(q, v, tau), strict=True)
-            ]
-            return Expressed([], [_put(ROWS, first, subtract(tau, motors))], at.widths, [])
-
-        values = Values()
-        step_scalars(model, 0.0, values.number)
-        pattern = f"links' torque {arm_pattern(model)}"
-        frame = program(pattern, f"the armature of {n} joints", express, 1).frame(1, last=-1)
-        frame.pars[:, 0] = values.values
-        return frame
-
-    def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector in the base frame, shape (3,), in m/s^2."""
-        self._frame.pars[:3, 0] = gravity
+    def _express(self, at: Places) -> list[Part]:
+        n = self._model.nq
+        gravity, _, constants = self._scalars(at.number)
+        q, v = (at.take(STATE, n)[1] for _ in range(2))
+        first, tau = at.take(ROWS, n)
+        ddq = Mover(ArmAlgebra(constants._replace(gravity=gravity)), 0, n, n, at).acceleration(q, v, tau)
+        motors = [times(body.armature, a) for body, a in zip(constants.bodies, ddq, strict=True)]
+        return [_put(ROWS, first, subtract(tau, motors))]
 
     def at(self, q: FloatArray, v: FloatArray, tau: FloatArray) -> FloatArray:
         """Return the torques of the links, shape (nq,), in N m; valid until it is asked again."""

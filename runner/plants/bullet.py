@@ -59,8 +59,8 @@ class Bullet:
         self.q, self.dq = np.split(self._state, 2)
         self._put = struct.Struct(f"{2 * model.nq}d").pack_into  # a third of the time of filling arrays from tuples
         self._steps_per_tick = steps_per_tick
-        self._armature = LinksTorque(model) if model.armature.any() else None
-        self._motors = model.armature
+        self._armature = model.armature
+        self._links_torque = LinksTorque(model) if self._armature.any() else None
         self._wall: int | None = None
         self._server = SERVERS.open(urdf)
         self._client, self._body = self._server.client, self._server.body
@@ -81,7 +81,7 @@ class Bullet:
         self.set_gravity(model.gravity)
         # Bullet splits one stepSimulation into the steps: bit-identical to as many calls, and cheaper. Its own
         # "substeps" start at 2; 0 means none.
-        at_once = self._steps_per_tick if self._armature is None else 1
+        at_once = self._steps_per_tick if self._links_torque is None else 1
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=step * at_once,
             numSubSteps=at_once if at_once > 1 else 0,
@@ -128,16 +128,16 @@ class Bullet:
     def set_gravity(self, gravity: FloatArray) -> None:
         """Take another gravity vector; see Plant."""
         pybullet.setGravity(*gravity.tolist(), self._client)
-        if self._armature is not None:
-            self._armature.set_gravity(gravity)
+        if self._links_torque is not None:
+            self._links_torque.set_gravity(gravity)
 
     def advance(self, tau: FloatArray) -> None:
         """Hold the torques for one tick; see Plant."""
-        if self._armature is None:
+        if self._links_torque is None:
             self._hold(tau)
             return
         for _ in range(self._steps_per_tick):
-            self._hold(self._armature.at(self.q, self.dq, tau))
+            self._hold(self._links_torque.at(self.q, self.dq, tau))
 
     def _hold(self, tau: FloatArray) -> None:
         """Hold torques of the links while Bullet moves them."""
@@ -194,7 +194,7 @@ class Bullet:
         ordered = np.empty_like(q)
         ordered[places] = q
         M = np.array(pybullet.calculateMassMatrix(self._body, ordered.tolist(), physicsClientId=self._client))
-        return M[np.ix_(places, places)] + np.diag(self._motors)
+        return M[np.ix_(places, places)] + np.diag(self._armature)
 
     def close(self) -> None:
         """Give back the physics server, which may serve the next plant of the same arm."""

@@ -2,7 +2,6 @@
 
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from pydantic import NonNegativeFloat
@@ -11,7 +10,7 @@ from runner.errors import ConfigError, nearest
 from runner.registry import StrictModel
 from runner.robots.inertials import read_sets
 from runner.robots.model import FloatArray
-from runner.robots.robot import Robot
+from runner.robots.robot import Robot, with_models
 from runner.robots.tree import UrdfTree
 from runner.texts import quoted
 
@@ -75,9 +74,7 @@ def with_armature(robot: Robot, armature: FloatArray) -> Robot:
 
     With those of springy motors it is the limit of flexible joints with stiff springs, M + diag(B).
     """
-    stages = tuple(replace(stage, model=stage.model.with_armature(armature[stage.joints])) for stage in robot.stages)
-    whole = stages[0].model if len(stages) == 1 else robot.model.with_armature(armature)
-    return replace(robot, model=whole, stages=stages)
+    return with_models(robot, lambda model, joints, _: model.with_armature(armature[joints]))
 
 
 def _of_set(tree: UrdfTree, path: Path, name: str) -> dict[str, float]:

@@ -1,13 +1,13 @@
 """Links that bend, and the rigid parts into which they are cut."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 
 from runner.robots.model import FloatArray, RobotModel
-from runner.robots.robot import Robot
+from runner.robots.robot import Robot, with_models
 
 
 @dataclass(frozen=True)
@@ -80,13 +80,12 @@ def stiffened(robot: Robot, beams: Mapping[str, Beam]) -> Robot:
         for length in [float(np.linalg.norm(end))]
     ]
 
-    def loaded(model: RobotModel, first: int) -> RobotModel:
+    def loaded(model: RobotModel, joints: slice, _: bool) -> RobotModel:
         own = model.copy()
         for joint, rod in rods:
-            if first < joint <= first + model.nq:
-                own.pin_model.appendBodyToJoint(joint - first, rod, pin.SE3.Identity())
+            if joints.start < joint <= joints.stop:
+                own.pin_model.appendBodyToJoint(joint - joints.start, rod, pin.SE3.Identity())
         own._data = own.pin_model.createData()
         return own
 
-    stages = tuple(replace(stage, model=loaded(stage.model, stage.joints.start)) for stage in robot.stages)
-    return replace(robot, model=stages[0].model if len(stages) == 1 else loaded(robot.model, 0), stages=stages)
+    return with_models(robot, loaded)

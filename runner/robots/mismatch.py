@@ -1,8 +1,6 @@
 """A robot as its controllers believe it to be, apart from what it is."""
 
 import copy
-from collections.abc import Callable
-from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -12,7 +10,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat
 from runner.guard import watch_belief
 from runner.registry import KindConfig, Registry, StrictModel
 from runner.robots.model import FloatArray, RobotModel
-from runner.robots.robot import Robot
+from runner.robots.robot import Robot, with_models
 
 
 class MismatchConfig(StrictModel):
@@ -71,19 +69,6 @@ def believe(
         return scaled(loaded, masses, centres, np.full(len(masses) + 1, mismatch.length), mismatch.gravity)
 
     return with_models(robot, change)
-
-
-def with_models(robot: Robot, change: Callable[[RobotModel, slice, bool], RobotModel]) -> Robot:
-    """Return a robot with every model changed, the whole's and each stage's alike.
-
-    Args:
-        robot: The robot.
-        change: Changes a model, given this, its joints within the robot's, and whether it bears the payload.
-    """
-    last = robot.stages[-1]
-    stages = tuple(replace(stage, model=change(stage.model, stage.joints, stage is last)) for stage in robot.stages)
-    whole = stages[0].model if len(stages) == 1 else change(robot.model, slice(None), True)
-    return replace(robot, model=whole, stages=stages)
 
 
 def scaled(

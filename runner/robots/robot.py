@@ -1,7 +1,7 @@
 """A robot as a chain of stages: one arm, or arms riding on each other."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
@@ -67,6 +67,19 @@ class Robot:
     def reach(self) -> float:
         """Largest distance of the tip from the first joint that the link lengths admit, in m."""
         return self.model.reach
+
+
+def with_models(robot: Robot, change: Callable[[RobotModel, slice, bool], RobotModel]) -> Robot:
+    """Return a robot with every model changed, the whole's and each stage's alike.
+
+    Args:
+        robot: The robot.
+        change: Changes a model, given this, its joints within the robot's, and whether it bears the payload.
+    """
+    last = robot.stages[-1]
+    stages = tuple(replace(stage, model=change(stage.model, stage.joints, stage is last)) for stage in robot.stages)
+    whole = stages[0].model if len(stages) == 1 else change(robot.model, slice(0, robot.model.nq), True)
+    return replace(robot, model=whole, stages=stages)
 
 
 class StageBase:

@@ -13,7 +13,7 @@ from runner.controllers import CONTROLLERS
 from runner.robots.armature import with_armature
 from runner.robots.mismatch import scaled
 from runner.robots.model import RobotModel
-from runner.robots.robot import Robot
+from runner.robots.robot import Robot, with_models
 
 GROUPS = ("gains", "masses", "armature", "lengths", "payload", "friction", "gravity", "limits", "noise", "mismatch")
 # Of each group of keys: where they stand, and those below that no derivative is asked by.
@@ -156,14 +156,11 @@ def _with_length(config: RunConfig, joint: int, length: float, value: float) -> 
 def _with_arm(config: RunConfig, masses: Any, lengths: Any) -> RunConfig:
     """Return a config with another arm; masses (nq,) and lengths (nq + 1,) are factors."""
 
-    def change(model: RobotModel, joints: slice) -> RobotModel:
+    def change(model: RobotModel, joints: slice, _: bool) -> RobotModel:
         own = masses[joints]
         return scaled(model, own, np.ones(len(own)), lengths[joints.start : joints.stop + 1])
 
-    arm = config.arm
-    stages = tuple(replace(stage, model=change(stage.model, stage.joints)) for stage in arm.stages)
-    whole = stages[0].model if len(stages) == 1 else change(arm.model, slice(0, arm.model.nq))
-    return _with_robot(config, replace(arm, model=whole, stages=stages))
+    return _with_robot(config, with_models(config.arm, change))
 
 
 def _with_robot(config: RunConfig, changed: Robot) -> RunConfig:

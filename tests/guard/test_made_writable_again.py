@@ -120,7 +120,8 @@ BELIEF = """
     from typing import Literal
     import numpy as np
     from runner.registry import StrictModel
-    from runner.robots.mismatch import scaled, with_models
+    from runner.robots.mismatch import scaled
+    from runner.robots.robot import with_models
     class CONFIG(StrictModel):
         kind: Literal["NAME"]
     def build(config, robot, generator):
