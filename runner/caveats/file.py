@@ -15,7 +15,7 @@ _IDEAL = "kinematic"  # the plant that no force moves
 
 
 def left_out_of(config: "RunConfig") -> Mapping[str, Sequence[str]]:
-    """Return what would change the motion, stands in the robot's files and is not in a run, in words by file.
+    """Return what the robot's files hold that would change the motion and is not in a run, in words by file.
 
     Damping, friction and armature that the file gives a joint count where the joint has none of it in the run; nothing
     counts where no force moves the arm.
@@ -50,7 +50,7 @@ def left_out_of(config: "RunConfig") -> Mapping[str, Sequence[str]]:
 
 
 def _left_out(setting: Setting) -> float | None:
-    """Return how many things would change the motion, stand in the robot's files, and are not in the run."""
+    """Return how many things in the robot's files would change the motion and are not in the run."""
     return float(sum(map(len, setting.left_out.values()))) if setting.left_out else None
 
 

@@ -43,7 +43,7 @@ class Setting:
         contact: Of an arm behind joint servos with a wall, under an admittance law; None where there is none.
         touch: How a small motion on a wall grows in a period of a law that pushes by torques; None where none does.
         velocity_loop: How near a velocity loop is to what its period bears; None where no law says its gain.
-        left_out: What would change the motion, stands in the robot's files and is not in the run, in words, by file.
+        left_out: What the robot's files hold that would change the motion and is not in the run, in words, by file.
     """
 
     repetitions: int

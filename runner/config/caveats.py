@@ -123,7 +123,7 @@ class RobotFileThreshold(StrictModel):
     """Threshold of the rule on what is not taken from the file of a robot.
 
     Attributes:
-        left_out: How many things that would change the motion may stand there and be left out.
+        left_out: How many things that would change the motion may be left out.
     """
 
     left_out: NonNegativeFloat

@@ -1,1 +1,1 @@
-"""What is wrong with a stranger's URDF, what can be mended, and a config folder to start from."""
+"""What is wrong with a stranger's URDF, what can be fixed, and a config folder to start from."""

@@ -1,4 +1,4 @@
-"""A config folder to start from: a robot's YAML file and its mended URDF, or its MJCF."""
+"""A config folder to start from: a robot's YAML file and its fixed URDF, or its MJCF."""
 
 from pathlib import Path
 
@@ -30,13 +30,13 @@ robot:
 
 
 def write_folder(examination: Examination, folder: Path) -> list[Path]:
-    """Write `robot/NAME.yaml` and `robots/NAME.urdf`, or an MJCF as it is, with its files, where it needs no mending.
+    """Write `robot/NAME.yaml` and `robots/NAME.urdf`, or an MJCF as it is, with its files, if nothing is fixed.
 
     Raises:
         RunnerError: if something bars the arm, one of the files is there already, or they cannot be written.
     """
     if examination.arm is None:
-        raise RunnerError("--write: nothing was written: first mend what is refused above")
+        raise RunnerError("--write: nothing was written: first correct what is refused above")
     model, start = examination.arm.model, examination.arm.start
     name = examination.name
     format, arm = _arm_files(examination, name)

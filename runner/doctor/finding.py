@@ -20,16 +20,16 @@ class Finding:
             "note": good to know.
         place: The link or joint, or what was looked at.
         text: What was found; of what is fixed, as it was.
-        mend: What to do about it, or what was done; "" where nothing needs doing.
+        remedy: What to do about it, or what was done; "" where nothing needs doing.
     """
 
     grade: Grade
     place: str
     text: str
-    mend: str = ""
+    remedy: str = ""
 
     def __str__(self) -> str:
-        return f"{self.grade:<7} {self.place}: {self.text}{'; ' if self.mend else ''}{self.mend}"
+        return f"{self.grade:<7} {self.place}: {self.text}{'; ' if self.remedy else ''}{self.remedy}"
 
 
 def together(findings: Iterable[Finding]) -> list[Finding]:
@@ -38,9 +38,9 @@ def together(findings: Iterable[Finding]) -> list[Finding]:
     for each in findings:
         part = re.fullmatch(r"(link|joint) ('.*')", each.place)
         kind, name = part.groups() if part else (each.place, "")
-        places.setdefault((each.grade, kind, each.text, each.mend), []).append(name)
+        places.setdefault((each.grade, kind, each.text, each.remedy), []).append(name)
     found = [
-        Finding(grade, f"{kind}{'s' if len(names) > 1 and names[0] else ''} {few(names)}".rstrip(), text, mend)
-        for (grade, kind, text, mend), names in places.items()
+        Finding(grade, f"{kind}{'s' if len(names) > 1 and names[0] else ''} {few(names)}".rstrip(), text, remedy)
+        for (grade, kind, text, remedy), names in places.items()
     ]
     return sorted(found, key=lambda each: GRADES.index(each.grade))

@@ -4,7 +4,7 @@ import math
 import xml.etree.ElementTree as ET
 
 from runner.doctor.finding import Finding
-from runner.robots.inertials import impossible_inertia, make_massless, mend_inertia, principal_moments
+from runner.robots.inertials import fix_inertia, impossible_inertia, make_massless, principal_moments
 from runner.robots.tree import UrdfTree
 from runner.robots.urdf_values import TENSOR, absurd_inertial, number
 
@@ -33,7 +33,7 @@ def _check_link(tree: UrdfTree, name: str, link: ET.Element) -> list[Finding]:
         return absurd
     wrong = impossible_inertia(link)
     if wrong:
-        mend_inertia(link)
+        fix_inertia(link)
         now = ", ".join(f"{moment:.3g}" for moment in principal_moments(link))
         findings.append(Finding("fixed", place, wrong[0], f"now {now} kg m^2, the nearest that a body can have"))
     elif mass > 0.0 and not any(moments) and name != tree.root:

@@ -83,7 +83,7 @@ class Mujoco:
         self._steps_per_tick = steps_per_tick
         options = self._model.opt
         options.timestep, options.integrator, options.tolerance = step, _INTEGRATORS[integrator], _TOLERANCE
-        # What diverges is told by the loop, not begun anew; there is nothing to touch until there is a wall.
+        # What diverges is told by the loop, not begun again; there is nothing to touch until there is a wall.
         options.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET | mujoco.mjtDisableBit.mjDSBL_CONTACT
         self._set_names(model.joint_names)
         self.q, self.dq, self._tau = data.qpos, data.qvel, data.qfrc_applied

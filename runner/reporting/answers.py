@@ -130,7 +130,7 @@ class Answer:
         Args:
             first: What the first is called.
             second: What the second is called.
-            beside: What stands between the two, with a space before it.
+            beside: A sentence between the two, with a space before it.
         """
         name = title(self.metric)
         head, told = f"{name[:1].upper()}{name[1:]}:", self._evidence()

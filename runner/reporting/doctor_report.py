@@ -27,7 +27,7 @@ def doctor_document(found: Examination) -> Document:
         sections.append(Section("Its joints", (_joints(found.arm.model),)))
     else:
         verdict = "is refused"
-        notice = Notice("failure", "No model", "The robot cannot be taken until what is refused below is mended.")
+        notice = Notice("failure", "No model", "The robot cannot be taken until what is refused below is corrected.")
         sections = [Section("The robot", (notice,)), Section("Findings", (_findings(found),))]
     rows = [("file", found.source.name), *versions().items()]
     return Document(
@@ -46,7 +46,7 @@ def doctor_document(found: Examination) -> Document:
 
 
 def _findings(found: Examination) -> Table:
-    rows = [[each.grade, *literals((each.place, each.text, each.mend))] for each in found.findings]
+    rows = [[each.grade, *literals((each.place, each.text, each.remedy))] for each in found.findings]
     return Table("What was found, and what was done or can be.", ["grade", "where", "what", "done"], rows, badges=(0,))
 
 

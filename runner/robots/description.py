@@ -169,12 +169,12 @@ def _check_numbers(path: Path, tree: UrdfTree, from_set: Mapping[str, str]) -> l
     """Return numbers that no arm has; `from_set` tells whence a link has its inertial, if not from the file."""
     problems = []
     for name, link in tree.links.items():
-        places = [f"{text}; {mend}" for text, mend in wrong_places(link)]
+        places = [f"{text}; {remedy}" for text, remedy in wrong_places(link)]
         whence = from_set.get(name, f"robot.urdf: link '{name}' in {path} has")
         problems += [f"robot.urdf: link '{name}' in {path} has {bad}" for bad in places]
         problems += [] if places else [f"{whence} {bad}" for bad in _bad_inertial(link)]
     for name, joint in tree.joints.items():
-        wrong = [*(f"{text}; {mend}" for text, mend in wrong_places(joint)), *wrong_limits(joint)]
+        wrong = [*(f"{text}; {remedy}" for text, remedy in wrong_places(joint)), *wrong_limits(joint)]
         problems += [f"robot.urdf: joint '{name}' in {path} has {bad}" for bad in wrong]
     return problems
 

@@ -163,7 +163,7 @@ def principal_moments(link: ET.Element) -> np.ndarray:
     return np.asarray(np.linalg.eigvalsh(_tensor(link)))
 
 
-def mend_inertia(link: ET.Element) -> None:
+def fix_inertia(link: ET.Element) -> None:
     """Give a link the nearest inertia that a rigid body can have.
 
     What a body's mass is spread by along its axes, sum m x x^T = tr(I)/2 - I, cannot be negative; such spreads become a
@@ -172,11 +172,11 @@ def mend_inertia(link: ET.Element) -> None:
     tensor = _tensor(link)
     spread, axes = np.linalg.eigh(0.5 * np.trace(tensor) * np.eye(3) - tensor)
     spread = np.maximum(spread, 1e-3 * max(float(spread[2]), 0.0))
-    mended = axes @ np.diag(spread.sum() - spread) @ axes.T
+    fixed = axes @ np.diag(spread.sum() - spread) @ axes.T
     inertia = link.find("inertial/inertia")
     if inertia is not None:
         for row, column in _UPPER:
-            inertia.set(f"i{'xyz'[row]}{'xyz'[column]}", repr(float(mended[row, column])))
+            inertia.set(f"i{'xyz'[row]}{'xyz'[column]}", repr(float(fixed[row, column])))
 
 
 def make_massless(link: ET.Element) -> None:

@@ -25,7 +25,7 @@ Solve = Callable[[RobotModel, FloatArray, FloatArray], FloatArray]
 
 
 def _once(solve: Solve) -> Solve:
-    """Return a function that finds a posture once in a process: runs of a sweep ask for the same one, each anew."""
+    """Return a function that finds a posture once in a process: runs of a sweep each ask for the same one."""
     found: dict[tuple[bytes, ...], FloatArray] = {}
 
     @wraps(solve)

@@ -24,7 +24,7 @@ class MismatchConfig(StrictModel):
         payload: Point mass that is believed to be where the payload is, beyond the true one, in kg; below 0 for a
             payload that is not known of.
         spread: Largest relative error, beyond the factors, of each link's mass and centre of mass: drawn evenly for
-            each, anew in each repetition.
+            each, again in each repetition.
     """
 
     mass: PositiveFloat

@@ -45,7 +45,7 @@ def refused_model(model: Any) -> Iterator[str]:
     """Yield what no arm of ours has, of a compiled model, with its names and what to do about it."""
     if not model.njnt:
         yield "has no joint: it is no arm"
-    yield from _joints(model, ~np.isfinite(model.qpos0), "a ref that is no finite number:", "mend it")
+    yield from _joints(model, ~np.isfinite(model.qpos0), "a ref that is no finite number:", "give a number")
 
 
 def left_out(spec: Any, model: Any) -> LeftOut:
@@ -107,9 +107,9 @@ def _of_rest(spec: Any, model: Any) -> Iterator[str]:
         yield "time step and integrator (plant.step, plant.integrator)"
 
 
-def _listed(text: str, elements: Sequence[Any], mend: str) -> Iterator[str]:
+def _listed(text: str, elements: Sequence[Any], remedy: str) -> Iterator[str]:
     if len(elements):
-        yield f"holds {text}: {few([_called(element) for element in elements])}; {mend}"
+        yield f"holds {text}: {few([_called(element) for element in elements])}; {remedy}"
 
 
 def _called(element: Any) -> str:
@@ -120,7 +120,7 @@ def _called(element: Any) -> str:
     return f"one of the body '{on}'" if on else "one without a name"
 
 
-def _joints(model: Any, which: NDArray[np.bool_], text: str, mend: str) -> Iterator[str]:
+def _joints(model: Any, which: NDArray[np.bool_], text: str, remedy: str) -> Iterator[str]:
     if which.any():
         names = [f"'{joint_name(model, joint)}'" for joint in np.flatnonzero(which).tolist()]
-        yield f"holds {text} {few(names)}; {mend}"
+        yield f"holds {text} {few(names)}; {remedy}"

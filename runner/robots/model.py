@@ -26,8 +26,8 @@ _NO_LIMIT = 1e6  # SI units; URDF demands limits, and a file without them writes
 class RobotModel:
     """Rigid-body model of a fixed-base serial arm with joints that turn (revolute) or slide (prismatic).
 
-    The armature of its joints, reflected inertia of motors and gears, stands on the diagonal of the mass matrix and
-    nowhere else; it is read from `<dynamics armature="...">`. Every result is a new array; positions and Jacobians are
+    The armature of its joints, reflected inertia of motors and gears, is on the diagonal of the mass matrix and nowhere
+    else; it is read from `<dynamics armature="...">`. Every result is a new array; positions and Jacobians are
     given in the base frame. Where a unit of a joint is given, it is that of one that turns: rad, rad/s and N m stand
     for m, m/s and N where a joint slides.
 

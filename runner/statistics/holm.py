@@ -30,7 +30,7 @@ def holm(p_values: Sequence[float]) -> FloatArray:
 def holm_levels(p_values: Sequence[float], alpha: float) -> FloatArray:
     """Return the level at which Holm's procedure decides each test of a family: it rejects what is below its level.
 
-    The k-th smallest p-value of m is held against alpha / (m + 1 - k); after the first that is not below, all that
+    The k-th smallest p-value of m is compared with alpha / (m + 1 - k); after the first that is not below, all that
     follow are decided at that same level.
 
     Args:

@@ -21,7 +21,7 @@ def write_finer(outputs: Path, name: str, reason: str, metrics: Mapping[str, Flo
     Args:
         outputs: The outputs folder.
         name: Hash of the run.
-        reason: Why the plant cannot be held against a finer step; empty where it can.
+        reason: Why the plant cannot be compared with a finer step; empty where it can.
         metrics: Each metric in the first repetitions; what is not finite is beyond every number.
 
     Raises:

@@ -12,7 +12,7 @@ from runner.doctor.examination import examine
 from runner.doctor.finding import Finding, together
 from runner.engines import has_pybullet
 from runner.errors import RunnerError
-from runner.robots.inertials import impossible_inertia, mend_inertia
+from runner.robots.inertials import fix_inertia, impossible_inertia
 from runner.robots.tree import read_tree
 
 CLEAN = strangers.chain("arm", [("revolute", Z), ("revolute", Y), ("revolute", Y)])
@@ -121,7 +121,7 @@ def test_an_arm_without_mass_has_its_kinematics(examined, links, why):
     examination = examined(bare(*links))
     (note,) = [each for each in examination.findings if each.place == "mass"]
     assert note.text.startswith(why)
-    assert "give the links behind every joint <inertial>" in note.mend
+    assert "give the links behind every joint <inertial>" in note.remedy
     assert not examination.arm.has_mass
 
 
@@ -132,10 +132,10 @@ def test_an_impossible_inertia_becomes_one_that_a_body_can_have(tmp_path, moment
     (tmp_path / "x.urdf").write_text(text + "</inertial></link></robot>")
     link = read_tree(tmp_path / "x.urdf").links["a"]
     assert impossible_inertia(link)
-    mend_inertia(link)
+    fix_inertia(link)
     assert impossible_inertia(link) == []
-    mended = [float(link.find("inertial/inertia").get(key)) for key in ("ixx", "iyy", "izz")]
-    assert np.abs(np.subtract(mended, moments)).max() < 0.6 * max(moments)
+    fixed = [float(link.find("inertial/inertia").get(key)) for key in ("ixx", "iyy", "izz")]
+    assert np.abs(np.subtract(fixed, moments)).max() < 0.6 * max(moments)
 
 
 def test_what_moves_beside_the_way_is_held(examined):
@@ -240,7 +240,7 @@ def test_fingers_and_jaws_are_no_joints_of_the_arm(examined):
         examination = examined(text)
         assert examination.tip == "tip"
         assert examination.arm.model.joint_names == ("q1", "q2", "q3")
-        (note,) = [each.mend for each in examination.findings if each.place == "tip"]
+        (note,) = [each.remedy for each in examination.findings if each.place == "tip"]
         told = ", ".join(f"{name} ({name}_finger)" for name in names)
         assert note == f"--tip takes another that the same joints move: l3; or one behind further joints: {told}"
         assert examined(text, "left").arm.model.nq == 4

@@ -74,7 +74,7 @@ def test_an_arm_with_its_fingers_held_is_mujocos(tmp_path, keyframe, held):
 
 def test_each_joint_that_is_held_is_named_with_what_tied_it(tmp_path):
     path = written(tmp_path, GRIPPER.replace("</mujoco>", f"{KEYFRAME}</mujoco>"))
-    said = {f.place: f"{f.text}; {f.mend}" for f in examined(path).findings}
+    said = {f.place: f"{f.text}; {f.remedy}" for f in examined(path).findings}
     beside = "moves, but not the tip, and is"
     home = "as the keyframe 'home' has it"
     assert said["joint 'left_slide'"] == f"{beside} tied by a tendon 'grip'; now held at 0.02 m, {home}"

@@ -76,7 +76,7 @@ def sentences(question: Question, subject: Subject) -> list[str]:
             told.append(answer.sentence(pair.first, pair.second, _at(question, pair, answer.metric)))
     left = len(question.overall) - _MOST_TOLD
     if left > 0:
-        told.append(f"{left} more values of {question.axis} stand in the tables of pairs.")
+        told.append(f"{left} more values of {question.axis} are in the tables of pairs.")
     along = [found.key for found in subject.measurements.differences if question.axis in found.axes]
     if along and any(answer.sign for _, answers in (*question.overall, *question.at) for answer in answers):
         more = f" and {len(along) - _MOST_TOLD} more" if len(along) > _MOST_TOLD else ""

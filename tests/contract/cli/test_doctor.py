@@ -87,7 +87,7 @@ def test_nothing_is_overwritten(cli):
 def test_what_is_barred_is_not_written(cli):
     ending = cli("doctor", strangers.DATA / "cube_no_rotation.urdf", "--write", "mine")
     assert ending.code == 2
-    assert "first mend what is refused above" in ending.err
+    assert "first correct what is refused above" in ending.err
 
 
 @pytest.mark.parametrize(("arguments", "said"), [(("none.urdf",), "no file none.urdf"), ((), "required: FILE")])

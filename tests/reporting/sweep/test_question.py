@@ -72,7 +72,7 @@ def test_of_several_values_the_first_three_are_told():
     subject = choose(measurements({"controller": laws}, given))
     told = sentences(ask(subject), subject)
     assert [text.split(" ")[3] for text in told[:3]] == ["b", "c", "d"]
-    assert told[3] == "2 more values of controller stand in the tables of pairs."
+    assert told[3] == "2 more values of controller are in the tables of pairs."
     assert in_short(subject).startswith("largest tracking error: medians from ")
 
 
