@@ -8,10 +8,8 @@ import numpy as np
 from runner.compiled.closed_loop import run_all
 from runner.compiled.directed import tangents
 from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.sensitivity import GROUPS
-from runner.sensitivity.analysis import scene_of, slopes_of
-from runner.sensitivity.parameters import find_parameters
+from runner.sensitivity.analysis import slopes_of
 
 RUNS = {
     "macro": ("robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis"),
@@ -26,14 +24,13 @@ def main() -> bool:
     """Print the cost of derivatives in runs; return whether the targets are met."""
     met = True
     for name, overrides in RUNS.items():
-        config = validate(compose(overrides).resolved)
-        scene = scene_of(config, 0)
-        parameters, slopes, _ = slopes_of(scene, find_parameters(config, GROUPS, validate))
-        whole, setting, times = scene.whole, scene.setting, np.arange(config.timing.ticks + 1) * config.timing.tick
+        found = slopes_of(compose(overrides), GROUPS, 0)
+        config, whole, setting, slopes = found.scene.config, found.scene.whole, found.scene.setting, found.settings
+        times = np.arange(config.timing.ticks + 1) * config.timing.tick
         shared, errors = whole.commands.shared(times, config.path.sample(times)), [e[None] for e in setting.errors]
         run = _best(lambda: run_all(whole, whole.values[None], shared, errors, setting.start[None]))  # noqa: B023
         all_ = _best(lambda: tangents(whole, setting, slopes, shared))  # noqa: B023
-        each = all_ / run / len(parameters)
+        each = all_ / run / len(slopes)
         good = each <= TARGET[name]
         met &= good
         print(

@@ -50,7 +50,7 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
             follow it, or a part refuses its config.
     """
     arm, path, timing = config.arm, config.path, config.timing
-    q_start = _find_start(config)
+    q_start = find_start(config)
     believed, loops = _believe(config, repetition)
     environment = ENVIRONMENTS.build(config.environment)
     with ExitStack() as on_error:
@@ -96,7 +96,7 @@ def assemble_whole(config: RunConfig, repetition: int = 0) -> tuple[Whole, Float
     if PLANTS.motion(config.plant, config.arm) is None:
         return None
     compiled = _compile(config, _believe(config, repetition)[1])
-    return (compiled, _find_start(config)) if isinstance(compiled, Whole) else None
+    return (compiled, find_start(config)) if isinstance(compiled, Whole) else None
 
 
 def describe_loop(config: RunConfig, repetition: int = 0) -> Whole | None:
@@ -116,7 +116,7 @@ def describe_loop(config: RunConfig, repetition: int = 0) -> Whole | None:
     return None if commands is None or motion is None else describe_whole(commands, motion, config.timing)
 
 
-def _find_start(config: RunConfig) -> FloatArray:
+def find_start(config: RunConfig) -> FloatArray:
     """Return where the arm starts, shape (nq,), in rad."""
     arm, path = config.arm, config.path
     if isinstance(path, TipOfJoints):

@@ -1,11 +1,11 @@
 """`runner sensitivity RUN`: how the metrics of a run change with its parameters, the one that matters most first.
 
-The derivatives are exact, by forward differentiation of the compiled run: of gains, masses and lengths of links,
-armature, the payload, friction, gravity, torque limits, noise, and of what controllers believe (mismatch). A run on
-bullet or mujoco has those of the same run on rk4.
+The derivatives are exact, by forward differentiation of the compiled run: by each number of the config, with the keys
+that take its value, and by masses, armature and lengths of links. The start, the desired motion and the ticks are held.
+A run on bullet or mujoco has the derivatives of the same run on rk4.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,7 +25,9 @@ _SHOWN = (
     "energy",
 )  # fmt: skip
 _AGREES, _SURE = 1e-6, 1e-7  # of a derivative: how far differences may be off, and how sure they must be to count
-_GROUPS = ("gains", "masses", "armature", "lengths", "payload", "friction", "gravity", "limits", "noise", "mismatch")
+_GROUPS = (
+    "gains", "masses", "armature", "lengths", "payload", "friction", "gravity", "limits", "noise", "mismatch", "others",
+)  # fmt: skip
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -55,8 +57,7 @@ def main(arguments: Sequence[str]) -> int:
     for name in names:
         print(f"\n{name}: {number(found.metrics[name])} {_unit(name)}")
         print(aligned(_rows(found, name, compared.get(name))))
-    for text in found.left_out:
-        print(f"left out: {text}")
+    print(*_beside(found), sep="\n")
     return _compare(found, compared) if options.check else 0
 
 
@@ -66,7 +67,17 @@ def _about(run: "Run", found: "Sensitivity") -> str:
     kind = run.config["plant"]["kind"]
     if kind != config.plant.kind:
         text += f": derivatives of the same run on rk4, as those of {kind} are not to be had; so are the metrics"
-    return text
+    return f"{text}\nheld: the start, the desired motion, the ticks"
+
+
+def _beside(found: "Sensitivity") -> Iterator[str]:
+    """Yield a line for what moves with each parameter, and for the parameters that are not in the tables."""
+    yield ""
+    for parameter in found.parameters:
+        if parameter.moves:
+            yield f"{parameter.name} moves {', '.join(parameter.moves)}"
+    for reason, names in found.left_out.items():
+        yield f"not in the tables: {', '.join(names)}: {reason}"
 
 
 def _unit(name: str) -> str:

@@ -145,9 +145,9 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
         gradient = Y.T.dot(teaches)
         change = numbers.motion.period * numbers.adaptation * gradient
         if self._bounded:
-            braked = numbers.swings / numbers.rate * (numbers.damping * teaches).dot(teaches)
+            braked = numbers.swings / numbers.rate * (numbers.damping * teaches).dot(teaches) + _NOTHING
             needed = (numbers.adaptation * gradient).dot(gradient)
-            change = change * (braked / arm.maths.maximum(braked + _NOTHING, needed))
+            change = change * (braked / arm.maths.maximum(braked, needed))
         return torque, memory + change
 
     def _scales(self, model: RobotModel, has_weight: bool, home: FloatArray, D: FloatArray) -> FloatArray:

@@ -1,28 +1,30 @@
 """The derivatives of a run's metrics by its parameters."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from runner.assembly import assemble_whole, metric_context
 from runner.batch import Batcher, Together, Wanted
-from runner.compiled.directed import Setting, tangents
+from runner.compiled.directed import tangents
 from runner.compiled.engine import evaluator
+from runner.config.compose import Composed, compose
 from runner.config.flexible_joints import find_flexibility
 from runner.config.flexible_links import is_flexible
 from runner.config.run import RunConfig
-from runner.errors import ConfigError, RunnerError
+from runner.config.validation import validate
+from runner.errors import RunnerError
 from runner.metrics import measure, of_run
 from runner.plants import PLANTS
 from runner.plants.rk4 import Rk4Config
-from runner.sensitivity.parameters import GROUPS, Parameter, find_parameters
-from runner.sensitivity.slopes import NotSmoothError, Scene
+from runner.sensitivity.parameters import GROUPS, Parameter, find_keys, find_links
+from runner.sensitivity.slopes import Scene, Slopes
 from runner.sensitivity.smooth_metrics import Change, derivatives
 from runner.trace import FloatArray, Trace
-
-Validated = Callable[[Mapping[str, Any]], RunConfig]
+from runner.trajectories.trajectory import joint_reference
 
 
 @dataclass(frozen=True)
@@ -34,7 +36,7 @@ class Sensitivity:
         metrics: Its smooth metrics by name.
         parameters: The parameters on which it depends.
         derivatives: Of each metric by each parameter, shape (parameters,).
-        left_out: Parameters by which there is no derivative, and why.
+        left_out: Names of the parameters by which there is no derivative, by the reason.
         error: Root mean square of the tip's error over the run, in m.
         moves: Largest way of the tip by each parameter, per relative change of it, shape (parameters,), in m.
     """
@@ -43,7 +45,7 @@ class Sensitivity:
     metrics: Mapping[str, float]
     parameters: Sequence[Parameter]
     derivatives: Mapping[str, FloatArray]
-    left_out: Sequence[str]
+    left_out: Mapping[str, Sequence[str]]
     error: float
     moves: FloatArray
 
@@ -61,14 +63,14 @@ class Sensitivity:
         return places
 
 
-def analyse(
-    config: RunConfig, validated: Validated, groups: Sequence[str] = GROUPS, repetition: int = 0
-) -> Sensitivity:
+def analyse(composed: Composed, groups: Sequence[str] = GROUPS, repetition: int = 0) -> Sensitivity:
     """Return the derivatives of all smooth metrics of a run by its parameters; of a compiled Runge-Kutta plant.
 
+    A derivative by a key of the config is that of the run composed again with another value there: keys that take this
+    value, such as `${controller.natural_frequency}`, go with it.
+
     Args:
-        config: The run's checked config.
-        validated: Checks a resolved config.
+        composed: The run's config, and the overrides that give it.
         groups: Which parameters, some of GROUPS.
         repetition: Number of the repetition.
 
@@ -76,13 +78,15 @@ def analyse(
         RunnerError: where the run has no compiled form, ends early, or depends on no such parameter.
         ConfigError: where it cannot start.
     """
-    scene = scene_of(by_runge_kutta(config, validated), repetition)
+    slopes = slopes_of(composed, groups, repetition)
+    scene = slopes.scene
     trace, metrics = simulated(scene)
-    parameters, slopes, left_out = slopes_of(scene, find_parameters(scene.config, groups, validated))
+    parameters = slopes.parameters
     if not parameters:
         raise RunnerError(f"the run depends on no parameter of {', '.join(groups)}; allowed: {', '.join(GROUPS)}")
     whole = scene.whole
-    moved = tangents(whole, scene.setting, slopes, whole.commands.shared(trace.t, trace.desired))
+    shared = whole.commands.shared(trace.t, trace.desired, joint_reference(scene.config.path, trace.t))
+    moved = tangents(whole, scene.setting, slopes.settings, shared)
     acted = np.maximum(np.arange(len(trace.t)) - whole.delay, 0)
     change = Change(moved.q, moved.dq, moved.torque[:, acted], moved.end_points)
     found = derivatives(trace, change, metric_context(scene.config))
@@ -94,19 +98,35 @@ def analyse(
         metrics=values,
         parameters=parameters,
         derivatives={name: found[name] for name in values},
-        left_out=left_out,
+        left_out=slopes.left_out,
         error=float(np.sqrt((trace.error**2).sum(axis=1).mean())),
         moves=np.abs(moved.end_points[-1]).max(axis=(1, 2)) * np.abs(sizes),
     )
 
 
-def by_runge_kutta(config: RunConfig, validated: Validated) -> RunConfig:
-    """Return the config of a run with the Runge-Kutta plant in the place of another one that takes torques."""
+def slopes_of(composed: Composed, groups: Sequence[str], repetition: int) -> Slopes:
+    """Return how a repetition of a run follows from its parameters; see analyse."""
+
+    def recomposed(*overrides: str) -> RunConfig:
+        again = compose([*composed.overrides, *overrides], composed.config_dirs) if overrides else composed
+        return by_runge_kutta(again.resolved, composed.config_dirs)
+
+    slopes = Slopes(scene_of(recomposed(), repetition))
+    for parameter in find_links(slopes.scene.config, groups):
+        slopes.add(parameter)
+    for key in find_keys(slopes.scene.config, groups, recomposed):
+        slopes.add_key(key)
+    return slopes
+
+
+def by_runge_kutta(resolved: Mapping[str, Any], config_dirs: Sequence[Path]) -> RunConfig:
+    """Return the checked config of a run, with the Runge-Kutta plant in place of another one that takes torques."""
+    config = validate(resolved, config_dirs)
     if config.plant.kind == "rk4" or is_flexible(config) or PLANTS.commands(config.plant.kind) != "torque":
         return config
-    plant: Any = config.resolved["plant"]
+    plant: Any = resolved["plant"]
     kept = {key: value for key, value in plant.items() if key in Rk4Config.model_fields}
-    return validated({**config.resolved, "plant": {**kept, "kind": "rk4", "step": None}})
+    return validate({**resolved, "plant": {**kept, "kind": "rk4", "step": None}}, config_dirs)
 
 
 def simulated(run: Wanted) -> tuple[Trace, Mapping[str, float | None]]:
@@ -156,22 +176,3 @@ def _why_not(config: RunConfig) -> str:
     if (config.noise.resolution > 0.0).any():
         return "noise.resolution rounds the measured positions to steps, which have no derivative; set it to 0"
     return ""
-
-
-def slopes_of(scene: Scene, parameters: Sequence[Parameter]) -> tuple[list[Parameter], list[Setting], list[str]]:
-    """Return the parameters on which a run depends, how, and by which there is no derivative."""
-    known: list[Parameter] = []
-    slopes: list[Setting] = []
-    left_out: list[str] = []
-    for parameter in parameters:
-        try:
-            slope = scene.slope(parameter)
-        except NotSmoothError as error:
-            left_out.append(str(error))
-        except ConfigError as error:
-            left_out.append(f"{parameter.name}: a value beside its own is not allowed: {'; '.join(error.problems)}")
-        else:
-            if any(part.any() for part in (slope.numbers, slope.start, *slope.errors)):
-                known.append(parameter)
-                slopes.append(slope)
-    return known, slopes, left_out

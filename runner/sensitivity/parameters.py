@@ -1,6 +1,6 @@
 """Parameters of a run: keys of its config, and masses and lengths of its links."""
 
-import copy
+import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -8,29 +8,28 @@ from typing import Any
 
 import numpy as np
 
+from runner.config.key_units import units_at
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS
 from runner.robots.armature import with_armature
 from runner.robots.mismatch import scaled
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, with_models
+from runner.store import simulated_part
+from runner.trajectories.joint_motion import TipOfJoints
 
-GROUPS = ("gains", "masses", "armature", "lengths", "payload", "friction", "gravity", "limits", "noise", "mismatch")
-# Of each group of keys: where they stand, and those below that no derivative is asked by.
-_KEYS: Mapping[str, tuple[str, tuple[str, ...]]] = {
-    "gains": ("controller", ("period", "reach", "max_tip_speed")),
-    "payload": ("robot.payload.mass", ()),
-    "friction": ("plant.friction", ()),
-    "gravity": ("gravity", ()),
-    "limits": ("torque_limits.max", ()),
-    "noise": ("noise", ("resolution",)),
-    "mismatch": ("mismatch", ("spread",)),
-}
-_UNITS = {
-    "natural_frequency": "rad/s", "null_space_frequency": "rad/s", "integral_gain": "1/s^3", "viscous": "N m s/rad",
-    "coulomb": "N m", "gravity": "m/s^2", "max": "N m", "position": "rad", "bias": "rad", "torques": "N m",
-    "mass": "kg",
+GROUPS = (
+    "gains", "masses", "armature", "lengths", "payload", "friction", "gravity", "limits", "noise", "mismatch", "others",
+)  # fmt: skip
+# The group of a key is that of the first of its words which is here; "others" where none is.
+_GROUP_OF = {
+    "controller": "gains", "disturbance_observer": "gains", "notch": "gains", "masses": "masses", "tool": "masses",
+    "armature": "armature", "payload": "payload", "friction": "friction", "gravity": "gravity",
+    "torque_limits": "limits", "noise": "noise", "mismatch": "mismatch",
 }  # fmt: skip
+_SMALL = 1e-6  # in place of 0, to see if it acts
+
+Recomposed = Callable[..., RunConfig]
 
 
 @dataclass(frozen=True)
@@ -38,13 +37,12 @@ class Parameter:
     """A number on which a run depends.
 
     Attributes:
-        name: Its name: a dotted key of the config, armature.JOINT, or mass.JOINT or length.JOINT of the link that a
-            joint moves.
+        name: Dotted key of the config; or armature.JOINT, mass.JOINT or length.JOINT of the link that a joint moves.
         group: One of GROUPS.
         value: Its value.
         unit: Its unit.
         with_value: Returns the run's config with another value.
-        holds_law: Whether the numbers that the law has drawn from the arm's lengths are held.
+        moves: Other keys of the config that change with it.
     """
 
     name: str
@@ -52,60 +50,105 @@ class Parameter:
     value: float
     unit: str
     with_value: Callable[[float], RunConfig]
-    holds_law: bool = False
+    moves: Sequence[str] = ()
 
 
-def find_parameters(config: RunConfig, groups: Sequence[str], validated: Callable[[Any], RunConfig]) -> list[Parameter]:
-    """Return the parameters of a run, in some groups, that are not zero.
+@dataclass(frozen=True)
+class Key:
+    """A key of a config that holds a number, or a list of numbers.
+
+    Attributes:
+        name: Its dotted name.
+        group: One of GROUPS.
+        value: What it holds.
+        recomposed: Returns the run's checked config with further overrides.
+    """
+
+    name: str
+    group: str
+    value: Any
+    recomposed: Recomposed
+
+    def moved(self, share: float) -> RunConfig:
+        """Return the config with each number of the key changed by another share; those that are 0 become small ones.
+
+        By one share alike, the direction that a list may be would not change.
+        """
+        return self._with(lambda place, number: number * (1.0 + share * (1 + sum(place))) or _SMALL)
+
+    @property
+    def is_set(self) -> bool:
+        """Whether one of the numbers is not 0."""
+        return any(number for _, number in _numbers(self.value))
+
+    def parameters(self, config: RunConfig, moved: RunConfig) -> Iterator[Parameter]:
+        """Yield a parameter for each number of the key.
+
+        Args:
+            config: The run's checked config.
+            moved: The one in which the key has changed.
+        """
+        before, after = (dict(_keys(simulated_part(one.resolved))) for one in (config, moved))
+        moves = [name for name in before if before[name] != after.get(name) and name != self.name]
+        for place, number in _numbers(self.value):
+            name = self.name + "".join(f"[{index}]" for index in place)
+            path: tuple[str | int, ...] = (*self.name.split("."), *place)
+            unit = next(iter(units_at(config.resolved, path).at(path)), "1")
+            yield Parameter(name, self.group, float(number), unit, partial(self._with_number, place), moves)
+
+    def _with_number(self, place: tuple[int, ...], new: float) -> RunConfig:
+        return self._with(lambda own, number: new if own == place else number)
+
+    def _with(self, change: Callable[[tuple[int, ...], float], float]) -> RunConfig:
+        return self.recomposed(f"{self.name}={json.dumps(_mapped(self.value, change))}")
+
+
+def find_keys(config: RunConfig, groups: Sequence[str], recomposed: Recomposed) -> Iterator[Key]:
+    """Yield the keys of a run's config that hold numbers, in some groups.
 
     Args:
         config: The run's checked config.
         groups: Some of GROUPS.
-        validated: Checks a resolved config.
+        recomposed: Returns the checked config with further overrides.
     """
-    found: list[Parameter] = []
-    for group in groups:
-        if group in _KEYS:
-            found += _keys(config, group, validated)
-        else:
-            found += _links(config, group)
-    return found
+    own = simulated_part(config.resolved)
+    robot = {"robot": own.pop("robot")}  # last: of two keys with one effect the first has the row
+    for name, value in (*_keys(own), *_keys(robot)):
+        group = next((_GROUP_OF[word] for word in name.split(".") if word in _GROUP_OF), "others")
+        if group in groups:
+            yield Key(name, group, value, recomposed)
 
 
-def _keys(config: RunConfig, group: str, validated: Callable[[Any], RunConfig]) -> Iterator[Parameter]:
-    root, left_out = _KEYS[group]
-    node: Any = config.resolved
-    for word in root.split("."):
-        node = node.get(word) if isinstance(node, Mapping) else None
-    for path, value in _numbers(node, tuple(root.split("."))):
-        if value != 0.0 and np.isfinite(value) and not set(path) & set(left_out):
-            unit = next((_UNITS[word] for word in reversed(path) if word in _UNITS and group != "mismatch"), "1")
-            name = "".join(f"[{word}]" if isinstance(word, int) else f".{word}" for word in path)[1:]
-            with_value = partial(_changed, config, path, validated)
-            yield Parameter(name, group, float(value), unit, with_value, "length" in path)
+def _keys(node: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the dotted name and value of each key with a number, or with a list that has one."""
+    for name, value in node.items():
+        if isinstance(value, Mapping):
+            yield from _keys(value, f"{path}{name}.")
+        elif any(_numbers(value)):
+            yield f"{path}{name}", value
 
 
-def _numbers(node: Any, path: tuple[Any, ...]) -> Iterator[tuple[tuple[Any, ...], float]]:
-    if isinstance(node, Mapping):
-        for key, value in node.items():
-            yield from _numbers(value, (*path, key))
-    elif isinstance(node, list):
-        for index, value in enumerate(node):
-            yield from _numbers(value, (*path, index))
-    elif isinstance(node, (int, float)) and not isinstance(node, bool):
-        yield path, node
+def _numbers(value: Any, place: tuple[int, ...] = ()) -> Iterator[tuple[tuple[int, ...], float]]:
+    """Yield each number of a value with its place in nested lists."""
+    if isinstance(value, list):
+        for index, inner in enumerate(value):
+            yield from _numbers(inner, (*place, index))
+    elif isinstance(value, (int, float)) and not isinstance(value, bool) and np.isfinite(value):
+        yield place, value
 
 
-def _changed(
-    config: RunConfig, path: tuple[Any, ...], validated: Callable[[Any], RunConfig], value: float
-) -> RunConfig:
-    resolved: Any = copy.deepcopy(dict(config.resolved))
-    node = resolved
-    for word in path[:-1]:
-        node = node[word]
-    node[path[-1]] = value
-    # The desired motion is held, too.
-    return replace(validated(resolved), path=config.path)
+def _mapped(value: Any, change: Callable[[tuple[int, ...], float], float], place: tuple[int, ...] = ()) -> Any:
+    """Return a value with its numbers changed, given their places and themselves."""
+    if isinstance(value, list):
+        return [_mapped(inner, change, (*place, index)) for index, inner in enumerate(value)]
+    return change(place, value) if any(_numbers(value)) else value
+
+
+def find_links(config: RunConfig, groups: Sequence[str]) -> Iterator[Parameter]:
+    """Yield the masses, armature and lengths of an arm, in some of GROUPS, that are not 0."""
+    for group in ("masses", "armature", "lengths"):
+        if group in groups:
+            yield from _links(config, group)
 
 
 def _links(config: RunConfig, group: str) -> Iterator[Parameter]:
@@ -122,8 +165,7 @@ def _links(config: RunConfig, group: str) -> Iterator[Parameter]:
         else:
             length = _length(model, joint)
             if length > 0.0:
-                with_length = partial(_with_length, config, joint, length)
-                yield Parameter(f"length.{name}", group, length, "m", with_length, holds_law=True)
+                yield Parameter(f"length.{name}", group, length, "m", partial(_with_length, config, joint, length))
 
 
 def _length(model: RobotModel, joint: int) -> float:
@@ -165,4 +207,5 @@ def _with_arm(config: RunConfig, masses: Any, lengths: Any) -> RunConfig:
 
 def _with_robot(config: RunConfig, changed: Robot) -> RunConfig:
     """Return a config with another arm, true and believed."""
-    return replace(config, arm=changed, loops=CONTROLLERS.build(config.controller, changed))
+    loops = CONTROLLERS.build_for(config.controller, changed, isinstance(config.path, TipOfJoints))
+    return replace(config, arm=changed, loops=loops)

@@ -1,25 +1,29 @@
 """How the numbers of a closed loop change with a parameter, exact to rounding."""
 
-import copy
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
 
-from runner.assembly import describe_loop
+from runner.assembly import describe_loop, find_start
 from runner.batch import Wanted
 from runner.compiled.closed_loop import Whole
 from runner.compiled.directed import Setting
 from runner.compiled.structure import fixed_text
-from runner.errors import RunnerError
+from runner.config.run import RunConfig
+from runner.errors import ConfigError, RunnerError
 from runner.sensing.encoders import encoder_errors
-from runner.sensitivity.parameters import Parameter
+from runner.sensitivity.parameters import Key, Parameter
 from runner.trace import FloatArray
+from runner.trajectories.trajectory import joint_reference
 
-_PART = 1.0 / 64.0  # of a parameter's value, between the nine at which numbers are taken
+_PART = 1.0 / 512.0  # of a parameter's value, between the nine at which numbers are taken
 _EIGHTH = (4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0)  # exact for polynomials of up to that degree
 _SIXTH = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0, 0.0)
-_AGREES, _ROUNDING = 1e-9, 1e-13
+_AGREES, _ROUNDING = 1e-9, 1e-12
+_CODE = "the code of the law changes with it"
+_ZERO = "its value is 0, which has no share to change"
 
 
 class NotSmoothError(RunnerError):
@@ -51,11 +55,36 @@ class Scene(Wanted):
             ConfigError: where there is no such run.
         """
         config = parameter.with_value(value)
-        found = describe_loop(config, self.repetition)
-        assert found is not None  # noqa: S101 - it is of the same kinds as the run's
-        whole = _with_laws_of(self.whole, found) if parameter.holds_law else found
+        whole = describe_loop(config, self.repetition)
+        assert whole is not None  # noqa: S101 - it is of the same kinds as the run's
+        return self._changed(config, whole)
+
+    def _changed(self, config: RunConfig, whole: Whole) -> "Scene":
         # What metrics reckon with, such as home, is that of the arm itself.
-        return replace(self, config=replace(config, arm=self.config.arm), whole=whole)
+        return replace(self, config=replace(config, arm=self.config.arm, path=self.config.path), whole=whole)
+
+    def depends(self, config: RunConfig) -> bool:
+        """Tell if another config gives another run.
+
+        Raises:
+            NotSmoothError: where it does so in a way that has no derivative; its text is the reason.
+            ConfigError: where it cannot start.
+        """
+        times: FloatArray = np.arange(self.rows, dtype=np.float64) * self.whole.tick
+        before, after = (
+            [np.array(motion) for motion in (one.path.sample(times), joint_reference(one.path, times))]
+            for one in (self.config, config)
+        )
+        if not _same(before, after):
+            raise NotSmoothError("the desired motion, which is held, follows it")
+        if not np.array_equal(find_start(config), self.q_start):
+            raise NotSmoothError("the start, which is held, follows it")
+        whole = describe_loop(config, self.repetition)
+        if whole is None or config.timing != self.config.timing:
+            raise NotSmoothError("the ticks or steps of the run follow it")
+        if _fixed(whole) != _fixed(self.whole):
+            raise NotSmoothError(_CODE)
+        return not _same(_parts(self.setting), _parts(self._changed(config, whole).setting))
 
     def slope(self, parameter: Parameter) -> Setting:
         """Return the derivative by a parameter of what the run follows from.
@@ -70,13 +99,13 @@ class Scene(Wanted):
         base, h = self.setting, _PART * parameter.value
         scenes = {step: self.at(parameter, parameter.value + step * h) for step in (*range(-4, 0), *range(1, 5))}
         if any(_fixed(scene.whole) != _fixed(self.whole) for scene in scenes.values()):
-            raise NotSmoothError(f"{parameter.name}: the code of the law itself changes with it")
+            raise NotSmoothError(_CODE)
         settings = {step: scene.setting for step, scene in scenes.items()}
 
         def derivative(of: Callable[[Setting], FloatArray]) -> FloatArray:
             taken = {step: of(setting) for step, setting in settings.items()}
             if any(value.shape != of(base).shape for value in taken.values()):
-                raise NotSmoothError(f"{parameter.name}: the code of the law itself changes with it")
+                raise NotSmoothError(_CODE)
             finite = np.isfinite(of(base))  # a limit that is none stays none
             taken = {step: np.where(finite, value, 0.0) for step, value in taken.items()}
             found, other = (
@@ -87,7 +116,7 @@ class Scene(Wanted):
             size = np.maximum(np.abs(found), near)
             # Where large numbers have cancelled, rounding is of their size.
             if not np.all(np.abs(found - other) <= _AGREES * size + _ROUNDING * near.max(initial=0.0)):
-                raise NotSmoothError(f"{parameter.name}: the numbers of the loop are not smooth in it")
+                raise NotSmoothError("the numbers of the loop are not smooth in it")
             exact: FloatArray = np.where(np.abs(found) <= _ROUNDING * size, 0.0, found)
             return exact
 
@@ -98,16 +127,70 @@ class Scene(Wanted):
         )
 
 
-def _with_laws_of(whole: Whole, other: Whole) -> Whole:
-    """Return another closed loop with the laws of a first one, which reckon with the other's arms."""
-    loops = []
-    for own, changed in zip(whole.commands.loops, other.commands.loops, strict=True):
-        law = copy.copy(own.law)
-        law.models = changed.law.models
-        law.__dict__.pop("_arms", None)
-        loops.append(replace(own, law=law))
-    return replace(other, commands=replace(other.commands, loops=tuple(loops)))
-
-
 def _fixed(whole: Whole) -> list[str]:
     return [fixed_text(loop.law) for loop in whole.commands.loops]
+
+
+def _same(some: Sequence[FloatArray], others: Sequence[FloatArray]) -> bool:
+    return all(np.array_equal(one, other) for one, other in zip(some, others, strict=True))
+
+
+def _parts(setting: Setting) -> list[FloatArray]:
+    return [setting.numbers, setting.start, *setting.errors]
+
+
+class Slopes:
+    """Derivatives of what a run follows from, by the parameters on which it depends.
+
+    Args:
+        scene: The run.
+
+    Attributes:
+        scene: The run.
+        parameters: The parameters.
+        settings: The derivative by each.
+        left_out: Names of the parameters by which there is none, by the reason.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.parameters: list[Parameter] = []
+        self.settings: list[Setting] = []
+        self.left_out: dict[str, list[str]] = {}
+
+    def add_key(self, key: Key) -> None:
+        """Add the numbers of a key, if the run depends on them."""
+        with self._leaving_out(key.name):
+            moved = key.moved(_PART)
+            if not self.scene.depends(moved):
+                return
+            if not key.is_set:
+                raise NotSmoothError(_ZERO)
+            for parameter in key.parameters(self.scene.config, moved):
+                self.add(parameter)
+
+    def add(self, parameter: Parameter) -> None:
+        """Add a parameter, if the run depends on it and no other one has the same effect."""
+        with self._leaving_out(parameter.name):
+            if parameter.value == 0.0:
+                raise NotSmoothError(_ZERO)
+            found = self.scene.slope(parameter)
+            shares = parameter.value * np.concatenate([part.ravel() for part in _parts(found)])
+            if not shares.any():
+                return
+            for other, setting in zip(self.parameters, self.settings, strict=True):
+                own = other.value * np.concatenate([part.ravel() for part in _parts(setting)])
+                if np.allclose(shares, own, rtol=_AGREES, atol=_AGREES * np.abs(own).max()):
+                    raise NotSmoothError(f"it has the effect of {other.name}")
+            self.parameters.append(parameter)
+            self.settings.append(found)
+
+    @contextmanager
+    def _leaving_out(self, name: str) -> Iterator[None]:
+        try:
+            yield
+        except NotSmoothError as error:
+            self.left_out.setdefault(str(error), []).append(name)
+        except ConfigError as error:
+            why = error.problems[0].partition(": ")[2].partition("; found")[0]
+            self.left_out.setdefault(f"values near its own are refused: {why}", []).append(name)

@@ -1,14 +1,13 @@
 """The derivatives of stored runs."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
-from runner.config.run import RunConfig
+from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.errors import ConfigError, RunnerError
 from runner.sensitivity.analysis import Sensitivity, analyse
 from runner.sensitivity.parameters import GROUPS
-from runner.store import Run
+from runner.store import Run, simulated_part
 
 
 def of_run(run: Run, groups: Sequence[str] = GROUPS, repetition: int = 0) -> Sensitivity:
@@ -20,19 +19,22 @@ def of_run(run: Run, groups: Sequence[str] = GROUPS, repetition: int = 0) -> Sen
         repetition: Number of the repetition.
 
     Raises:
-        RunnerError: where there is no such repetition, the run cannot be made again, or it has no derivatives.
+        RunnerError: where there is no such repetition, its command no longer makes the run, or it has no derivatives.
     """
     count = int(run.record["repetitions"])
     if not 0 <= repetition < count:
         raise RunnerError(f"no repetition {repetition} of {run.hash}; allowed: 0 to {count - 1}")
-
-    def validated(resolved: Mapping[str, Any]) -> RunConfig:
-        return validate(resolved, run.config_dirs)
-
     try:
-        config = validated(run.config)
+        composed = compose(run.overrides, run.config_dirs)
+        arm = validate(composed.resolved, run.config_dirs).arm
     except ConfigError as error:
         raise RunnerError(f"run {run.hash} cannot be made again: {'; '.join(error.problems)}") from None
-    if config.arm.urdf != run.urdf:
-        raise RunnerError(f"the file of the robot of {run.hash} has changed since the run; make the run anew")
-    return analyse(config, validated, groups, repetition)
+    if arm.urdf != run.urdf:
+        raise RunnerError(f"the file of the robot of {run.hash} has changed since the run; make the run again")
+    before, now = simulated_part(run.config), simulated_part(composed.resolved)
+    changed = sorted(key for key in {**before, **now} if before.get(key) != now.get(key))
+    if changed:
+        raise RunnerError(
+            f"the command of run {run.hash} gives another {', '.join(changed)} today; make the run again with it"
+        )
+    return analyse(composed, groups, repetition)

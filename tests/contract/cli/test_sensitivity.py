@@ -1,8 +1,11 @@
 """`runner sensitivity`: tables, the check, and what it refuses."""
 
+from dataclasses import replace
+
 import pytest
 
 from runner import store
+from runner.errors import RunnerError
 from runner.sensitivity import GROUPS, of_run
 
 MACRO = ("robot=macro", "plant=rk4", "trajectory=quintic", "duration=0.05")
@@ -16,8 +19,8 @@ def run(copy_run):
 def test_a_table_for_each_metric_the_largest_first(cli, run):
     ending = cli("sensitivity", run, "--metric", "peak_torque", "--metric", "energy", "--of", "masses", "--of", "gains")
     assert (ending.code, ending.err) == (0, "")
-    head, *tables = ending.out.split("\n\n")
-    assert head == "macro, operational_space, repetition 0"
+    head, *tables, beside = ending.out.split("\n\n")
+    assert head == "macro, operational_space, repetition 0\nheld: the start, the desired motion, the ticks"
     assert [table.split(":")[0] for table in tables] == ["peak_torque", "energy"]
     rows = [line.split() for line in tables[0].splitlines()[2:]]
     assert {row[0] for row in rows} == {
@@ -26,6 +29,8 @@ def test_a_table_for_each_metric_the_largest_first(cli, run):
     }  # fmt: skip
     sizes = [abs(float(row[-1])) for row in rows]
     assert sizes == sorted(sizes, reverse=True)
+    assert "controller.natural_frequency moves controller.null_space_frequency" in beside.splitlines()
+    assert "not in the tables: controller.period: the ticks or steps of the run follow it" in beside.splitlines()
 
 
 def test_differences_stand_beside_where_they_are_asked_for(cli, run):
@@ -75,6 +80,13 @@ def test_a_run_on_another_plant_has_those_of_its_counterpart(cli, copy_run, run)
     told, same = cli("sensitivity", other, *one).out, cli("sensitivity", run, *one).out
     assert "derivatives of the same run on rk4, as those of mujoco are not to be had" in told
     assert told.split("\n\n")[1] == same.split("\n\n")[1]
+
+
+def test_a_run_that_its_command_no_longer_gives_is_refused(run):
+    stored = store.open_run(run)
+    other = replace(stored, config={**stored.config, "gravity": 9.0, "duration": 9.0})
+    with pytest.raises(RunnerError, match="gives another duration, gravity today; make the run again"):
+        of_run(other)
 
 
 def test_bad_arguments(cli, run):

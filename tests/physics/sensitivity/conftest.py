@@ -5,7 +5,6 @@ from functools import cache
 import pytest
 
 from runner.config.compose import compose
-from runner.config.validation import validate
 from runner.sensitivity import GROUPS, analyse
 
 
@@ -13,6 +12,6 @@ from runner.sensitivity import GROUPS, analyse
 def analysed():
     @cache
     def found(*overrides, groups=GROUPS):
-        return analyse(validate(compose(overrides).resolved), validate, groups)
+        return analyse(compose(overrides), groups)
 
     return found
