@@ -54,7 +54,13 @@ def differences(found: Sensitivity, names: Sequence[str]) -> dict[str, Differenc
     pairs = values.reshape(len(names), len(found.parameters), _STEPS, 2)
     size = np.array([parameter.value for parameter in found.parameters])[:, None] * steps  # of a step
     slopes = (pairs[..., 1] - pairs[..., 0]) / (2.0 * size)
-    rounding = [_ROUNDING * max(1.0, abs(found.metrics[name])) / np.abs(size) for name in names]
+    # Gains may make rounding larger: neighbours at the smallest steps then scatter though their order is removed.
+    smallest = (4.0 * slopes[..., -3:] - slopes[..., -4:-1]) / 3.0
+    scatter = np.abs(np.diff(smallest)).max(axis=-1, keepdims=True) * np.abs(size[:, -1:])
+    rounding = [
+        np.maximum(_ROUNDING * max(1.0, abs(found.metrics[name])), own) / np.abs(size)
+        for name, own in zip(names, scatter, strict=True)
+    ]
     return {name: Differences(*_extrapolated(slopes[place], rounding[place])) for place, name in enumerate(names)}
 
 
