@@ -1,7 +1,7 @@
 """A composed config with its quantities, such as 20ms, as plain numbers in SI units."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,8 @@ def put_in_si(resolved: dict[str, object], config_dirs: Sequence[Path] = ()) -> 
         resolved: The config as plain data, interpolations resolved; it is changed.
         config_dirs: Config folders of the user's, in which URDFs are looked for: a joint that slides takes lengths.
     """
-    found = list(_quantities(resolved))
+    read = ((place, text, read_quantity(text)) for place, text in leaves(resolved) if isinstance(text, str))
+    found = [(place, text, quantity) for place, text, quantity in read if quantity is not None]
     if not found:
         return
     from runner.config.key_units import units_at  # the models of all kinds, which few configs need here
@@ -33,28 +34,25 @@ def put_in_si(resolved: dict[str, object], config_dirs: Sequence[Path] = ()) -> 
         for unit in units.at(place):
             value = quantity.in_unit(unit)
             if value is not None:
-                _put(resolved, place, value)
+                put(resolved, place, value)
                 if units.sliding:
                     of_joints.append((place, text, "m" if unit == units.sliding else "rad"))
     for place, text in _wrong_joints(resolved, of_joints, config_dirs) if of_joints else ():
-        _put(resolved, place, text)
+        put(resolved, place, text)
 
 
-def _quantities(value: object, place: Place = ()) -> Iterator[tuple[Place, str, Quantity]]:
-    """Yield place, text and meaning of each text that is a number with a unit."""
-    if isinstance(value, str):
-        quantity = read_quantity(value)
-        if quantity is not None:
-            yield place, value, quantity
-    elif isinstance(value, dict):
-        for key, item in value.items():
-            yield from _quantities(item, (*place, key))
-    elif isinstance(value, list):
-        for number, item in enumerate(value):
-            yield from _quantities(item, (*place, number))
+def leaves(value: object, place: Place = ()) -> Iterator[tuple[Place, object]]:
+    """Yield the place and value of all that a config holds, in its groups and lists."""
+    inner = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else None
+    if inner is None:
+        yield place, value
+    else:
+        for key, item in inner:
+            yield from leaves(item, (*place, key))
 
 
-def _put(config: Any, place: Place, value: object) -> None:
+def put(config: Any, place: Place, value: object) -> None:
+    """Put a value at a place of a config."""
     for key in place[:-1]:
         config = config[key]
     config[place[-1]] = value

@@ -1,13 +1,17 @@
 """Parameters of a run: keys of its config, and masses and lengths of its links."""
 
+import copy
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import partial, reduce
+from itertools import groupby, takewhile
+from operator import getitem
 from typing import Any
 
 import numpy as np
 
+from runner.config.in_si import Place, leaves, put
 from runner.config.key_units import units_at
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS
@@ -18,18 +22,14 @@ from runner.robots.robot import Robot, with_models
 from runner.store import simulated_part
 from runner.trajectories.joint_motion import TipOfJoints
 
-GROUPS = (
-    "gains", "masses", "armature", "lengths", "payload", "friction", "gravity", "limits", "noise", "mismatch", "others",
-)  # fmt: skip
-# The group of a key is that of the first of its words which is here; "others" where none is.
-_GROUP_OF = {
-    "controller": "gains", "disturbance_observer": "gains", "notch": "gains", "masses": "masses", "tool": "masses",
-    "armature": "armature", "payload": "payload", "friction": "friction", "gravity": "gravity",
-    "torque_limits": "limits", "noise": "noise", "mismatch": "mismatch",
+# The words of a key that give it a group, the first of them which it has.
+_WORDS: Mapping[str, Sequence[str]] = {
+    "gains": ("controller", "disturbance_observer", "notch"), "masses": ("masses", "tool"), "armature": ("armature",),
+    "lengths": (), "payload": ("payload",), "friction": ("friction",), "gravity": ("gravity",),
+    "limits": ("torque_limits",), "noise": ("noise",), "mismatch": ("mismatch",), "others": (),
 }  # fmt: skip
+GROUPS = tuple(_WORDS)
 _SMALL = 1e-6  # in place of 0, to see if it acts
-
-Recomposed = Callable[..., RunConfig]
 
 
 @dataclass(frozen=True)
@@ -60,88 +60,73 @@ class Key:
     Attributes:
         name: Its dotted name.
         group: One of GROUPS.
-        value: What it holds.
-        recomposed: Returns the run's checked config with further overrides.
+        numbers: Its numbers by their places in the config.
+        with_numbers: Returns the run's checked config with other numbers at some of these places.
     """
 
     name: str
     group: str
-    value: Any
-    recomposed: Recomposed
+    numbers: Mapping[Place, float]
+    with_numbers: Callable[[Mapping[Place, float]], RunConfig]
 
     def moved(self, share: float) -> RunConfig:
-        """Return the config with each number of the key changed by another share; those that are 0 become small ones.
-
-        By one share alike, the direction that a list may be would not change.
-        """
-        return self._with(lambda place, number: number * (1.0 + share * (1 + sum(place))) or _SMALL)
-
-    @property
-    def is_set(self) -> bool:
-        """Whether one of the numbers is not 0."""
-        return any(number for _, number in _numbers(self.value))
+        """Return the config with each number changed by another share, as of a list only the direction may act."""
+        shares = enumerate(self.numbers.items(), start=1)
+        return self.with_numbers({place: number * (1.0 + n * share) or _SMALL for n, (place, number) in shares})
 
     def parameters(self, config: RunConfig, moved: RunConfig) -> Iterator[Parameter]:
-        """Yield a parameter for each number of the key.
+        """Yield a parameter for each number.
 
         Args:
             config: The run's checked config.
             moved: The one in which the key has changed.
         """
-        before, after = (dict(_keys(simulated_part(one.resolved))) for one in (config, moved))
-        moves = [name for name in before if before[name] != after.get(name) and name != self.name]
-        for place, number in _numbers(self.value):
-            name = self.name + "".join(f"[{index}]" for index in place)
-            path: tuple[str | int, ...] = (*self.name.split("."), *place)
-            unit = next(iter(units_at(config.resolved, path).at(path)), "1")
-            yield Parameter(name, self.group, float(number), unit, partial(self._with_number, place), moves)
+        before, after = _numbers(config), _numbers(moved)
+        changed = dict.fromkeys(_name(place) for place in before if before[place] != after.get(place))
+        moves = [name for name in changed if name != self.name]
+        for place, number in self.numbers.items():
+            name = self.name + "".join(f"[{word}]" for word in place if isinstance(word, int))
+            unit = next(iter(units_at(config.resolved, place).at(place)), "1")
 
-    def _with_number(self, place: tuple[int, ...], new: float) -> RunConfig:
-        return self._with(lambda own, number: new if own == place else number)
+            def with_value(value: float, place: Place = place) -> RunConfig:
+                return self.with_numbers({place: value})
 
-    def _with(self, change: Callable[[tuple[int, ...], float], float]) -> RunConfig:
-        return self.recomposed(f"{self.name}={json.dumps(_mapped(self.value, change))}")
+            yield Parameter(name, self.group, number, unit, with_value, moves)
 
 
-def find_keys(config: RunConfig, groups: Sequence[str], recomposed: Recomposed) -> Iterator[Key]:
+def find_keys(config: RunConfig, groups: Sequence[str], recomposed: Callable[[str], RunConfig]) -> Iterator[Key]:
     """Yield the keys of a run's config that hold numbers, in some groups.
 
     Args:
         config: The run's checked config.
         groups: Some of GROUPS.
-        recomposed: Returns the checked config with further overrides.
+        recomposed: Returns the checked config with a further override.
     """
-    own = simulated_part(config.resolved)
-    robot = {"robot": own.pop("robot")}  # last: of two keys with one effect the first has the row
-    for name, value in (*_keys(own), *_keys(robot)):
-        group = next((_GROUP_OF[word] for word in name.split(".") if word in _GROUP_OF), "others")
+    for name, found in groupby(_numbers(config).items(), lambda number: _name(number[0])):
+        group = next((group for word in name.split(".") for group, words in _WORDS.items() if word in words), "others")
         if group in groups:
-            yield Key(name, group, value, recomposed)
+            yield Key(name, group, dict(found), partial(_with_numbers, config, name, recomposed))
 
 
-def _keys(node: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the dotted name and value of each key with a number, or with a list that has one."""
-    for name, value in node.items():
-        if isinstance(value, Mapping):
-            yield from _keys(value, f"{path}{name}.")
-        elif any(_numbers(value)):
-            yield f"{path}{name}", value
+def _numbers(config: RunConfig) -> dict[Place, float]:
+    """Return the numbers of a config by their places."""
+    own = simulated_part(config.resolved)
+    own["robot"] = own.pop("robot")  # last: of two keys with one effect the first has the row
+    numbers = ((place, value) for place, value in leaves(own) if isinstance(value, int | float))
+    return {place: float(value) for place, value in numbers if not isinstance(value, bool) and np.isfinite(value)}
 
 
-def _numbers(value: Any, place: tuple[int, ...] = ()) -> Iterator[tuple[tuple[int, ...], float]]:
-    """Yield each number of a value with its place in nested lists."""
-    if isinstance(value, list):
-        for index, inner in enumerate(value):
-            yield from _numbers(inner, (*place, index))
-    elif isinstance(value, (int, float)) and not isinstance(value, bool) and np.isfinite(value):
-        yield place, value
+def _name(place: Place) -> str:
+    return ".".join(str(word) for word in takewhile(lambda word: isinstance(word, str), place))
 
 
-def _mapped(value: Any, change: Callable[[tuple[int, ...], float], float], place: tuple[int, ...] = ()) -> Any:
-    """Return a value with its numbers changed, given their places and themselves."""
-    if isinstance(value, list):
-        return [_mapped(inner, change, (*place, index)) for index, inner in enumerate(value)]
-    return change(place, value) if any(_numbers(value)) else value
+def _with_numbers(
+    config: RunConfig, name: str, recomposed: Callable[[str], RunConfig], numbers: Mapping[Place, float]
+) -> RunConfig:
+    changed: Any = copy.deepcopy(dict(config.resolved))
+    for place, number in numbers.items():
+        put(changed, place, number)
+    return recomposed(f"{name}={json.dumps(reduce(getitem, name.split('.'), changed))}")
 
 
 def find_links(config: RunConfig, groups: Sequence[str]) -> Iterator[Parameter]:

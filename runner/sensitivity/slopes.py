@@ -1,8 +1,8 @@
 """How the numbers of a closed loop change with a parameter, exact to rounding."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -16,14 +16,13 @@ from runner.errors import ConfigError, RunnerError
 from runner.sensing.encoders import encoder_errors
 from runner.sensitivity.parameters import Key, Parameter
 from runner.trace import FloatArray
-from runner.trajectories.trajectory import joint_reference
+from runner.trajectories.trajectory import Trajectory, joint_reference
 
 _PART = 1.0 / 512.0  # of a parameter's value, between the nine at which numbers are taken
 _EIGHTH = (4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0)  # exact for polynomials of up to that degree
 _SIXTH = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0, 0.0)
 _AGREES, _ROUNDING = 1e-9, 1e-12
 _CODE = "the code of the law changes with it"
-_ZERO = "its value is 0, which has no share to change"
 
 
 class NotSmoothError(RunnerError):
@@ -54,12 +53,14 @@ class Scene(Wanted):
         Raises:
             ConfigError: where there is no such run.
         """
-        config = parameter.with_value(value)
-        whole = describe_loop(config, self.repetition)
-        assert whole is not None  # noqa: S101 - it is of the same kinds as the run's
-        return self._changed(config, whole)
+        return self._changed(parameter.with_value(value))
 
-    def _changed(self, config: RunConfig, whole: Whole) -> "Scene":
+    def _changed(self, config: RunConfig) -> "Scene":
+        whole = describe_loop(config, self.repetition)
+        if whole is None or config.timing != self.config.timing:
+            raise NotSmoothError("the ticks or steps of the run follow it")
+        if _fixed(whole) != _fixed(self.whole):
+            raise NotSmoothError(_CODE)
         # What metrics reckon with, such as home, is that of the arm itself.
         return replace(self, config=replace(config, arm=self.config.arm, path=self.config.path), whole=whole)
 
@@ -71,20 +72,11 @@ class Scene(Wanted):
             ConfigError: where it cannot start.
         """
         times: FloatArray = np.arange(self.rows, dtype=np.float64) * self.whole.tick
-        before, after = (
-            [np.array(motion) for motion in (one.path.sample(times), joint_reference(one.path, times))]
-            for one in (self.config, config)
-        )
-        if not _same(before, after):
+        if not np.array_equal(_motion(self.config.path, times), _motion(config.path, times)):
             raise NotSmoothError("the desired motion, which is held, follows it")
         if not np.array_equal(find_start(config), self.q_start):
             raise NotSmoothError("the start, which is held, follows it")
-        whole = describe_loop(config, self.repetition)
-        if whole is None or config.timing != self.config.timing:
-            raise NotSmoothError("the ticks or steps of the run follow it")
-        if _fixed(whole) != _fixed(self.whole):
-            raise NotSmoothError(_CODE)
-        return not _same(_parts(self.setting), _parts(self._changed(config, whole).setting))
+        return not np.array_equal(_vector(self.setting), _vector(self._changed(config).setting))
 
     def slope(self, parameter: Parameter) -> Setting:
         """Return the derivative by a parameter of what the run follows from.
@@ -98,8 +90,6 @@ class Scene(Wanted):
         """
         base, h = self.setting, _PART * parameter.value
         scenes = {step: self.at(parameter, parameter.value + step * h) for step in (*range(-4, 0), *range(1, 5))}
-        if any(_fixed(scene.whole) != _fixed(self.whole) for scene in scenes.values()):
-            raise NotSmoothError(_CODE)
         settings = {step: scene.setting for step, scene in scenes.items()}
 
         def derivative(of: Callable[[Setting], FloatArray]) -> FloatArray:
@@ -131,19 +121,18 @@ def _fixed(whole: Whole) -> list[str]:
     return [fixed_text(loop.law) for loop in whole.commands.loops]
 
 
-def _same(some: Sequence[FloatArray], others: Sequence[FloatArray]) -> bool:
-    return all(np.array_equal(one, other) for one, other in zip(some, others, strict=True))
+def _motion(path: Trajectory, times: FloatArray) -> FloatArray:
+    joints = joint_reference(path, times)
+    return np.concatenate([np.ravel(part) for part in (path.sample(times), joints) if part is not None])
 
 
-def _parts(setting: Setting) -> list[FloatArray]:
-    return [setting.numbers, setting.start, *setting.errors]
+def _vector(setting: Setting) -> FloatArray:
+    return np.concatenate([part.ravel() for part in (setting.numbers, setting.start, *setting.errors)])
 
 
+@dataclass
 class Slopes:
     """Derivatives of what a run follows from, by the parameters on which it depends.
-
-    Args:
-        scene: The run.
 
     Attributes:
         scene: The run.
@@ -152,34 +141,30 @@ class Slopes:
         left_out: Names of the parameters by which there is none, by the reason.
     """
 
-    def __init__(self, scene: Scene) -> None:
-        self.scene = scene
-        self.parameters: list[Parameter] = []
-        self.settings: list[Setting] = []
-        self.left_out: dict[str, list[str]] = {}
+    scene: Scene
+    parameters: list[Parameter] = field(default_factory=list)
+    settings: list[Setting] = field(default_factory=list)
+    left_out: dict[str, list[str]] = field(default_factory=dict)
 
     def add_key(self, key: Key) -> None:
         """Add the numbers of a key, if the run depends on them."""
         with self._leaving_out(key.name):
             moved = key.moved(_PART)
-            if not self.scene.depends(moved):
-                return
-            if not key.is_set:
-                raise NotSmoothError(_ZERO)
-            for parameter in key.parameters(self.scene.config, moved):
-                self.add(parameter)
+            if self.scene.depends(moved):
+                for parameter in key.parameters(self.scene.config, moved):
+                    self.add(parameter)
 
     def add(self, parameter: Parameter) -> None:
         """Add a parameter, if the run depends on it and no other one has the same effect."""
         with self._leaving_out(parameter.name):
             if parameter.value == 0.0:
-                raise NotSmoothError(_ZERO)
+                raise NotSmoothError("its value is 0, which has no share to change")
             found = self.scene.slope(parameter)
-            shares = parameter.value * np.concatenate([part.ravel() for part in _parts(found)])
+            shares = parameter.value * _vector(found)
             if not shares.any():
                 return
             for other, setting in zip(self.parameters, self.settings, strict=True):
-                own = other.value * np.concatenate([part.ravel() for part in _parts(setting)])
+                own = other.value * _vector(setting)
                 if np.allclose(shares, own, rtol=_AGREES, atol=_AGREES * np.abs(own).max()):
                     raise NotSmoothError(f"it has the effect of {other.name}")
             self.parameters.append(parameter)
