@@ -61,37 +61,39 @@ class Key:
         name: Its dotted name.
         group: One of GROUPS.
         numbers: Its numbers by their places in the config.
-        with_numbers: Returns the run's checked config with other numbers at some of these places.
+        config: The run's checked config.
+        recomposed: Returns the checked config with a further override.
     """
 
     name: str
     group: str
     numbers: Mapping[Place, float]
-    with_numbers: Callable[[Mapping[Place, float]], RunConfig]
+    config: RunConfig
+    recomposed: Callable[[str], RunConfig]
 
     def moved(self, share: float) -> RunConfig:
         """Return the config with each number changed by another share, as of a list only the direction may act."""
         shares = enumerate(self.numbers.items(), start=1)
-        return self.with_numbers({place: number * (1.0 + n * share) or _SMALL for n, (place, number) in shares})
+        return self._with({place: number * (1.0 + n * share) or _SMALL for n, (place, number) in shares})
 
-    def parameters(self, config: RunConfig, moved: RunConfig) -> Iterator[Parameter]:
-        """Yield a parameter for each number.
-
-        Args:
-            config: The run's checked config.
-            moved: The one in which the key has changed.
-        """
-        before, after = _numbers(config), _numbers(moved)
+    def parameters(self, moved: RunConfig) -> Iterator[Parameter]:
+        """Yield a parameter for each number, given the config in which they have changed."""
+        before, after = _numbers(self.config), _numbers(moved)
         changed = dict.fromkeys(_name(place) for place in before if before[place] != after.get(place))
         moves = [name for name in changed if name != self.name]
         for place, number in self.numbers.items():
             name = self.name + "".join(f"[{word}]" for word in place if isinstance(word, int))
-            unit = next(iter(units_at(config.resolved, place).at(place)), "1")
+            unit = next(iter(units_at(self.config.resolved, place).at(place)), "1")
+            yield Parameter(name, self.group, number, unit, partial(self._with_number, place), moves)
 
-            def with_value(value: float, place: Place = place) -> RunConfig:
-                return self.with_numbers({place: value})
+    def _with_number(self, place: Place, number: float) -> RunConfig:
+        return self._with({place: number})
 
-            yield Parameter(name, self.group, number, unit, with_value, moves)
+    def _with(self, numbers: Mapping[Place, float]) -> RunConfig:
+        changed: Any = copy.deepcopy(dict(self.config.resolved))
+        for place, number in numbers.items():
+            put(changed, place, number)
+        return self.recomposed(f"{self.name}={json.dumps(reduce(getitem, self.name.split('.'), changed))}")
 
 
 def find_keys(config: RunConfig, groups: Sequence[str], recomposed: Callable[[str], RunConfig]) -> Iterator[Key]:
@@ -105,7 +107,7 @@ def find_keys(config: RunConfig, groups: Sequence[str], recomposed: Callable[[st
     for name, found in groupby(_numbers(config).items(), lambda number: _name(number[0])):
         group = next((group for word in name.split(".") for group, words in _WORDS.items() if word in words), "others")
         if group in groups:
-            yield Key(name, group, dict(found), partial(_with_numbers, config, name, recomposed))
+            yield Key(name, group, dict(found), config, recomposed)
 
 
 def _numbers(config: RunConfig) -> dict[Place, float]:
@@ -120,37 +122,18 @@ def _name(place: Place) -> str:
     return ".".join(str(word) for word in takewhile(lambda word: isinstance(word, str), place))
 
 
-def _with_numbers(
-    config: RunConfig, name: str, recomposed: Callable[[str], RunConfig], numbers: Mapping[Place, float]
-) -> RunConfig:
-    changed: Any = copy.deepcopy(dict(config.resolved))
-    for place, number in numbers.items():
-        put(changed, place, number)
-    return recomposed(f"{name}={json.dumps(reduce(getitem, name.split('.'), changed))}")
-
-
 def find_links(config: RunConfig, groups: Sequence[str]) -> Iterator[Parameter]:
     """Yield the masses, armature and lengths of an arm, in some of GROUPS, that are not 0."""
-    for group in ("masses", "armature", "lengths"):
-        if group in groups:
-            yield from _links(config, group)
-
-
-def _links(config: RunConfig, group: str) -> Iterator[Parameter]:
     model = config.arm.model
     for joint, name in enumerate(model.joint_names, start=1):
-        if group == "masses":
-            mass = float(model.pin_model.inertias[joint].mass)
-            if mass > 0.0:
-                yield Parameter(f"mass.{name}", group, mass, "kg", partial(_with_mass, config, joint, mass))
-        elif group == "armature":
-            unit, armature = "kg" if model.slides[joint - 1] else "kg m^2", float(model.armature[joint - 1])
-            if armature > 0.0:
-                yield Parameter(f"armature.{name}", group, armature, unit, partial(_with_armature, config, joint))
-        else:
-            length = _length(model, joint)
-            if length > 0.0:
-                yield Parameter(f"length.{name}", group, length, "m", partial(_with_length, config, joint, length))
+        mass, length = float(model.pin_model.inertias[joint].mass), _length(model, joint)
+        armature, unit = float(model.armature[joint - 1]), "kg" if model.slides[joint - 1] else "kg m^2"
+        found = (
+            Parameter(f"mass.{name}", "masses", mass, "kg", partial(_with_scaled, config, 0, joint, mass)),
+            Parameter(f"armature.{name}", "armature", armature, unit, partial(_with_armature, config, joint)),
+            Parameter(f"length.{name}", "lengths", length, "m", partial(_with_scaled, config, 1, joint, length)),
+        )
+        yield from (parameter for parameter in found if parameter.group in groups and parameter.value > 0.0)
 
 
 def _length(model: RobotModel, joint: int) -> float:
@@ -162,32 +145,22 @@ def _length(model: RobotModel, joint: int) -> float:
     return float(np.linalg.norm(arm.frames[model.tip_frame].placement.translation))
 
 
-def _with_mass(config: RunConfig, joint: int, mass: float, value: float) -> RunConfig:
-    masses = np.ones(config.arm.model.nq)
-    masses[joint - 1] = value / mass
-    return _with_arm(config, masses, np.ones(len(masses) + 1))
+def _with_scaled(config: RunConfig, row: int, joint: int, own: float, value: float) -> RunConfig:
+    """Return a config in which the mass (row 0) or the length (row 1) of a link has a value in place of its own."""
+    factors = np.ones((2, config.arm.model.nq + 1))  # of the base and each link
+    factors[row, joint] = value / own
+
+    def change(model: RobotModel, joints: slice, _: bool) -> RobotModel:
+        masses, lengths = factors[:, joints.start : joints.stop + 1]
+        return scaled(model, masses[1:], np.ones(model.nq), lengths)
+
+    return _with_robot(config, with_models(config.arm, change))
 
 
 def _with_armature(config: RunConfig, joint: int, value: float) -> RunConfig:
     armature = config.arm.model.armature
     armature[joint - 1] = value
     return _with_robot(config, with_armature(config.arm, armature))
-
-
-def _with_length(config: RunConfig, joint: int, length: float, value: float) -> RunConfig:
-    lengths = np.ones(config.arm.model.nq + 1)
-    lengths[joint] = value / length
-    return _with_arm(config, np.ones(len(lengths) - 1), lengths)
-
-
-def _with_arm(config: RunConfig, masses: Any, lengths: Any) -> RunConfig:
-    """Return a config with another arm; masses (nq,) and lengths (nq + 1,) are factors."""
-
-    def change(model: RobotModel, joints: slice, _: bool) -> RobotModel:
-        own = masses[joints]
-        return scaled(model, own, np.ones(len(own)), lengths[joints.start : joints.stop + 1])
-
-    return _with_robot(config, with_models(config.arm, change))
 
 
 def _with_robot(config: RunConfig, changed: Robot) -> RunConfig:

@@ -151,7 +151,7 @@ class Slopes:
         with self._leaving_out(key.name):
             moved = key.moved(_PART)
             if self.scene.depends(moved):
-                for parameter in key.parameters(self.scene.config, moved):
+                for parameter in key.parameters(moved):
                     self.add(parameter)
 
     def add(self, parameter: Parameter) -> None:

@@ -59,7 +59,7 @@ class Run(Stored):
     @property
     def overrides(self) -> Sequence[str]:
         """Overrides of its command."""
-        return [word for option, word in self._words if "=" in word and option not in ("--config-dir", "--plugin")]
+        return [word for option, word in self._words if "--" not in (option[:2], word[:2])]
 
     @property
     def _words(self) -> Iterator[tuple[str, str]]:
