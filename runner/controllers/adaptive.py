@@ -15,7 +15,7 @@ from runner.controllers.torque_law import Arm, PinocchioArm
 from runner.robots.model import RobotModel
 
 _SPEED, _ACCELERATION = 1.0, 2.0  # rad/s and rad/s^2, or m/s and m/s^2: of the motions that scale the gains
-_NOTHING = 1e-200  # kg m^2/s^4, in place of a division by zero where s is zero
+_NOTHING = 1e-200  # kg m^2/s^4, by which gains stay as they are where s is zero
 _SMOOTH = 0.01  # rad/s or m/s, below which the believed dry friction fades
 
 

@@ -83,7 +83,8 @@ def analyse(composed: Composed, groups: Sequence[str] = GROUPS, repetition: int 
     trace, metrics = simulated(scene)
     parameters = slopes.parameters
     if not parameters:
-        raise RunnerError(f"the run depends on no parameter of {', '.join(groups)}; allowed: {', '.join(GROUPS)}")
+        why = "".join(f"; {', '.join(names)}: {reason}" for reason, names in slopes.left_out.items())
+        raise RunnerError(f"the run depends on no parameter of {', '.join(groups)}{why}; allowed: {', '.join(GROUPS)}")
     whole = scene.whole
     shared = whole.commands.shared(trace.t, trace.desired, joint_reference(scene.config.path, trace.t))
     moved = tangents(whole, scene.setting, slopes.settings, shared)

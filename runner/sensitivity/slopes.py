@@ -177,5 +177,5 @@ class Slopes:
         except NotSmoothError as error:
             self.left_out.setdefault(str(error), []).append(name)
         except ConfigError as error:
-            why = error.problems[0].partition(": ")[2].partition("; found")[0]
+            why = error.problems[0].partition("; found")[0].split(": ", 1)[-1]
             self.left_out.setdefault(f"values near its own are refused: {why}", []).append(name)

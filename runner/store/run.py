@@ -2,7 +2,7 @@
 
 import itertools
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -54,17 +54,14 @@ class Run(Stored):
     @property
     def config_dirs(self) -> Sequence[Path]:
         """Config folders that its command names, in which the file of its robot is looked for."""
-        return [Path(word) for option, word in self._words if option == "--config-dir"]
+        words = shlex.split(str(self.provenance["command"]))
+        return [Path(after) for before, after in itertools.pairwise(words) if before == "--config-dir"]
 
     @property
     def overrides(self) -> Sequence[str]:
         """Overrides of its command."""
-        return [word for option, word in self._words if "--" not in (option[:2], word[:2])]
-
-    @property
-    def _words(self) -> Iterator[tuple[str, str]]:
-        """The words of its command, each with the one before."""
-        return itertools.pairwise(shlex.split(str(self.provenance["command"])))
+        words = shlex.split(str(self.provenance["command"]))
+        return [after for before, after in itertools.pairwise(words) if "--" not in (before[:2], after[:2])]
 
     @property
     def metrics(self) -> Mapping[str, Mapping[str, Any]]:

@@ -93,7 +93,8 @@ def test_bad_arguments(cli, run):
     assert "--of: no 'mases' (did you mean masses?)" in cli("sensitivity", run, "--of", "mases").err
     ending = cli("sensitivity", run, "--repetition", 40)
     assert (ending.code, "no repetition 40 of" in ending.err, "allowed: 0 to 39" in ending.err) == (2, True, True)
-    assert "depends on no parameter of payload" in cli("sensitivity", run, "--of", "payload").err
+    told = "depends on no parameter of payload; robot.payload.mass: its value is 0, which has no share to change"
+    assert told in cli("sensitivity", run, "--of", "payload").err
 
 
 def test_another_repetition_has_its_own_noise(cli, run):
