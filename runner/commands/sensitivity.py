@@ -57,7 +57,7 @@ def main(arguments: Sequence[str]) -> int:
     for name in names:
         print(f"\n{name}: {number(found.metrics[name])} {_unit(name)}")
         print(aligned(_rows(found, name, compared.get(name))))
-    print(*_beside(found), sep="\n")
+    print(*_notes(found), sep="\n")
     return _compare(found, compared) if options.check else 0
 
 
@@ -70,12 +70,12 @@ def _about(run: "Run", found: "Sensitivity") -> str:
     return f"{text}\nheld: the start, the desired motion, the ticks"
 
 
-def _beside(found: "Sensitivity") -> Iterator[str]:
-    """Yield a line for what moves with each parameter, and for the parameters that are not in the tables."""
+def _notes(found: "Sensitivity") -> Iterator[str]:
+    """Yield the lines on keys that follow a parameter, and on parameters that are not in the tables."""
     yield ""
     for parameter in found.parameters:
-        if parameter.moves:
-            yield f"{parameter.name} moves {', '.join(parameter.moves)}"
+        if parameter.followers:
+            yield f"{parameter.name} also changes {', '.join(parameter.followers)}"
     for reason, names in found.left_out.items():
         yield f"not in the tables: {', '.join(names)}: {reason}"
 

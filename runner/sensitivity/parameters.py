@@ -22,14 +22,14 @@ from runner.robots.robot import Robot, with_models
 from runner.store import simulated_part
 from runner.trajectories.joint_motion import TipOfJoints
 
-# The words of a key that give it a group, the first of them which it has.
+# The words of each group; the first of them in a key's name gives the key its group.
 _WORDS: Mapping[str, Sequence[str]] = {
     "gains": ("controller", "disturbance_observer", "notch"), "masses": ("masses", "tool"), "armature": ("armature",),
     "lengths": (), "payload": ("payload",), "friction": ("friction",), "gravity": ("gravity",),
     "limits": ("torque_limits",), "noise": ("noise",), "mismatch": ("mismatch",), "others": (),
 }  # fmt: skip
 GROUPS = tuple(_WORDS)
-_SMALL = 1e-6  # in place of 0, to see if it acts
+_SMALL = 1e-6  # replaces 0, to see if the key acts
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Parameter:
         value: Its value.
         unit: Its unit.
         with_value: Returns the run's config with another value.
-        moves: Other keys of the config that change with it.
+        followers: Other keys of the config that change with it.
     """
 
     name: str
@@ -50,7 +50,7 @@ class Parameter:
     value: float
     unit: str
     with_value: Callable[[float], RunConfig]
-    moves: Sequence[str] = ()
+    followers: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -71,20 +71,20 @@ class Key:
     config: RunConfig
     recomposed: Callable[[str], RunConfig]
 
-    def moved(self, share: float) -> RunConfig:
-        """Return the config with each number changed by another share, as of a list only the direction may act."""
+    def changed(self, share: float) -> RunConfig:
+        """Return the config with each number changed by another share, because only a list's direction may act."""
         shares = enumerate(self.numbers.items(), start=1)
         return self._with({place: number * (1.0 + n * share) or _SMALL for n, (place, number) in shares})
 
-    def parameters(self, moved: RunConfig) -> Iterator[Parameter]:
+    def parameters(self, changed: RunConfig) -> Iterator[Parameter]:
         """Yield a parameter for each number, given the config in which they have changed."""
-        before, after = _numbers(self.config), _numbers(moved)
-        changed = dict.fromkeys(_name(place) for place in before if before[place] != after.get(place))
-        moves = [name for name in changed if name != self.name]
+        before, after = _numbers(self.config), _numbers(changed)
+        names = dict.fromkeys(_name(place) for place in before if before[place] != after.get(place))
+        followers = [name for name in names if name != self.name]
         for place, number in self.numbers.items():
             name = self.name + "".join(f"[{word}]" for word in place if isinstance(word, int))
             unit = next(iter(units_at(self.config.resolved, place).at(place)), "1")
-            yield Parameter(name, self.group, number, unit, partial(self._with_number, place), moves)
+            yield Parameter(name, self.group, number, unit, partial(self._with_number, place), followers)
 
     def _with_number(self, place: Place, number: float) -> RunConfig:
         return self._with({place: number})

@@ -22,11 +22,11 @@ _PART = 1.0 / 512.0  # of a parameter's value, between the nine at which numbers
 _EIGHTH = (4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0)  # exact for polynomials of up to that degree
 _SIXTH = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0, 0.0)
 _AGREES, _ROUNDING = 1e-9, 1e-12
-_CODE = "the code of the law changes with it"
+_CODE = "it changes the code of the law"
 
 
-class NotSmoothError(RunnerError):
-    """The numbers of a closed loop are no smooth functions of a parameter, or its code changes with it."""
+class NoDerivativeError(RunnerError):
+    """There is no derivative of a run by a parameter; the text is the reason."""
 
 
 class Scene(Wanted):
@@ -58,9 +58,9 @@ class Scene(Wanted):
     def _changed(self, config: RunConfig) -> "Scene":
         whole = describe_loop(config, self.repetition)
         if whole is None or config.timing != self.config.timing:
-            raise NotSmoothError("the ticks or steps of the run follow it")
+            raise NoDerivativeError("it changes the ticks or steps of the run, which are held")
         if _fixed(whole) != _fixed(self.whole):
-            raise NotSmoothError(_CODE)
+            raise NoDerivativeError(_CODE)
         # What metrics reckon with, such as home, is that of the arm itself.
         return replace(self, config=replace(config, arm=self.config.arm, path=self.config.path), whole=whole)
 
@@ -68,14 +68,14 @@ class Scene(Wanted):
         """Tell if another config gives another run.
 
         Raises:
-            NotSmoothError: where it does so in a way that has no derivative; its text is the reason.
+            NoDerivativeError: where it does so in a way that has no derivative.
             ConfigError: where it cannot start.
         """
         times: FloatArray = np.arange(self.rows, dtype=np.float64) * self.whole.tick
         if not np.array_equal(_motion(self.config.path, times), _motion(config.path, times)):
-            raise NotSmoothError("the desired motion, which is held, follows it")
+            raise NoDerivativeError("it changes the desired motion, which is held")
         if not np.array_equal(find_start(config), self.q_start):
-            raise NotSmoothError("the start, which is held, follows it")
+            raise NoDerivativeError("it changes the start, which is held")
         return not np.array_equal(_vector(self.setting), _vector(self._changed(config).setting))
 
     def slope(self, parameter: Parameter) -> Setting:
@@ -85,7 +85,7 @@ class Scene(Wanted):
         eighth order through values near the parameter's own is exact to rounding, and that of sixth order must agree.
 
         Raises:
-            NotSmoothError: where they do not.
+            NoDerivativeError: where they do not.
             ConfigError: where a value beside the parameter's own is not allowed.
         """
         base, h = self.setting, _PART * parameter.value
@@ -95,7 +95,7 @@ class Scene(Wanted):
         def derivative(of: Callable[[Setting], FloatArray]) -> FloatArray:
             taken = {step: of(setting) for step, setting in settings.items()}
             if any(value.shape != of(base).shape for value in taken.values()):
-                raise NotSmoothError(_CODE)
+                raise NoDerivativeError(_CODE)
             finite = np.isfinite(of(base))  # a limit that is none stays none
             taken = {step: np.where(finite, value, 0.0) for step, value in taken.items()}
             found, other = (
@@ -106,7 +106,7 @@ class Scene(Wanted):
             size = np.maximum(np.abs(found), near)
             # Where large numbers have cancelled, rounding is of their size.
             if not np.all(np.abs(found - other) <= _AGREES * size + _ROUNDING * near.max(initial=0.0)):
-                raise NotSmoothError("the numbers of the loop are not smooth in it")
+                raise NoDerivativeError("the numbers of the loop are no smooth functions of it")
             exact: FloatArray = np.where(np.abs(found) <= _ROUNDING * size, 0.0, found)
             return exact
 
@@ -149,16 +149,16 @@ class Slopes:
     def add_key(self, key: Key) -> None:
         """Add the numbers of a key, if the run depends on them."""
         with self._leaving_out(key.name):
-            moved = key.moved(_PART)
-            if self.scene.depends(moved):
-                for parameter in key.parameters(moved):
+            changed = key.changed(_PART)
+            if self.scene.depends(changed):
+                for parameter in key.parameters(changed):
                     self.add(parameter)
 
     def add(self, parameter: Parameter) -> None:
         """Add a parameter, if the run depends on it and no other one has the same effect."""
         with self._leaving_out(parameter.name):
             if parameter.value == 0.0:
-                raise NotSmoothError("its value is 0, which has no share to change")
+                raise NoDerivativeError("its value is 0 (a small value shows its effect)")
             found = self.scene.slope(parameter)
             shares = parameter.value * _vector(found)
             if not shares.any():
@@ -166,7 +166,7 @@ class Slopes:
             for other, setting in zip(self.parameters, self.settings, strict=True):
                 own = other.value * _vector(setting)
                 if np.allclose(shares, own, rtol=_AGREES, atol=_AGREES * np.abs(own).max()):
-                    raise NotSmoothError(f"it has the effect of {other.name}")
+                    raise NoDerivativeError(f"it has the same effect as {other.name}")
             self.parameters.append(parameter)
             self.settings.append(found)
 
@@ -174,7 +174,7 @@ class Slopes:
     def _leaving_out(self, name: str) -> Iterator[None]:
         try:
             yield
-        except NotSmoothError as error:
+        except NoDerivativeError as error:
             self.left_out.setdefault(str(error), []).append(name)
         except ConfigError as error:
             why = error.problems[0].partition("; found")[0].split(": ", 1)[-1]

@@ -29,8 +29,10 @@ def test_a_table_for_each_metric_the_largest_first(cli, run):
     }  # fmt: skip
     sizes = [abs(float(row[-1])) for row in rows]
     assert sizes == sorted(sizes, reverse=True)
-    assert "controller.natural_frequency moves controller.null_space_frequency" in beside.splitlines()
-    assert "not in the tables: controller.period: the ticks or steps of the run follow it" in beside.splitlines()
+    assert beside.splitlines()[:2] == [
+        "controller.natural_frequency also changes controller.null_space_frequency",
+        "not in the tables: controller.period: it changes the ticks or steps of the run, which are held",
+    ]
 
 
 def test_differences_stand_beside_where_they_are_asked_for(cli, run):
@@ -93,7 +95,7 @@ def test_bad_arguments(cli, run):
     assert "--of: no 'mases' (did you mean masses?)" in cli("sensitivity", run, "--of", "mases").err
     ending = cli("sensitivity", run, "--repetition", 40)
     assert (ending.code, "no repetition 40 of" in ending.err, "allowed: 0 to 39" in ending.err) == (2, True, True)
-    told = "depends on no parameter of payload; robot.payload.mass: its value is 0, which has no share to change"
+    told = "depends on no parameter of payload; robot.payload.mass: its value is 0 (a small value shows its effect)"
     assert told in cli("sensitivity", run, "--of", "payload").err
 
 

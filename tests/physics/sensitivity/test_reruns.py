@@ -122,8 +122,8 @@ def test_a_key_moves_the_keys_that_take_its_value(analysed):
     names = [one.name for one in tied.parameters]
     assert names == [one.name for one in alone.parameters]
     own, bandwidth, null_space = (names.index(name) for name in ("controller.natural_frequency", BANDWIDTH, NULL_SPACE))
-    assert sorted(tied.parameters[own].moves) == [NULL_SPACE, BANDWIDTH]
-    assert not alone.parameters[own].moves
+    assert sorted(tied.parameters[own].followers) == [NULL_SPACE, BANDWIDTH]
+    assert not alone.parameters[own].followers
     for name, derivatives in tied.derivatives.items():
         parts = alone.derivatives[name]
         assert derivatives[own] == pytest.approx(parts[[own, bandwidth, null_space]].sum(), rel=1e-9), name
@@ -135,11 +135,11 @@ def test_every_number_that_acts_is_told(analysed):
     found = analysed(*TIED)
     check_completeness(found, TIED)
     reasons = {name: reason for reason, names in found.left_out.items() for name in names}
-    assert reasons["robot.natural_frequency"] == "it has the effect of controller.natural_frequency"
-    assert reasons["robot.masses.link2"] == "it has the effect of mass.q2"
-    assert reasons["trajectory.goal"] == "the desired motion, which is held, follows it"
-    assert reasons["controller.period"] == "the ticks or steps of the run follow it"
-    assert reasons["noise.bias"] == "its value is 0, which has no share to change"
+    assert reasons["robot.natural_frequency"] == "it has the same effect as controller.natural_frequency"
+    assert reasons["robot.masses.link2"] == "it has the same effect as mass.q2"
+    assert reasons["trajectory.goal"] == "it changes the desired motion, which is held"
+    assert reasons["controller.period"] == "it changes the ticks or steps of the run, which are held"
+    assert reasons["noise.bias"] == "its value is 0 (a small value shows its effect)"
     assert reasons["repetitions"] == "values near its own are refused: must be a whole number"
 
 

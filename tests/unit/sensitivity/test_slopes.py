@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runner.compiled.directed import Setting
-from runner.sensitivity.slopes import _PART, NotSmoothError, Scene
+from runner.sensitivity.slopes import _PART, NoDerivativeError, Scene
 
 VALUE = 2.0
 STEP = VALUE * _PART  # between two values at which numbers are taken
@@ -35,7 +35,7 @@ def test_polynomials_of_low_degree_have_their_derivative_to_rounding():
 
 @pytest.mark.parametrize("share", [1.0, 1e-3, 3e-6])
 def test_numbers_with_a_kink_beside_the_value_have_none(share):
-    with pytest.raises(NotSmoothError, match="the numbers of the loop are not smooth in it"):
+    with pytest.raises(NoDerivativeError, match="the numbers of the loop are no smooth functions of it"):
         slope_of(lambda value: [value**2 + share * kink(value)])
 
 
@@ -44,5 +44,5 @@ def test_a_kink_by_which_both_formulas_differ_by_less_than_1e_9_does_no_harm():
 
 
 def test_numbers_whose_count_changes_with_the_parameter_have_none():
-    with pytest.raises(NotSmoothError, match="the code of the law changes with it"):
+    with pytest.raises(NoDerivativeError, match="it changes the code of the law"):
         slope_of(lambda value: [1.0] * (2 if value > VALUE else 1))
