@@ -40,7 +40,7 @@ def main(arguments: Sequence[str]) -> int:
         " for the next"
     )  # fmt: skip
     parser.add_argument("--repetition", type=int, default=0, metavar="N", help="which repetition (0)")
-    parser.add_argument("--check", action="store_true", help="put central differences beside, and compare")
+    parser.add_argument("--check", action="store_true", help="compare with central differences")
     options = parser.parse_args(arguments)
     quiet_environment()
     from runner import store
@@ -66,7 +66,7 @@ def _about(run: "Run", found: "Sensitivity") -> str:
     text = f"{config.robot.name}, {config.controller.kind}, repetition {found.scene.repetition}"
     kind = run.config["plant"]["kind"]
     if kind != config.plant.kind:
-        text += f": derivatives of the same run on rk4, as those of {kind} are not to be had; so are the metrics"
+        text += f": derivatives of the same run on rk4, because those of {kind} are not available; so are the metrics"
     return f"{text}\nheld: the start, the desired motion, the ticks"
 
 
@@ -116,7 +116,7 @@ def _relative(difference: float, derivative: float) -> float:
 
 
 def _compare(found: "Sensitivity", compared: "Mapping[str, Differences]") -> int:
-    """Tell how far derivatives and differences agree; return 1 where they do not."""
+    """Print how far derivatives and differences agree; return 1 if they do not."""
     gaps = [
         _relative(by.derivatives[place] - derivative, derivative)
         for name, by in compared.items()

@@ -29,14 +29,14 @@ from runner.trajectories.trajectory import joint_reference
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """How a run's metrics change with its parameters.
+    """The derivatives of a run's metrics by its parameters.
 
     Attributes:
         scene: The run.
         metrics: Its smooth metrics by name.
         parameters: The parameters on which it depends.
         derivatives: Of each metric by each parameter, shape (parameters,).
-        left_out: Names of the parameters by which there is no derivative, by the reason.
+        left_out: Names of the parameters without a derivative, by the reason.
         error: Root mean square of the tip's error over the run, in m.
         moves: Largest way of the tip by each parameter, per relative change of it, shape (parameters,), in m.
     """
@@ -106,7 +106,7 @@ def analyse(composed: Composed, groups: Sequence[str] = GROUPS, repetition: int 
 
 
 def slopes_of(composed: Composed, groups: Sequence[str], repetition: int) -> Slopes:
-    """Return how a repetition of a run follows from its parameters; see analyse."""
+    """Return the derivatives of the numbers that a repetition of a run depends on; see analyse."""
 
     def recomposed(*overrides: str) -> RunConfig:
         again = compose([*composed.overrides, *overrides], composed.config_dirs) if overrides else composed
@@ -121,7 +121,7 @@ def slopes_of(composed: Composed, groups: Sequence[str], repetition: int) -> Slo
 
 
 def by_runge_kutta(resolved: Mapping[str, Any], config_dirs: Sequence[Path]) -> RunConfig:
-    """Return the checked config of a run, with the Runge-Kutta plant in place of another one that takes torques."""
+    """Return the checked config of a run, with the Runge-Kutta plant instead of another one that takes torques."""
     config = validate(resolved, config_dirs)
     if config.plant.kind == "rk4" or is_flexible(config) or PLANTS.commands(config.plant.kind) != "torque":
         return config

@@ -146,7 +146,7 @@ def _length(model: RobotModel, joint: int) -> float:
 
 
 def _with_scaled(config: RunConfig, row: int, joint: int, own: float, value: float) -> RunConfig:
-    """Return a config in which the mass (row 0) or the length (row 1) of a link has a value in place of its own."""
+    """Return a config in which the mass (row 0) or the length (row 1) of a link has another value."""
     factors = np.ones((2, config.arm.model.nq + 1))  # of the base and each link
     factors[row, joint] = value / own
 
@@ -164,6 +164,6 @@ def _with_armature(config: RunConfig, joint: int, value: float) -> RunConfig:
 
 
 def _with_robot(config: RunConfig, changed: Robot) -> RunConfig:
-    """Return a config with another arm, true and believed."""
+    """Return a config with another arm, of the plant and of the controllers."""
     loops = CONTROLLERS.build_for(config.controller, changed, isinstance(config.path, TipOfJoints))
     return replace(config, arm=changed, loops=loops)

@@ -1,4 +1,4 @@
-"""How the numbers of a closed loop change with a parameter, exact to rounding."""
+"""Derivatives of the numbers of a closed loop by a parameter, exact to rounding."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -26,15 +26,15 @@ _CODE = "it changes the code of the law"
 
 
 class NoDerivativeError(RunnerError):
-    """There is no derivative of a run by a parameter; the text is the reason."""
+    """A run has no derivative by a parameter; the message is the reason."""
 
 
 class Scene(Wanted):
-    """One repetition of a run, and how what it follows from changes with parameters."""
+    """One repetition of a run, and the derivatives of the numbers that it depends on."""
 
     @property
     def setting(self) -> Setting:
-        """What it follows from."""
+        """The numbers that it depends on."""
         loops, settings = self.whole.commands.loops, self.config.settings
         errors = [
             encoder_errors(
@@ -61,11 +61,11 @@ class Scene(Wanted):
             raise NoDerivativeError("it changes the ticks or steps of the run, which are held")
         if _fixed(whole) != _fixed(self.whole):
             raise NoDerivativeError(_CODE)
-        # What metrics reckon with, such as home, is that of the arm itself.
+        # Metrics depend on the arm itself, such as on its home.
         return replace(self, config=replace(config, arm=self.config.arm, path=self.config.path), whole=whole)
 
     def depends(self, config: RunConfig) -> bool:
-        """Tell if another config gives another run.
+        """Return True if another config gives another run.
 
         Raises:
             NoDerivativeError: where it does so in a way that has no derivative.
@@ -79,14 +79,14 @@ class Scene(Wanted):
         return not np.array_equal(_vector(self.setting), _vector(self._changed(config).setting))
 
     def slope(self, parameter: Parameter) -> Setting:
-        """Return the derivative by a parameter of what the run follows from.
+        """Return the derivatives by a parameter of the numbers that the run depends on.
 
         These numbers are polynomials of low degree in a parameter, as omega_n^2 is, or ratios of such: the formula of
         eighth order through values near the parameter's own is exact to rounding, and that of sixth order must agree.
 
         Raises:
             NoDerivativeError: where they do not.
-            ConfigError: where a value beside the parameter's own is not allowed.
+            ConfigError: if a value near the parameter's own is not allowed.
         """
         base, h = self.setting, _PART * parameter.value
         scenes = {step: self.at(parameter, parameter.value + step * h) for step in (*range(-4, 0), *range(1, 5))}
@@ -132,7 +132,7 @@ def _vector(setting: Setting) -> FloatArray:
 
 @dataclass
 class Slopes:
-    """Derivatives of what a run follows from, by the parameters on which it depends.
+    """Derivatives of the numbers that a run depends on, by its parameters.
 
     Attributes:
         scene: The run.

@@ -19,7 +19,7 @@ def of_run(run: Run, groups: Sequence[str] = GROUPS, repetition: int = 0) -> Sen
         repetition: Number of the repetition.
 
     Raises:
-        RunnerError: where there is no such repetition, its command no longer makes the run, or it has no derivatives.
+        RunnerError: where there is no such repetition, its command gives another run today, or it has no derivatives.
     """
     count = int(run.record["repetitions"])
     if not 0 <= repetition < count:
@@ -28,13 +28,11 @@ def of_run(run: Run, groups: Sequence[str] = GROUPS, repetition: int = 0) -> Sen
         composed = compose(run.overrides, run.config_dirs)
         arm = validate(composed.resolved, run.config_dirs).arm
     except ConfigError as error:
-        raise RunnerError(f"run {run.hash} cannot be made again: {'; '.join(error.problems)}") from None
+        raise RunnerError(f"run {run.hash} cannot be rerun: {'; '.join(error.problems)}") from None
     if arm.urdf != run.urdf:
-        raise RunnerError(f"the file of the robot of {run.hash} has changed since the run; make the run again")
+        raise RunnerError(f"the file of the robot of {run.hash} has changed since the run; rerun it")
     before, now = simulated_part(run.config), simulated_part(composed.resolved)
     changed = sorted(key for key in {**before, **now} if before.get(key) != now.get(key))
     if changed:
-        raise RunnerError(
-            f"the command of run {run.hash} gives another {', '.join(changed)} today; make the run again with it"
-        )
+        raise RunnerError(f"the command of run {run.hash} gives another {', '.join(changed)} today; rerun it")
     return analyse(composed, groups, repetition)

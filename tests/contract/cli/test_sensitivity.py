@@ -80,14 +80,14 @@ def test_a_run_on_another_plant_has_those_of_its_counterpart(cli, copy_run, run)
     one = ("--metric", "peak_torque", "--of", "masses")
     other = copy_run("mujoco")
     told, same = cli("sensitivity", other, *one).out, cli("sensitivity", run, *one).out
-    assert "derivatives of the same run on rk4, as those of mujoco are not to be had" in told
+    assert "derivatives of the same run on rk4, because those of mujoco are not available" in told
     assert told.split("\n\n")[1] == same.split("\n\n")[1]
 
 
 def test_a_run_that_its_command_no_longer_gives_is_refused(run):
     stored = store.open_run(run)
     other = replace(stored, config={**stored.config, "gravity": 9.0, "duration": 9.0})
-    with pytest.raises(RunnerError, match="gives another duration, gravity today; make the run again"):
+    with pytest.raises(RunnerError, match="gives another duration, gravity today; rerun it"):
         of_run(other)
 
 
