@@ -60,7 +60,7 @@ test-wheel: install
 # The pins of `make install` with the digests of their files: the newest versions, or of PIN alone.
 pins: install
 	printf 'setuptools\nuv\n' | $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
-		--no-annotate --custom-compile-command 'make pins' --extra dev --extra docs --extra bench \
+		--no-annotate --custom-compile-command 'make pins' --extra dev --extra docs --extra bench --extra ros \
 		$(if $(PIN),--upgrade-package $(PIN),--upgrade) --output-file constraints.txt pyproject.toml -
 
 lint: install

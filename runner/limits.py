@@ -2,6 +2,8 @@
 
 import contextlib
 import os
+import resource
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -41,6 +43,7 @@ TABLE_NUMBERS = Limit(40_000, "numbers")  # of one, which becomes part of the co
 RECORDING = Limit(100_000_000, "bytes")
 RECORDING_ROWS = Limit(1_000_000, "rows")  # a quarter of an hour at 1 kHz; 8 bytes for each column that is read
 RECORDING_ROW = Limit(100_000, "characters in a row")  # 10^4 columns
+BAG_MEMORY = Limit(1_000_000_000, "bytes")  # that reading a ROS bag may take, whose parts may be compressed
 RECORD = Limit(50_000_000, "bytes")  # JSON that the runner wrote; 10^5 listed runs have 20 MB
 RECORD_VALUES = Limit(2_000_000, "values")  # of one, 100 bytes each
 
@@ -57,6 +60,19 @@ def read_text(path: Path, limit: Limit) -> str:
     if excess := limit.excess(path.stat().st_size):
         raise ExcessError(excess)
     return path.read_text(encoding="utf-8")
+
+
+@contextlib.contextmanager
+def bounded_memory(limit: Limit) -> Iterator[None]:
+    """Let the process take so many more bytes and no more: what unpacks to a larger size raises MemoryError."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    most = int(Path("/proc/self/statm").read_text().split()[0]) * os.sysconf("SC_PAGE_SIZE") + limit.most
+    lower = [own for own in (soft, hard) if own != resource.RLIM_INFINITY]
+    resource.setrlimit(resource.RLIMIT_AS, (min([most, *lower]), hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
 def half_of_memory() -> float:

@@ -150,22 +150,25 @@ class Run:
         return figure_of(signals_of(self.stored, repetition), signal)
 
     @door
-    def compare_recording(self, recording: str | Path, columns: str | Path) -> "RecordingComparison":
+    def compare_recording(
+        self, recording: str | Path, columns: str | Path, fill_gaps: float = 0.0
+    ) -> "RecordingComparison":
         """Hold the recording of a real arm against repetition 0: what `runner compare` prints and writes as a report.
 
         The result has `offset`, when the run begins in the recording; `residuals`, a list of signals with `mean`,
         `rms`, `largest` and `fit`; `metrics`, of the run and of the recording by name; `friction`, that of its joints.
 
         Args:
-            recording: The recording, a CSV file.
+            recording: The recording, a CSV file or a ROS bag.
             columns: The YAML file that says what its columns hold, as docs/recordings.md tells.
+            fill_gaps: Longest gap of the recording that is filled, in s; 0 for none.
 
         Raises:
             RunnerError: if a file cannot be read, or the recording does not fit the run.
         """
         from runner.recordings.compare import compare_recording
 
-        return compare_recording(self.stored, Path(recording), Path(columns))
+        return compare_recording(self.stored, Path(recording), Path(columns), fill_gaps)
 
     def __repr__(self) -> str:
         told = "; ".join(f"{one.title} {one.value}" for one in self._key_metrics(_IN_TEXT))

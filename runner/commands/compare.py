@@ -5,21 +5,23 @@ compares the levels of an axis of one sweep. `runner compare RUN recording.csv -
 of a real arm against a run, and writes a report; its folder is the last line.
 """
 
-from argparse import Namespace
+from argparse import ArgumentTypeError, Namespace
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.commands.arguments import Parser, Stored
+from runner.config.units import read_quantity
 from runner.errors import RunnerError
 from runner.quiet import quiet_environment
+from runner.recordings import BAGS
 
 if TYPE_CHECKING:
     from runner.store import Run
 
 
 class StoredOrRecording(Stored):
-    """The type of an argument that is the folder of something stored, or a recording, a CSV file."""
+    """The type of an argument that is the folder of something stored, or a recording."""
 
     def __call__(self, text: str) -> Path:
         """Return the folder or the file that a text names."""
@@ -34,7 +36,7 @@ def main(arguments: Sequence[str]) -> int:
         nargs="+",
         type=StoredOrRecording(("run", "sweep")),
         metavar="DIR",
-        help="runs, or sweeps; or latest; or a run and a recording, a CSV file",
+        help="runs, or sweeps; or latest; or a run and a recording, a CSV file or a ROS bag",
     )
     parser.add_argument("--metrics", type=_names, metavar="NAME,NAME", help="compare these metrics alone")
     parser.add_argument("--by", metavar="AXIS", help="of one sweep: compare the levels of this axis")
@@ -45,13 +47,16 @@ def main(arguments: Sequence[str]) -> int:
         help="within each level of these; default: over all others and within each",
     )
     parser.add_argument("--columns", type=Path, metavar="FILE", help="of a recording: which signal each column holds")
+    parser.add_argument(
+        "--fill-gaps", type=_seconds, metavar="TIME", help="of a recording: fill gaps of up to this, such as 20ms"
+    )
     options = parser.parse_args(arguments)
     metrics, within = options.metrics or (), options.within or None
     quiet_environment()
     from runner import store
 
     recordings = [path for path in options.folders if _is_recording(path)]
-    if recordings or options.columns:
+    if recordings or options.columns or options.fill_gaps:
         _compare_recording(options.folders, recordings, options)
         return 0
     sweeps = [store.is_sweep(folder) for folder in options.folders]
@@ -82,7 +87,7 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _is_recording(path: str | Path) -> bool:
-    return Path(path).suffix.lower() == ".csv"
+    return Path(path).suffix.lower() in (".csv", *BAGS)
 
 
 def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], options: Namespace) -> None:
@@ -101,11 +106,19 @@ def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], option
         raise RunnerError("--by, --within and --metrics are not for recordings")
     from runner.commands.compare_recording import print_recording
 
-    print_recording(folders[0], recordings[0], options.columns)
+    print_recording(folders[0], recordings[0], options.columns, options.fill_gaps or 0.0)
 
 
 def _names(text: str) -> list[str]:
     return [name.strip() for name in text.split(",") if name.strip()]
+
+
+def _seconds(text: str) -> float:
+    found = read_quantity(text)
+    seconds = None if found is None else found.in_unit("s")
+    if seconds is None or seconds <= 0.0:
+        raise ArgumentTypeError(f"must be a time above 0, such as 20ms; found {text!r}")
+    return seconds
 
 
 def _alone(folder: Path, is_sweep: bool) -> str:

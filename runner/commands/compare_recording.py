@@ -10,13 +10,14 @@ if TYPE_CHECKING:
     from runner.recordings.compare import RecordingComparison
 
 
-def print_recording(folder: Path, recording: Path, columns: Path) -> None:
+def print_recording(folder: Path, recording: Path, columns: Path, fill_gaps: float) -> None:
     """Print how a recording differs from a run, and write the report; its folder is the last line.
 
     Args:
         folder: The run's.
-        recording: The recording, CSV.
+        recording: The recording, CSV or a ROS bag.
         columns: What its columns are, YAML.
+        fill_gaps: Longest gap of the recording that is filled, in s; 0 for none.
 
     Raises:
         RunnerError: if one of them cannot be read, or the recording does not fit the run.
@@ -30,7 +31,7 @@ def print_recording(folder: Path, recording: Path, columns: Path) -> None:
 
     progress.plan({READING: SOON, **of_report(("html", "pdf"))})
     progress.begin(READING)
-    found = compare_recording(store.open_run(folder), recording, columns)
+    found = compare_recording(store.open_run(folder), recording, columns, fill_gaps)
     print(_told(found), end="\n\n")
     made = report_folder(found)
     write_report(recording_document(found), made)

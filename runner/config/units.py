@@ -14,7 +14,7 @@ _ONE, _MILLI, _MICRO, _KILO = Decimal(1), Decimal("1e-3"), Decimal("1e-6"), Deci
 
 WRITTEN: Mapping[str, Mapping[str, Decimal | float]] = {
     "m": {"m": _ONE, "cm": Decimal("1e-2"), "mm": _MILLI, "um": _MICRO},
-    "s": {"s": _ONE, "ms": _MILLI, "us": _MICRO, "min": Decimal(60), "h": Decimal(3600)},
+    "s": {"s": _ONE, "ms": _MILLI, "us": _MICRO, "ns": Decimal("1e-9"), "min": Decimal(60), "h": Decimal(3600)},
     "rad": {"rad": _ONE, "mrad": _MILLI, "deg": _DEGREE},
     "m/s": {"m/s": _ONE, "cm/s": Decimal("1e-2"), "mm/s": _MILLI},
     "m/s^2": {"m/s^2": _ONE, "mm/s^2": _MILLI},

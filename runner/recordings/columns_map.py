@@ -13,6 +13,7 @@ from runner.registry import StrictModel
 from runner.texts import quoted
 
 AMPERE = "A"
+_SMALLEST = 1e-6  # N m/A
 SignalKind = Literal["position", "torque", "tip"]
 
 
@@ -61,7 +62,7 @@ class Column(StrictModel):
     torque: str | None = None
     tip: Literal["x", "y", "z"] | None = None
     unit: str
-    constant: FiniteFloat | None = None
+    constant: FiniteFloat | None = Field(None, ge=-1e6, le=1e6)
 
     @model_validator(mode="after")
     def _check(self) -> "Column":
@@ -73,6 +74,8 @@ class Column(StrictModel):
             raise ValueError("a current needs constant, in N m/A, and nothing else takes it: unit: A, constant: 1.6")
         if self.constant is not None and self.torque is None:
             raise ValueError("a current is that of a motor: say by torque whose")
+        if self.constant is not None and abs(self.constant) < _SMALLEST:
+            raise ValueError(f"constant: must be at least {_SMALLEST:g} in magnitude; found {self.constant:g}")
         return self
 
     @property
@@ -90,11 +93,16 @@ class ColumnsMap(StrictModel):
         time: Where the time stands; None where rows come at an even rate.
         rate: Rows in a second, in Hz; beside a column of time it must agree with that.
         columns: What each column holds, by its name; columns that are not named are not read.
+        torque: held if a torque acts from its row to the next one, as a controller commands it: it is centred, half a
+            row later; instant if it was measured at the time of its row.
+        topic: Of a ROS bag: the topic of its joint states; None where it has one alone.
     """
 
     time: TimeColumn | None = None
     rate: PositiveFloat | None = None
     columns: dict[str, Column] = Field(min_length=1)
+    torque: Literal["held", "instant"] = "held"
+    topic: str | None = None
 
     @model_validator(mode="after")
     def _check(self) -> "ColumnsMap":

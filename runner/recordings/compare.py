@@ -19,6 +19,7 @@ from runner.recordings.unit_check import other_units
 from runner.store import Run
 
 _SLACK = 0.01  # of a recording's period: a tick so little beyond its ends is covered
+_SHORTEST = 2.0  # s, of a recording whose friction is identified: four blocks of friction.py
 
 
 @dataclass(frozen=True)
@@ -52,13 +53,14 @@ class RecordingComparison:
         return float(t[0]), float(t[-1])
 
 
-def compare_recording(run: Run, path: Path, columns: Path) -> RecordingComparison:
+def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.0) -> RecordingComparison:
     """Hold a recording against a run.
 
     Args:
         run: The run.
-        path: The recording, CSV.
+        path: The recording, CSV or a ROS bag.
         columns: What its columns are, YAML; see ColumnsMap.
+        fill_gaps: Longest gap of the recording that is filled, in s; 0 for none.
 
     Raises:
         RunnerError: if a file cannot be read or does not fit the run; names what is wrong, and its line or column.
@@ -66,7 +68,7 @@ def compare_recording(run: Run, path: Path, columns: Path) -> RecordingCompariso
     setting = setting_of(run)
     trace = setting.trace
     said, factors = read_map(columns, trace.joint_names, trace.joint_units)
-    recording = read_recording(path, said, factors)
+    recording = read_recording(path, said, factors, fill_gaps)
     moving = [signal for signal in recording.signals if signal.kind != "torque"]
     if not moving:
         raise RunnerError(f"{columns}: columns: needs the position of a joint, or a coordinate of the tip")
@@ -78,7 +80,11 @@ def compare_recording(run: Run, path: Path, columns: Path) -> RecordingCompariso
         [f"columns.{recording.columns[signal]}" for signal in moving],
     )
     ticks, at = _covered(recording, trace.t, offset)
-    recorded = {signal: _at(recording, values, signal, at) for signal, values in recording.signals.items()}
+    middle = at + 0.5 * float(np.median(np.diff(trace.t)))  # the run's torques act from tick to tick
+    recorded = {
+        signal: recording.torque_at(signal, middle) if signal.kind == "torque" else evenly(recording.t, values, at)
+        for signal, values in recording.signals.items()
+    }
     simulated = {signal: setting.signal(signal)[ticks] for signal in recorded}
     questions = list(other_units(recorded, simulated, recording.columns, recording.units))
     if questions:
@@ -110,17 +116,10 @@ def _covered(recording: Recording, t: FloatArray, offset: Offset) -> tuple[slice
     return slice(first, end), np.clip(at[first:end], recording.t[0], recording.t[-1])
 
 
-def _at(recording: Recording, values: FloatArray, signal: Signal, at: FloatArray) -> FloatArray:
-    """Return a signal at some times; torques, which jump, along straight lines."""
-    if signal.kind == "torque":
-        return np.asarray(np.interp(at, recording.t, values))
-    return evenly(recording.t, values, at)
-
-
-def _even(recording: Recording, signals: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return even times from the first row to the last, and signals at them, shape (N, n)."""
-    count = int(recording.duration / recording.period + 1e-6) + 1
-    times = np.minimum(recording.t[0] + recording.period * np.arange(count), recording.t[-1])
+def _even(recording: Recording, signals: FloatArray, first: float = 0.0) -> tuple[FloatArray, FloatArray]:
+    """Return even times from a first one to the last row, and signals at them, shape (N, n)."""
+    count = int((recording.duration - first) / recording.period + 1e-6) + 1
+    times = np.minimum(first + recording.period * np.arange(count), recording.t[-1])
     return times, evenly(recording.t, signals, times)
 
 
@@ -136,13 +135,17 @@ def _friction(setting: Setting, recording: Recording, q: FloatArray | None) -> t
     missing = [joint for joint in joints if Signal("position", joint) not in recording.signals]
     if q is None:
         return None, f"no position of {', '.join(missing)} is recorded"
-    torques = [recording.signals.get(Signal("torque", joint)) for joint in joints]
-    if all(torque is None for torque in torques):
+    signals = [Signal("torque", joint) for joint in joints]
+    if not recording.signals.keys() & set(signals):
         return None, "no torque is recorded"
-    columns = [np.full(len(q), np.nan) if torque is None else torque for torque in torques]
-    times, even = _even(recording, q)
-    held = np.column_stack([np.interp(times, recording.t, column) for column in columns])
-    return identify_friction(setting.config.arm.model, even, held, recording.period), ""
+    if recording.duration < _SHORTEST:
+        return None, f"the recording lasts {recording.duration:.3g} s; needed: {_SHORTEST:g} s or more"
+    times, even = _even(recording, q, recording.torque_shift)
+    torques = [
+        recording.torque_at(signal, times) if signal in recording.signals else np.full(len(times), np.nan)
+        for signal in signals
+    ]
+    return identify_friction(setting.config.arm.model, even, np.column_stack(torques), recording.period), ""
 
 
 def _simulated_friction(run: Run, joints: Sequence[str]) -> dict[str, tuple[float, float]]:

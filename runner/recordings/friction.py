@@ -10,11 +10,13 @@ then run through a lower one, all without delay, and are thinned to what that le
 identification of robots with power model, IEEE ICRA 1997). Rows near standstill are left out, as sgn tells nothing
 there. Joints are weighted by what is left over in each, and the columns of Y are taken out first, so that friction
 which cannot be told from other masses is not given. The intervals allow for what is left over to be correlated within
-half a second and between joints (Liang and Zeger, Biometrika 73(1), 1986).
+half a second and between joints (Liang and Zeger, Biometrika 73(1), 1986), and for what the fit takes up of it (Bell
+and McCaffrey, Survey Methodology 28(2), 2002).
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pinocchio as pin
@@ -24,10 +26,14 @@ from scipy.special import stdtrit
 from runner.recordings.smoothing import FloatArray, cutoff, derivative, low_pass
 from runner.robots.model import RobotModel
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 _FIRST = 5.0  # times the cut-off: that of the low-pass before the equations, which leaves the motion as it is
 _SAMPLES = 4.0  # times that, the fewest samples in a second that the equations are worked out at
 _STANDSTILL = 0.05  # of a joint's largest speed
 _SLOW = 0.01  # of the largest speed of all joints of its kind: a joint that is slower creeps
+_SPOILT = 3.0  # periods of the cut-off at both ends, where the low-pass knows one side alone
 _ONE_WAY = 0.98  # of sgn behind the low-pass: below it the joint has just turned round
 _FEWEST = 10  # rows of a joint in each direction
 _ROUNDING = 1e-5  # of the largest singular value of Y: what is below tells of no mass
@@ -77,6 +83,14 @@ class Friction:
     lacking: Sequence[str]
     frequency: float
 
+    def frame(self) -> "pd.DataFrame":
+        """Return a row for each joint: unit of its position, viscous, coulomb, the half-width of each, constant."""
+        import pandas as pd
+
+        columns = ("joint", "unit", "viscous", "viscous_half", "coulomb", "coulomb_half", "constant")
+        rows = [[getattr(joint, name) for name in columns] for joint in self.joints]
+        return pd.DataFrame(rows, columns=list(columns)).set_index("joint")
+
 
 def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, period: float) -> Friction:
     """Return the friction of the joints of an arm.
@@ -90,20 +104,24 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
     frequency = cutoff(period)
     first = min(_FIRST * frequency, 0.25 / period)
     every = max(1, int(1.0 / (_SAMPLES * first * period)))
-    q, torques = (low_pass(signals, period, first)[::every] for signals in (q, torques))
+    smooth = low_pass(q, period, first)
+    speed = derivative(smooth, period)
+    # The mean of sgn over a sample, as torques are means: a joint that turns round does so within one.
+    signs = np.clip(speed / np.maximum(0.5 * period * np.abs(derivative(speed, period)), 1e-12), -1.0, 1.0)
+    q, torques, signs = smooth[::every], *(low_pass(signals, period, first)[::every] for signals in (torques, signs))
     period *= every
     dq = derivative(q, period)
     rows = list(zip(q, dq, derivative(dq, period), strict=True))
     pin_model, data = pin.Model(model.pin_model), model.pin_model.createData()
     rigid = np.array([pin.rnea(pin_model, data, *row) for row in rows])
     Y = np.array([pin.computeJointTorqueRegressor(pin_model, data, *row).copy() for row in rows])
-    edge, apart = round(1.0 / (frequency * period)), max(1, int(0.5 / (frequency * period)))
+    edge, apart = round(_SPOILT / (frequency * period)), max(1, int(0.5 / (frequency * period)))
     thinned = np.arange(edge, len(q) - edge, apart)
     fastest = np.abs(dq).max(axis=0)
     lacking: list[str] = []
     parts: list[_Part] = []
     for joint, name in enumerate(model.joint_names):
-        signals = (torques[:, joint] - rigid[:, joint], dq[:, joint], np.sign(dq[:, joint]), Y[:, joint])
+        signals = (torques[:, joint] - rigid[:, joint], dq[:, joint], signs[:, joint], Y[:, joint])
         residual, speed, sign, masses = (low_pass(signal, period, frequency)[thinned] for signal in signals)
         moving = (np.abs(speed) > _STANDSTILL * fastest[joint]) & (np.abs(sign) > _ONE_WAY)
         moving &= fastest[joint] > _SLOW * fastest[model.slides == model.slides[joint]].max()
@@ -150,12 +168,12 @@ def _fit(parts: Sequence[_Part]) -> list[_Fitted | None]:
     for number, (place, part) in enumerate(zip(places, parts, strict=True)):
         X[place, 3 * number : 3 * number + 3] = np.column_stack([part.speed, part.sign, np.ones(len(part.speed))])
     blocks = np.concatenate([part.blocks for part in parts])
-    solved = _solve(X, Y, y, np.ones(len(y)), blocks)
+    weights = np.ones(len(y))
     for _ in range(_WEIGHINGS):
-        weights = np.ones(len(y))
+        rest = _solve(X, Y, y, weights, None).rest
         for place in places:
-            weights[place] = 1.0 / max(float(np.std(solved.rest[place])), 1e-12)
-        solved = _solve(X, Y, y, weights, blocks)
+            weights[place] = 1.0 / max(float(np.std(rest[place])), 1e-12)
+    solved = _solve(X, Y, y, weights, blocks)
     found: list[_Fitted | None] = []
     for number, (place, part) in enumerate(zip(places, parts, strict=True)):
         viscous, coulomb, constant = range(3 * number, 3 * number + 3)
@@ -175,7 +193,7 @@ class _Solved:
 
     Attributes:
         theta: Viscous and Coulomb friction and constant of one joint after another, shape (n,).
-        half: Half-widths of their 95 % intervals, shape (n,); None where there are not enough rows.
+        half: Half-widths of their 95 % intervals, shape (n,); None where there are not enough rows, or no blocks.
         left: Share of each column that no mass explains, shape (n,).
         rest: What nothing explains, shape (N,), in N m.
     """
@@ -186,7 +204,9 @@ class _Solved:
     rest: FloatArray
 
 
-def _solve(X: FloatArray, Y: FloatArray, y: FloatArray, weights: FloatArray, blocks: NDArray[np.intp]) -> _Solved:
+def _solve(
+    X: FloatArray, Y: FloatArray, y: FloatArray, weights: FloatArray, blocks: NDArray[np.intp] | None
+) -> _Solved:
     """Return the friction that explains y with the columns X, whatever the masses in Y are.
 
     Args:
@@ -194,7 +214,7 @@ def _solve(X: FloatArray, Y: FloatArray, y: FloatArray, weights: FloatArray, blo
         Y: Columns of the masses, shape (N, m).
         y: Residual torques, shape (N,).
         weights: What each row counts.
-        blocks: Number of the block in time that each row is of: rows of one may be correlated.
+        blocks: Number of the block in time that each row is of: rows of one may be correlated. None: no intervals.
     """
     scaled = Y * weights[:, None]
     sizes = np.linalg.norm(scaled, axis=0)
@@ -210,11 +230,25 @@ def _solve(X: FloatArray, Y: FloatArray, y: FloatArray, weights: FloatArray, blo
     theta = np.asarray(np.linalg.lstsq(own, without_masses(y * weights), rcond=None)[0], dtype=np.float64)
     rest = without_masses(y * weights - columns @ theta)
     left: FloatArray = np.sqrt(np.sum(own**2, axis=0) / np.sum(columns**2, axis=0))
-    freedom, different = len(y) - basis.shape[1] - X.shape[1], np.unique(blocks)
     half = None
-    if freedom > 0 and len(different) > 1:
-        scores = np.array([own[blocks == block].T @ rest[blocks == block] for block in different])
-        bread = np.linalg.pinv(own.T @ own)
-        variances = np.diagonal(bread @ scores.T @ scores @ bread) * len(y) / freedom
-        half = float(stdtrit(len(different) - 1, 0.975)) * np.sqrt(variances)
+    if blocks is not None and len(y) > basis.shape[1] + X.shape[1]:
+        half = _half_widths(own, np.hstack([basis, np.linalg.qr(own)[0]]), rest, blocks)
     return _Solved(theta, half, left, rest / weights)
+
+
+def _half_widths(own: FloatArray, taken: FloatArray, rest: FloatArray, blocks: NDArray[np.intp]) -> FloatArray | None:
+    """Return the half-widths of the intervals, by what is left over in each block; None for one block alone."""
+    numbers = np.unique(blocks)
+    if len(numbers) < 2:
+        return None
+    scores = np.array([own[rows].T @ _unshrunk(taken[rows], rest[rows]) for rows in map(blocks.__eq__, numbers)])
+    bread = np.linalg.pinv(own.T @ own)
+    half: FloatArray = stdtrit(len(numbers) - 1, 0.975) * np.sqrt(np.diagonal(bread @ scores.T @ scores @ bread))
+    return half
+
+
+def _unshrunk(taken: FloatArray, rest: FloatArray) -> FloatArray:
+    """Return the residuals of a block as large as they were before the fit took up its share."""
+    values, vectors = np.linalg.eigh(np.eye(len(rest)) - taken @ taken.T)
+    found: FloatArray = vectors @ (vectors.T @ rest / np.sqrt(np.maximum(values, 1e-6)))
+    return found

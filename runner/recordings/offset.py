@@ -137,12 +137,13 @@ def _refined(t: FloatArray, recorded: FloatArray, run_t: FloatArray, simulated: 
     swing = np.ptp(simulated, axis=0)
     moving = swing > _STILL * swing.max()
 
-    def distance(at: float) -> float:
-        apart = recorded[inside][:, moving] - path(t[inside] - at)[:, moving]
+    def distance(later: float) -> float:
+        apart = recorded[inside][:, moving] - path(t[inside] - start - later)[:, moving]
         return float(np.sum(np.var(apart, axis=0) / swing[moving] ** 2))
 
-    found = minimize_scalar(distance, bounds=(start - near, start + near), method="bounded", options={"xatol": 1e-7})
-    return float(found.x)
+    # From the start on: the tolerance of the search grows with what it searches for.
+    found = minimize_scalar(distance, bounds=(-near, near), method="bounded", options={"xatol": 1e-7})
+    return start + float(found.x)
 
 
 def _check_likeness(t: FloatArray, recorded: FloatArray, run_t: FloatArray, simulated: FloatArray, best: float) -> None:

@@ -1,25 +1,22 @@
-"""A recording: signals of an arm over time, read from CSV and checked, with the line of what is wrong."""
+"""A recording: signals of an arm over time, read from a file and checked."""
 
-import csv
-import math
-from array import array
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TextIO
 
 import numpy as np
-from numpy.typing import NDArray
 
-from runner.errors import RunnerError, nearest
-from runner.limits import RECORDING, RECORDING_ROW, RECORDING_ROWS, ExcessError
+from runner.errors import RunnerError
+from runner.recordings import BAGS
 from runner.recordings.columns_map import ColumnsMap, Factor, Signal
-from runner.texts import few, quoted
-
-FloatArray = NDArray[np.float64]
+from runner.recordings.csv_columns import FloatArray, read_csv_columns, refused
+from runner.recordings.ros_bag import read_bag_columns
+from runner.recordings.smoothing import CUTOFF, evenly
 
 FEWEST_ROWS = 50
-_MOST_TOLD = 5  # problems of one file
+LONGEST_FILLED = 1.0 / CUTOFF
+"""Longest gap that may be filled, in s: an arm may have moved there and back in a longer one."""
+
 _GAP = 1.5  # times the usual time between two rows
 _OTHER_RATE = 0.01  # relative difference from the rate that is said
 
@@ -30,10 +27,12 @@ class Recording:
 
     Attributes:
         path: Its file.
-        t: Times, shape (N,), in s; they run forward without a gap.
+        t: Times since its first row, shape (N,), in s.
         signals: Each signal, shape (N,), in rad, m, N m or N.
         columns: The column that each signal stands in.
         units: The unit that each column is said to have.
+        held: Whether torques act from their row to the next one.
+        filled: Gaps that were filled, in s.
     """
 
     path: Path
@@ -41,6 +40,8 @@ class Recording:
     signals: Mapping[Signal, FloatArray]
     columns: Mapping[Signal, str]
     units: Mapping[str, Factor]
+    held: bool
+    filled: Sequence[float]
 
     @property
     def period(self) -> float:
@@ -50,7 +51,12 @@ class Recording:
     @property
     def duration(self) -> float:
         """Time from the first row to the last, in s."""
-        return float(self.t[-1] - self.t[0])
+        return float(self.t[-1])
+
+    @property
+    def torque_shift(self) -> float:
+        """Time from a row to the middle of the time in which its torque acts, in s."""
+        return 0.5 * self.period if self.held else 0.0
 
     def of_joints(self, kind: str, joints: Sequence[str]) -> FloatArray | None:
         """Return the positions or torques of all joints, shape (N, nq); None where one is not recorded."""
@@ -58,135 +64,113 @@ class Recording:
         found = [signal for signal in wanted if signal is not None]
         return np.column_stack(found) if len(found) == len(wanted) else None
 
+    def torque_at(self, signal: Signal, times: FloatArray) -> FloatArray:
+        """Return a torque at other times, along straight lines between the middles of the times in which it acts."""
+        return np.asarray(np.interp(times, self.t + self.torque_shift, self.signals[signal]))
 
-def read_recording(path: Path, said: ColumnsMap, factors: Mapping[str, Factor]) -> Recording:
+
+def read_recording(path: Path, said: ColumnsMap, factors: Mapping[str, Factor], fill_gaps: float = 0.0) -> Recording:
     """Return the signals of a recording.
 
     Args:
-        path: The file: CSV, the names of its columns in the first line.
+        path: The file: CSV, the names of its columns in the first line; or a ROS bag, see ros_bag.
         said: What its columns are.
         factors: What makes each column SI, by its name.
+        fill_gaps: Longest gap that is filled, in s; 0 for none.
 
     Raises:
         RunnerError: if it cannot be read, lacks a column, has a cell without a number, gaps in time or another rate
             than is said; names the line.
     """
+    if not 0.0 <= fill_gaps <= LONGEST_FILLED:
+        raise RunnerError(f"gaps of up to {LONGEST_FILLED:g} s can be filled; found {fill_gaps:g} s")
     wanted = [*([said.time.column] if said.time is not None else []), *said.columns]
-    numbers = _read_columns(path, wanted)
+    if path.suffix.lower() in BAGS:
+        numbers = read_bag_columns(path, said.topic, wanted)
+    elif said.topic is not None:
+        raise RunnerError(f"{path}: topic: is for ROS bags ({', '.join(BAGS)})")
+    else:
+        numbers = read_csv_columns(path, wanted, list(said.columns) if fill_gaps else [])
     rows = len(numbers[wanted[0]])
     if rows < FEWEST_ROWS:
         raise RunnerError(f"{path}: too short: {rows} rows; needed: {FEWEST_ROWS} or more")
+    filled: list[float] = []
     if said.time is None:
         assert said.rate is not None  # noqa: S101 - the map has one of both
         t = np.arange(rows) / said.rate
     else:
-        t = numbers[said.time.column] * factors[said.time.column].factor
-        _check_time(path, t, said)
-    return Recording(
-        path,
-        t,
-        {column.signal: numbers[name] * factors[name].factor for name, column in said.columns.items()},
-        {column.signal: name for name, column in said.columns.items()},
-        dict(factors),
-    )
+        # From the first row on: a clock that began in 1970 leaves too few digits for times between rows.
+        stamps = numbers[said.time.column]
+        t = (stamps - stamps[0]) * factors[said.time.column].factor
+        filled = _check_time(path, t, said, fill_gaps)
+    signals = {}
+    for name, column in said.columns.items():
+        values = numbers[name] * factors[name].factor
+        signals[column.signal], gaps = _filled(path, name, t, values, column.signal, fill_gaps)
+        filled += gaps
+    columns = {column.signal: name for name, column in said.columns.items()}
+    return Recording(path, t, signals, columns, dict(factors), said.torque == "held", filled)
 
 
-def _read_columns(path: Path, wanted: Sequence[str]) -> dict[str, FloatArray]:
-    try:
-        if excess := RECORDING.excess(path.stat().st_size):
-            raise ExcessError(f"it {excess}")
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            return _columns_of(path, _rows(file), wanted)
-    except (OSError, ExcessError, UnicodeDecodeError, csv.Error) as error:
-        raise RunnerError(f"cannot read {path}: {error}") from error
-
-
-def _rows(file: TextIO) -> Iterator[list[str]]:
-    """Yield the rows of a CSV file, none longer than allowed: quotes can join all lines to one."""
-    held = 0
-
-    def lines() -> Iterator[str]:
-        nonlocal held
-        for number, line in enumerate(file, start=1):
-            held += len(line)
-            if excess := RECORDING_ROWS.excess(number) or RECORDING_ROW.excess(held):
-                raise ExcessError(f"it {excess}")
-            yield line
-
-    for row in csv.reader(lines()):
-        held = 0
-        yield row
-
-
-def _columns_of(path: Path, rows: Iterator[list[str]], wanted: Sequence[str]) -> dict[str, FloatArray]:
-    names = [name.strip() for name in next(rows, [])]
-    twice = [name for name in dict.fromkeys(names) if name in wanted and names.count(name) > 1]
-    problems = [f"line 1 has the column {quoted(name)} more than once" for name in twice]
-    missing = [f"{quoted(name)}{nearest(name, names)}" for name in wanted if name not in names]
-    if missing:
-        problems.append(f"has no column {few(missing)}; its columns: {few(names) or 'none'}")
-    if problems:
-        raise _refused(path, problems)
-    found = {name: array("d") for name in wanted}
-    places, told, empty = [(names.index(name), name) for name in wanted], 0, []
-    for line, cells in enumerate(rows, start=2):
-        if not any(cell.strip() for cell in cells):
-            empty.append(f"line {line}: {len(cells)} cells for {len(names)} columns")
-            continue
-        wrong, empty = empty, []  # at the end of the file they do no harm
-        if len(cells) != len(names):
-            wrong.append(f"line {line}: {len(cells)} cells for {len(names)} columns")
-        for place, name in places if len(cells) == len(names) else ():
-            found[name].append(_number(cells[place]))
-            if math.isnan(found[name][-1]):
-                text = cells[place].strip()
-                wrong.append(f"line {line}: {name} is {quoted(text) if text else 'missing'}; needed: a finite number")
-        told += len(wrong)
-        problems += wrong[: max(0, _MOST_TOLD - len(problems))]
-    if problems:
-        raise _refused(path, problems, told)
-    return {name: np.array(column) for name, column in found.items()}
-
-
-def _number(text: str) -> float:
-    """Return the finite number in a cell; NaN where there is none."""
-    try:
-        number = float(text)
-    except ValueError:
-        return math.nan
-    return number if math.isfinite(number) else math.nan
-
-
-def _check_time(path: Path, t: FloatArray, said: ColumnsMap) -> None:
+def _check_time(path: Path, t: FloatArray, said: ColumnsMap, fill_gaps: float) -> list[float]:
+    """Return the gaps in time that are to be filled, in s."""
     steps = np.diff(t)
     back = np.flatnonzero(steps <= 0.0)
     if len(back):
         row = int(back[0])
         raise RunnerError(
-            f"{path}: line {row + 3}: the time is {t[row + 1]:g} s after {t[row]:g} s; time must increase from row to "
-            f"row{_and_more(len(back))}"
+            f"{path}: {_place(path, row + 1)}: the time is {t[row + 1]:g} s after {t[row]:g} s; time must increase "
+            f"from row to row{_and_more(len(back))}"
         )
     period = float(np.median(steps))
     if said.rate is not None and abs(said.rate * period - 1.0) > _OTHER_RATE:
         unit = said.time.unit if said.time is not None else ""
         raise RunnerError(
             f"{path}: its rows come at {1.0 / period:.4g} Hz by the column of time in {unit}, and rate says "
-            f"{said.rate:.4g} Hz; leave out rate, or mend the unit of the time"
+            f"{said.rate:.4g} Hz; leave out rate, or correct the unit of the time"
         )
-    gaps = np.flatnonzero(steps > _GAP * period)
-    if len(gaps):
-        row = int(gaps[0])
+    gaps = steps > _GAP * period
+    longer = np.flatnonzero(gaps & (steps > fill_gaps))
+    if len(longer):
+        row, longest = int(longer[0]), float(steps.max())
         raise RunnerError(
-            f"{path}: line {row + 3}: a gap of {steps[row]:.4g} s in time, where rows are {period:.4g} s apart"
-            f"{_and_more(len(gaps))}; cut the recording to a part without gaps"
+            f"{path}: {_place(path, row + 1)}: a gap of {steps[row]:.4g} s in time, where rows are {period:.4g} s apart"
+            f"{_and_more(len(longer))}; {_remedy(longest)}"
         )
+    return [float(step) for step in steps[gaps]]
+
+
+def _filled(
+    path: Path, name: str, t: FloatArray, values: FloatArray, signal: Signal, fill_gaps: float
+) -> tuple[FloatArray, list[float]]:
+    """Return a signal without gaps, and the gaps that it had, in s."""
+    there = np.isfinite(values)
+    if there.all():
+        return values, []
+    kept = np.flatnonzero(there)
+    missing = int(np.flatnonzero(~there)[0])
+    where = f"{_place(path, missing)}: {name} is missing"
+    if len(kept) < FEWEST_ROWS or not (there[0] and there[-1]):
+        few = f"in {len(t) - len(kept)} of {len(t)} rows" if len(kept) < FEWEST_ROWS else "at an end of the recording"
+        raise refused(path, [f"{where}, and {few}; leave out the column, or cut the recording"])
+    gaps = np.diff(t[kept])[np.diff(kept) > 1]
+    if gaps.max() > fill_gaps:
+        raise refused(path, [f"{where}; {_remedy(float(gaps.max()))}"])
+    if signal.kind == "torque":
+        return np.interp(t, t[kept], values[kept]), gaps.tolist()
+    return evenly(t[kept], values[kept], t), gaps.tolist()
+
+
+def _remedy(longest: float) -> str:
+    if longest > LONGEST_FILLED:
+        return "cut the recording to a part without gaps"
+    return f"`--fill-gaps {np.ceil(1e3 * longest):.0f}ms` fills the gaps; or cut the recording to a part without"
+
+
+def _place(path: Path, row: int) -> str:
+    """Return where a row of numbers stands; the first line of a CSV file names its columns."""
+    return f"row {row + 1}" if path.suffix.lower() in BAGS else f"line {row + 2}"
 
 
 def _and_more(count: int) -> str:
-    return f" (and {count - 1} more lines like this)" if count > 1 else ""
-
-
-def _refused(path: Path, problems: Sequence[str], count: int = 0) -> RunnerError:
-    more = max(count, len(problems)) - _MOST_TOLD
-    told = [*problems[:_MOST_TOLD], *([f"{more} more problems like these"] if more > 0 else [])]
-    return RunnerError(f"{path}: {'; '.join(told)}")
+    return f" (and {count - 1} more like this)" if count > 1 else ""

@@ -34,8 +34,9 @@ def low_pass(signals: FloatArray, period: float, frequency: float) -> FloatArray
 
 
 def derivative(signals: FloatArray, period: float) -> FloatArray:
-    """Return the time derivative of even samples by central differences, shape (N, ...)."""
-    slope: FloatArray = np.gradient(signals, period, axis=0)
+    """Return the time derivative of even samples, that of the cubic spline through them, shape (N, ...)."""
+    t = period * np.arange(len(signals))
+    slope: FloatArray = CubicSpline(t, signals, axis=0)(t, 1)
     return slope
 
 

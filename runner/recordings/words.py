@@ -14,6 +14,10 @@ FIT = (
     "fit: 1 - |recorded - run| / |recorded - its mean|, from the normalised root mean square error of system "
     "identification; 1: the same, 0: the mean would be as good"
 )
+ONE_LOG = (
+    "The intervals are of this recording alone: what differs between recordings, such as temperature, load and range "
+    "of motion, shows only when several are compared."
+)
 AMONG_MASSES = (
     "Friction is fitted to the residual torques, the recorded ones less those of the run's model, together with "
     "differences of the links' masses and inertias."
@@ -24,13 +28,21 @@ def aligned_text(found: RecordingComparison) -> str:
     """Return when the run begins in the recording, and what both cover."""
     recording, offset = found.recording, found.offset
     first, last = found.span
+    after = "after" if offset.start >= 0.0 else "before"
     text = (
-        f"the run's time 0 is {quantity(offset.start, 's', digits=5)} of the recording, whose samples are "
+        f"the run's time 0 is {quantity(abs(offset.start), 's', digits=5)} {after} the recording's first row; rows are "
         f"{quantity(recording.period, 's')} apart; compared from {quantity(first, 's')} to {quantity(last, 's')}"
     )
     if offset.rivals:
         others = ", ".join(quantity(rival, "s", digits=5) for rival in offset.rivals)
         text += f"; the motion repeats itself: it fits nearly as well with time 0 at {others}"
+    if recording.filled:
+        text += f"; {len(recording.filled)} gaps of up to {quantity(max(recording.filled), 's')} are filled"
+    if recording.held and any(signal.kind == "torque" for signal in recording.signals):
+        text += (
+            f"; torques are taken as held from row to row, so that they count {quantity(recording.torque_shift, 's')} "
+            "later (torque: instant in the column map leaves them where they are)"
+        )
     return text
 
 
@@ -56,6 +68,7 @@ def friction_lines(found: RecordingComparison) -> Iterator[str]:
         return
     if found.friction.joints:
         yield AMONG_MASSES
+        yield ONE_LOG
     for reason in found.friction.lacking:
         yield f"Friction cannot be identified of {reason}."
 

@@ -107,9 +107,9 @@ def test_of_a_plug_in_that_declares_its_units(own_part):
     ("override", "problem"),
     [
         ("controller.period=5mm", "controller.period: must be a number, or one with a unit of s (written s, ms, us, "
-         "min, h); found '5mm'"),
+         "ns, min, h); found '5mm'"),
         ("controller.period=5msec", "controller.period: must be a number, or one with a unit of s (written s, ms, us, "
-         "min, h); found '5msec'; 'msec' is no unit (did you mean ms?)"),
+         "ns, min, h); found '5msec'; 'msec' is no unit (did you mean ms?)"),
         ("controller.damping_ratio=1mm", "controller.damping_ratio: counts in no unit; found '1mm'; write the number "
          "alone"),
         ("repetitions=5ms", "repetitions: counts in no unit; found '5ms'; write the number alone"),

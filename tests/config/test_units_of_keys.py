@@ -80,7 +80,7 @@ def test_an_exponent_beyond_all_floats_is_infinite():
 @pytest.mark.parametrize(
     ("text", "units", "message"),
     [
-        ("5mm", ("s",), "must be a number, or one with a unit of s (written s, ms, us, min, h); found '5mm'"),
+        ("5mm", ("s",), "must be a number, or one with a unit of s (written s, ms, us, ns, min, h); found '5mm'"),
         ("5mm", (), "counts in no unit; found '5mm'; write the number alone"),
         ("5msec", ("s",), "'msec' is no unit (did you mean ms?)"),
         ("5kg", ("rad", "m"), "unit of rad (written rad, mrad, deg) or m (written m, cm, mm, um); found '5kg'"),

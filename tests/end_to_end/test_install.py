@@ -119,7 +119,15 @@ def test_every_pin_has_a_digest():
     names = {entry.partition("==")[0] for entry in entries}
     wanted = tomllib.loads((ROOT / "pyproject.toml").read_text())
     extras = wanted["project"]["optional-dependencies"]
-    texts = [*wanted["project"]["dependencies"], *extras["dev"], *extras["docs"], *extras["bench"], "uv", "setuptools"]
+    texts = [
+        *wanted["project"]["dependencies"],
+        *extras["dev"],
+        *extras["docs"],
+        *extras["bench"],
+        *extras["ros"],
+        "uv",
+        "setuptools",
+    ]
     assert {re.match(r"[\w.-]+", text)[0].lower() for text in texts} <= names
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from runner.errors import RunnerError
 from runner.limits import Limit
-from runner.recordings import recording
+from runner.recordings import csv_columns
 from runner.recordings.columns_map import ColumnsMap, Factor, Signal
 from runner.recordings.recording import read_recording
 
@@ -49,7 +49,12 @@ def test_time_that_jitters_is_taken(tmp_path):
 @pytest.mark.parametrize(
     ("times", "rate", "wanted"),
     [
-        ([*range(60), *range(80, 120)], None, r"line 62: a gap of 0.021 s in time, where rows are 0.001 s apart; cut"),
+        ([*range(60), *range(200, 240)], None, r"line 62: a gap of 0.141 s in time, where rows are 0.001 s apart; cut"),
+        (
+            [*range(60), *range(80, 120)],
+            None,
+            r"line 62: a gap of 0.021 s in time, where rows are 0.001 s apart; `--fill-gaps 21ms` fills",
+        ),
         ([*range(60), 59, *range(60, 90)], None, r"line 62: the time is 0.059 s after 0.059 s; time must increase"),
         ([*range(60), 30, *range(60, 90)], None, r"line 62: the time is 0.03 s after 0.059 s; time must increase"),
         (range(100), 500.0, r"its rows come at 1000 Hz by the column of time in ms, and rate says 500 Hz"),
@@ -90,9 +95,9 @@ def test_a_file_that_is_not_there(tmp_path):
 
 def test_rows_are_counted_while_they_are_read(tmp_path, monkeypatch):
     path = write(tmp_path, rows(range(60)))
-    monkeypatch.setattr(recording, "RECORDING_ROWS", Limit(61, "rows"))
+    monkeypatch.setattr(csv_columns, "RECORDING_ROWS", Limit(61, "rows"))
     assert len(read_recording(path, said(), FACTORS).t) == 60
-    monkeypatch.setattr(recording, "RECORDING_ROWS", Limit(60, "rows"))
+    monkeypatch.setattr(csv_columns, "RECORDING_ROWS", Limit(60, "rows"))
     with pytest.raises(RunnerError, match=r"cannot read .*recording.csv: it has 61 rows; allowed: up to 60"):
         read_recording(path, said(), FACTORS)
 

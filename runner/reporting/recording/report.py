@@ -40,8 +40,10 @@ def report_folder(found: RecordingComparison) -> Path:
     """Return the folder of the report, which follows from the run and the content of the recording."""
     place = found.run.folder.resolve().parent
     outputs = found.run.folder.parent.parent if place.name == "runs" else outputs_dir()
-    content = hashlib.sha256(f"recording {found.run.hash} {found.offset.start!r} ".encode())
-    content.update(found.recording.path.read_bytes())
+    recording = found.recording
+    said = (found.run.hash, found.offset.start, recording.torque_shift, recording.filled, dict(recording.units))
+    content = hashlib.sha256(f"recording {said!r} ".encode())
+    content.update(recording.path.read_bytes())
     return outputs / "reports" / content.hexdigest()[:24]
 
 
@@ -60,7 +62,8 @@ def _key_numbers(found: RecordingComparison) -> list[tuple[str, str, str]]:
     """Return the offset, the worst fit of a position and the largest Coulomb friction that was identified."""
     recording = found.recording
     offset = quantity(found.offset.start, "s", digits=4)
-    numbers = [("the run begins at", offset, f"of the recording; samples {quantity(recording.period, 's')} apart")]
+    rows = f"after the recording's first row; rows {quantity(recording.period, 's')} apart"
+    numbers = [("the run begins at", offset, rows)]
     moved = [(one.fit, one) for one in found.residuals if one.signal.kind != "torque" and one.fit is not None]
     if moved:
         fit, worst = min(moved, key=lambda pair: pair[0])

@@ -1,0 +1,95 @@
+"""Joint states from a ROS bag: ROS 1, or a file of ROS 2, MCAP or SQLite.
+
+A bag becomes columns as a CSV file has them: `stamp`, in s, and JOINT.position, JOINT.velocity and JOINT.effort.
+Messages are read by the definition of sensor_msgs/JointState that ROS publishes; the bag's own definitions, of which
+rosbags would make code, are not looked at.
+"""
+
+from array import array
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from runner.errors import RunnerError, nearest
+from runner.limits import BAG_MEMORY, RECORDING, RECORDING_ROWS, ExcessError, bounded_memory
+from runner.recordings.csv_columns import FloatArray, places_of
+from runner.texts import few, quoted
+
+STAMP = "stamp"
+_JOINT_STATE = "sensor_msgs/msg/JointState"
+_FIELDS = ("position", "velocity", "effort")
+
+
+def read_bag_columns(path: Path, topic: str | None, wanted: Sequence[str]) -> dict[str, FloatArray]:
+    """Return columns of the joint states in a bag; NaN where a message says nothing of a joint.
+
+    Messages that name no wanted joint, as those of a gripper on the same topic, are left out. A message counts at the
+    time in its header, or where that is zero at the time at which it was recorded; times count from the first one.
+
+    Args:
+        path: The bag.
+        topic: The topic of the joint states; None where the bag has one alone.
+        wanted: Names of the columns.
+
+    Raises:
+        RunnerError: if rosbags is not installed, the bag cannot be read, or lacks the topic or a column.
+    """
+    try:
+        from rosbags import rosbag1, rosbag2, typesys
+    except ImportError:
+        raise RunnerError(f"{path} is a ROS bag; `pip install 'arm-control-runner[ros]'` installs its reader") from None
+    old = path.suffix.lower() == ".bag"
+    store = typesys.get_typestore(typesys.Stores.ROS1_NOETIC if old else typesys.Stores.ROS2_HUMBLE)
+    deserialize = store.deserialize_ros1 if old else store.deserialize_cdr
+    try:
+        if excess := RECORDING.excess(path.stat().st_size):
+            raise ExcessError(f"it {excess}")
+        with bounded_memory(BAG_MEMORY), (rosbag1 if old else rosbag2).Reader(path) as reader:
+            connections = [each for each in reader.connections if each.msgtype == _JOINT_STATE]
+            chosen = _topic(path, topic, sorted({each.topic for each in connections}))
+            read = reader.messages([each for each in connections if each.topic == chosen])
+            return _columns_of(path, ((time, deserialize(data, _JOINT_STATE)) for _, time, data in read), wanted)
+    except RunnerError:
+        raise
+    except MemoryError as error:
+        raise RunnerError(f"cannot read {path}: it takes more than {BAG_MEMORY.most:,} {BAG_MEMORY.of}") from error
+    except Exception as error:  # a damaged bag raises almost anything in rosbags
+        raise RunnerError(f"cannot read {path}: {error or type(error).__name__}") from error
+
+
+def _topic(path: Path, topic: str | None, topics: Sequence[str]) -> str:
+    if topic in topics or (topic is None and len(topics) == 1):
+        return topic or topics[0]
+    if not topics:
+        raise RunnerError(f"{path}: no topic has messages of the type {_JOINT_STATE}")
+    wrong = "has more than one topic of joint states" if topic is None else f"has no joint states on {quoted(topic)}"
+    raise RunnerError(
+        f"{path}: {wrong}{nearest(topic or '', topics)}; say in the column map topic: one of {few(list(topics))}"
+    )
+
+
+def _columns_of(path: Path, messages: Iterator[tuple[int, Any]], wanted: Sequence[str]) -> dict[str, FloatArray]:
+    signals = [name.rpartition(".") for name in wanted if name != STAMP]
+    joints = {joint for joint, _, _ in signals}
+    found = {name: array("d") for name in wanted}
+    known: dict[str, None] = {}
+    first: int | None = None
+    for number, (time, message) in enumerate(messages, start=1):
+        if excess := RECORDING_ROWS.excess(number):
+            raise ExcessError(f"it {excess}")
+        known.update(dict.fromkeys(message.name))
+        if joints.isdisjoint(message.name):
+            continue
+        stamp = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec or time
+        first = stamp if first is None else first
+        places = {joint: place for place, joint in enumerate(message.name)}
+        for joint, _, field in signals:
+            values = getattr(message, field) if field in _FIELDS else ()
+            place = places.get(joint, len(values))
+            found[f"{joint}.{field}"].append(float(values[place]) if place < len(values) else np.nan)
+        if STAMP in found:
+            found[STAMP].append((stamp - first) * 1e-9)
+    places_of(path, wanted, [STAMP, *(f"{joint}.{field}" for joint in known for field in _FIELDS)])
+    return {name: np.array(column) for name, column in found.items()}
