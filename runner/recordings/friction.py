@@ -34,6 +34,8 @@ _SAMPLES = 4.0  # times that, the fewest samples in a second that the equations 
 _STANDSTILL = 0.05  # of a joint's largest speed
 _SLOW = 0.01  # of the largest speed of all joints of its kind: a joint that is slower creeps
 _SPOILT = 3.0  # periods of the cut-off at both ends, where the low-pass knows one side alone
+_CLIPPED = 0.01  # of the rows at an end of the range of torques
+_PILED = 10  # times the rows beside: rounding alone puts 1.4 times as many at the peak of a sine
 _ONE_WAY = 0.98  # of sgn behind the low-pass: below it the joint has just turned round
 _FEWEST = 10  # rows of a joint in each direction
 _ROUNDING = 1e-5  # of the largest singular value of Y: what is below tells of no mass
@@ -104,7 +106,7 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
     frequency = cutoff(period)
     first = min(_FIRST * frequency, 0.25 / period)
     every = max(1, int(1.0 / (_SAMPLES * first * period)))
-    smooth = low_pass(q, period, first)
+    smooth, measured = low_pass(q, period, first), torques
     speed = derivative(smooth, period)
     # The mean of sgn over a sample, as torques are means: a joint that turns round does so within one.
     signs = np.clip(speed / np.maximum(0.5 * period * np.abs(derivative(speed, period)), 1e-12), -1.0, 1.0)
@@ -118,6 +120,7 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
     edge, apart = round(_SPOILT / (frequency * period)), max(1, int(0.5 / (frequency * period)))
     thinned = np.arange(edge, len(q) - edge, apart)
     fastest = np.abs(dq).max(axis=0)
+    clipped = [_clipped(*pair) for pair in zip(measured.T, np.abs(speed).T, strict=True)]
     lacking: list[str] = []
     parts: list[_Part] = []
     for joint, name in enumerate(model.joint_names):
@@ -127,6 +130,8 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
         moving &= fastest[joint] > _SLOW * fastest[model.slides == model.slides[joint]].max()
         if not np.isfinite(torques[:, joint]).all():
             lacking.append(f"{name}: no torque is recorded")
+        elif clipped[joint]:
+            lacking.append(f"{name}: {clipped[joint]}")
         elif min(np.sum(moving & (speed > 0.0)), np.sum(moving & (speed < 0.0))) < _FEWEST:
             lacking.append(f"{name}: it moves too little, or in one direction alone")
         else:
@@ -140,6 +145,18 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
         else:
             found.append(JointFriction(name, model.joint_units[part.joint], *fitted))
     return Friction(found, lacking, frequency)
+
+
+def _clipped(torques: FloatArray, speed: FloatArray) -> str:
+    """Return in how many rows a drive or a logger cut off the torque of a joint that moves; empty for none."""
+    rows = torques[speed > _STANDSTILL * speed.max()]
+    for end in (rows.max(initial=-np.inf), rows.min(initial=np.inf)):
+        inside = rows[rows != end]
+        beside = inside.max(initial=-np.inf) if end == rows.max(initial=-np.inf) else inside.min(initial=np.inf)
+        at, next_to = np.sum(rows == end), np.sum(rows == beside)
+        if at > max(_CLIPPED * len(rows), _PILED * next_to):
+            return f"its torque is clipped, at {end:.4g} in {at / len(rows):.0%} of the rows in which it moves"
+    return ""
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.optimize import minimize_scalar
+from scipy.optimize import linear_sum_assignment, minimize_scalar
 from scipy.signal import correlate, find_peaks
 
 from runner.errors import RunnerError
@@ -63,8 +63,8 @@ def find_offset(
         names: What they are called.
 
     Raises:
-        RunnerError: if the recording is too short, moves otherwise than the run, against it, or at another rate; or the
-            run stands still.
+        RunnerError: if the recording is too short, moves otherwise than the run, against it, in another order of joints
+            or at another rate; or the run stands still.
     """
     lasts, run_lasts = t[-1] - t[0], run_t[-1] - run_t[0]
     if lasts < _SHORTEST * run_lasts:
@@ -79,6 +79,8 @@ def find_offset(
         )
     lags, correlations, each = _correlate(t, recorded, run_t, simulated)
     best = int(np.argmax(correlations))
+    if correlations[best] < _SURELY:
+        _check_order(t, recorded, run_t, simulated, names, float(correlations[best]))
     whatever_sign = np.abs(each).sum(axis=1) / max(1, int(np.sum(each.any(axis=0))))
     if correlations[best] < RESEMBLES and whatever_sign.max() > _CLEARLY:
         best = int(np.argmax(whatever_sign))
@@ -146,6 +148,30 @@ def _refined(t: FloatArray, recorded: FloatArray, run_t: FloatArray, simulated: 
     return start + float(found.x)
 
 
+def _check_order(
+    t: FloatArray, recorded: FloatArray, run_t: FloatArray, simulated: FloatArray, names: Sequence[str], best: float
+) -> None:
+    """Check that no other order of the columns halves what is lacking to a correlation of 1.
+
+    Raises:
+        RunnerError: if one does; names the columns.
+    """
+    t, recorded, run_t, simulated, count = *_thinned(t, recorded), *_thinned(run_t, simulated), len(names)
+    pairs = _correlate(t, np.repeat(recorded, count, axis=1), run_t, np.tile(simulated, count))[2]
+    alike = pairs.reshape(-1, count, count)
+    at_best = alike[int(np.argmax(alike.max(axis=2).sum(axis=1)))]
+    of_run = linear_sum_assignment(-at_best)[1]
+    found = at_best[np.arange(count), of_run].sum() / max(1, np.sum(at_best.any(axis=0)))
+    others = [f"{names[own]} moves as {names[other]} should" for own, other in enumerate(of_run) if own != other]
+    if others and found > max(_CLEARLY, 0.5 * (1.0 + best)):
+        raise RunnerError(f"{', '.join(others)}: are the joints in another order?")
+
+
+def _thinned(t: FloatArray, signals: FloatArray) -> tuple[FloatArray, FloatArray]:
+    every = max(1, round(_THINNED / float(np.median(np.diff(t)))))
+    return t[::every], signals[::every]
+
+
 def _check_likeness(t: FloatArray, recorded: FloatArray, run_t: FloatArray, simulated: FloatArray, best: float) -> None:
     """Check that a recording which correlates with the run by `best` at most is of its motion, at the rate said.
 
@@ -153,8 +179,7 @@ def _check_likeness(t: FloatArray, recorded: FloatArray, run_t: FloatArray, simu
         RunnerError: if another rate halves what is lacking to a correlation of 1, or it correlates too little at any.
     """
     period = float(np.median(np.diff(t)))
-    own, other = (max(1, round(_THINNED / float(np.median(np.diff(times))))) for times in (t, run_t))
-    t, recorded, run_t, simulated = t[::own], recorded[::own], run_t[::other], simulated[::other]
+    t, recorded, run_t, simulated = *_thinned(t, recorded), *_thinned(run_t, simulated)
 
     def likeness(stretch: float) -> float:
         stretched = t[0] + stretch * (t - t[0])

@@ -17,6 +17,7 @@ FEWEST_ROWS = 50
 LONGEST_FILLED = 1.0 / CUTOFF
 """Longest gap that may be filled, in s: an arm may have moved there and back in a longer one."""
 
+_DECIMALS = 1e-6  # relative error of differences of decimal times
 _GAP = 1.5  # times the usual time between two rows
 _OTHER_RATE = 0.01  # relative difference from the rate that is said
 
@@ -84,6 +85,7 @@ def read_recording(path: Path, said: ColumnsMap, factors: Mapping[str, Factor], 
     """
     if not 0.0 <= fill_gaps <= LONGEST_FILLED:
         raise RunnerError(f"gaps of up to {LONGEST_FILLED:g} s can be filled; found {fill_gaps:g} s")
+    fill_gaps *= 1.0 + _DECIMALS
     wanted = [*([said.time.column] if said.time is not None else []), *said.columns]
     if path.suffix.lower() in BAGS:
         numbers = read_bag_columns(path, said.topic, wanted)
@@ -164,7 +166,8 @@ def _filled(
 def _remedy(longest: float) -> str:
     if longest > LONGEST_FILLED:
         return "cut the recording to a part without gaps"
-    return f"`--fill-gaps {np.ceil(1e3 * longest):.0f}ms` fills the gaps; or cut the recording to a part without"
+    needed = np.ceil(1e3 * longest * (1.0 - _DECIMALS))
+    return f"`--fill-gaps {needed:.0f}ms` fills the gaps; or cut the recording to a part without"
 
 
 def _place(path: Path, row: int) -> str:

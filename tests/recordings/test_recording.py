@@ -120,3 +120,63 @@ def test_problems_beyond_the_first_are_counted_and_empty_lines_at_the_end_are_no
     assert len(read_recording(write(tmp_path, [*rows(range(60)), "", ",,"]), said(), FACTORS).t) == 60
     with pytest.raises(RunnerError, match=r"line 62: 0 cells for 3 columns; line 63: t is '-'"):
         read_recording(write(tmp_path, [*rows(range(60)), "", "x,-,1", ""]), said(), FACTORS)
+
+
+@pytest.mark.parametrize(("separator", "point"), [(";", ","), (";", "."), ("\t", ","), (",", ".")])
+def test_cells_are_separated_by_what_separates_the_names(tmp_path, separator, point):
+    lines = [f"x{separator}{t}{point}0{separator}{t}{point}5" for t in range(60)]
+    found = read_recording(write(tmp_path, [separator.join(["note", "t", "a"]), *lines]), said(), FACTORS)
+    assert found.t == pytest.approx(np.arange(60) * 1e-3)
+    assert found.signals[Q1] == pytest.approx(2.0 * (np.arange(60) + 0.5))
+
+
+def test_stamps_count_from_the_first_row_and_torques_from_the_middle_of_theirs(tmp_path):
+    path = write(tmp_path, ["t,a", *(f"{1_700_000_000_000 + 4 * t},{t}" for t in range(60))])
+    both = ColumnsMap(time={"column": "t", "unit": "ms"}, columns={"a": {"torque": "q1", "unit": "N m"}})
+    found = read_recording(path, both, {"t": Factor(1e-3, "s"), "a": Factor(1.0, "N m")})
+    assert found.t == pytest.approx(4e-3 * np.arange(60), abs=1e-9)
+    of_q1 = Signal("torque", "q1")
+    assert found.torque_at(of_q1, np.array([0.006, 0.008])) == pytest.approx([1.0, 1.5])
+    instant = read_recording(path, both.model_copy(update={"torque": "instant"}), {**found.units})
+    assert instant.torque_at(of_q1, np.array([0.006, 0.008])) == pytest.approx([1.5, 2.0])
+
+
+def test_gaps_are_filled_up_to_what_is_asked_for(tmp_path):
+    times = [t for t in range(100) if not 40 <= t < 44]
+    lines = ["t,a", *(f"{t},{'NaN' if t in (20, 21) else np.sin(0.05 * t)}" for t in times)]
+    found = read_recording(write(tmp_path, lines), said(), FACTORS, fill_gaps=0.005)
+    assert found.filled == pytest.approx([0.005, 0.003])
+    assert found.signals[Q1] == pytest.approx(2.0 * np.sin(0.05 * np.array(times)), abs=1e-5)
+    with pytest.raises(RunnerError, match=r"line 42: a gap of 0.005 s .*`--fill-gaps 5ms` fills"):
+        read_recording(write(tmp_path, lines), said(), FACTORS, fill_gaps=0.004)
+    without = write(tmp_path, ["t,a", *(f"{t},{'' if 20 <= t < 25 else t}" for t in range(60))])
+    with pytest.raises(RunnerError, match="line 22: a is missing; `--fill-gaps 6ms` fills"):
+        read_recording(without, said(), FACTORS, fill_gaps=0.004)
+
+
+@pytest.mark.parametrize(
+    ("gone", "wanted"),
+    [
+        (range(5), "line 2: a is missing, and at an end"),
+        (range(60), "line 2: a is missing, and in 60 of 60 rows; leave"),
+    ],
+)
+def test_gaps_at_an_end_and_empty_columns_are_not_filled(tmp_path, gone, wanted):
+    lines = ["t,a", *(f"{t},{'' if t in gone else t}" for t in range(60))]
+    with pytest.raises(RunnerError, match=wanted):
+        read_recording(write(tmp_path, lines), said(), FACTORS, fill_gaps=0.02)
+
+
+@pytest.mark.parametrize("cell", ["inf", "1e21", "1,5"])
+def test_numbers_beyond_all_arms_are_none(tmp_path, cell):
+    lines = [*rows(range(60)), f'x,60,"{cell}"']
+    with pytest.raises(RunnerError, match=f"line 62: a is '{cell}'; needed: a finite number"):
+        read_recording(write(tmp_path, lines), said(), FACTORS, fill_gaps=0.02)
+
+
+def test_what_is_for_bags_or_fills_too_much_is_refused(tmp_path):
+    path = write(tmp_path, rows(range(60)))
+    with pytest.raises(RunnerError, match=r"topic: is for ROS bags \(.bag, .mcap, .db3\)"):
+        read_recording(path, said().model_copy(update={"topic": "/joint_states"}), FACTORS)
+    with pytest.raises(RunnerError, match=r"gaps of up to 0.1 s can be filled; found 0.2 s"):
+        read_recording(path, said(), FACTORS, fill_gaps=0.2)

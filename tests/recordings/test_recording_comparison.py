@@ -62,6 +62,8 @@ def test_what_is_not_recorded_is_in_no_metric(compared):
     assert {"max_tracking_error", "peak_joint_speed_q2"} <= set(of_joints.metrics)
     assert not {"peak_torque", "energy"} & set(of_joints.metrics)
     assert (of_joints.friction, of_joints.no_friction) == (None, "no torque is recorded")
+    of_all = compared(f"{JOINTS}, {TORQUES}")
+    assert (of_all.friction, of_all.no_friction) == (None, "the recording lasts 1.5 s; needed: 2 s or more")
     of_some = compared("a1: {joint: q1, unit: rad}, c1: {torque: q1, unit: N m}")
     assert of_some.metrics == {}
     assert of_some.no_friction == "no position of q2, q3 is recorded"

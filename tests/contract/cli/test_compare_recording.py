@@ -84,6 +84,11 @@ def test_names_in_a_recording_cannot_become_markup(swing, tmp_path):
         (["RUN", "RUN", "recording.csv", "--columns", "columns.yaml"], "a recording is compared with one run"),
         (["recording.csv", "--columns", "columns.yaml"], "a recording is compared with one run"),
         (["RUN", "recording.csv", "--columns", "columns.yaml", "--metrics", "energy"], "are not for recordings"),
+        (
+            ["RUN", "recording.csv", "--columns", "columns.yaml", "--fill-gaps", "20"],
+            "must be a time above 0, such as 20ms",
+        ),
+        (["RUN", "RUN", "--fill-gaps", "20ms"], "a recording is compared with one run"),
         (["RUN", "none.csv", "--columns", "columns.yaml"], "cannot read none.csv"),
         (["RUN", "recording.csv", "--columns", "none.yaml"], "cannot read none.yaml"),
     ],

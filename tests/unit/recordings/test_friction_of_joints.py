@@ -1,5 +1,7 @@
 """Friction identified from torques that closed forms and other masses give."""
 
+import re
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -172,3 +174,48 @@ def test_joints_without_torque_or_in_one_direction_have_no_friction(model):
     found = identify_friction(model, q, tau, H)
     assert [joint.joint for joint in found.joints] == ["q2"]
     assert found.lacking == ["q1: no torque is recorded", "q3: it moves too little, or in one direction alone"]
+
+
+@pytest.mark.parametrize("held", [False, True], ids=["instant", "held"])
+@pytest.mark.parametrize("noise", [0.0, 0.3])
+def test_intervals_over_motions_at_the_middles_of_held_torques(model, held, noise):
+    """Torques of an instant, or means over a row, of motions with other phases: 95 % hold, and none is far off."""
+    held_friction, errors = [], []
+    for seed in range(12):
+        random = np.random.default_rng(seed)
+        start = random.uniform(0.0, 100.0)
+        times = start + T[:2000]
+        parts = [-0.375, -0.125, 0.125, 0.375] if held else [0.0]  # of a row
+        means = []
+        for part in parts:
+            motion = moved(times + part * H)
+            means.append(torques(model, motion) + friction_of(motion[1]))
+        q = moved(times)[0] + random.normal(0.0, 1e-4 * noise, (len(times), 3))
+        tau = np.mean(means, axis=0) + random.normal(0.0, noise, q.shape)
+        for joint, b, c in zip(identify_friction(model, q, tau, H).joints, VISCOUS, COULOMB, strict=True):
+            errors.append([joint.viscous / b - 1.0, joint.coulomb / c - 1.0])
+            held_friction += [abs(joint.viscous - b) < joint.viscous_half, abs(joint.coulomb - c) < joint.coulomb_half]
+    assert len(held_friction) == 72
+    assert np.mean(held_friction) > 0.85
+    assert np.abs(errors).max() < (0.1 if noise else 0.01)
+
+
+@pytest.mark.parametrize(("most", "clipped"), [(6.0, True), (np.inf, False)])
+def test_a_torque_that_is_clipped_tells_no_friction(model, most, clipped):
+    motion = moved()
+    tau = torques(model, motion) + friction_of(motion[1])
+    tau[:, 0] = np.round(np.minimum(tau[:, 0], most) / 0.05) * 0.05
+    found = identify_friction(model, motion[0], tau, H)
+    assert len(found.lacking) == clipped
+    assert all(
+        re.match(r"q1: its torque is clipped, at 6 in \d+% of the rows in which it moves", one) for one in found.lacking
+    )
+
+
+def test_friction_as_a_frame(model):
+    motion = moved()
+    found = identify_friction(model, motion[0], torques(model, motion) + friction_of(motion[1]), H)
+    frame = found.frame()
+    assert frame.index.tolist() == ["q1", "q2", "q3"]
+    assert frame["coulomb"].tolist() == [joint.coulomb for joint in found.joints]
+    assert frame.columns.tolist() == ["unit", "viscous", "viscous_half", "coulomb", "coulomb_half", "constant"]

@@ -95,6 +95,10 @@ def test_a_motion_that_repeats_itself_has_rivals():
     [
         (lambda t, q: (t, q * [1.0, -1.0]), r"columns.b: moves against the run; turn the sign of the column"),
         (
+            lambda t, q: (t, q[:, ::-1]),
+            r"columns.a moves as columns.b should, columns.b moves as columns.a should: are the joints",
+        ),
+        (
             lambda t, q: (2.0 * t, q),
             r"at most at 100 Hz, and by 1.00 at about (199|200) Hz: is that the rate of its rows\?",
         ),
@@ -127,3 +131,10 @@ def test_recordings_of_something_else_are_refused(change, wanted):
 def test_a_run_that_stands_still():
     with pytest.raises(RunnerError, match="the run stands still"):
         find_offset(*recorded(1.0), RUN_T, 0.0 * motion(RUN_T), NAMES)
+
+
+@pytest.mark.parametrize("clock", [0.0, 1.7e9])
+def test_the_start_is_as_sharp_on_a_clock_that_began_in_1970(clock):
+    t, signals = recorded(1.2345)
+    found = find_offset(t + clock, signals, RUN_T, motion(RUN_T), NAMES)
+    assert found.start - clock == pytest.approx(1.2345, abs=2e-6)
