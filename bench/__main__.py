@@ -11,6 +11,7 @@ NAMES = (
     "laws",
     "mujoco_tick",
     "agreement",
+    "friction_coverage",
     "derivatives",
     "caveats",
     "around",

@@ -14,7 +14,7 @@ from runner.commands.arguments import Parser, Stored
 from runner.config.units import read_quantity
 from runner.errors import RunnerError
 from runner.quiet import quiet_environment
-from runner.recordings import BAGS
+from runner.recordings import is_bag
 
 if TYPE_CHECKING:
     from runner.store import Run
@@ -87,7 +87,7 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _is_recording(path: str | Path) -> bool:
-    return Path(path).suffix.lower() in (".csv", *BAGS)
+    return Path(path).suffix.lower() == ".csv" or is_bag(Path(path))
 
 
 def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], options: Namespace) -> None:

@@ -6,6 +6,7 @@ from typing import Literal, NamedTuple
 
 from pydantic import Field, FiniteFloat, PositiveFloat, model_validator
 
+from runner.config.magnitudes import absurd
 from runner.config.units import WRITTEN
 from runner.data_file import read_data
 from runner.errors import RunnerError, nearest
@@ -13,7 +14,6 @@ from runner.registry import StrictModel
 from runner.texts import quoted
 
 AMPERE = "A"
-_SMALLEST = 1e-6  # N m/A
 SignalKind = Literal["position", "torque", "tip"]
 
 
@@ -62,7 +62,7 @@ class Column(StrictModel):
     torque: str | None = None
     tip: Literal["x", "y", "z"] | None = None
     unit: str
-    constant: FiniteFloat | None = Field(None, ge=-1e6, le=1e6)
+    constant: FiniteFloat | None = None
 
     @model_validator(mode="after")
     def _check(self) -> "Column":
@@ -74,8 +74,8 @@ class Column(StrictModel):
             raise ValueError("a current needs constant, in N m/A, and nothing else takes it: unit: A, constant: 1.6")
         if self.constant is not None and self.torque is None:
             raise ValueError("a current is that of a motor: say by torque whose")
-        if self.constant is not None and abs(self.constant) < _SMALLEST:
-            raise ValueError(f"constant: must be at least {_SMALLEST:g} in magnitude; found {self.constant:g}")
+        if self.constant == 0.0:
+            raise ValueError("constant: must not be 0; it is the torque of one ampere, below 0 where it turns the sign")
         return self
 
     @property
@@ -140,7 +140,7 @@ def read_map(path: Path, joints: Sequence[str], units: Sequence[str]) -> tuple[C
         RunnerError: if it cannot be read, names a joint that the robot does not have, or a unit that does not fit.
     """
     found = read_data(path, ColumnsMap)
-    problems = list(_unknown_joints(found, joints))
+    problems = [*_unknown_joints(found, joints), *absurd("", found.model_dump())]
     factors: dict[str, Factor] = {}
     slides = {joint: unit == "m" for joint, unit in zip(joints, units, strict=True)}
     wanted = {} if found.time is None else {found.time.column: (found.time.unit, "s", "time")}

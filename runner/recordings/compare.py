@@ -13,9 +13,10 @@ from runner.recordings.metrics import both_metrics
 from runner.recordings.offset import Offset, find_offset
 from runner.recordings.recording import FEWEST_ROWS, Recording, read_recording
 from runner.recordings.residuals import Residual
-from runner.recordings.setting import Setting, setting_of
+from runner.recordings.setting import setting_of
 from runner.recordings.smoothing import FloatArray, cutoff, derivative, evenly, low_pass
 from runner.recordings.unit_check import other_units
+from runner.robots.model import RobotModel
 from runner.store import Run
 
 _SLACK = 0.01  # of a recording's period: a tick so little beyond its ends is covered
@@ -91,7 +92,7 @@ def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.
         raise RunnerError(f"{columns}: {'; '.join(questions)}")
     units = {signal: recording.units[column].unit for signal, column in recording.columns.items()}
     q = recording.of_joints("position", trace.joint_names)
-    friction, reason = _friction(setting, recording, q)
+    friction, reason = friction_of(setting.config.arm.model, recording)
     return RecordingComparison(
         run=run,
         recording=recording,
@@ -129,11 +130,12 @@ def _speeds(recording: Recording, q: FloatArray, at: FloatArray) -> FloatArray:
     return evenly(times, derivative(smooth, recording.period), np.clip(at, times[0], times[-1]))
 
 
-def _friction(setting: Setting, recording: Recording, q: FloatArray | None) -> tuple[Friction | None, str]:
+def friction_of(model: RobotModel, recording: Recording) -> tuple[Friction | None, str]:
     """Return the friction of a recorded arm, or why it cannot be identified."""
-    joints = setting.trace.joint_names
-    missing = [joint for joint in joints if Signal("position", joint) not in recording.signals]
+    joints = model.joint_names
+    q = recording.of_joints("position", joints)
     if q is None:
+        missing = [joint for joint in joints if Signal("position", joint) not in recording.signals]
         return None, f"no position of {', '.join(missing)} is recorded"
     signals = [Signal("torque", joint) for joint in joints]
     if not recording.signals.keys() & set(signals):
@@ -145,7 +147,7 @@ def _friction(setting: Setting, recording: Recording, q: FloatArray | None) -> t
         recording.torque_at(signal, times) if signal in recording.signals else np.full(len(times), np.nan)
         for signal in signals
     ]
-    return identify_friction(setting.config.arm.model, even, np.column_stack(torques), recording.period), ""
+    return identify_friction(model, even, np.column_stack(torques), recording.period), ""
 
 
 def _simulated_friction(run: Run, joints: Sequence[str]) -> dict[str, tuple[float, float]]:

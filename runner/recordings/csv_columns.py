@@ -18,11 +18,10 @@ FloatArray = NDArray[np.float64]
 
 _SEPARATORS = ",;\t"
 _MISSING = ("", "nan", "na", "null", "none")
-_LARGEST = 1e20  # whose square is finite; a time in ns is smaller
 _MOST_TOLD = 5  # problems of one file
 
 
-def read_csv_columns(path: Path, wanted: Sequence[str], may_lack: Sequence[str]) -> dict[str, FloatArray]:
+def read_csv_columns(path: Path, wanted: Sequence[str]) -> dict[str, FloatArray]:
     """Return columns of a CSV file whose first line names them; commas, semicolons or tabs separate its cells.
 
     Where commas do not separate cells, they may stand for decimal points.
@@ -30,7 +29,9 @@ def read_csv_columns(path: Path, wanted: Sequence[str], may_lack: Sequence[str])
     Args:
         path: The file.
         wanted: Names of the columns.
-        may_lack: Those of them in which cells may be missing; such a cell is NaN.
+
+    Returns:
+        Each column by its name; NaN for a cell that says that its number is missing.
 
     Raises:
         RunnerError: if it cannot be read, lacks a column, or has a cell without a number; names the line.
@@ -41,7 +42,7 @@ def read_csv_columns(path: Path, wanted: Sequence[str], may_lack: Sequence[str])
         with path.open(encoding="utf-8-sig", newline="") as file:
             head = file.readline(RECORDING_ROW.most)
             file.seek(0)
-            return _columns_of(path, file, max(_SEPARATORS, key=head.count), wanted, may_lack)
+            return _columns_of(path, file, max(_SEPARATORS, key=head.count), wanted)
     except (OSError, ExcessError, UnicodeDecodeError, csv.Error) as error:
         raise RunnerError(f"cannot read {path}: {error}") from error
 
@@ -86,9 +87,7 @@ def _rows(file: TextIO, separator: str) -> Iterator[list[str]]:
         yield row
 
 
-def _columns_of(
-    path: Path, file: TextIO, separator: str, wanted: Sequence[str], may_lack: Sequence[str]
-) -> dict[str, FloatArray]:
+def _columns_of(path: Path, file: TextIO, separator: str, wanted: Sequence[str]) -> dict[str, FloatArray]:
     rows = _rows(file, separator)
     names = [name.strip() for name in next(rows, [])]
     places = list(zip(places_of(path, wanted, names), wanted, strict=True))
@@ -105,9 +104,8 @@ def _columns_of(
         for place, name in places if len(cells) == len(names) else ():
             text = cells[place].strip()
             found[name].append(_number(text if separator == "," else text.replace(",", ".")))
-            missing = text.lower() in _MISSING
-            if math.isnan(found[name][-1]) and not (missing and name in may_lack):
-                wrong.append(f"line {line}: {name} is {quoted(text) if text else 'missing'}; needed: a finite number")
+            if math.isnan(found[name][-1]) and text.lower() not in _MISSING:
+                wrong.append(f"line {line}: {name} is {quoted(text)}; needed: a finite number")
         told += len(wrong)
         problems += wrong[: max(0, _MOST_TOLD - len(problems))]
     if problems:
@@ -116,9 +114,9 @@ def _columns_of(
 
 
 def _number(text: str) -> float:
-    """Return the number in a cell; NaN where there is none that squares to a finite one."""
+    """Return the finite number in a cell; NaN where there is none."""
     try:
         number = float(text)
     except ValueError:
         return math.nan
-    return number if abs(number) <= _LARGEST else math.nan
+    return number if math.isfinite(number) else math.nan

@@ -120,7 +120,7 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
     edge, apart = round(_SPOILT / (frequency * period)), max(1, int(0.5 / (frequency * period)))
     thinned = np.arange(edge, len(q) - edge, apart)
     fastest = np.abs(dq).max(axis=0)
-    clipped = [_clipped(*pair) for pair in zip(measured.T, np.abs(speed).T, strict=True)]
+    unusable = [_unusable(*pair) for pair in zip(measured.T, np.abs(speed).T, strict=True)]
     lacking: list[str] = []
     parts: list[_Part] = []
     for joint, name in enumerate(model.joint_names):
@@ -128,10 +128,8 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
         residual, speed, sign, masses = (low_pass(signal, period, frequency)[thinned] for signal in signals)
         moving = (np.abs(speed) > _STANDSTILL * fastest[joint]) & (np.abs(sign) > _ONE_WAY)
         moving &= fastest[joint] > _SLOW * fastest[model.slides == model.slides[joint]].max()
-        if not np.isfinite(torques[:, joint]).all():
-            lacking.append(f"{name}: no torque is recorded")
-        elif clipped[joint]:
-            lacking.append(f"{name}: {clipped[joint]}")
+        if unusable[joint]:
+            lacking.append(f"{name}: {unusable[joint]}")
         elif min(np.sum(moving & (speed > 0.0)), np.sum(moving & (speed < 0.0))) < _FEWEST:
             lacking.append(f"{name}: it moves too little, or in one direction alone")
         else:
@@ -147,15 +145,17 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
     return Friction(found, lacking, frequency)
 
 
-def _clipped(torques: FloatArray, speed: FloatArray) -> str:
-    """Return in how many rows a drive or a logger cut off the torque of a joint that moves; empty for none."""
-    rows = torques[speed > _STANDSTILL * speed.max()]
-    for end in (rows.max(initial=-np.inf), rows.min(initial=np.inf)):
-        inside = rows[rows != end]
-        beside = inside.max(initial=-np.inf) if end == rows.max(initial=-np.inf) else inside.min(initial=np.inf)
-        at, next_to = np.sum(rows == end), np.sum(rows == beside)
-        if at > max(_CLIPPED * len(rows), _PILED * next_to):
-            return f"its torque is clipped, at {end:.4g} in {at / len(rows):.0%} of the rows in which it moves"
+def _unusable(torques: FloatArray, speed: FloatArray) -> str:
+    """Return why the torque of a joint tells nothing of its friction; empty if it may."""
+    if not np.isfinite(torques).all():
+        return "no torque is recorded"
+    values, counts = np.unique(torques[speed > _STANDSTILL * speed.max()], return_counts=True)
+    if len(values) == 1:
+        return f"its torque is constant: {values[0]:.4g} in all rows in which it moves"
+    for end, beside in ((0, 1), (-1, -2)) if len(values) else ():
+        if counts[end] > max(_CLIPPED * counts.sum(), _PILED * counts[beside]):
+            share = counts[end] / counts.sum()
+            return f"its torque is clipped, at {values[end]:.4g} in {share:.0%} of the rows in which it moves"
     return ""
 
 

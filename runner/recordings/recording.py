@@ -5,11 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
+from runner.config.magnitudes import LARGEST
 from runner.errors import RunnerError
-from runner.recordings import BAGS
+from runner.recordings import BAGS, is_bag
 from runner.recordings.columns_map import ColumnsMap, Factor, Signal
-from runner.recordings.csv_columns import FloatArray, read_csv_columns, refused
+from runner.recordings.csv_columns import FloatArray, read_csv_columns
 from runner.recordings.ros_bag import read_bag_columns
 from runner.recordings.smoothing import CUTOFF, evenly
 
@@ -80,19 +82,19 @@ def read_recording(path: Path, said: ColumnsMap, factors: Mapping[str, Factor], 
         fill_gaps: Longest gap that is filled, in s; 0 for none.
 
     Raises:
-        RunnerError: if it cannot be read, lacks a column, has a cell without a number, gaps in time or another rate
-            than is said; names the line.
+        RunnerError: if it cannot be read, lacks a column, has a cell without a number or with one beyond reason, gaps
+            in time or another rate than is said; names the line.
     """
     if not 0.0 <= fill_gaps <= LONGEST_FILLED:
         raise RunnerError(f"gaps of up to {LONGEST_FILLED:g} s can be filled; found {fill_gaps:g} s")
     fill_gaps *= 1.0 + _DECIMALS
     wanted = [*([said.time.column] if said.time is not None else []), *said.columns]
-    if path.suffix.lower() in BAGS:
+    if is_bag(path):
         numbers = read_bag_columns(path, said.topic, wanted)
     elif said.topic is not None:
         raise RunnerError(f"{path}: topic: is for ROS bags ({', '.join(BAGS)})")
     else:
-        numbers = read_csv_columns(path, wanted, list(said.columns) if fill_gaps else [])
+        numbers = read_csv_columns(path, wanted)
     rows = len(numbers[wanted[0]])
     if rows < FEWEST_ROWS:
         raise RunnerError(f"{path}: too short: {rows} rows; needed: {FEWEST_ROWS} or more")
@@ -103,21 +105,33 @@ def read_recording(path: Path, said: ColumnsMap, factors: Mapping[str, Factor], 
     else:
         # From the first row on: a clock that began in 1970 leaves too few digits for times between rows.
         stamps = numbers[said.time.column]
-        t = (stamps - stamps[0]) * factors[said.time.column].factor
+        t = _in_si(path, said.time.column, stamps - stamps[0], factors[said.time.column])
         filled = _check_time(path, t, said, fill_gaps)
     signals = {}
     for name, column in said.columns.items():
-        values = numbers[name] * factors[name].factor
+        values = _in_si(path, name, numbers[name], factors[name])
         signals[column.signal], gaps = _filled(path, name, t, values, column.signal, fill_gaps)
         filled += gaps
     columns = {column.signal: name for name, column in said.columns.items()}
     return Recording(path, t, signals, columns, dict(factors), said.torque == "held", filled)
 
 
+def _in_si(path: Path, name: str, numbers: FloatArray, factor: Factor) -> FloatArray:
+    """Return a column in SI units, none of whose numbers is beyond reason."""
+    with np.errstate(over="ignore"):
+        values: FloatArray = numbers * factor.factor
+    beyond = np.abs(values) > LARGEST
+    if beyond.any():
+        row = int(np.argmax(beyond))
+        where = f"{path}: {_place(path, row)}: {name} is {values[row]:.4g} {factor.unit}"
+        raise RunnerError(f"{where}{_and_more(int(beyond.sum()))}; allowed: up to {LARGEST:g} in magnitude")
+    return values
+
+
 def _check_time(path: Path, t: FloatArray, said: ColumnsMap, fill_gaps: float) -> list[float]:
     """Return the gaps in time that are to be filled, in s."""
     steps = np.diff(t)
-    back = np.flatnonzero(steps <= 0.0)
+    back = np.flatnonzero(~(steps > 0.0))
     if len(back):
         row = int(back[0])
         raise RunnerError(
@@ -131,48 +145,47 @@ def _check_time(path: Path, t: FloatArray, said: ColumnsMap, fill_gaps: float) -
             f"{path}: its rows come at {1.0 / period:.4g} Hz by the column of time in {unit}, and rate says "
             f"{said.rate:.4g} Hz; leave out rate, or correct the unit of the time"
         )
-    gaps = steps > _GAP * period
-    longer = np.flatnonzero(gaps & (steps > fill_gaps))
-    if len(longer):
-        row, longest = int(longer[0]), float(steps.max())
-        raise RunnerError(
-            f"{path}: {_place(path, row + 1)}: a gap of {steps[row]:.4g} s in time, where rows are {period:.4g} s apart"
-            f"{_and_more(len(longer))}; {_remedy(longest)}"
-        )
-    return [float(step) for step in steps[gaps]]
+    return _gaps(path, "rows are", t, np.arange(len(t)), steps > _GAP * period, fill_gaps)
 
 
 def _filled(
     path: Path, name: str, t: FloatArray, values: FloatArray, signal: Signal, fill_gaps: float
 ) -> tuple[FloatArray, list[float]]:
     """Return a signal without gaps, and the gaps that it had, in s."""
-    there = np.isfinite(values)
-    if there.all():
+    missing = np.isnan(values)
+    if missing[[0, -1]].any():
+        where = f"{_place(path, int(np.argmax(missing)))}: {name} is missing, in {missing.sum()} of {len(t)} rows"
+        raise RunnerError(f"{path}: {where} and at an end; leave out the column, or cut the recording")
+    if not missing.any():
         return values, []
-    kept = np.flatnonzero(there)
-    missing = int(np.flatnonzero(~there)[0])
-    where = f"{_place(path, missing)}: {name} is missing"
-    if len(kept) < FEWEST_ROWS or not (there[0] and there[-1]):
-        few = f"in {len(t) - len(kept)} of {len(t)} rows" if len(kept) < FEWEST_ROWS else "at an end of the recording"
-        raise refused(path, [f"{where}, and {few}; leave out the column, or cut the recording"])
-    gaps = np.diff(t[kept])[np.diff(kept) > 1]
-    if gaps.max() > fill_gaps:
-        raise refused(path, [f"{where}; {_remedy(float(gaps.max()))}"])
-    if signal.kind == "torque":
-        return np.interp(t, t[kept], values[kept]), gaps.tolist()
-    return evenly(t[kept], values[kept], t), gaps.tolist()
+    kept = np.flatnonzero(~missing)
+    gaps = _gaps(path, f"{name} is", t, kept, np.diff(kept) > 1, fill_gaps)
+    straight = signal.kind == "torque"
+    return np.interp(t, t[kept], values[kept]) if straight else evenly(t[kept], values[kept], t), gaps
 
 
-def _remedy(longest: float) -> str:
-    if longest > LONGEST_FILLED:
-        return "cut the recording to a part without gaps"
-    needed = np.ceil(1e3 * longest * (1.0 - _DECIMALS))
-    return f"`--fill-gaps {needed:.0f}ms` fills the gaps; or cut the recording to a part without"
+def _gaps(
+    path: Path, what: str, t: FloatArray, kept: NDArray[np.intp], wide: NDArray[np.bool_], fill_gaps: float
+) -> list[float]:
+    """Return how long the wide steps between the kept rows are, in s, if none is longer than what is filled."""
+    steps = np.diff(t[kept])
+    longer = np.flatnonzero(wide & (steps > fill_gaps))
+    if len(longer):
+        first, longest = int(longer[0]), float(steps[longer].max())
+        remedy = "cut the recording to a part without gaps"
+        if longest <= LONGEST_FILLED:
+            needed = np.ceil(1e3 * longest * (1.0 - _DECIMALS))
+            remedy = f"`--fill-gaps {needed:.0f}ms` fills the gaps; or {remedy}"
+        raise RunnerError(
+            f"{path}: {_place(path, int(kept[first]) + 1)}: {what} missing for {steps[first]:.4g} s"
+            f"{_and_more(len(longer))}, where rows are {np.median(np.diff(t)):.4g} s apart; {remedy}"
+        )
+    return [float(step) for step in steps[wide]]
 
 
 def _place(path: Path, row: int) -> str:
     """Return where a row of numbers stands; the first line of a CSV file names its columns."""
-    return f"row {row + 1}" if path.suffix.lower() in BAGS else f"line {row + 2}"
+    return f"row {row + 1}" if is_bag(path) else f"line {row + 2}"
 
 
 def _and_more(count: int) -> str:

@@ -1,4 +1,4 @@
-"""Joint states from a ROS bag: ROS 1, or a file of ROS 2, MCAP or SQLite.
+"""Joint states from a ROS bag: ROS 1, or MCAP or SQLite of ROS 2, one file or a folder.
 
 A bag becomes columns as a CSV file has them: `stamp`, in s, and JOINT.position, JOINT.velocity and JOINT.effort.
 Messages are read by the definition of sensor_msgs/JointState that ROS publishes; the bag's own definitions, of which
@@ -14,6 +14,7 @@ import numpy as np
 
 from runner.errors import RunnerError, nearest
 from runner.limits import BAG_MEMORY, RECORDING, RECORDING_ROWS, ExcessError, bounded_memory
+from runner.recordings import files_of
 from runner.recordings.csv_columns import FloatArray, places_of
 from runner.texts import few, quoted
 
@@ -44,7 +45,7 @@ def read_bag_columns(path: Path, topic: str | None, wanted: Sequence[str]) -> di
     store = typesys.get_typestore(typesys.Stores.ROS1_NOETIC if old else typesys.Stores.ROS2_HUMBLE)
     deserialize = store.deserialize_ros1 if old else store.deserialize_cdr
     try:
-        if excess := RECORDING.excess(path.stat().st_size):
+        if excess := RECORDING.excess(sum(file.stat().st_size for file in files_of(path))):
             raise ExcessError(f"it {excess}")
         with bounded_memory(BAG_MEMORY), (rosbag1 if old else rosbag2).Reader(path) as reader:
             connections = [each for each in reader.connections if each.msgtype == _JOINT_STATE]

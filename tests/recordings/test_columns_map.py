@@ -57,10 +57,10 @@ def test_signals_and_factors(tmp_path):
         ("{a: {torque: q1, unit: A}}", "a current needs constant, in N m/A"),
         ("{a: {torque: q1, unit: N m, constant: 2.0}}", "a current needs constant, in N m/A, and nothing else"),
         ("{a: {joint: q1, unit: A, constant: 2.0}}", "a current is that of a motor: say by torque whose"),
-        ("{a: {torque: q1, unit: A, constant: 0}}", "constant: must be at least 1e-06 in magnitude; found 0"),
+        ("{a: {torque: q1, unit: A, constant: 0}}", "constant: must not be 0; it is the torque of one ampere"),
         (
             "{a: {torque: q1, unit: A, constant: 1.0e+300}}",
-            "columns.a.constant: Input should be less than or equal to 1000000",
+            "columns.a.constant: must lie between 1e-12 and 1e+12 in magnitude; found 1e+300",
         ),
         ("{a: {tip: w, unit: m}}", "columns.a.tip: Input should be 'x', 'y' or 'z'"),
         ("{}", "columns: Dictionary should have at least 1 item"),

@@ -25,7 +25,7 @@ def write(tmp_path, lines):
 
 
 def rows(times):
-    return ["note,t,a", *(f"x,{t},{0.5 * t}" for t in times)]
+    return ["note,t,a", *(f"x,{t},{0.5 * (t or 0)}" for t in times)]
 
 
 def test_columns_become_si_and_others_are_not_read(tmp_path):
@@ -49,12 +49,17 @@ def test_time_that_jitters_is_taken(tmp_path):
 @pytest.mark.parametrize(
     ("times", "rate", "wanted"),
     [
-        ([*range(60), *range(200, 240)], None, r"line 62: a gap of 0.141 s in time, where rows are 0.001 s apart; cut"),
+        (
+            [*range(60), *range(200, 240)],
+            None,
+            r"line 62: rows are missing for 0.141 s, where rows are 0.001 s apart; cut",
+        ),
         (
             [*range(60), *range(80, 120)],
             None,
-            r"line 62: a gap of 0.021 s in time, where rows are 0.001 s apart; `--fill-gaps 21ms` fills",
+            r"line 62: rows are missing for 0.021 s, where rows are 0.001 s apart; `--fill-gaps 21ms` fills",
         ),
+        ([*range(30), "", *range(31, 60)], None, r"line 32: the time is nan s after 0.029 s; time must increase"),
         ([*range(60), 59, *range(60, 90)], None, r"line 62: the time is 0.059 s after 0.059 s; time must increase"),
         ([*range(60), 30, *range(60, 90)], None, r"line 62: the time is 0.03 s after 0.059 s; time must increase"),
         (range(100), 500.0, r"its rows come at 1000 Hz by the column of time in ms, and rate says 500 Hz"),
@@ -76,8 +81,8 @@ def test_times_that_do_not_fit(tmp_path, times, rate, wanted):
         ),
         (["t,a,a", "0,1,2"], r"line 1 has the column 'a' more than once"),
         (
-            ["t,a", "0,1", "1", "2,x", "3,", "4,nan"],
-            r"line 3: 1 cells for 2 columns; line 4: a is 'x'.*line 5: a is mis",
+            ["t,a", "0,1", "1", "2,x", "3,inf"],
+            r"line 3: 1 cells for 2 columns; line 4: a is 'x'.*line 5: a is 'inf'; needed: a finite number",
         ),
         (["t,a", *["0,-"] * 8], r"line 6: a is '-'; needed: a finite number; 3 more problems like these"),
         ([], r"has no column 't', 'a'; its columns: none"),
@@ -147,18 +152,19 @@ def test_gaps_are_filled_up_to_what_is_asked_for(tmp_path):
     found = read_recording(write(tmp_path, lines), said(), FACTORS, fill_gaps=0.005)
     assert found.filled == pytest.approx([0.005, 0.003])
     assert found.signals[Q1] == pytest.approx(2.0 * np.sin(0.05 * np.array(times)), abs=1e-5)
-    with pytest.raises(RunnerError, match=r"line 42: a gap of 0.005 s .*`--fill-gaps 5ms` fills"):
+    with pytest.raises(RunnerError, match=r"line 42: rows are missing for 0.005 s.*`--fill-gaps 5ms` fills"):
         read_recording(write(tmp_path, lines), said(), FACTORS, fill_gaps=0.004)
     without = write(tmp_path, ["t,a", *(f"{t},{'' if 20 <= t < 25 else t}" for t in range(60))])
-    with pytest.raises(RunnerError, match="line 22: a is missing; `--fill-gaps 6ms` fills"):
-        read_recording(without, said(), FACTORS, fill_gaps=0.004)
+    for fill_gaps in (0.0, 0.004):
+        with pytest.raises(RunnerError, match=r"line 22: a is missing for 0.006 s, .*; `--fill-gaps 6ms` fills"):
+            read_recording(without, said(), FACTORS, fill_gaps)
 
 
 @pytest.mark.parametrize(
     ("gone", "wanted"),
     [
-        (range(5), "line 2: a is missing, and at an end"),
-        (range(60), "line 2: a is missing, and in 60 of 60 rows; leave"),
+        (range(5), "line 2: a is missing, in 5 of 60 rows and at an end"),
+        (range(60), "line 2: a is missing, in 60 of 60 rows and at an end; leave"),
     ],
 )
 def test_gaps_at_an_end_and_empty_columns_are_not_filled(tmp_path, gone, wanted):
@@ -167,11 +173,11 @@ def test_gaps_at_an_end_and_empty_columns_are_not_filled(tmp_path, gone, wanted)
         read_recording(write(tmp_path, lines), said(), FACTORS, fill_gaps=0.02)
 
 
-@pytest.mark.parametrize("cell", ["inf", "1e21", "1,5"])
-def test_numbers_beyond_all_arms_are_none(tmp_path, cell):
-    lines = [*rows(range(60)), f'x,60,"{cell}"']
-    with pytest.raises(RunnerError, match=f"line 62: a is '{cell}'; needed: a finite number"):
-        read_recording(write(tmp_path, lines), said(), FACTORS, fill_gaps=0.02)
+@pytest.mark.parametrize(("cell", "told"), [("1e18", "2e\\+18"), ("-1e308", "-inf"), ("6e11", "1.2e\\+12")])
+def test_numbers_beyond_all_arms_are_refused(tmp_path, cell, told):
+    lines = [*rows(range(60)), f"x,60,{cell}"]
+    with pytest.raises(RunnerError, match=rf"line 62: a is {told} rad; allowed: up to 1e\+12 in magnitude"):
+        read_recording(write(tmp_path, lines), said(), FACTORS)
 
 
 def test_what_is_for_bags_or_fills_too_much_is_refused(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 
 from runner.errors import RunnerError
 from runner.limits import Limit
-from runner.recordings import ros_bag
+from runner.recordings import is_bag, ros_bag
 from runner.recordings.columns_map import ColumnsMap, Factor, Signal
 from runner.recordings.recording import read_recording
 from runner.recordings.ros_bag import read_bag_columns
@@ -65,6 +65,10 @@ def test_columns_of_a_bag(write, suffix, compressed):
     assert found["stamp"] == pytest.approx(4e-3 * np.arange(COUNT), abs=1e-12)
     assert found["a.position"] == pytest.approx(0.1 * np.arange(COUNT))
     assert found["b.effort"] == pytest.approx(0.2 * np.arange(COUNT))
+    if suffix != ".bag":
+        assert is_bag(path.parent)
+        of_folder = read_bag_columns(path.parent, None, WANTED)
+        assert all(np.array_equal(of_folder[name], found[name]) for name in WANTED)
 
 
 def test_a_recording_from_a_bag(write):
@@ -93,7 +97,7 @@ def test_what_a_bag_lacks_is_named(write, tmp_path):
         with pytest.raises(RunnerError, match=told):
             read_bag_columns(path, topic, wanted)
     said = ColumnsMap(rate=250.0, topic="/arm", columns={"b.effort": {"torque": "q1", "unit": "N m"}})
-    with pytest.raises(RunnerError, match=r"row 8: b.effort is missing; `--fill-gaps 8ms` fills"):
+    with pytest.raises(RunnerError, match=r"row 8: b.effort is missing for 0.008 s, .*; `--fill-gaps 8ms` fills"):
         read_recording(path, said, {"b.effort": Factor(1.0, "N m")})
     path.write_bytes(path.read_bytes()[:1000])
     with pytest.raises(RunnerError, match=r"cannot read .*log.mcap: "):

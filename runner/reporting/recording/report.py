@@ -6,8 +6,9 @@ from pathlib import Path
 from runner.config.user_settings import outputs_dir
 from runner.metrics import unit_of
 from runner.quantities import above_rounding, quantity
-from runner.recordings import words
+from runner.recordings import files_of, words
 from runner.recordings.compare import RecordingComparison
+from runner.recordings.recording import Recording
 from runner.reporting.document import Block, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
@@ -43,7 +44,7 @@ def report_folder(found: RecordingComparison) -> Path:
     recording = found.recording
     said = (found.run.hash, found.offset.start, recording.torque_shift, recording.filled, dict(recording.units))
     content = hashlib.sha256(f"recording {said!r} ".encode())
-    content.update(recording.path.read_bytes())
+    content.update(_bytes_of(recording))
     return outputs / "reports" / content.hexdigest()[:24]
 
 
@@ -56,6 +57,10 @@ def _abstract(found: RecordingComparison) -> str:
 
 def _sentence(text: str) -> str:
     return text[:1].upper() + text[1:]
+
+
+def _bytes_of(recording: Recording) -> bytes:
+    return b"".join(file.read_bytes() for file in files_of(recording.path))
 
 
 def _key_numbers(found: RecordingComparison) -> list[tuple[str, str, str]]:
@@ -124,7 +129,7 @@ def _made(found: RecordingComparison) -> list[Block]:
         ("recording", recording.path.name),
         ("rows", str(len(recording.t))),
         ("time between rows", quantity(recording.period, "s", digits=4)),
-        ("SHA-256", hashlib.sha256(recording.path.read_bytes()).hexdigest()),
+        ("SHA-256", hashlib.sha256(_bytes_of(recording)).hexdigest()),
     ]
     columns = [
         literals([column, signal.words, f"{recording.units[column].factor:.6g}", recording.units[column].unit])

@@ -212,6 +212,40 @@ def test_a_torque_that_is_clipped_tells_no_friction(model, most, clipped):
     )
 
 
+@pytest.mark.parametrize("value", [0.0, 5.0])
+def test_a_constant_torque_is_not_clipped(model, value):
+    motion = moved()
+    tau = torques(model, motion) + friction_of(motion[1])
+    tau[:, 0] = value
+    found = identify_friction(model, motion[0], tau, H)
+    assert [joint.joint for joint in found.joints] == ["q2", "q3"]
+    assert found.lacking == [f"q1: its torque is constant: {value:g} in all rows in which it moves"]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        pytest.param(lambda q, tau: (0.0 * q, tau), id="stands still"),
+        pytest.param(lambda q, tau: (q, 0.0 * tau), id="no torque acts"),
+        pytest.param(lambda q, tau: (q, np.full_like(tau, np.nan)), id="no torque is recorded"),
+        pytest.param(lambda q, tau: (1e12 * q, 1e12 * tau), id="as large as allowed"),
+        pytest.param(lambda q, tau: (1e-300 * q, 1e-300 * tau), id="tiny"),
+        pytest.param(lambda q, tau: (np.where(q > 0.0, 1.0, 0.0), tau), id="jumps"),
+        pytest.param(lambda q, tau: (q[:, [0, 0, 0]], tau[:, [0, 0, 0]]), id="joints move as one"),
+        pytest.param(lambda q, tau: (q[:50], tau[:50]), id="50 rows"),
+        pytest.param(lambda q, tau: (q, np.where(np.arange(len(q))[:, None] == 700, 1e12, 0.0 * tau)), id="a spike"),
+    ],
+)
+@pytest.mark.parametrize("period", [H, 1.0])
+def test_awkward_recordings_give_finite_friction_or_a_reason_and_no_warning(model, change, period):
+    """Warnings are errors in all tests."""
+    motion = moved(T[:1250])
+    q, tau = change(motion[0], torques(model, motion) + friction_of(motion[1]))
+    found = identify_friction(model, q, tau, period)
+    assert len(found.joints) + len(found.lacking) == 3
+    assert np.isfinite(found.frame().drop(columns="unit").to_numpy(dtype=float)).all()
+
+
 def test_friction_as_a_frame(model):
     motion = moved()
     found = identify_friction(model, motion[0], torques(model, motion) + friction_of(motion[1]), H)
