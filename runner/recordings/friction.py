@@ -35,6 +35,7 @@ _STANDSTILL = 0.05  # of a joint's largest speed
 _SLOW = 0.01  # of the largest speed of all joints of its kind: a joint that is slower creeps
 _SPOILT = 3.0  # periods of the cut-off at both ends, where the low-pass knows one side alone
 _CLIPPED = 0.01  # of the rows at an end of the range of torques
+_SAME = 1e-6  # of the range of torques: what differs less is one value, but for rounding
 _PILED = 10  # times the rows beside: rounding alone puts 1.4 times as many at the peak of a sine
 _ONE_WAY = 0.98  # of sgn behind the low-pass: below it the joint has just turned round
 _FEWEST = 10  # rows of a joint in each direction
@@ -149,13 +150,15 @@ def _unusable(torques: FloatArray, speed: FloatArray) -> str:
     """Return why the torque of a joint tells nothing of its friction; empty if it may."""
     if not np.isfinite(torques).all():
         return "no torque is recorded"
-    values, counts = np.unique(torques[speed > _STANDSTILL * speed.max()], return_counts=True)
-    if len(values) == 1:
-        return f"its torque is constant: {values[0]:.4g} in all rows in which it moves"
-    for end, beside in ((0, 1), (-1, -2)) if len(values) else ():
-        if counts[end] > max(_CLIPPED * counts.sum(), _PILED * counts[beside]):
-            share = counts[end] / counts.sum()
-            return f"its torque is clipped, at {values[end]:.4g} in {share:.0%} of the rows in which it moves"
+    rows = torques[speed > _STANDSTILL * speed.max()]
+    low, high = rows.min(initial=np.inf), rows.max(initial=-np.inf)
+    if low == high:
+        return f"its torque is constant: {low:.4g} in all rows in which it moves"
+    for end in (low, high) if len(rows) else ():
+        away, same = np.abs(rows - end), _SAME * (high - low)
+        at, beside = np.sum(away <= same), np.sum(away <= away[away > same].min() + same)
+        if at > max(_CLIPPED * len(rows), _PILED * (beside - at)):
+            return f"its torque is clipped, at {end:.4g} in {at / len(rows):.0%} of the rows in which it moves"
     return ""
 
 

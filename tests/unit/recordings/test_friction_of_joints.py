@@ -205,6 +205,7 @@ def test_a_torque_that_is_clipped_tells_no_friction(model, most, clipped):
     motion = moved()
     tau = torques(model, motion) + friction_of(motion[1])
     tau[:, 0] = np.round(np.minimum(tau[:, 0], most) / 0.05) * 0.05
+    tau[::9, 0] = np.nextafter(tau[::9, 0], 0.0)  # as interpolation between rows rounds
     found = identify_friction(model, motion[0], tau, H)
     assert len(found.lacking) == clipped
     assert all(
