@@ -43,7 +43,7 @@ TABLE_NUMBERS = Limit(40_000, "numbers")  # of one, which becomes part of the co
 RECORDING = Limit(100_000_000, "bytes")
 RECORDING_ROWS = Limit(1_000_000, "rows")  # a quarter of an hour at 1 kHz; 8 bytes for each column that is read
 RECORDING_ROW = Limit(100_000, "characters in a row")  # 10^4 columns
-BAG_MEMORY = Limit(1_000_000_000, "bytes")  # that reading a ROS bag may take, whose parts may be compressed
+BAG_MEMORY = Limit(1_000_000_000, "bytes")  # of memory, and of a file, that a ROS bag may unpack to
 RECORD = Limit(50_000_000, "bytes")  # JSON that the runner wrote; 10^5 listed runs have 20 MB
 RECORD_VALUES = Limit(2_000_000, "values")  # of one, 100 bytes each
 
@@ -64,15 +64,15 @@ def read_text(path: Path, limit: Limit) -> str:
 
 @contextlib.contextmanager
 def bounded_memory(limit: Limit) -> Iterator[None]:
-    """Let the process take so many more bytes and no more: what unpacks to a larger size raises MemoryError."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
-    most = int(Path("/proc/self/statm").read_text().split()[0]) * os.sysconf("SC_PAGE_SIZE") + limit.most
-    lower = [own for own in (soft, hard) if own != resource.RLIM_INFINITY]
-    resource.setrlimit(resource.RLIMIT_AS, (min([most, *lower]), hard))
-    try:
+    """Let the process take so many more bytes, and write no larger file: MemoryError and OSError tell of more."""
+    held = int(Path("/proc/self/statm").read_text().split()[0]) * os.sysconf("SC_PAGE_SIZE")
+    with contextlib.ExitStack() as stack:
+        for kind, most in ((resource.RLIMIT_AS, held + limit.most), (resource.RLIMIT_FSIZE, limit.most)):
+            soft, hard = resource.getrlimit(kind)
+            lower = [own for own in (soft, hard) if own != resource.RLIM_INFINITY]
+            resource.setrlimit(kind, (min([most, *lower]), hard))
+            stack.callback(resource.setrlimit, kind, (soft, hard))
         yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
 def half_of_memory() -> float:

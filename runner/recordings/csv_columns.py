@@ -59,11 +59,11 @@ def places_of(path: Path, wanted: Sequence[str], names: Sequence[str]) -> list[i
     if missing:
         problems.append(f"has no column {few(missing)}; its columns: {few(list(names)) or 'none'}")
     if problems:
-        raise refused(path, problems)
+        raise _refused(path, problems)
     return [names.index(name) for name in wanted]
 
 
-def refused(path: Path, problems: Sequence[str], count: int = 0) -> RunnerError:
+def _refused(path: Path, problems: Sequence[str], count: int = 0) -> RunnerError:
     """Return the error that names the first problems of a file; `count` is how many it has."""
     more = max(count, len(problems)) - _MOST_TOLD
     told = [*problems[:_MOST_TOLD], *([f"{more} more problems like these"] if more > 0 else [])]
@@ -109,7 +109,7 @@ def _columns_of(path: Path, file: TextIO, separator: str, wanted: Sequence[str])
         told += len(wrong)
         problems += wrong[: max(0, _MOST_TOLD - len(problems))]
     if problems:
-        raise refused(path, problems, told)
+        raise _refused(path, problems, told)
     return {name: np.array(column) for name, column in found.items()}
 
 

@@ -54,7 +54,7 @@ def setting_of(run: Run) -> Setting:
     except ConfigError as error:
         raise RunnerError(f"run {run.hash} cannot be made again: {'; '.join(error.problems)}") from None
     if config.arm.urdf != run.urdf:
-        raise RunnerError(f"the file of the robot of {run.hash} has changed since the run; make the run anew")
+        raise RunnerError(f"the file of the robot of {run.hash} has changed since the run; make the run again")
     return Setting(config, _stored_trace(run, config), metric_context(config))
 
 

@@ -181,7 +181,7 @@ def test_joints_without_torque_or_in_one_direction_have_no_friction(model):
 def test_intervals_over_motions_at_the_middles_of_held_torques(model, held, noise):
     """Torques of an instant, or means over a row, of motions with other phases: 95 % hold, and none is far off."""
     held_friction, errors = [], []
-    for seed in range(12):
+    for seed in range(8):
         random = np.random.default_rng(seed)
         start = random.uniform(0.0, 100.0)
         times = start + T[:2000]
@@ -195,7 +195,7 @@ def test_intervals_over_motions_at_the_middles_of_held_torques(model, held, nois
         for joint, b, c in zip(identify_friction(model, q, tau, H).joints, VISCOUS, COULOMB, strict=True):
             errors.append([joint.viscous / b - 1.0, joint.coulomb / c - 1.0])
             held_friction += [abs(joint.viscous - b) < joint.viscous_half, abs(joint.coulomb - c) < joint.coulomb_half]
-    assert len(held_friction) == 72
+    assert len(held_friction) == 48
     assert np.mean(held_friction) > 0.85
     assert np.abs(errors).max() < (0.1 if noise else 0.01)
 
