@@ -28,9 +28,10 @@ def aligned_text(found: RecordingComparison) -> str:
     """Return when the run begins in the recording, and what both cover."""
     recording, offset = found.recording, found.offset
     first, last = found.span
-    after = "after" if offset.start >= 0.0 else "before"
+    start = round(offset.start, 7)  # what it was searched to
+    after = "after" if start >= 0.0 else "before"
     text = (
-        f"the run's time 0 is {quantity(abs(offset.start), 's', digits=5)} {after} the recording's first row; rows are "
+        f"the run's time 0 is {quantity(abs(start), 's', digits=5)} {after} the recording's first row; rows are "
         f"{quantity(recording.period, 's')} apart; compared from {quantity(first, 's')} to {quantity(last, 's')}"
     )
     if offset.rivals:
