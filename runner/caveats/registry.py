@@ -10,6 +10,7 @@ from runner.caveats.contact import UNSTABLE_CONTACT
 from runner.caveats.default_plant import DEFAULT_PLANT
 from runner.caveats.file import ROBOT_FILE
 from runner.caveats.gains import UNSTABLE_GAINS
+from runner.caveats.horizon import SHORT_HORIZON
 from runner.caveats.knowledge import EXACT_VELOCITY, FIXED_MISMATCH
 from runner.caveats.motion import DID_NOT_FOLLOW, JOINT_LIMITS
 from runner.caveats.plant_error import KEY, NAME
@@ -18,8 +19,8 @@ from runner.caveats.torques import CHATTER, SATURATION
 
 TRACE_RULES: tuple[TraceRule, ...] = (DID_NOT_FOLLOW, SATURATION, CHATTER, JOINT_LIMITS)
 SETTING_RULES: tuple[SettingRule, ...] = (
-    OVERLOAD, NO_EFFORT_LIMIT, EXACT_VELOCITY, FIXED_MISMATCH, UNSTABLE_GAINS, UNSTABLE_CONTACT, DEFAULT_PLANT,
-    ROBOT_FILE,
+    OVERLOAD, NO_EFFORT_LIMIT, EXACT_VELOCITY, FIXED_MISMATCH, UNSTABLE_GAINS, UNSTABLE_CONTACT, SHORT_HORIZON,
+    DEFAULT_PLANT, ROBOT_FILE,
 )  # fmt: skip
 KEYS: Mapping[str, str] = {
     **{rule.name: rule.key for rule in TRACE_RULES},

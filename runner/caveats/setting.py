@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from runner.trace import FloatArray
 
 if TYPE_CHECKING:  # the store knows caveats, and is to be imported without rigid-body models
+    from runner.caveats.time_constants import TimeConstant
     from runner.config.robot import RobotConfig
     from runner.config.run import RunConfig
     from runner.controllers.sampled_stability import VelocityLoop
@@ -26,6 +27,7 @@ class Setting:
 
     Attributes:
         repetitions: Number of repetitions.
+        duration: Length of the run, in s.
         robot: Config of the robot, for its payload and rating.
         joint_names: Names of the joints.
         joint_units: Unit of each joint's position, rad or m.
@@ -43,10 +45,12 @@ class Setting:
         contact: Of an arm behind joint servos with a wall, under an admittance law; None where there is none.
         touch: How a small motion on a wall grows in a period of a law that pushes by torques; None where none does.
         velocity_loop: How near a velocity loop is to what its period bears; None where no law says its gain.
+        slowest: The part of the laws that takes longest to do its work; None where no law says.
         left_out: What the robot's files hold that would change the motion and is not in the run, in words, by file.
     """
 
     repetitions: int
+    duration: float
     robot: "RobotConfig"
     joint_names: Sequence[str]
     joint_units: Sequence[str]
@@ -64,6 +68,7 @@ class Setting:
     contact: "ServoContact | None"
     touch: float | None
     velocity_loop: "VelocityLoop | None"
+    slowest: "TimeConstant | None"
     left_out: Mapping[str, Sequence[str]]
 
 
@@ -72,9 +77,10 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
 
     Args:
         config: The checked config.
-        q_start: Joint positions at the start, shape (nq,), in rad; None leaves contact out.
+        q_start: Joint positions at the start, shape (nq,), in rad; None leaves contact out, and takes home elsewhere.
     """
     from runner.caveats.file import left_out_of
+    from runner.caveats.time_constants import slowest_part
     from runner.caveats.touch import force_contact, servo_contact
     from runner.controllers.sampled_stability import velocity_loop
     from runner.plants.kinds import StandsIn
@@ -87,6 +93,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
             ticks[loop.joints] = round(loop.period / config.timing.tick)
     return Setting(
         repetitions=config.settings.repetitions,
+        duration=config.timing.ticks * config.timing.tick,
         robot=config.robot,
         joint_names=model.joint_names,
         joint_units=units,
@@ -104,6 +111,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         contact=None if q_start is None or "wrist_sensor" in config.plugged else servo_contact(config, q_start),
         touch=None if q_start is None or "wrist_sensor" in config.plugged else force_contact(config, q_start),
         velocity_loop=velocity_loop(config.loops, config.arm, config.path) if config.commands == "torque" else None,
+        slowest=slowest_part(config, q_start),
         left_out=left_out_of(config),
     )
 

@@ -109,6 +109,16 @@ class UnstableContactThreshold(StrictModel):
     radius: PositiveFloat
 
 
+class ShortHorizonThreshold(StrictModel):
+    """Threshold of the rule on runs that end before their law has done its work.
+
+    Attributes:
+        share: Share of the run that three time constants of the law's slowest part may take.
+    """
+
+    share: PositiveFloat
+
+
 class DefaultPlantThreshold(StrictModel):
     """Threshold of the rule on a plant that stands in for the default one.
 
@@ -153,6 +163,7 @@ class CaveatsConfig(StrictModel):
         no_effort_limit: A payload on an arm that lifts anything.
         unstable_gains: A velocity gain that its control period does not bear.
         unstable_contact: A wall too stiff for an admittance behind joint servos, or for a law that pushes by torques.
+        short_horizon: A run that ends before its law has done its work.
         default_plant: Another plant in place of the default one.
         robot_file: What is not taken from the robot's file.
         plant_error: What the plant's step is worth, of a run that was held against Runge-Kutta.
@@ -168,6 +179,7 @@ class CaveatsConfig(StrictModel):
     no_effort_limit: NoEffortLimitThreshold
     unstable_gains: UnstableGainsThreshold
     unstable_contact: UnstableContactThreshold
+    short_horizon: ShortHorizonThreshold
     default_plant: DefaultPlantThreshold
     robot_file: RobotFileThreshold
     plant_error: PlantErrorThreshold

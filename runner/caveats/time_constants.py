@@ -1,0 +1,205 @@
+"""How long the parts of control laws take to do their work; imported where rigid bodies are to be had."""
+
+import math
+from functools import singledispatch
+from typing import NamedTuple, cast
+
+import numpy as np
+
+from runner.config.per_stage import by_stage
+from runner.config.run import RunConfig
+from runner.controllers.adaptive import Adaptive, AdaptiveConfig
+from runner.controllers.admittance import AdmittanceConfig
+from runner.controllers.computed_torque import ComputedTorqueConfig
+from runner.controllers.differential_inverse_kinematics import DifferentialInverseKinematicsConfig
+from runner.controllers.hybrid_force import HybridForceConfig
+from runner.controllers.iterative_learning import IterativeLearningConfig
+from runner.controllers.joint_law import JointLawConfig
+from runner.controllers.joint_pid import JointPidConfig
+from runner.controllers.macro_mini import MacroMiniConfig
+from runner.controllers.operational_space import OperationalSpaceConfig
+from runner.controllers.passivity import PassivityConfig
+from runner.controllers.sliding_mode import SlidingModeConfig
+from runner.controllers.torque_law import PinocchioArm
+from runner.controllers.whole_body import WholeBodyConfig
+from runner.robots.effective_mass import mass_along, tip_mobility
+from runner.trace import FloatArray
+from runner.trajectories.trajectory import joint_reference
+
+_POSTURES = 64  # of the desired motion
+_ROUNDING = 1e-9
+_STEPS = 50  # of Newton, from below, as a sum of exponentials is convex
+_WEAK = 1e-6  # of the largest rate, below which one counts for nothing
+
+
+class TimeConstant(NamedTuple):
+    """How long a part of a control law takes.
+
+    Attributes:
+        seconds: Time in which what it has left to do falls to 1/e.
+        part: What it is, such as "integral".
+    """
+
+    seconds: float
+    part: str
+
+
+def slowest_part(run: RunConfig, q_start: FloatArray | None = None) -> TimeConstant | None:
+    """Return the part of a run's laws that takes longest, their observer included; None where no law says.
+
+    Args:
+        run: The checked config.
+        q_start: Joint positions at the start, shape (nq,), in rad; None takes home.
+    """
+    parts = dict(_parts(run.controller, run, run.arm.home if q_start is None else q_start))
+    bandwidths = run.disturbance_observer.by_loop(run.loops)
+    if bandwidths:
+        parts["disturbance observer"] = 1.0 / min(bandwidths)
+    return max((TimeConstant(seconds, part) for part, seconds in parts.items()), default=None)
+
+
+@singledispatch
+def _parts(config: object, run: RunConfig, q: FloatArray) -> dict[str, float]:
+    """Return the time constants of a law's parts, in s; none of a law that says nothing."""
+    return {}
+
+
+@_parts.register(JointLawConfig)
+@_parts.register(WholeBodyConfig)
+def _(config: JointLawConfig | WholeBodyConfig, run: RunConfig, q: FloatArray) -> dict[str, float]:
+    return {"position loop": _loop(config.natural_frequency, config.damping_ratio)}
+
+
+@_parts.register(PassivityConfig)
+@_parts.register(SlidingModeConfig)
+def _(config: PassivityConfig | SlidingModeConfig, run: RunConfig, q: FloatArray) -> dict[str, float]:
+    return {"position loop": _double_pole(config, run)}
+
+
+@_parts.register
+def _(config: AdaptiveConfig, run: RunConfig, q: FloatArray) -> dict[str, float]:
+    return {"position loop": _double_pole(config, run), "adaptation": _adaptation(run, q)}
+
+
+@_parts.register
+def _(config: ComputedTorqueConfig, run: RunConfig, q: FloatArray) -> dict[str, float]:
+    return _with_integral(config, config.integral_gain)
+
+
+@_parts.register
+def _(config: JointPidConfig, run: RunConfig, q: FloatArray) -> dict[str, float]:
+    return _with_integral(config, config.integral_share * config.natural_frequency**3)
+
+
+@_parts.register
+def _(config: IterativeLearningConfig, run: RunConfig, q: FloatArray) -> dict[str, float]:
+    """Return that of the slow errors, of which a period leaves 1 - gamma; none is learned within a period."""
+    left = abs(1.0 - config.learning_gain)
+    periods = max(1.0, -1.0 / math.log(left)) if left > 0.0 else 1.0
+    return {
+        "position loop": _loop(config.natural_frequency, config.damping_ratio),
+        "learning": periods * (config.repeats_every or 0.0),
+    }
+
+
+@_parts.register(OperationalSpaceConfig)
+@_parts.register(MacroMiniConfig)
+def _(config: OperationalSpaceConfig | MacroMiniConfig, run: RunConfig, q: FloatArray) -> dict[str, float]:
+    return {"position loop": _stage_loops(config, run)}
+
+
+@_parts.register
+def _(config: HybridForceConfig, run: RunConfig, q: FloatArray) -> dict[str, float]:
+    """Return those along the wall, and into it with the mass that the tip has at a posture."""
+    mobility = tip_mobility(run.arm.model, q, run.loops[-1].joints.start)
+    mass = mass_along(mobility, np.array(config.normal))
+    square = config.wall_stiffness * (1.0 + config.force_gain) / mass
+    brake = 2.0 * config.force_damping * math.sqrt(square)
+    integral = config.wall_stiffness * config.integral_gain / mass
+    force = {"force integral": _settling(1.0, brake, square, integral)} if integral else {}
+    return {"position loop": _stage_loops(config, run), "force loop": _settling(1.0, brake, square), **force}
+
+
+@_parts.register
+def _(config: AdmittanceConfig, run: RunConfig, q: FloatArray) -> dict[str, float]:
+    axes = zip(config.mass, config.damping, config.stiffness, strict=True)
+    return {"admittance": max(_settling(*axis) for axis in axes)}
+
+
+@_parts.register
+def _(config: DifferentialInverseKinematicsConfig, run: RunConfig, q: FloatArray) -> dict[str, float]:
+    return {"position loop": 1.0 / config.gain} if config.gain else {}
+
+
+def _loop(natural_frequency: float, damping_ratio: float) -> float:
+    """Return that of s^2 + 2 xi omega_n s + omega_n^2."""
+    return _settling(1.0, 2.0 * damping_ratio * natural_frequency, natural_frequency**2)
+
+
+def _stage_loops(config: OperationalSpaceConfig | MacroMiniConfig | HybridForceConfig, run: RunConfig) -> float:
+    """Return that of the slowest stage."""
+    names = run.arm.stage_names
+    rates = by_stage("controller.natural_frequency", config.natural_frequency, names)
+    return max(map(_loop, rates, by_stage("controller.damping_ratio", config.damping_ratio, names)))
+
+
+def _double_pole(config: JointLawConfig, run: RunConfig) -> float:
+    """Return that of joints with two poles at omega_n, and of the motion that leads the tip, if it is led."""
+    return _loop(config.natural_frequency, 1.0 if run.loops[0].follows_joints else config.damping_ratio)
+
+
+def _with_integral(config: JointLawConfig, gain: float) -> dict[str, float]:
+    """Return that of s^3 + 2 xi omega_n s^2 + omega_n^2 s + k_i."""
+    rate, damping = config.natural_frequency, config.damping_ratio
+    if gain == 0.0:
+        return {"position loop": _loop(rate, damping)}
+    return {"integral": _settling(1.0, 2.0 * damping * rate, rate**2, gain)}
+
+
+def _settling(*coefficients: float) -> float:
+    """Return the time constant of a polynomial's slowest root but 0, in s; 0 where a motion does not fade."""
+    roots = np.roots(coefficients)
+    fades = min((-roots.real[roots != 0.0]).tolist(), default=0.0)
+    return 1.0 / fades if fades > _ROUNDING * np.abs(roots).max() else 0.0
+
+
+def _adaptation(run: RunConfig, q: FloatArray) -> float:
+    r"""Return the time in which what wrong parameters leave of a torque falls to 1/e along the desired motion, in s.
+
+    A slow adaptation has s = K_D^-1 Y (theta - theta^), so that on average
+
+    .. math:: \dot{\tilde\theta} = -\Gamma \langle Y^T K_D^{-1} Y \rangle \tilde\theta
+
+    whose rates are r_i. What the parameters leave is a sum of exponentials, and how large each is depends on how wrong
+    which parameter is. Each is taken to be as wrong as its gain says, with the covariance Gamma: the mean square of
+    Y (theta - theta^) is then proportional to sum r_i exp(-2 r_i t). Where the tip is led, the joints are taken to move
+    about where they start.
+    """
+    law = cast(Adaptive, run.loops[0].controller)
+    numbers, arm = law.numbers, PinocchioArm(law.models[0], law.gravity_compensation)
+    root, brake = np.sqrt(numbers.adaptation), np.sqrt(numbers.damping)[:, None]
+    rows = []
+    for posture, dq, ddq in _desired_joints(run, q):
+        Y = arm.regressor(posture, dq, dq, ddq)
+        if Y.shape[1] < len(root):  # it adapts to friction
+            Y = np.concatenate([Y, np.diag(dq), np.diag(np.sign(dq))], axis=1)
+        rows.append(Y * root / brake)
+    rates = np.linalg.svd(np.concatenate(rows), compute_uv=False) ** 2 / _POSTURES
+    rates = rates[rates > _WEAK * rates.max()]
+    time = 0.0
+    for _ in range(_STEPS if len(rates) else 0):
+        left = rates * np.exp(-2.0 * rates * time)
+        time += float((left.sum() - rates.sum() * math.exp(-2.0)) / (2.0 * rates @ left))
+    return time
+
+
+def _desired_joints(run: RunConfig, q: FloatArray) -> FloatArray:
+    """Return joint positions, velocities and accelerations of the desired motion, shape (T, 3, nq)."""
+    times = np.linspace(0.0, run.path.duration, _POSTURES)
+    joints = joint_reference(run.path, times)
+    if joints is not None:
+        return joints
+    inverse = np.linalg.pinv(run.arm.model.tip_jacobian(q)[:3], rcond=0.01)
+    joints = run.path.sample(times) @ inverse.T
+    joints[:, 0] = q
+    return joints
