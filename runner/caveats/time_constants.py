@@ -8,6 +8,7 @@ import numpy as np
 
 from runner.config.per_stage import by_stage
 from runner.config.run import RunConfig
+from runner.controllers import CONTROLLERS
 from runner.controllers.adaptive import Adaptive, AdaptiveConfig
 from runner.controllers.admittance import AdmittanceConfig
 from runner.controllers.computed_torque import ComputedTorqueConfig
@@ -26,7 +27,7 @@ from runner.robots.effective_mass import mass_along, tip_mobility
 from runner.trace import FloatArray
 from runner.trajectories.trajectory import joint_reference
 
-_POSTURES = 64  # of the desired motion
+_POSTURES = 32  # of the desired motion
 _ROUNDING = 1e-9
 _STEPS = 50  # of Newton, from below, as a sum of exponentials is convex
 _WEAK = 1e-6  # of the largest rate, below which one counts for nothing
@@ -51,7 +52,8 @@ def slowest_part(run: RunConfig, q_start: FloatArray | None = None) -> TimeConst
         run: The checked config.
         q_start: Joint positions at the start, shape (nq,), in rad; None takes home.
     """
-    parts = dict(_parts(run.controller, run, run.arm.home if q_start is None else q_start))
+    ours = CONTROLLERS.is_ours(run.controller.kind)  # a law from outside may have a config of ours
+    parts = dict(_parts(run.controller, run, run.arm.home if q_start is None else q_start) if ours else {})
     bandwidths = run.disturbance_observer.by_loop(run.loops)
     if bandwidths:
         parts["disturbance observer"] = 1.0 / min(bandwidths)
@@ -178,13 +180,14 @@ def _adaptation(run: RunConfig, q: FloatArray) -> float:
     law = cast(Adaptive, run.loops[0].controller)
     numbers, arm = law.numbers, PinocchioArm(law.models[0], law.gravity_compensation)
     root, brake = np.sqrt(numbers.adaptation), np.sqrt(numbers.damping)[:, None]
-    rows = []
+    R: FloatArray = np.zeros((len(root), len(root)))
     for posture, dq, ddq in _desired_joints(run, q):
         Y = arm.regressor(posture, dq, dq, ddq)
         if Y.shape[1] < len(root):  # it adapts to friction
             Y = np.concatenate([Y, np.diag(dq), np.diag(np.sign(dq))], axis=1)
-        rows.append(Y * root / brake)
-    rates = np.linalg.svd(np.concatenate(rows), compute_uv=False) ** 2 / _POSTURES
+        scaled = Y * root / brake
+        R += scaled.T @ scaled / _POSTURES
+    rates = np.linalg.eigvalsh(R)
     rates = rates[rates > _WEAK * rates.max()]
     time = 0.0
     for _ in range(_STEPS if len(rates) else 0):

@@ -20,7 +20,7 @@ ABOUT = "title: T\nsource: S\nabstract: A\nchapters: [one.md]\n"
 RUNS = """\
 grids:
   goal:
-    with: [robot=macro, trajectory=quintic]
+    with: [robot=macro, trajectory=quintic, caveats.short_horizon.share=20]
     over:
       preset: {slow: controller.natural_frequency=5, fast: controller.natural_frequency=10}
       duration: [0.05, 0.1]

@@ -1,12 +1,14 @@
 """Time constants of the parts of laws, against how errors fade in runs, and against closed forms."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.linalg import expm
 
 from runner.caveats.time_constants import slowest_part
+from runner.controllers import CONTROLLERS
 from runner.controllers.torque_law import PinocchioArm
 
 REST = ("robot=macro", "trajectory=joint_quintic", "trajectory.goal_posture=${robot.home}",
@@ -86,3 +88,11 @@ def test_what_never_fades_has_none(checked_config):
     undamped = (*HAND, "controller.damping=[0,0,0,0,0,0]", "controller.check_stability=false")
     assert slowest_part(checked_config(*undamped)).seconds == 0.0
     assert slowest_part(checked_config("robot=macro", "controller=impedance")) is None
+
+
+def test_a_law_from_outside_has_that_of_its_observer_alone(checked_config, monkeypatch):
+    monkeypatch.setattr(CONTROLLERS, "is_ours", lambda kind: False)
+    config = checked_config(*REST, *SLOW[2][2:])
+    assert slowest_part(config) == (0.25, "disturbance observer")
+    unseen = config.disturbance_observer.model_copy(update={"bandwidth": None})
+    assert slowest_part(replace(config, disturbance_observer=unseen)) is None
