@@ -3,10 +3,12 @@
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runner.trajectories.trajectory import FloatArray
 
 _TABLE = 50_000  # distances of points to samples at a time
+_SEARCHED = 20_000  # points whose nearest places are searched together
 _MAX_STEPS = 60
 _CONVERGED = 1e-14  # share of the curve's range of parameters
 
@@ -27,9 +29,8 @@ def distance_to_curve(points: FloatArray, curve: Callable[[FloatArray], FloatArr
     every = points.reshape(-1, 3)
     at_samples = curve(samples)[:, 0]
     distance = np.empty(len(every))
-    rows = max(1, _TABLE // len(samples))
-    for first in range(0, len(every), rows):
-        chunk = slice(first, first + rows)
+    for first in range(0, len(every), _SEARCHED):
+        chunk = slice(first, first + _SEARCHED)
         distance[chunk] = _nearest(every[chunk], curve, samples, at_samples)
     return distance.reshape(points.shape[:-1])
 
@@ -37,14 +38,10 @@ def distance_to_curve(points: FloatArray, curve: Callable[[FloatArray], FloatArr
 def _nearest(
     points: FloatArray, curve: Callable[[FloatArray], FloatArray], samples: FloatArray, at_samples: FloatArray
 ) -> FloatArray:
-    squared = np.zeros((len(points), len(samples)))
-    for axis in range(3):  # not by a matrix product, which rounds a point by its place among the others
-        squared += (points[:, axis, None] - at_samples[:, axis]) ** 2
-    nearest = squared.min(axis=1)
-    reach = 2.0 * float(np.linalg.norm(np.diff(at_samples, axis=0), axis=1).max())
-    beside = np.pad(squared, ((0, 0), (1, 1)), constant_values=np.inf)
-    near_enough = squared <= (np.sqrt(nearest) + reach)[:, None] ** 2
-    which, sample = np.nonzero((squared <= beside[:, :-2]) & (squared <= beside[:, 2:]) & near_enough)
+    rows = max(1, _TABLE // len(samples))
+    starts = [_starts(points[first : first + rows], at_samples) for first in range(0, len(points), rows)]
+    which = np.concatenate([first * rows + which for first, (which, _, _) in enumerate(starts)])
+    sample = np.concatenate([sample for _, sample, _ in starts])
     last = len(samples) - 1
     place = _perpendicular(
         points[which],
@@ -53,9 +50,23 @@ def _nearest(
         samples[np.minimum(sample + 1, last)],
         _CONVERGED * abs(float(samples[-1])),
     )
-    distance: FloatArray = np.sqrt(nearest)
+    distance: FloatArray = np.concatenate([nearest for _, _, nearest in starts])
     np.minimum.at(distance, which, np.linalg.norm(curve(place)[:, 0] - points[which], axis=1))
     return distance
+
+
+def _starts(points: FloatArray, at_samples: FloatArray) -> tuple[NDArray[np.intp], NDArray[np.intp], FloatArray]:
+    """Return where searches start, as numbers of point and sample, and each point's distance to the nearest sample."""
+    squared = np.zeros((len(points), len(at_samples)))
+    for axis in range(3):  # not by a matrix product, which rounds a point by its place among the others
+        squared += (points[:, axis, None] - at_samples[:, axis]) ** 2
+    nearest: FloatArray = np.sqrt(squared.min(axis=1))
+    reach = 2.0 * float(np.linalg.norm(np.diff(at_samples, axis=0), axis=1).max())
+    low = squared <= (nearest + reach)[:, None] ** 2
+    low[:, 1:] &= squared[:, 1:] <= squared[:, :-1]
+    low[:, :-1] &= squared[:, :-1] <= squared[:, 1:]
+    which, sample = np.nonzero(low)
+    return which, sample, nearest
 
 
 def _perpendicular(
