@@ -11,6 +11,7 @@ UNITS = {
     "max_axis_error": "m",
     "rms_tracking_error": "m",
     "rms_tracking_error_last_period": "m",
+    "rms_tracking_error_period": "m",
     "cross_track_error": "m",
     "max_joint_error": "rad",
     "rms_joint_error": "rad",
@@ -23,7 +24,8 @@ def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
     - max_tracking_error: largest norm of the error over 0..t_f; with _x, _y or _z, largest error on that axis.
     - max_axis_error: largest error on any axis over 0..t_f.
     - rms_tracking_error: root mean square of the error's norm over 0..t_f.
-    - rms_tracking_error_last_period: likewise over the last period of a periodic motion, where a run has two or more.
+    - rms_tracking_error_last_period: likewise over the last period of a periodic motion.
+    - rms_tracking_error_period: likewise over a period of it, with _1, _2, _4, _8 and so on, as far as the run goes.
     - cross_track_error: largest distance to the path taken as a curve, over the whole run.
     - max_joint_error, rms_joint_error: largest error of a joint, and root mean square of their norm, over 0..t_f, where
       the desired motion is one of the joints; of those that turn.
@@ -41,7 +43,7 @@ def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
         **{f"max_tracking_error_{axis}": axes[:, index] for index, axis in enumerate("xyz")},
         "max_axis_error": axes.max(axis=1),
         "rms_tracking_error": np.sqrt(squared.sum(axis=1) / ticks),
-        **_of_last_period(traces, context, _squared(traces.error)),
+        **_of_periods(traces, context.trajectory, _squared(traces.error)),
         **cross_track,
         **_of_joints(traces, context.trajectory, ticks),
     }
@@ -52,13 +54,21 @@ def _squared(error: FloatArray) -> FloatArray:
     return np.asarray(error[:, 0] ** 2 + error[:, 1] ** 2 + error[:, 2] ** 2)
 
 
-def _of_last_period(traces: Traces, context: MetricContext, squared: FloatArray) -> dict[str, FloatArray]:
-    """Return what is left at the end of a periodic motion, such as after learning."""
-    path, end = context.trajectory, float(traces.t[-1])
-    if path.goal is not None or end < 2.0 * path.duration - 1e-9:
+def _of_periods(traces: Traces, path: Trajectory, squared: FloatArray) -> dict[str, FloatArray]:
+    """Return what a periodic motion leaves in its last period, and in those whose numbers are powers of two."""
+    end, period = float(traces.t[-1]), path.duration
+    whole = int(end / period + 1e-9)
+    if path.goal is not None or not whole:
         return {}
-    late = traces.t > end - path.duration + 1e-9
-    return {"rms_tracking_error_last_period": np.sqrt(squared[:, late].mean(axis=1))}
+    lasts = {f"period_{2**power}": 2**power * period for power in range(whole.bit_length())}
+    return {
+        f"rms_tracking_error_{name}": np.sqrt(squared[:, _within(traces.t, last - period, last)].mean(axis=1))
+        for name, last in {"last_period": end, **lasts}.items()
+    }
+
+
+def _within(times: FloatArray, after: float, until: float) -> slice:
+    return slice(*np.searchsorted(times, (after + 1e-9, until + 1e-9), side="right"))
 
 
 def _of_joints(traces: Traces, path: Trajectory, ticks: int) -> dict[str, FloatArray]:

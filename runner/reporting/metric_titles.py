@@ -14,6 +14,7 @@ TITLES = {
     "max_axis_error": "largest tracking error on one axis",
     "rms_tracking_error": "rms tracking error",
     "rms_tracking_error_last_period": "rms tracking error, last period",
+    "rms_tracking_error_period": "rms tracking error, period",
     "cross_track_error": "largest distance from the path",
     "max_joint_error": "largest joint error",
     "rms_joint_error": "rms joint error",

@@ -58,6 +58,9 @@ def test_root_mean_square_of_the_norm(hand_made_trace):
     assert evaluate(hand_made_trace(T, tip=-error), TRACKED)["rms_tracking_error"] == pytest.approx(0.5)
 
 
+ROUNDS = ClosedFigure(Circle(START, 1.0, END, np.array([0.0, 1.0, 0.0]), 1), 1.0, "none")
+
+
 def test_cross_track_is_the_distance_to_the_path_whatever_the_time(hand_made_trace):
     tip = np.zeros((len(T), 3))
     tip[:, 0] = 0.5  # half-way all the time: a large error, on the path
@@ -71,16 +74,26 @@ def test_a_goal_has_no_tracking_errors(hand_made_trace):
     assert found == {"cross_track_error": 0.0}
 
 
-@pytest.mark.parametrize(("ticks", "counts"), [(201, True), (251, True), (200, False)])
+@pytest.mark.parametrize(("ticks", "counts"), [(101, True), (251, True), (100, False)])
 def test_the_last_period_of_a_motion_that_repeats(hand_made_trace, ticks, counts):
-    """Of 1 s, 100 ticks: an error before it does not count, and two periods are needed."""
-    t, path = 0.01 * np.arange(ticks), ClosedFigure(Circle(START, 1.0, END, np.array([0.0, 1.0, 0.0]), 1), 1.0, "none")
+    """Of 1 s, 100 ticks: an error before it does not count, and a whole period is needed."""
+    t = 0.01 * np.arange(ticks)
     error = np.zeros((ticks, 3))
-    error[-101] = [0.0, 9.0, 0.0]
+    error[: max(0, ticks - 100)] = [0.0, 9.0, 0.0]
     error[-100:] = [0.3, 0.0, 0.4]
-    found = evaluate(hand_made_trace(t, tip=-error), MetricContext(path, 0.02, 0.01))
+    found = evaluate(hand_made_trace(t, tip=-error), MetricContext(ROUNDS, 0.02, 0.01))
     assert ("rms_tracking_error_last_period" in found) == counts
     assert not counts or found["rms_tracking_error_last_period"] == pytest.approx(0.5)
+
+
+def test_periods_whose_numbers_are_powers_of_two_have_their_errors(hand_made_trace):
+    """Nine periods of 1 s with the errors 1 to 9 mm: the ticks of a period are those after its first instant."""
+    t = 0.01 * np.arange(951)
+    error = np.zeros((951, 3))
+    error[1:, 1] = 1e-3 * np.ceil(t[1:] - 1e-9)
+    found = evaluate(hand_made_trace(t, tip=-error), MetricContext(ROUNDS, 0.02, 0.01))
+    periods = {name: value for name, value in found.items() if name.startswith("rms_tracking_error_period")}
+    assert periods == {f"rms_tracking_error_period_{n}": pytest.approx(1e-3 * n) for n in (1, 2, 4, 8)}
 
 
 def test_a_motion_to_rest_has_no_last_period(hand_made_trace):
