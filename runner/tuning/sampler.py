@@ -1,5 +1,6 @@
-"""What to try next: Optuna's tree-structured Parzen estimator, as a function of what came before."""
+"""What to try next: Optuna's Sobol sequence, then its tree-structured Parzen estimator, given what came before."""
 
+import warnings
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -11,6 +12,9 @@ from runner.tuning.key import Key
 from runner.tuning.objective import Objective
 from runner.tuning.trial import Trial
 
+SPREAD = 10
+"""Number of the first trials of `runner tune`, which are spread evenly over the ranges."""
+
 _FAILED = "failed"  # name of the constraint that a failed trial violates
 _FEWEST_FOR_IMPORTANCE = 20  # trials, of which the best tenth is compared with all
 
@@ -21,12 +25,14 @@ def propose(
     history: Sequence[FrozenTrial],
     under_way: Sequence[Mapping[str, float]],
     seed: int,
+    spread: int = SPREAD,
 ) -> dict[str, float]:
     """Return the values to try next; they follow from the arguments alone.
 
-    The first ten are drawn at random. Then those values are taken that are likely among the best trials and unlikely
-    among the others, failed ones and those under way counted with the latter (Bergstra et al., Algorithms for
-    Hyper-Parameter Optimization, 2011; Watanabe, Tree-Structured Parzen Estimator, 2023).
+    The first ones are spread evenly over the ranges (a scrambled Sobol sequence; Owen, 1998). Then those values are
+    taken that are likely among the best trials and unlikely among the others, failed ones and those under way counted
+    with the latter (Bergstra et al., Algorithms for Hyper-Parameter Optimization, 2011; Watanabe, Tree-Structured
+    Parzen Estimator, 2023).
 
     Args:
         keys: The keys to choose values for.
@@ -34,13 +40,27 @@ def propose(
         history: The trials that have ended, as `ended` gives them.
         under_way: Values of the trials that have not.
         seed: Seed of the search.
+        spread: Number of the first trials, which are spread evenly.
     """
     number = len(history) + len(under_way)
-    own_seed = int(np.random.SeedSequence([seed, number]).generate_state(1)[0])
-    study = _study(objectives, optuna.samplers.TPESampler(seed=own_seed, multivariate=True))
-    study.add_trials([*history, *(_under_way(keys, params) for params in under_way)])
-    found = study.ask(_distributions(keys)).params
+    if number < spread:
+        found = _spread(keys, objectives, number, seed)
+    else:
+        own_seed = int(np.random.SeedSequence([seed, number]).generate_state(1)[0])
+        sampler = optuna.samplers.TPESampler(seed=own_seed, multivariate=True, n_startup_trials=spread)
+        study = _study(objectives, sampler)
+        study.add_trials([*history, *(_under_way(keys, params) for params in under_way)])
+        found = study.ask(_distributions(keys)).params
     return {key.name: key.value(found[key.name]) for key in keys}
+
+
+def _spread(keys: Sequence[Key], objectives: Sequence[Objective], number: int, seed: int) -> dict[str, float]:
+    """Return a point of the sequence by its number; the one before the sequence's first is drawn at random."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
+        study = _study(objectives, optuna.samplers.QMCSampler(scramble=True, seed=seed))
+    asked = [study.ask(_distributions(keys)) for _ in range(number + 1)]
+    return asked[-1].params
 
 
 def ended(keys: Sequence[Key], trial: Trial) -> FrozenTrial:

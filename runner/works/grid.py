@@ -47,6 +47,10 @@ def _flat(value: object) -> list[str]:
     return overrides
 
 
+FlatOverrides = Annotated[list[str], BeforeValidator(_flat)]
+"""A list of overrides, written with lists of them as items, as an alias puts in."""
+
+
 class Grid(StrictModel):
     """Runs that differ in the levels of axes.
 
@@ -59,7 +63,7 @@ class Grid(StrictModel):
     """
 
     name: str = ""
-    with_: Annotated[list[str], BeforeValidator(_flat)] = Field(default_factory=list, alias="with")
+    with_: FlatOverrides = Field(default_factory=list, alias="with")
     over: dict[str, Annotated[Mapping[Level, Overrides | None], PlainValidator(_levels)]] = Field(default_factory=dict)
     values: dict[str, float] = Field(default_factory=dict)
     plugins: dict[str, Literal["controller", "environment", "plant", "trajectory"]] = Field(default_factory=dict)
@@ -89,6 +93,10 @@ class Grid(StrictModel):
                     f"axis '{axis}' has a level '{part.name}', as is --plugin {part.override}; rename yours"
                 )
         return {part.name: None if None in levels.values() else (part.override,) for part in own}
+
+    def only(self, axis: str, level: Level) -> Self:
+        """Return the grid with one level of an axis."""
+        return self.model_copy(update={"over": {**self.over, axis: {level: self.over[axis][level]}}})
 
     def runs(self, key: str, values: Mapping[str, float]) -> Iterator[tuple[str, Overrides]]:
         """Yield name and overrides of each run.

@@ -13,10 +13,12 @@
 
 Each combination of levels is tuned, under the name that its runs would have: `macro/computed_torque`. A range is one of
 factors on the value that the key has otherwise, looked at on a logarithmic scale. All have the same budget: the value
-that the keys have otherwise, and then twice `trials` values. They are tuned three times, or `times` times, by different
-seeds of search and runs. A run with the gains of one of these has the override `gains=macro/computed_torque/1`;
-runner/works/gains.py tells where they stand. A controller of the user's has its ranges beside its module,
-`mine/spring.ranges.yaml` beside `mine/spring.py`; without these it keeps the values of its config.
+that the keys have otherwise, and others up to `trials` in all. `longer` lists further runs, as `with` does, in which a
+trial that would become the best one must be stable: where a repetition fails there, a metric is beyond its bound or the
+error grows from period to period, it is not taken. They are tuned three times, or `times` times, by different seeds of
+search and runs. A run with the gains of one of these has the override `gains=macro/computed_torque/1`;
+runner/works/gains.py tells where they stand. A controller of the user's has its ranges next to its module,
+`mine/spring.ranges.yaml` next to `mine/spring.py`; without these it keeps the values of its config.
 """
 
 import itertools
@@ -29,9 +31,10 @@ from pydantic import Field, PositiveInt, model_validator
 from runner.data_file import read_data
 from runner.errors import RunnerError, nearest
 from runner.metrics.summary import unit_of, units
+from runner.tuning.key import Key
 from runner.works.arithmetic import Level
 from runner.works.given import GivenPart
-from runner.works.grid import Grid, Overrides
+from runner.works.grid import FlatOverrides, Grid, Overrides
 
 Factor = Annotated[float, Field(gt=0.0)]
 Range = Annotated[tuple[Factor, Factor], Field(strict=False)]
@@ -45,21 +48,27 @@ class Tuning:
 
     Attributes:
         name: Its name.
+        law: The level that the ranges belong to.
+        chosen: The overrides that this level stands for.
         overrides: The overrides that all its trials have.
         ranges: The ranges of its keys; none where nothing is tuned.
         minimize: The metric that is to be small.
         bounds: What other metrics are to stay below.
-        trials: Number of trials of each round of the search.
+        trials: Number of trials; 1 where nothing is tuned.
         times: How many times it is tuned, each by another seed.
+        longer: The overrides of each longer run in which the best trial must be stable.
     """
 
     name: str
+    law: str
+    chosen: Overrides
     overrides: Overrides
     ranges: Ranges
     minimize: str
     bounds: Mapping[str, float]
     trials: int
     times: int
+    longer: Sequence[Overrides]
 
 
 class TunedGrid(Grid):
@@ -69,15 +78,17 @@ class TunedGrid(Grid):
         ranges: Ranges by level, of one axis.
         minimize: The metric that is to be small: its median over the repetitions.
         bounds: What the medians of other metrics are to stay below.
-        trials: Number of trials of each round of the search.
+        trials: Number of trials.
         times: How many times each combination is tuned, each by another seed.
+        longer: Overrides, as in `with`, of each longer run in which the best trial must be stable.
     """
 
     ranges: Annotated[dict[str, dict[Level, dict[str, Range]]], Field(min_length=1, max_length=1)]
     minimize: str
     bounds: dict[str, Factor] = Field(default_factory=dict)
-    trials: PositiveInt = 24
+    trials: PositiveInt = 32
     times: PositiveInt = 3
+    longer: list[FlatOverrides] = Field(default_factory=list)
 
     @model_validator(mode="after")
     def _what_is_there(self) -> "TunedGrid":
@@ -104,10 +115,14 @@ class TunedGrid(Grid):
         """Yield what is tuned; see Grid.runs."""
         axis = self._axis
         for level, own in self.over[axis].items():
-            grid = self.model_copy(update={"over": {**self.over, axis: {level: own}}})
-            for name, overrides in grid.runs(key, values):
-                ranges = self.ranges[axis].get(level, {})
-                yield Tuning(name, overrides, ranges, self.minimize, self.bounds, self.trials, self.times)
+            ranges = self.ranges[axis].get(level, {})
+            law = str(level), (f"{axis}={level}",) if own is None else own
+            budget = self.trials if ranges else 1, self.times
+            grid = self.only(axis, level)
+            grids = [grid, *(grid.model_copy(update={"with_": each}) for each in self.longer)]
+            for (name, overrides), *longer in zip(*(each.runs(key, values) for each in grids), strict=True):
+                runs = [own for _, own in longer]
+                yield Tuning(name, *law, overrides, ranges, self.minimize, self.bounds, *budget, runs)
 
     @property
     def _axis(self) -> str:
@@ -129,6 +144,12 @@ def all_tunings(grids: Mapping[str, TunedGrid], values: Mapping[str, float]) -> 
             raise RunnerError(f"tunings: the name '{tuning.name}' is that of another tuning")
         found[tuning.name] = tuning
     return found
+
+
+def key_of(name: str, value: float, factors: Range) -> Key:
+    """Return the key of a range of factors on the value that it has otherwise."""
+    low, high = (float(f"{value * factor:.6g}") for factor in factors)
+    return Key(name, low, high, step=None, log=True, integer=False)
 
 
 def _ranges_of(part: GivenPart) -> Ranges:

@@ -28,6 +28,7 @@ tunings:
     minimize: rms_tracking_error
     bounds: {torque_chatter: 20}
     trials: 4
+    longer: [[*arm, "{{ law }}", repetitions=2, noise.position=1.0e-4, duration=0.4]]
 """
 ARM = "[robot=planar, trajectory=quintic, trajectory.duration=0.2, duration=0.2, plant=rk4, plant.step=0.001]"
 
@@ -64,6 +65,7 @@ def test_each_combination_is_a_tuning_with_its_ranges(paper):
         "noise.position=1.0e-4",
     )
     assert grids.tunings["planar/held"].ranges == {}
+    assert [each[-1] for each in grids.tunings["planar/held"].longer] == ["duration=0.4"]
 
 
 @pytest.mark.parametrize(
@@ -77,6 +79,7 @@ def test_each_combination_is_a_tuning_with_its_ranges(paper):
         (("[0.5, 2]", "[1.5, 2]"), r"controller.natural_frequency: its range must be factors below and above 1"),
         (("minimize: rms_tr", "minimize: rmz_tr"), r"there is no metric 'rmz_tracking_error' \(did you mean"),
         (("torque_chatter: 20", "torque_chatter: -1"), r"torque_chatter: must be above 0"),
+        (("longer: [[", "longer: [[3, "), r"tunings.tune.longer.0: must be a list of overrides"),
     ],
 )
 def test_what_is_wrong_is_told_with_its_place(paper, change, told):
@@ -90,10 +93,12 @@ def test_a_range_of_factors_needs_a_number_to_begin_with(paper, tmp_path):
         find_gains(work.untuned(), Way(tmp_path, (HERE,)))
 
 
-def test_gains_go_from_trials_into_runs_and_what_is_not_tuned_stays(paper, tmp_path):
+def test_gains_go_from_trials_into_runs_and_what_is_not_tuned_stays(paper, tmp_path, capsys):
     work = paper()
     assert [tuning.name for tuning in work.untuned()] == ["planar/pd", "planar/held"]
     runs, _ = make_all(work, tmp_path / "outputs", (HERE,))
+    first = capsys.readouterr().err.splitlines()[0]  # of one law 2 times 4 trials, of the other, not tuned, 2 times 1
+    assert first.startswith("runner: 2 laws on 1 arm: 10 trials in 3 rounds, some 12 long runs, then 3 runs: about ")
     before, after = (runs[f"moves/pd/{gains}"] for gains in ("untuned", "tuned"))
     assert after.metrics["rms_tracking_error"]["median"] < before.metrics["rms_tracking_error"]["median"]
     assert (
@@ -163,5 +168,6 @@ def test_a_tuning_asked_for_twice_is_found_stored(paper, tmp_path, capsys):
     capsys.readouterr()
     assert find_gains(work.untuned(), way) == first
     told = capsys.readouterr().err
-    assert "12 runs, 12 of them stored already" in told  # twice 1 + 4 trials of one law, and 1 of the other
-    assert "8 runs, 8 of them stored already" in told
+    assert "6 runs, 6 of them stored already" in told  # of two seeds 2 trials of one law, and 1 of the other
+    assert "longer runs of 4 trials ..." in told
+    assert "runner: 2 runs, 2 of them stored already" in told  # a further trial in each of the rounds that follow
