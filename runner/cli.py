@@ -39,6 +39,7 @@ runner: config-driven experiments for robot-arm control, with reports
                                                  which parameter a run's metrics depend on most, by exact derivatives
   runner work new FOLDER                         write a first work of your own, to reproduce another paper;
                                                  check FOLDER looks through it, diff OLD NEW compares two makings
+  runner benchmark check LAW.py [--profile P]    does a law of yours fit in the benchmark, and how long will it take?
   runner calibrate [OVERRIDES]                   calibrate tool or sensor against the truth: calibration=gravity
   runner audit URDF --tip FRAME --jacobian FILE  your own formulas against a robot; also --position, --mass-matrix,
                                                  --gravity
@@ -75,7 +76,7 @@ first.
 """
 COMMANDS = (
     "reproduce", "report", "table", "figures", "status", "tune", "verify", "check", "compare", "sensitivity",
-    "calibrate", "audit",
+    "calibrate", "audit", "benchmark",
     "doctor", "list", "work", "example",
 )  # fmt: skip
 

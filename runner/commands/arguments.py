@@ -65,3 +65,10 @@ class Parser(argparse.ArgumentParser):
             UsageError: always, with the usage.
         """
         raise UsageError(message, self)
+
+
+class ActionParser(Parser):
+    """The parser of one action of a command, such as `work new`."""
+
+    def __init__(self, prog: str, help: str = "", **_: object) -> None:
+        super().__init__(prog.removeprefix("runner "), help)

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from runner.commands.arguments import Parser
+from runner.commands.arguments import ActionParser, Parser
 from runner.config.user_settings import outputs_dir
 from runner.quiet import quiet_environment
 from runner.reporting.changes import KINDS, Change, Value, changes, read_conclusions
@@ -27,7 +27,7 @@ _TOLD = 20  # changes of a kind that are printed without --all
 def main(arguments: Sequence[str]) -> int:
     """Do one of them."""
     parser = Parser("work", __doc__)
-    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=_Action)
+    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=ActionParser)
     new = actions.add_parser("new", help="write a first work into a folder")
     new.add_argument("folder", type=Path, metavar="DIR", help="a folder that is not there yet, or empty")
     check = actions.add_parser("check", help="look through a work")
@@ -41,13 +41,6 @@ def main(arguments: Sequence[str]) -> int:
     diff.add_argument("--json", type=Path, metavar="FILE", help="write them to a file, too")
     options = parser.parse_args(arguments)
     return {"new": _new, "check": _check, "diff": _diff}[options.action](options)
-
-
-class _Action(Parser):
-    """The parser of one action."""
-
-    def __init__(self, prog: str, help: str = "", **_: object) -> None:
-        super().__init__(prog.removeprefix("runner "), help)
 
 
 def _new(options: Namespace) -> int:

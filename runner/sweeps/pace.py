@@ -13,6 +13,7 @@ from runner.batch_jobs import seconds_together
 from runner.config.compose import Composed
 from runner.config.validation import validate
 from runner.job import PROBED_TICKS, seconds_per_tick
+from runner.progress import in_words
 from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
 from runner.sweeps.deadline import TimeLimitError, deadline
@@ -44,6 +45,17 @@ class Estimate:
 
     seconds: float
     known: Known = "about"
+
+    def in_words(self, processes: int, together: int, more: float = 0.0) -> str:
+        """Return how long it takes.
+
+        Args:
+            processes: Number of processes.
+            together: How many of them run at a time.
+            more: Time that is not shared among them, in s.
+        """
+        several = "es" if processes > 1 else ""
+        return f"{self.known} {in_words(more + self.seconds / together)} on {processes} process{several}"
 
 
 class Pace:

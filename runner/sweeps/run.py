@@ -257,11 +257,11 @@ def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Ite
         with remote_client(engine.address) as client, contextlib.closing(on_cluster(queue, client)) as reports:
             processes = max(1, len(client.nthreads()))
             _expect(expected, processes)
-            _tell_estimate(expected, 0.0, processes, processes)
+            _tell(expected.in_words(processes, processes))
             yield reports
     elif engine.workers == 0:
         _expect(expected, 1)
-        _tell_estimate(expected, 0.0, 1, 1)
+        _tell(expected.in_words(1, 1))
         with contextlib.closing(in_process(queue)) as reports:
             yield reports
     else:
@@ -269,7 +269,7 @@ def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Ite
         together = min(workers, os.cpu_count() or 1)
         start = START_UP * workers / together
         _expect(expected, together)
-        _tell_estimate(expected, start, together, workers)
+        _tell(expected.in_words(workers, together, start))
         progress.begin("starting processes", start)
         with (
             local_client(workers, _scratch(queue.rules)) as client,
@@ -281,13 +281,6 @@ def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Ite
 def _expect(expected: Estimate, together: int) -> None:
     """Plan the simulation on processes of which so many run at a time; nothing follows from a bound."""
     progress.plan({SIMULATING: expected.seconds / together if expected.known == "about" else None})
-
-
-def _tell_estimate(expected: Estimate, start: float, together: int, processes: int) -> None:
-    """Print how long some processes take, of which so many run at a time, with their start, in s."""
-    several = "es" if processes > 1 else ""
-    seconds = progress.in_words(start + expected.seconds / together)
-    _tell(f"{expected.known} {seconds} on {processes} process{several}")
 
 
 def _tell(text: str) -> None:

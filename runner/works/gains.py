@@ -52,6 +52,11 @@ def put_in(overrides: Overrides, gains: Gains) -> Overrides:
     return tuple(text for override in overrides for text in _put_in(override, gains))
 
 
+def without_gains(overrides: Overrides) -> Overrides:
+    """Return a run's overrides without those that name a tuning."""
+    return tuple(text for text in overrides if not text.startswith(_KEY))
+
+
 def named(overrides: Overrides) -> list[tuple[str, int]]:
     """Return the names of the tunings whose gains some overrides take, each with its number.
 

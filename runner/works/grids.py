@@ -21,7 +21,7 @@ for what it holds. Calibrations are grids under `calibrations`.
 `runner reproduce` is given by --plugin is one more level, by its name.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any, TypeVar
@@ -81,7 +81,7 @@ class Grids:
             problems += profile.problems({**roots["grids"], **roots["calibrations"], **tuned})
             roots, tuned = {root: profile.applied(own) for root, own in roots.items()}, profile.applied(tuned)
         roots = {root: _with_parts(root, own, parts, problems) for root, own in roots.items()}
-        tuned = _with_parts("tunings", tuned, parts, problems)
+        self._tuned = tuned = _with_parts("tunings", tuned, parts, problems)
         shared = content.get("values", {}) if isinstance(content, dict) else {}
         try:
             self._values = _Values(values=shared).values
@@ -115,6 +115,15 @@ class Grids:
     def plugins(self) -> frozenset[str]:
         """The groups of which its axes take parts of the user's."""
         return frozenset(group for grid in self._grids.values() for group in grid.plugins.values())
+
+    def compared(self, part: GivenPart) -> Iterator[tuple[str, Overrides, Overrides]]:
+        """Yield name and overrides of each run and tuning of a part, and the overrides with our first level instead."""
+        for key, grid in chain(self._grids.items(), self._tuned.items()):
+            for axis in (axis for axis, group in grid.plugins.items() if group == part.group):
+                ours = next(iter(grid.over[axis]))
+                pairs = (grid.only(axis, level).runs(key, self._values) for level in (part.name, ours))
+                for (name, own), (_, other) in zip(*pairs, strict=True):
+                    yield name, own, other
 
     def grid(self, key: str) -> Grid:
         """Return a grid.

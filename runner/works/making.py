@@ -1,19 +1,23 @@
 """The runs and calibrations of a work, and its tunings before them, made where they are not stored yet."""
 
 import shlex
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from runner import store
+from runner import progress, store
 from runner.calibration_job import CALIBRATION
+from runner.progress.stages import SOON
 from runner.provenance import settled
 from runner.reporting.job import Made
 from runner.store import Calibration, Run
 from runner.sweeps.listed import Item
 from runner.sweeps.loading import Loader
 from runner.sweeps.plan import check
+from runner.works.estimate import counted, estimate_all, planned, told
 from runner.works.items import Way, listed, make_items
 from runner.works.tune import find_gains
+from runner.works.tunings import Tuning
 from runner.works.work import Work
 
 
@@ -36,7 +40,10 @@ def make_all(
         RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
     """
     way = Way(outputs, overrides, command, work.config_dirs)
-    work.take(find_gains(work.untuned(), way))
+    tunings = work.untuned()
+    if tunings:
+        _tell_estimate(work, tunings, way)
+    work.take(find_gains(tunings, way))
     jobs, calibrations = work.jobs(), work.calibrations()
     made = make_items(_items(work), way, trace="all" if work.about.traces else "never")
     missing = {name: each.missing for name, each in made.items() if each.missing}
@@ -52,6 +59,16 @@ def make_all(
         Made(runs, {name: why for name, why in missing.items() if name in jobs}, work.dropped()),
         Made(found, {name: why for name, why in missing.items() if name in calibrations}, work.dropped()),
     )
+
+
+def _tell_estimate(work: Work, tunings: Sequence[Tuning], way: Way) -> None:
+    """Print what tunings take with the runs of their laws, before they are started."""
+    progress.begin("estimating", SOON)
+    counts = counted(work, tunings, {override for each in tunings for override in each.chosen})
+    amounts = estimate_all(planned(counts, way), [*counts.values()])
+    laws = list(dict.fromkeys(each.law for each in tunings))
+    workers = Loader(way.config_dirs).sweeper([text for text in way.overrides if text.startswith("hydra.")]).workers
+    print(f"runner: {told(laws, amounts, workers)}, less where they are stored", file=sys.stderr)
 
 
 def _command(work: Work, overrides: Sequence[str], run: Run) -> str:

@@ -4,30 +4,30 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from runner.claims import CLAIMS, load_claims
 from runner.errors import RunnerError, nearest
 from runner.paths import check_inside
 from runner.plugins import use_plugins
-from runner.reporting.checklist import load_checklist
-from runner.reporting.cover import cover
-from runner.reporting.document import Cover, Document, Section, Text
 from runner.reporting.expected_caveats import ExpectedCaveat
 from runner.reporting.job import Job, Jobs, distinct
-from runner.reporting.work_report import work_document
 from runner.store import Calibration, Run
 from runner.works.about import read_about
 from runner.works.caveats import read_expected
-from runner.works.chapters import Chapters
 from runner.works.code import Code
 from runner.works.gains import Gains, named, put_in, read_gains
 from runner.works.given import GivenPart
+from runner.works.grid import Overrides
 from runner.works.grids import FILE as RUNS
 from runner.works.grids import Grids
 from runner.works.names import Place, find_work
 from runner.works.profiles import Profile
 from runner.works.tunings import Tuning
+
+if TYPE_CHECKING:  # drawing comes with these
+    from runner.reporting.document import Cover, Document, Section
+    from runner.works.chapters import Chapters
 
 Calibrations = Mapping[str, tuple[str, ...]]
 """Overrides of each calibration by its name."""
@@ -120,6 +120,14 @@ class Work:
             replace(self._grids.tunings[name], times=most) for name, most in times.items() if name not in self._gains
         ]
 
+    def compared(self) -> Iterator[tuple[str, Overrides, Overrides]]:
+        """Yield name and overrides of what parts of the user's are to make, and what it is compared with.
+
+        See Grids.compared.
+        """
+        for part in self._given:
+            yield from self._grids.compared(part)
+
     def take(self, gains: Gains) -> None:
         """Take gains that were tuned beside those that are known."""
         self.tuned = gains
@@ -141,8 +149,10 @@ class Work:
         changed: Calibrations = self._planned("calibrations", lambda given: given, self._grids.calibrations)
         return changed
 
-    def chapters(self, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -> Chapters:
+    def chapters(self, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -> "Chapters":
         """Return what makes its chapters from its stored runs and calibrations, by name."""
+        from runner.works.chapters import Chapters
+
         command = self.name if self.installed else os.path.relpath(self.folder)
         return Chapters(self.folder, self.about, self._code, self._grids, command, runs, calibrations)
 
@@ -153,8 +163,8 @@ class Work:
             function(outputs)
 
     def document(
-        self, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration], chapters: Chapters | None = None
-    ) -> Document:
+        self, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration], chapters: "Chapters | None" = None
+    ) -> "Document":
         """Return its report.
 
         Args:
@@ -162,6 +172,9 @@ class Work:
             calibrations: Its stored calibrations by name.
             chapters: What makes its chapters from these, if some have been read.
         """
+        from runner.reporting.checklist import load_checklist
+        from runner.reporting.work_report import work_document
+
         made = work_document(
             title=self.about.title,
             subtitle=self.about.source,
@@ -177,8 +190,10 @@ class Work:
         )
         return replace(made, sections=[*self._by_profile(runs), *made.sections])
 
-    def _by_profile(self, runs: Mapping[str, Run]) -> Iterator[Section]:
+    def _by_profile(self, runs: Mapping[str, Run]) -> "Iterator[Section]":
         """Yield what the profile makes otherwise than the whole work; nothing where that is nothing."""
+        from runner.reporting.document import Section, Text
+
         dropped, repetitions = self.dropped(), self._profile.repetitions if self._profile else None
         if not (dropped or repetitions):
             return
@@ -187,8 +202,10 @@ class Work:
         text = f"The profile {self.profile} takes {len(distinct(runs)):,} runs{less}.{each}"
         yield Section("Made with a profile", (Text(text),))
 
-    def _cover(self, runs: Mapping[str, Run]) -> Cover | None:
+    def _cover(self, runs: Mapping[str, Run]) -> "Cover | None":
         """Return the picture of the first screen; None where there is none, or its run was not made."""
+        from runner.reporting.cover import cover
+
         wanted = self.about.cover
         if wanted is None or wanted.run not in runs or runs[wanted.run].status == "failed":
             return None
