@@ -104,10 +104,11 @@ class Chapters:
         the module that bears the chapter's name; and what work.yaml, runs.yaml and claims.yaml hold. A function whose
         first argument is `runs`, `calibrations` or `concluded` gets the runs, the calibrations, or the method above.
         """
-        presets = self._about.presets
+        presets, tunings = self._about.presets, self._grids.tunings
         found: dict[str, Any] = {
             "level_of": self._grids.level,
             "value": self._grids.value,
+            "ranges": {name: {key: [*own] for key, own in each.ranges.items()} for name, each in tunings.items()},
             "presets": presets,
             "claims": self._claims,
             "claims_that": self._claims_that,

@@ -24,9 +24,15 @@ SIZES = {
 }
 LAWS = ("operational_space", "computed_torque", "with_integral", "joint_pd", "joint_pid", "passivity", "sliding_mode",
         "adaptive", "observed", "observed_pd")  # fmt: skip
+INTEGRATING = {"masses": 0.4, "encoders": 0.5}  # sizes for an integral once learned
+LATER = {
+    "friction": {"xarm7": 0.2, "panda": 0.2},
+    "encoders": {"macro": 1.3},
+}  # factors of adaptive control's, later on
 NEEDS = {"macro": (234.0, 38.7, 8.74), "mini": (0.183, 0.222, 0.0868)}  # peak torques, N m
 LEARNED = {"macro": 1.9, "planar": 0.3, "xarm7": 0.3}  # errors of iterative learning, mm
-TUNINGS = {"1": 1.0, "2": 1.02, "3": 0.99, "4": 1.01, "5": 0.98, "6": 1.0, "untuned": 2.2}  # factors of their errors
+TUNINGS = {"1": 1.0, "2": 1.02, "untuned": 2.2}  # factors of their errors
+CHANGES = {"slow": 0.6, "fast": 2.5, "half": 1.05, "untuned": 2.2}  # likewise, with all wrong at once
 _DRAWN = ("masses", "encoders", "all")  # conditions that differ from seed to seed
 
 
@@ -41,10 +47,14 @@ def benchmark_runs(names: Iterable[str], kinds: Mapping[str, Run]) -> dict[str, 
 
 
 def _with_errors(name: str, kind: Run) -> Run:
-    _, arm, law, *task, condition, gains = [*name.split("/"), *(["untuned"] if "repeated" in name else [])]
-    size = 1e-3 * TUNINGS[gains] * (LEARNED[arm] if law == "iterative_learning" else SIZES[condition][LAWS.index(law)])
+    plan, arm, law, *task, condition, gains = [*name.split("/"), *(["untuned"] if "repeated" in name else [])]
+    if plan == "changed":
+        task, condition, gains, factor = [condition], "all", "1", CHANGES[gains]
+    else:
+        factor = TUNINGS[gains]
+    size = 1e-3 * factor * _size(plan, arm, law, condition)
     errors = (size * (SCATTER if condition in _DRAWN else np.ones(1))).tolist()
-    if (law, task, gains) == ("joint_pd", ["circle"], "untuned"):
+    if (plan, law, task, gains) == ("first", "joint_pd", ["circle"], "untuned"):
         errors[: -(-len(errors) // 4)] = [None] * -(-len(errors) // 4)
     metrics = {
         "rms_tracking_error": {"unit": "m", "values": errors},
@@ -52,6 +62,19 @@ def _with_errors(name: str, kind: Run) -> Run:
         "rms_torque": {"unit": "N m", "median": 10.0},
         "rms_tracking_error_last_period": {"unit": "m", "median": size},
     }
+    if plan in ("learned", "changed"):
+        later = LATER.get(condition, {}).get(arm, 1.0) if law == "adaptive" else 1.0
+        for after, grown in ((4, 1.0), (8, later), (16, later)):
+            values = [each if each is None else grown * each for each in errors]
+            metrics[f"rms_tracking_error_period_{after}"] = {"unit": "m", "values": values}
     metrics |= {f"peak_torque_q{joint}": {"median": need} for joint, need in enumerate(NEEDS.get(arm, ()), 1)}
     record = {**kind.record, "metrics": metrics, "repetitions": len(errors)}
     return replace(kind, record=record, config={**kind.config, "repetitions": len(errors)})
+
+
+def _size(plan: str, arm: str, law: str, condition: str) -> float:
+    if law == "iterative_learning":
+        return LEARNED[arm]
+    if plan == "learned" and law == "with_integral" and condition in INTEGRATING:
+        return INTEGRATING[condition]
+    return SIZES[condition][LAWS.index(law)]

@@ -9,7 +9,7 @@ from runner.reporting.job import Job
 from runner.works.precision.measure import PLANT
 from runner.works.work import load_work
 
-FULL_ALONE = ("late_and_limited.md", "halves.md")  # chapters of the benchmark's full profile alone
+FULL_ALONE = ("late_and_limited.md",)  # chapters of the benchmark's full profile alone
 MOMENT = 0.08  # s
 WORKS = ("thesis", "xarm7", "meca500", "engines", "benchmark", "precision")
 RECORDED = tuple(work for work in WORKS if work != "meca500")
@@ -86,9 +86,9 @@ def _stand_in(found: re.Match[str]) -> str:
 
 
 def benchmark_kind(name: str) -> str:
-    """Return the plan, arm and condition of a run of the benchmark, from its name."""
-    plan, arm, *_, condition, _ = [*name.split("/"), *(["untuned"] if "repeated" in name else [])]
-    return f"{plan}/{arm}/{condition}"
+    """Return the plan, arm and condition, or change, of a run of the benchmark, from its name."""
+    plan, arm, *_, condition, gains = [*name.split("/"), *(["untuned"] if "repeated" in name else [])]
+    return f"{plan}/{arm}/{gains if plan == 'changed' else condition}"
 
 
 def benchmark_kinds() -> dict[str, Overrides]:

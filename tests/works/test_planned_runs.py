@@ -61,10 +61,10 @@ SOME = {
                                    "robot.goal=[0.6043,0.2,0.1508]", "duration=5", "robot.payload.mass=5"),
     },
     "benchmark": {
-        "laws/planar/passivity/circle/all/untuned": (
-            "robot=planar", "controller=passivity", "trajectory=circle", "trajectory.normal=[0,1,0]",
-            "plant.step=0.001", "trajectory.duration=2", "duration=2", "plant=rk4", "mismatch=sampled",
-            "mismatch.spread=0.3", "plant.friction.coulomb=1.0", "plant.friction.viscous=0.5",
+        "first/planar/passivity/circle/all/untuned": (
+            "robot=planar", "controller.period=0.004", "controller=passivity", "trajectory=circle",
+            "trajectory.normal=[0,1,0]", "plant.step=0.001", "trajectory.duration=2", "duration=2", "plant=rk4",
+            "mismatch=sampled", "mismatch.spread=0.3", "plant.friction.coulomb=1.0", "plant.friction.viscous=0.5",
             "noise.position=1.0e-4", "noise.velocity=finite_difference", "repetitions=32"),
     },
     "precision": {
@@ -85,7 +85,7 @@ SOME = {
         ("meca500", 244, 36),
         ("engines", 309, 0),
         ("precision", 90, 0),
-        ("benchmark", 1324, 0),
+        ("benchmark", 2444, 0),
     ],
 )
 def test_a_work_has_its_runs(work, runs, calibrations):

@@ -12,7 +12,7 @@ from runner.store import Run
 from runner.sweeps.differing import entries
 from runner.works.benchmark.cells import UNTUNED, tuned
 from runner.works.benchmark.figures import any_origin, error_words, ratio
-from runner.works.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, laws_of
+from runner.works.benchmark.made import ARMS, CONDITIONS, QUESTIONS, all_cells, arms_of, laws_of
 
 _MODEL = "mass matrix, Coriolis and gravity terms"
 _HOME = "gravity term, inertias at home"
@@ -49,8 +49,8 @@ def section(runs: Mapping[str, Run]) -> Section:
     """Return the chapter."""
     text = (
         "All laws read positions and velocities of the joints; none of ours reads torque sensors. Untuned gains follow "
-        "from one bandwidth for each arm; tuned ones are the best of the same number of trials for every law, several "
-        "times by different seeds."
+        "from one bandwidth for each arm; tuned ones are the best of the same number of trials for every law, for each "
+        "question, by different seeds."
     )
     laws = laws_of(runs, arms_of(runs)[0])
     return Section("Law by law", (Text(text), _knowledge(runs, laws)), [_law(runs, law) for law in laws])
@@ -74,35 +74,40 @@ def _law(runs: Mapping[str, Run], law: str) -> Section:
 
 
 def _places(runs: Mapping[str, Run], law: str) -> Table:
-    """Return its error and rank under each condition on each arm, and how much of the error tuning took away."""
+    """Return its error and group under each condition on each arm, and how much of the error tuning took away."""
     rows = []
     for arm in arms_of(runs):
-        before = all_cells(runs, arm, UNTUNED)
-        for name, cell in all_cells(runs, arm).items():
-            entry = cell.entry(law)
-            rank = cell.entries.index(entry) + 1
-            behind, gained = ratio(entry, cell.best), ratio(before[name].entry(law), entry)
-            texts = ["beyond" if each is None else number(each, zeros=True) for each in (behind, gained)]
-            rows.append([ARMS[arm], CONDITIONS[name], error_words(entry), str(rank), *texts])
-    header = ["arm", "condition", "error", "rank", "over the smallest", "untuned over tuned"]
-    return Table(f"{in_words(law)}: where it stands.", header, rows, (2, 3, 4, 5), any_origin(runs), folded=True)
+        before = all_cells(runs, arm, gains=UNTUNED)
+        for question, words in QUESTIONS.items():
+            for name, cell in all_cells(runs, arm, question).items():
+                entry = cell.entry(law)
+                group = next(str(place) for place, own in enumerate(cell.groups, start=1) if law in own)
+                behind = ratio(entry, cell.best)
+                gained = ratio(before[name].entry(law), entry) if question == "first" else None
+                texts = ["beyond" if behind is None else number(behind, zeros=True)]
+                texts.append("" if question != "first" else "beyond" if gained is None else number(gained, zeros=True))
+                rows.append([ARMS[arm], words, CONDITIONS[name], error_words(entry), group, *texts])
+    header = ["arm", "question", "condition", "error", "group", "over the smallest", "untuned over tuned"]
+    return Table(f"{in_words(law)}: where it stands.", header, rows, (3, 4, 5, 6), any_origin(runs), folded=True)
 
 
 def _gains(runs: Mapping[str, Run], law: str) -> Table:
     """Return the gains of each arm: of its bandwidth, and of each tuning."""
-    rows, tunings = [], tuned(runs)
+    rows = []
+    tunings = [(question, own) for question in QUESTIONS for own in tuned(runs)]
     for arm in arms_of(runs):
-        by_gains = [_keys(runs, arm, law, own) for own in (*UNTUNED, *tunings)]
+        by_gains = [keys_of(runs, arm, law, "first", *UNTUNED), *(keys_of(runs, arm, law, *own) for own in tunings)]
         differing = [key for key in by_gains[0] if len({own.get(key) for own in by_gains}) > 1]
         for key in differing or ["none"]:
             rows.append([ARMS[arm], key, *(_short(own.get(key, "")) for own in by_gains)])
-    header = ["arm", "key", "not tuned", *(f"tuning {own}" for own in tunings)]
-    caption, numbers = f"{in_words(law)}: gains that were tuned.", range(2, len(header))
+    header = ["arm", "key", "not tuned", *(f"{question}, {own}" for question, own in tunings)]
+    caption, numbers = f"{in_words(law)}: gains that were tuned, by question and tuning.", range(2, len(header))
     return Table(caption, header, rows, numbers, any_origin(runs), (1,))
 
 
-def _keys(runs: Mapping[str, Run], arm: str, law: str, gains: str) -> dict[str, str]:
-    config = found(runs, f"laws/{arm}/{law}/{{task}}/exact/{gains}")[0].run.config
+def keys_of(runs: Mapping[str, Run], arm: str, law: str, question: str, gains: str) -> dict[str, str]:
+    """Return the keys of a law and its observer with their values, as texts, of a tuning."""
+    config = found(runs, f"{question}/{arm}/{law}/{{task}}/exact/{gains}")[0].run.config
     own = {group: config[group] for group in ("controller", "disturbance_observer") if group in config}
     return {key: value for key, value in entries(own) if key.startswith(_LAW_KEYS)}
 

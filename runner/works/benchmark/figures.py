@@ -12,32 +12,38 @@ from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import found
 from runner.reporting.words import in_words
 from runner.store import Run
-from runner.works.benchmark.cells import UNTUNED, Cell, tuned
+from runner.works.benchmark.cells import ROUND, UNTUNED, Cell, tuned
 from runner.works.benchmark.leads import Entry, FloatArray, Lead
-from runner.works.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, laws_of, one_cell
+from runner.works.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, laws_of, one_cell, turned
 
-_BESIDE = 3  # arms in one table
-_NAMED = 4  # tied laws that are named
+_IN_A_TABLE = 4  # arms
+_NAMED = 5  # tied laws that are named
 _FAR = 1.1  # ratio of errors that three digits tell from one
 
 
-def best_laws(runs: Mapping[str, Run], caption: str) -> list[Table]:
-    """Return the law with the smallest error on each arm under each condition, and the laws it shares that with."""
+def best_laws(runs: Mapping[str, Run], question: str, caption: str) -> list[Table]:
+    """Return the laws that none is shown to be ahead of, on each arm under each condition, and who is next.
+
+    Args:
+        runs: The runs of the work.
+        question: One of QUESTIONS.
+        caption: What is seen.
+    """
     arms = arms_of(runs)
-    made = {arm: all_cells(runs, arm) for arm in arms}
+    made = {arm: all_cells(runs, arm, question) for arm in arms}
     tables = []
-    for start in range(0, len(arms), _BESIDE):
-        some = arms[start : start + _BESIDE]
-        rows = [[CONDITIONS[name], *(_answer(made[arm][name]) for arm in some)] for name in made[some[0]]]
+    for start in range(0, len(arms), _IN_A_TABLE):
+        some = arms[start : start + _IN_A_TABLE]
+        rows = [[CONDITIONS[name], *(said(runs, arm, question, name) for arm in some)] for name in made[some[0]]]
         tables.append(Table(caption, ["condition", *(ARMS[arm] for arm in some)], rows, (), any_origin(runs)))
     return tables
 
 
-def behind_the_best(runs: Mapping[str, Run], caption: str) -> Maps:
-    """Return the error of every law over that of the best one as maps, an arm each; runs that failed are marked."""
+def behind_the_best(runs: Mapping[str, Run], question: str, caption: str) -> Maps:
+    """Return the error of every law over the smallest one as maps, an arm each; runs that failed are marked."""
     panels = []
     for arm in arms_of(runs):
-        made, laws = all_cells(runs, arm), laws_of(runs, arm)[::-1]
+        made, laws = all_cells(runs, arm, question), laws_of(runs, arm)[::-1]
         ratios = np.array([[ratio(cell.entry(law), cell.best) for cell in made.values()] for law in laws], dtype=float)
         failed = np.array([[cell.entry(law).failed > 0.0 for cell in made.values()] for law in laws])
         hints = [f"{number(float(each))} times the smallest error" for each in ratios.flat]
@@ -47,17 +53,18 @@ def behind_the_best(runs: Mapping[str, Run], caption: str) -> Maps:
     return Maps(caption, "error over the smallest", panels, True, 1, any_origin(runs))
 
 
-def troubles(runs: Mapping[str, Run], gains: str, caption: str) -> Maps | Text:
+def troubles(runs: Mapping[str, Run], question: str, gains: str, caption: str) -> Maps | Text:
     """Return the share of repetitions of each law that failed as maps, an arm each; a sentence where none did.
 
     Args:
         runs: The runs of the work.
+        question: One of QUESTIONS.
         gains: "tuned" or "untuned".
         caption: What is seen.
     """
     panels = []
     for arm in arms_of(runs):
-        made, laws = all_cells(runs, arm, _chosen(gains)), laws_of(runs, arm)[::-1]
+        made, laws = all_cells(runs, arm, question, _chosen(gains)), laws_of(runs, arm)[::-1]
         shares = 100.0 * np.array([[cell.entry(law).failed for cell in made.values()] for law in laws])
         names = [CONDITIONS[name] for name in made]
         panels.append(Map(ARMS[arm], "", "", names, list(map(in_words, laws)), shares, np.zeros(shares.shape, bool)))
@@ -67,7 +74,7 @@ def troubles(runs: Mapping[str, Run], gains: str, caption: str) -> Maps | Text:
 
 
 def error_against(runs: Mapping[str, Run], metric: str, label: str, condition: str, caption: str) -> Curves:
-    """Return the error of each law against what another metric says of its torques, a panel for each arm.
+    """Return the error of each law in the first round against what another metric says of its torques, by arm.
 
     Args:
         runs: The runs of the work.
@@ -87,25 +94,12 @@ def error_against(runs: Mapping[str, Run], metric: str, label: str, condition: s
     return Curves(caption, panels, 2, any_origin(runs))
 
 
-def ranks(runs: Mapping[str, Run], caption: str) -> Table:
-    """Return the mean rank of every law over the conditions of each arm, and over all arms."""
-    arms = arms_of(runs)
-    by_arm = {arm: [[each.law for each in cell.entries] for cell in all_cells(runs, arm).values()] for arm in arms}
-    rows = []
-    for law in laws_of(runs, arms[0]):
-        places = {arm: [order.index(law) + 1 for order in orders] for arm, orders in by_arm.items()}
-        every = [place for own in places.values() for place in own]
-        rows.append([in_words(law), *(number(float(np.mean(own)), 2, zeros=True) for own in (*places.values(), every))])
-    header = ["law", *(ARMS[arm] for arm in arms), "all"]
-    return Table(caption, header, rows, range(1, 2 + len(arms)), any_origin(runs))
-
-
 def settings(runs: Mapping[str, Run], caption: str) -> Table:
     """Return what is the same for all laws of an arm, and what the conditions do to it."""
     header = ["arm", "bandwidth", "period", "masses wrong by up to", "friction", "viscous friction", "encoder noise"]
     rows = []
     for arm in arms_of(runs):
-        config = found(runs, f"laws/{arm}/joint_pd/{{task}}/all/untuned")[0].run.config
+        config = found(runs, f"first/{arm}/joint_pd/{{task}}/all/untuned")[0].run.config
         friction = config["plant"]["friction"]
         rows.append(
             [
@@ -121,12 +115,12 @@ def settings(runs: Mapping[str, Run], caption: str) -> Table:
     return Table(caption, header, rows, range(1, 7), any_origin(runs))
 
 
-def spread(runs: Mapping[str, Run], caption: str) -> Table:
-    """Return how far the errors of the tunings of each law are apart on each arm."""
+def spread(runs: Mapping[str, Run], question: str, caption: str) -> Table:
+    """Return how far the errors of the tunings of each law are apart on each arm, with all wrong at once."""
     arms = arms_of(runs)
     rows = []
     for law in laws_of(runs, arms[0]):
-        found_on = [all_cells(runs, arm)["all"].entry(law).by_tuning for arm in arms]
+        found_on = [all_cells(runs, arm, question)["all"].entry(law).by_tuning for arm in arms]
         rows.append([in_words(law), *(_apart(own) for own in found_on)])
     return Table(caption, ["law", *(ARMS[arm] for arm in arms)], rows, range(1, 1 + len(arms)), any_origin(runs))
 
@@ -143,7 +137,7 @@ def failed(runs: Mapping[str, Run], gains: str, condition: str, *arms: str) -> l
     return [
         Measured(f"repetitions of {in_words(each.law)} that failed, {gains}, {ARMS[arm]}", 100.0 * each.failed, "%")
         for arm in arms or arms_of(runs)
-        for each in one_cell(runs, arm, condition, _chosen(gains)).entries
+        for each in one_cell(runs, arm, condition, gains=_chosen(gains)).entries
     ]
 
 
@@ -172,21 +166,30 @@ def _chosen(gains: str) -> Sequence[str]:
 
 
 def any_origin(runs: Mapping[str, Run]) -> Origin:
-    """Return whence a table over several arms is: the command of one of the runs."""
-    return origin(found(runs, f"laws/{{arm={arms_of(runs)[0]}}}/{{law}}/{{task}}/{{condition}}/{{gains}}")[0].run)
+    """Return where a table over several arms is from: the command of one of the runs."""
+    return origin(found(runs, f"first/{{arm={arms_of(runs)[0]}}}/{{law}}/{{task}}/{{condition}}/{{gains}}")[0].run)
 
 
-def _answer(cell: Cell) -> str:
-    tied = cell.tied
+def said(runs: Mapping[str, Run], arm: str, question: str, condition: str) -> str:
+    """Return the answer to a question on an arm; where a later round changes it, that it does."""
+    cell = all_cells(runs, arm, question)[condition]
+    passed = turned(runs, arm, condition) if question == "learned" else ""
+    if not passed:
+        return answer(cell)
+    return f"no answer: in round {ROUND} {', '.join(map(in_words, cell.groups[0]))}; {passed}"
+
+
+def answer(cell: Cell) -> str:
+    """Return the laws that none is shown to be ahead of, and how far one that stands alone is ahead."""
     if not np.isfinite(cell.best.score):
         return "all failed"
-    best = in_words(cell.best.law)
-    if len(tied) > _NAMED:
-        return f"{best}; tied with {len(tied)} others"
-    if tied:
-        return f"{best}; tied with {', '.join(map(in_words, tied))}"
+    first = cell.groups[0]
+    if len(first) > _NAMED:
+        return f"{in_words(first[0])}; tied with {len(first) - 1} others"
+    if len(first) > 1:
+        return f"{in_words(first[0])}; tied with {', '.join(map(in_words, first[1:]))}"
     lead = cell.leads[cell.best.law, cell.entries[1].law]
-    return f"{best}, {lead_words(lead)} ahead of {in_words(lead.other)}"
+    return f"{in_words(cell.best.law)}, {lead_words(lead)} ahead of {in_words(lead.other)}"
 
 
 def _apart(errors: FloatArray) -> str:
@@ -201,7 +204,7 @@ def _listed(value: object) -> str:
 
 def typical(runs: Mapping[str, Run], arm: str, law: str, condition: str, gains: str, metric: str) -> float:
     """Return the mean over the paths of the median of a metric; NaN where a run has none."""
-    own = [one.run for one in found(runs, f"laws/{arm}/{law}/{{task}}/{condition}/{gains}")]
+    own = [one.run for one in found(runs, f"first/{arm}/{law}/{{task}}/{condition}/{gains}")]
     return float(np.mean([_median(run, metric) for run in own]))
 
 

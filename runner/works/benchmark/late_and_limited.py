@@ -32,7 +32,7 @@ def over_condition(runs: Mapping[str, Run], condition: str, other: str, law: str
 def frequency_times_period(runs: Mapping[str, Run], arm: str) -> Measured:
     """Return the natural frequency of an arm's untuned gains times its period."""
     one_cell(runs, arm, "delay_2")  # tells where there is none
-    (run, *_) = (one.run for one in found(runs, f"laws/{arm}/computed_torque/{{task}}/delay_2/{UNTUNED[0]}"))
+    (run, *_) = (one.run for one in found(runs, f"first/{arm}/computed_torque/{{task}}/delay_2/{UNTUNED[0]}"))
     own = run.config["controller"]
     return Measured(f"natural frequency times period, {ARMS[arm]}", own["natural_frequency"] * own["period"])
 
@@ -66,10 +66,10 @@ def limits_over_need(runs: Mapping[str, Run]) -> list[Measured]:
     """Return each joint's torque limit over the share that it is to be of what the motions need, on all arms."""
     told = []
     for arm in arms_of(runs):
-        peaks = [_peaks(one.run) for one in found(runs, f"laws/{arm}/computed_torque/{{task}}/exact/{UNTUNED[0]}")]
+        peaks = [_peaks(one.run) for one in found(runs, f"first/{arm}/computed_torque/{{task}}/exact/{UNTUNED[0]}")]
         for condition, share in _LIMITED.items():
             one_cell(runs, arm, condition)  # tells where there are none
-            limited = found(runs, f"laws/{arm}/computed_torque/{{task}}/{condition}/{UNTUNED[0]}")
+            limited = found(runs, f"first/{arm}/computed_torque/{{task}}/{condition}/{UNTUNED[0]}")
             for number, limit in enumerate(limited[0].run.config["torque_limits"]["max"]):
                 need = [own[number] for own in peaks if own]
                 value = limit / (share * max(need)) if len(need) == len(peaks) else None
