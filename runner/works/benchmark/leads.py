@@ -104,7 +104,7 @@ def _compared(a: Entry, b: Entry) -> list[Comparison]:
 
 @lru_cache(maxsize=100_000)
 def _paired(a: bytes, b: bytes) -> Comparison:
-    """Return the comparison of two samples, which the same gains of two tunings, and halves of seeds, ask for anew."""
+    """Return the comparison of two samples, which the same gains of two tunings, and halves of seeds, ask for again."""
     return compare_paired(np.frombuffer(a), np.frombuffer(b))
 
 
