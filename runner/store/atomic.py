@@ -62,4 +62,9 @@ def remove_leftovers(folder: Path) -> None:
 
 
 def _is_alive(process: str) -> bool:
-    return process.isdigit() and Path(f"/proc/{process}").exists()
+    """Tell whether a process may still write; one that ended and that its parent has not asked about may not."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except (OSError, IndexError):
+        return False
+    return state not in ("Z", "X")
