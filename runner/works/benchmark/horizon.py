@@ -21,6 +21,12 @@ def settled(runs: Mapping[str, Run], condition: str) -> Measured:
     return Measured(f"arms on which the order stays, {CONDITIONS[condition]}", float(stays))
 
 
+def passed_by(runs: Mapping[str, Run], condition: str, law: str) -> Measured:
+    """Return on how many arms a law is the first to pass one of the first three in a later round."""
+    passes = sum(turned(runs, arm, condition).startswith(f"{in_words(law)} passes ") for arm in arms_of(runs))
+    return Measured(f"arms on which {in_words(law)} passes another law, {CONDITIONS[condition]}", float(passes))
+
+
 def rounds(runs: Mapping[str, Run], caption: str) -> Table:
     """Return where the order of the first three laws changes between the rounds, and where it stays."""
     arms = arms_of(runs)
