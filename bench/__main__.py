@@ -3,8 +3,8 @@
 import sys
 from importlib import import_module
 
-from runner.engines import has_pybullet
-from runner.quiet import quiet_environment
+from runner.base.engines import has_pybullet
+from runner.base.quiet import quiet_environment
 
 NAMES = (
     "tick",

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from runner.assembly import assemble, metric_context
+from runner.base.trace import Traces
 from runner.caveats import Watch, look_together, setting_of, signals_of
 from runner.config.compose import compose
 from runner.config.validation import validate
@@ -25,7 +26,6 @@ from runner.store import Outcome
 from runner.store.json_texts import JsonTexts
 from runner.store.shards import ShardRow, shard_name, write_shard
 from runner.store.writing import record_texts, timing
-from runner.trace import Traces
 
 _RUNS, _TIMES = 256, 30
 _OVERRIDES = ("robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis", "torque_limits=thesis")

@@ -17,6 +17,7 @@ import yaml
 
 from bench.allowed_values import describe
 from bench.compiled_table import compiled_section
+from runner.base.paths import conf_dir
 from runner.calibration.procedures import CALIBRATIONS
 from runner.cli import COMMANDS
 from runner.config.calibration import CalibrationSettings
@@ -37,7 +38,6 @@ from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.controllers.notch_config import NotchConfig
 from runner.environments import ENVIRONMENTS
 from runner.metrics.summary import families
-from runner.paths import conf_dir
 from runner.plants import PLANTS
 from runner.registry import Registry, StrictModel
 from runner.robots.mismatch import MismatchConfig

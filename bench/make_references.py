@@ -16,8 +16,8 @@ import numpy as np
 import yaml
 from tqdm import tqdm
 
+from runner.base.quiet import quiet_environment
 from runner.config.options import group_options
-from runner.quiet import quiet_environment
 from runner.references.shipped import reference_path
 from runner.store import Run, open_run
 

@@ -1,7 +1,7 @@
 """Pages of the site that do not stand in docs/: a hook of MkDocs, which `make docs` runs.
 
 The README becomes the start page; changelog, contributing and security pages come from the root, too. A link of a page
-to a file of the source, such as ../runner/trace.py, leads to a page that shows it, so that the site needs no other
+to a file of the source, such as ../runner/base/trace.py, leads to a page that shows it, so that the site needs no other
 place. The gallery has the report that `python -m bench.gallery` left in build/gallery, as gallery_report.html.
 """
 

@@ -17,11 +17,11 @@ from pathlib import Path
 
 from runner import store
 from runner.assembly import assemble
+from runner.base.quiet import quiet_environment
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.job import simulate_job
 from runner.loop.sensors import make_encoders
-from runner.quiet import quiet_environment
 from runner.simulation import simulate
 
 _SHORT = ("robot=macro", "noise=thesis", "duration=1")

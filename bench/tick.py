@@ -11,10 +11,10 @@ from statistics import median
 
 from bench.turns import ROUNDS, Block, measure, ratio
 from runner.assembly import assemble
+from runner.base.engine_output import quiet_stderr
 from runner.config.compose import compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.engine_output import quiet_stderr
 from runner.loop.sensors import make_encoders
 from runner.plants.bullet import Bullet
 from runner.simulation import ClosedLoop, simulate

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from runner.api.run import Run
     from runner.api.sweep import Sweep
     from runner.api.tuning import Tuning
-    from runner.errors import RunnerError
+    from runner.base.errors import RunnerError
     from runner.store import Calibration
 
 __all__ = [
@@ -44,7 +44,7 @@ _PLACES = {
     "Metric": "runner.api.metric",
     "Report": "runner.api.report",
     "Run": "runner.api.run",
-    "RunnerError": "runner.errors",
+    "RunnerError": "runner.base.errors",
     "Sweep": "runner.api.sweep",
     "Tuning": "runner.api.tuning",
     "calibrate": "runner.api.calls",

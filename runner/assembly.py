@@ -5,6 +5,7 @@ from contextlib import ExitStack
 
 import numpy as np
 
+from runner.base.trace import FloatArray
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.compiled.compile import compile_commands, compile_whole, describe_whole, find_commands
 from runner.config.flexible_joints import believe_motors, find_motor_side
@@ -28,7 +29,6 @@ from runner.plants.servo import JointServo
 from runner.plants.touched import Touched
 from runner.robots.mismatch import believe
 from runner.robots.robot import Robot
-from runner.trace import FloatArray
 from runner.trajectories.joint_motion import TipOfJoints
 from runner.walls import put_up, touches_by_tip
 

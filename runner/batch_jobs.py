@@ -10,6 +10,7 @@ from itertools import groupby
 import numpy as np
 
 from runner import store
+from runner.base.trace import Failure, FloatArray, Trace
 from runner.batch import Batcher, Wanted
 from runner.caveats import Found, Setting, Watch, look_together, setting_of, signals_of
 from runner.config.compose import Composed
@@ -17,7 +18,6 @@ from runner.config.run import RunConfig
 from runner.metrics import measure, summarize_arrays
 from runner.provenance import job_provenance
 from runner.store.writing import timing
-from runner.trace import Failure, FloatArray, Trace
 
 Job = tuple[RunConfig, Composed]
 NO_DEADLINE: AbstractContextManager[None] = nullcontext()

@@ -9,13 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from runner import progress, provenance, store
+from runner import provenance, store
+from runner.base import progress
+from runner.base.progress.ticks import add_ticks, counter
 from runner.calibration import consistency
 from runner.calibration.procedures import Outcome
 from runner.config.calibration import CalibrationConfig, validate_calibration
 from runner.config.compose import Composed, compose
 from runner.latest import note
-from runner.progress.ticks import add_ticks, counter
 from runner.robots.model import FloatArray
 
 CALIBRATION = "calibrate"

@@ -12,10 +12,10 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
+from runner.base.errors import DISK_FULL, RunnerError, nearest, told, unwritten, user_place
+from runner.base.progress import shown
+from runner.base.texts import one_line
 from runner.completion import answer, is_asked
-from runner.errors import DISK_FULL, RunnerError, nearest, told, unwritten, user_place
-from runner.progress import shown
-from runner.texts import one_line
 
 HELP = """\
 runner: config-driven experiments for robot-arm control, with reports
@@ -193,7 +193,7 @@ def _choose(arguments: Sequence[str]) -> int:
 
 def _run(arguments: Sequence[str]) -> int:
     """Make a run or a sweep, or tell again of the run that the same line gave before."""
-    from runner.quiet import quiet_environment
+    from runner.base.quiet import quiet_environment
     from runner.recall.runs import find_again, line_key
 
     quiet_environment()

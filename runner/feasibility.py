@@ -7,12 +7,12 @@ from typing import cast
 import numpy as np
 import pinocchio as pin
 
+from runner.base.errors import ConfigError, SimulationError
+from runner.base.trace import FloatArray
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop, PositionController
-from runner.errors import ConfigError, SimulationError
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.task_space import task_directions
-from runner.trace import FloatArray
 from runner.trajectories import Trajectory
 
 _AT_LIMIT = 1e-6  # rad or m

@@ -9,8 +9,8 @@ from importlib.util import module_from_spec
 from pathlib import Path
 from types import ModuleType
 
-from runner.errors import RunnerError, told
-from runner.paths import package_dir
+from runner.base.errors import RunnerError, told
+from runner.base.paths import package_dir
 
 
 def folder_module(folder: Path, name: str, package: str = "") -> ModuleType:

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
+from runner.base.errors import RunnerError, StoreError
 from runner.config.user_settings import outputs_dir
-from runner.errors import RunnerError, StoreError
 
 Kind = Literal["run", "sweep", "tuning", "calibration", "report"]
 WORD = "latest"

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from runner.trace import Trace
+from runner.base.trace import Trace
 
 PLANT = "rk4"
 """The plant that others are held against."""

@@ -16,7 +16,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 
-from runner.errors import ConfigError, RunnerError, nearest, told
+from runner.base.errors import ConfigError, RunnerError, nearest, told
 
 GROUPS = (
     "calibration", "controller", "environment", "joint_torque_sensor", "metric", "mismatch", "noise", "plant",

@@ -3,11 +3,11 @@
 import numpy as np
 import pinocchio as pin
 
+from runner.base.errors import ConfigError, nearest
+from runner.base.texts import quoted
+from runner.base.trace import FloatArray
 from runner.environments import PushesLinks
-from runner.errors import ConfigError, nearest
 from runner.sensing.wrench import cross_matrix
-from runner.texts import quoted
-from runner.trace import FloatArray
 
 
 class PushedLinks:

@@ -13,7 +13,7 @@ from typing import Concatenate, Generic, Literal, ParamSpec, Protocol, TypeVar, 
 
 from pydantic import BaseModel, ConfigDict
 
-from runner.errors import ConfigError, RunnerError, nearest, told
+from runner.base.errors import ConfigError, RunnerError, nearest, told
 from runner.plugins import added, load
 
 

@@ -13,11 +13,11 @@ import numpy as np
 import pinocchio as pin
 from scipy.linalg import expm
 
+from runner.base.trace import FloatArray
 from runner.controllers.admittance_filter import Admittance, discretise
 from runner.plants.servo import ServoLaw
 from runner.robots.robot import Robot
 from runner.robots.tool_link import find_tool
-from runner.trace import FloatArray
 
 _STEP = 1e-5  # rad and rad/s, of the differences
 _ROUNDING = 1e-9  # of the radius, which an axis without spring makes 1

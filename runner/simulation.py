@@ -4,8 +4,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from runner.base.errors import SimulationError
+from runner.base.progress.ticks import counted
+from runner.base.trace import Trace
 from runner.compiled.closed_loop import CompiledCommands, Whole
-from runner.errors import SimulationError
 from runner.loop.acting import Acting, evenly_late
 from runner.loop.closed_loop import ClosedLoop
 from runner.loop.command import Command
@@ -15,9 +17,7 @@ from runner.loop.drive import make_drive
 from runner.loop.endpoint import MeasuredTip
 from runner.loop.joint_torques import JointTorques
 from runner.loop.recorder import Recorder
-from runner.progress.ticks import counted
 from runner.sensing import Encoders, TorqueSensors, WristSensor
-from runner.trace import Trace
 from runner.trajectories.trajectory import joint_reference
 
 __all__ = ["ClosedLoop", "simulate"]

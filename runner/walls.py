@@ -2,12 +2,12 @@
 
 import math
 
+from runner.base.errors import ConfigError
 from runner.config.run import RunConfig
 from runner.controllers.admittance_stability import check_wall
 from runner.controllers.kinds import ChecksStability
 from runner.environments import Environment
 from runner.environments.wall import Wall
-from runner.errors import ConfigError
 from runner.plants import PLANTS, ContactPlant, Plant, innermost
 
 

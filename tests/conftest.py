@@ -9,13 +9,13 @@ import pytest
 from hypothesis import settings
 from support import compiled_once
 
-from runner.quiet import quiet_environment
+from runner.base.quiet import quiet_environment
 
 quiet_environment()
 
 import numpy as np  # noqa: E402 - after the environment
 
-from runner.engines import has_pybullet  # noqa: E402
+from runner.base.engines import has_pybullet  # noqa: E402
 
 _FIXTURES = [
     "cli",

@@ -2,8 +2,8 @@
 
 import pytest
 
-from runner.data_file import read_data
-from runner.errors import RunnerError
+from runner.base.data_file import read_data
+from runner.base.errors import RunnerError
 from runner.registry import StrictModel
 
 

@@ -5,7 +5,7 @@ import os
 
 import pytest
 
-from runner.engine_output import caught_output, quiet_stderr
+from runner.base.engine_output import caught_output, quiet_stderr
 
 C = ctypes.CDLL(None)
 

@@ -5,10 +5,10 @@ import platform
 import pytest
 from support.printed import without_results
 
-from runner import engines
+from runner.base import engines
+from runner.base.errors import ConfigError
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.errors import ConfigError
 from runner.provenance import command
 from runner.sweeps.grid import plan_sweep
 

@@ -4,7 +4,7 @@ import pickle
 
 import pytest
 
-from runner.errors import ConfigError, RunnerError, SimulationError, StoreError, nearest
+from runner.base.errors import ConfigError, RunnerError, SimulationError, StoreError, nearest
 
 
 def test_what_a_user_can_mend_is_a_runner_error():

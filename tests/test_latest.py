@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.latest import find_folder, kind_of, note
 
 _FILES = {

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from runner.quantities import (
+from runner.base.quantities import (
     above_rounding,
     digits_between,
     labelled,

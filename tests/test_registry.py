@@ -9,7 +9,7 @@ import pytest
 from pydantic import ValidationError
 
 from runner import registry
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.registry import Registry, StrictModel
 
 

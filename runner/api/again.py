@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from runner import store
-from runner.errors import ConfigError, RunnerError
+from runner.base.errors import ConfigError, RunnerError
 from runner.store.run import units_of
 from runner.store.shards import ShardRun
 
 if TYPE_CHECKING:
     import pandas as pd
 
+    from runner.base.trace import Trace
     from runner.config.run import RunConfig
-    from runner.trace import Trace
 
 
 @dataclass(frozen=True)

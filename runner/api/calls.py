@@ -11,8 +11,8 @@ from runner.api.processes import workers_only_work
 from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.api.tuning import Tuning
+from runner.base.errors import ConfigError
 from runner.config.overrides import force
-from runner.errors import ConfigError
 from runner.plugins import named, use_plugins
 
 Folders = Sequence[str | Path] | str | Path

@@ -4,8 +4,8 @@ import functools
 from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
-from runner.errors import RunnerError
-from runner.progress import shown
+from runner.base.errors import RunnerError
+from runner.base.progress import shown
 
 P = ParamSpec("P")
 T = TypeVar("T")

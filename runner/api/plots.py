@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from matplotlib.figure import Figure
 
 from runner.api.again import Signals
+from runner.base.errors import RunnerError, nearest
+from runner.base.quantities import labelled
 from runner.drawing.figure import Panel, Series
 from runner.drawing.stills import as_figure, draw
-from runner.errors import RunnerError, nearest
-from runner.quantities import labelled
 
 _JOINT = re.compile(r"(q|dq|tau)(\d+)(_command)?")
 _AXIS = re.compile(r"(\w+)_([xyz])")

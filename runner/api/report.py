@@ -9,7 +9,7 @@ from runner.api.door import door
 from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.api.tuning import Tuning
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.latest import Kind, find_folder
 
 Thing = Run | Sweep | Tuning | str | Path

@@ -8,8 +8,8 @@ from runner import store
 from runner.api import page
 from runner.api.door import door
 from runner.api.metric import Metrics
-from runner.errors import RunnerError
-from runner.texts import one_line
+from runner.base.errors import RunnerError
+from runner.base.texts import one_line
 
 if TYPE_CHECKING:
     import pandas as pd

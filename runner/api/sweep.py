@@ -11,11 +11,11 @@ from runner import store
 from runner.api import page
 from runner.api.door import door
 from runner.api.run import Run
-from runner.errors import RunnerError, StoreError, nearest
-from runner.quantities import quantity
+from runner.base.errors import RunnerError, StoreError, nearest
+from runner.base.quantities import quantity
+from runner.base.texts import few, one_line, quoted
 from runner.sweeps.measurements import Axis, Measurements, axes_of, measure_sweep
 from runner.sweeps.status import Status, find_status
-from runner.texts import few, one_line, quoted
 
 if TYPE_CHECKING:
     import pandas as pd

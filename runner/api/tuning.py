@@ -7,9 +7,9 @@ from runner import store
 from runner.api import page
 from runner.api.door import door
 from runner.api.run import Run
-from runner.errors import RunnerError
-from runner.quantities import quantity
-from runner.texts import one_line
+from runner.base.errors import RunnerError
+from runner.base.quantities import quantity
+from runner.base.texts import one_line
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -5,12 +5,12 @@ import io
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
-from runner import progress
 from runner.audit.entry import Form, Part, parts
 from runner.audit.sources import Where, sources
 from runner.audit.verdict import SAMPLES, VERDICTS, Judge, Judged, Verdict
-from runner.progress.stages import AUDITING
-from runner.texts import table_cell
+from runner.base import progress
+from runner.base.progress.stages import AUDITING
+from runner.base.texts import table_cell
 
 
 def audit(where: Where, samples: int = SAMPLES) -> list[Judged]:

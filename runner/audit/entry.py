@@ -26,7 +26,7 @@ Entries live in YAML files, one for each part of a source (`equations/*.yaml` of
 Where a model is not enough, `truth: xarm7.transform` names a Truth of the folder's `equations/truths/xarm7.py`, and
 `symbols: xarm7.symbols` a function there that draws the sample; then there is no robot to name.
 
-Elements are expressions as `runner/expressions/parser.py` has them. An equation that is no arithmetic, such as a
+Elements are expressions as `runner/base/expressions/parser.py` has them. An equation that is no arithmetic, such as a
 relation between matrices, stands as `math` (in Typst) with the name of the function that evaluates it (`code:
 xarm7.left_inverse`). The verdict is never stored: `verdict.py` works it out.
 """
@@ -39,9 +39,9 @@ from typing import Annotated, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from runner.audit.sources import Source, Where, source_of
-from runner.data_file import read_data
+from runner.base.data_file import read_data
+from runner.base.texts import quoted
 from runner.registry import StrictModel
-from runner.texts import quoted
 
 
 def _as_text(value: object) -> str:

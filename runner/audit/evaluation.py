@@ -8,11 +8,11 @@ import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 from numpy.typing import NDArray
 
-from runner.errors import RunnerError
-from runner.expressions.evaluator import Budget, Scope
-from runner.expressions.grammar import ExpressionError
-from runner.expressions.parser import FUNCTIONS, PRIME, Expression, as_written, parse
-from runner.expressions.tree import symbols as names_in
+from runner.base.errors import RunnerError
+from runner.base.expressions.evaluator import Budget, Scope
+from runner.base.expressions.grammar import ExpressionError
+from runner.base.expressions.parser import FUNCTIONS, PRIME, Expression, as_written, parse
+from runner.base.expressions.tree import symbols as names_in
 
 FloatArray = NDArray[np.float64]
 

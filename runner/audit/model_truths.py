@@ -30,10 +30,10 @@ import numpy as np
 from runner.audit.chains import jacobian_by_differences
 from runner.audit.truth import FloatArray, Symbols, Truth, along, columns, coordinates, whole_and_elements
 from runner.audit.urdf_chain import UrdfChain
+from runner.base.errors import RunnerError, nearest
+from runner.base.paths import conf_dir
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.errors import RunnerError, nearest
-from runner.paths import conf_dir
 from runner.robots.description import find_urdf
 from runner.robots.model import RobotModel
 from runner.robots.tree import read_tree

@@ -10,8 +10,8 @@ from runner.audit.entry import Written
 from runner.audit.evaluation import evaluate_all, with_symbols
 from runner.audit.model_truths import by_model, sample
 from runner.audit.truth import Elements, FloatArray, columns
-from runner.data_file import read_data
-from runner.errors import RunnerError, nearest
+from runner.base.data_file import read_data
+from runner.base.errors import RunnerError, nearest
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 

@@ -19,11 +19,11 @@ import numpy as np
 
 from runner.audit.sources import Where, rollout_of, source_of
 from runner.audit.truth import FloatArray
-from runner.data_file import read_data
-from runner.errors import RunnerError, nearest
-from runner.expressions.evaluator import Budget, Scope
-from runner.expressions.grammar import ExpressionError
-from runner.expressions.insertions import fill
+from runner.base.data_file import read_data
+from runner.base.errors import RunnerError, nearest
+from runner.base.expressions.evaluator import Budget, Scope
+from runner.base.expressions.grammar import ExpressionError
+from runner.base.expressions.insertions import fill
 from runner.registry import StrictModel
 
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from runner.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, nearest
+from runner.base.paths import works_dir, works_with
 from runner.folder_code import folder_module
-from runner.paths import works_dir, works_with
 
 _FOLDER = "equations"
 

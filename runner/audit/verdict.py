@@ -12,9 +12,9 @@ from runner.audit.evaluation import evaluate_all, with_symbols
 from runner.audit.model_truths import AuditedArm, audited_arm, sample
 from runner.audit.sources import Source, truth_of
 from runner.audit.truth import Elements, FloatArray, Symbols, Truth
-from runner.errors import ConfigError, RunnerError
-from runner.expressions.grammar import ExpressionError
-from runner.expressions.parser import parse
+from runner.base.errors import ConfigError, RunnerError
+from runner.base.expressions.grammar import ExpressionError
+from runner.base.expressions.parser import parse
 
 SAMPLES = 1000
 Verdict = Literal["correct", "correct after repair", "wrong as printed", "unreadable", "definition"]

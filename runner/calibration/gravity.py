@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtri
 
+from runner.base.errors import ConfigError
 from runner.calibration.orientations import check_orientations, force_matrix, moment_matrix
-from runner.errors import ConfigError
 from runner.robots.model import FloatArray
 from runner.sensing.wrench import cross_matrix
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots.model import FloatArray
 from runner.sensing.wrench import cross_matrix
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots.model import FloatArray
 from runner.sensing.wrench import cross_matrix
 

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from runner.base.trace import FloatArray
 from runner.caveats.setting import Setting
 from runner.caveats.signals import Signals
-from runner.trace import FloatArray
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runner.trace import FloatArray, Trace, Traces
+from runner.base.trace import FloatArray, Trace, Traces
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
+from runner.base.trace import FloatArray
 from runner.config.per_stage import by_stage
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS
@@ -24,7 +25,6 @@ from runner.controllers.sliding_mode import SlidingModeConfig
 from runner.controllers.torque_law import PinocchioArm
 from runner.controllers.whole_body import WholeBodyConfig
 from runner.robots.effective_mass import mass_along, tip_mobility
-from runner.trace import FloatArray
 from runner.trajectories.trajectory import joint_reference
 
 _POSTURES = 32  # of the desired motion

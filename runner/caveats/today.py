@@ -6,9 +6,9 @@ from typing import Any
 
 import yaml
 
+from runner.base.paths import conf_dir
 from runner.caveats.registry import rules_digest
 from runner.config.caveats import CaveatsConfig
-from runner.paths import conf_dir
 
 Thresholds = Mapping[str, Mapping[str, float]]
 

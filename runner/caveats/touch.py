@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from runner.base.trace import FloatArray
 from runner.config.run import RunConfig
 from runner.controllers.force_stability import touch_radius
 from runner.controllers.hybrid_force import HybridForceConfig
@@ -14,7 +15,6 @@ from runner.plants.kinds import HasServo
 from runner.plants.servo import ServoLaw
 from runner.robots.effective_mass import mass_along, tip_mobility
 from runner.servo_contact import ServoContact
-from runner.trace import FloatArray
 
 
 def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None:

@@ -8,6 +8,8 @@ from operator import attrgetter
 
 import numpy as np
 
+from runner.base.memory import Memory
+from runner.base.trace import FloatArray
 from runner.caveats import plant_error
 from runner.caveats.caveat import Caveat, Found
 from runner.caveats.plant_error import PlantStep, caveat_of
@@ -16,9 +18,7 @@ from runner.caveats.rule import TraceRule
 from runner.caveats.setting import Setting
 from runner.caveats.signals import Signals
 from runner.config.caveats import CaveatsConfig
-from runner.config.memory import Memory
 from runner.plant_error import PlantError
-from runner.trace import FloatArray
 
 _KEYS = {name: KEYS[name] for name in CaveatsConfig.model_fields}
 _values = attrgetter(*(f"{name}.{key}" for name, key in _KEYS.items()))

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
-from runner.data_file import read_data
-from runner.errors import RunnerError
-from runner.paths import works_dir, works_with
+from runner.base.data_file import read_data
+from runner.base.errors import RunnerError
+from runner.base.paths import works_dir, works_with
 from runner.registry import StrictModel
 
 FILE = "claims.yaml"

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from runner.data_file import read_data
-from runner.paths import works_dir, works_with
+from runner.base.data_file import read_data
+from runner.base.paths import works_dir, works_with
 from runner.registry import StrictModel
 
 _FILE = "statements.yaml"

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import NoReturn
 
-from runner.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, nearest
 from runner.latest import Kind, find_folder
 
 

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runner.base.errors import RunnerError
 from runner.commands.arguments import Parser
 from runner.commands.columns import aligned, number
-from runner.errors import RunnerError
 
 if TYPE_CHECKING:
     from runner.audit.own_formulas import Difference

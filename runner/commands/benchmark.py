@@ -10,11 +10,11 @@ from argparse import Namespace
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from runner.base.errors import RunnerError
+from runner.base.quiet import quiet_environment
+from runner.base.texts import one_line
 from runner.commands.arguments import ActionParser, Parser
-from runner.errors import RunnerError
 from runner.plugins import in_use, use_plugins
-from runner.quiet import quiet_environment
-from runner.texts import one_line
 
 if TYPE_CHECKING:
     from runner.works.given import GivenPart

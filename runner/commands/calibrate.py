@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runner.base.quiet import quiet_environment
+from runner.base.texts import one_line
 from runner.commands.arguments import Parser
 from runner.commands.columns import aligned, number
-from runner.quiet import quiet_environment
-from runner.texts import one_line
 
 if TYPE_CHECKING:
     from runner.store import Calibration

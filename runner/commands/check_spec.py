@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from runner.base.errors import RunnerError
+from runner.base.texts import one_line
 from runner.commands.columns import aligned
-from runner.errors import RunnerError
-from runner.texts import one_line
 
 if TYPE_CHECKING:
     from runner.spec import Kept

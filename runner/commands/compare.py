@@ -10,10 +10,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runner.base.errors import RunnerError
+from runner.base.quiet import quiet_environment
 from runner.commands.arguments import Parser, Stored
 from runner.config.units import read_quantity
-from runner.errors import RunnerError
-from runner.quiet import quiet_environment
 from runner.recordings import is_bag
 
 if TYPE_CHECKING:

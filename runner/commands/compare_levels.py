@@ -4,6 +4,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from runner.base.texts import one_line
 from runner.commands.columns import COMPARED, aligned, answer_cells
 from runner.comparison.caveats import caveats_of
 from runner.comparison.cells import label_text
@@ -14,7 +15,6 @@ from runner.reporting.answers import EXPLAINED, Asked, judge
 from runner.reporting.sweep.subject import first_screen, whole_metrics
 from runner.store import open_sweep
 from runner.sweeps.finer_step import work_out_sweep
-from runner.texts import one_line
 
 
 def print_levels(folder: Path, axis: str, within: Sequence[str] | None, metrics: Sequence[str]) -> None:

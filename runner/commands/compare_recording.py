@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runner.base.texts import one_line
 from runner.commands.columns import aligned, number
-from runner.texts import one_line
 
 if TYPE_CHECKING:
     from runner.recordings.compare import RecordingComparison
@@ -22,9 +22,10 @@ def print_recording(folder: Path, recording: Path, columns: Path, fill_gaps: flo
     Raises:
         RunnerError: if one of them cannot be read, or the recording does not fit the run.
     """
-    from runner import progress, store
+    from runner import store
+    from runner.base import progress
+    from runner.base.progress.stages import READING, SOON, of_report
     from runner.latest import note
-    from runner.progress.stages import READING, SOON, of_report
     from runner.recordings.compare import compare_recording
     from runner.reporting.recording.report import recording_document, report_folder
     from runner.reporting.render import write_report

@@ -4,8 +4,8 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from runner.base.texts import one_line
 from runner.commands.columns import COMPARED, aligned, answer_cells, letter, number
-from runner.texts import one_line
 
 if TYPE_CHECKING:
     from runner.comparison.side import Side

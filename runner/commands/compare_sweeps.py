@@ -4,6 +4,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from runner.base.texts import one_line
 from runner.commands.columns import COMPARED, aligned, answer_cells, letter, number
 from runner.comparison.beyond import Beyond, Value
 from runner.comparison.caveats import SideCaveat, caveats_of
@@ -16,7 +17,6 @@ from runner.reporting.answers import EXPLAINED, Asked, judge
 from runner.reporting.sweep.subject import first_screen, whole_metrics
 from runner.store import open_sweep
 from runner.sweeps.finer_step import work_out_sweep
-from runner.texts import one_line
 
 _NAMED = 3  # cells of one sweep alone
 

@@ -11,10 +11,10 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
+from runner.base.errors import RunnerError
+from runner.base.quiet import quiet_environment
+from runner.base.texts import one_line
 from runner.commands.arguments import Parser
-from runner.errors import RunnerError
-from runner.quiet import quiet_environment
-from runner.texts import one_line
 
 
 def main(arguments: Sequence[str]) -> int:

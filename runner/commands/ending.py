@@ -4,9 +4,9 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from runner.base.texts import one_line
 from runner.config.user_settings import outputs_dir
 from runner.latest import WORD
-from runner.texts import one_line
 
 if TYPE_CHECKING:
     from runner.store import Run

@@ -5,9 +5,9 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from runner.base.errors import RunnerError
+from runner.base.paths import examples_dir
 from runner.commands.arguments import Parser
-from runner.errors import RunnerError
-from runner.paths import examples_dir
 from runner.store.atomic import write_atomically
 
 

@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runner.base.errors import RunnerError
+from runner.base.quiet import quiet_environment
 from runner.commands.arguments import Parser, Stored
 from runner.config.user_settings import outputs_dir
-from runner.errors import RunnerError
-from runner.quiet import quiet_environment
 from runner.works.names import work_names
 
 if TYPE_CHECKING:

@@ -5,11 +5,11 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner import engines
+from runner.base import engines
+from runner.base.errors import RunnerError, nearest
+from runner.base.texts import escaped, one_line
 from runner.commands.arguments import Parser
 from runner.config.options import group_options
-from runner.errors import RunnerError, nearest
-from runner.texts import escaped, one_line
 
 if TYPE_CHECKING:
     from runner.claims import PublishedClaim

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner import progress
+from runner.base import progress
+from runner.base.errors import RunnerError
+from runner.base.progress.stages import READING, SOON, of_report
+from runner.base.quiet import quiet_environment
 from runner.commands.arguments import Parser, stored
 from runner.config.user_settings import outputs_dir
-from runner.errors import RunnerError
 from runner.latest import note
-from runner.progress.stages import READING, SOON, of_report
-from runner.quiet import quiet_environment
 
 if TYPE_CHECKING:
     from runner.reporting.document import Document

@@ -14,14 +14,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner import progress
+from runner.base import progress
+from runner.base.errors import RunnerError
+from runner.base.progress.stages import of_audit, of_work
+from runner.base.quiet import quiet_environment
 from runner.commands.arguments import Parser
 from runner.config.user_settings import outputs_dir
-from runner.errors import RunnerError
 from runner.latest import note
 from runner.plugins import in_use, named
-from runner.progress.stages import of_audit, of_work
-from runner.quiet import quiet_environment
 from runner.reporting.changes import FILE
 from runner.works.names import find_work, work_names
 

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from runner import progress
+from runner.base import progress
+from runner.base.quiet import quiet_environment
 from runner.commands.arguments import Parser, stored
 from runner.commands.columns import aligned, number
-from runner.quiet import quiet_environment
 
 if TYPE_CHECKING:
     from runner.sensitivity import Sensitivity

@@ -3,8 +3,8 @@
 import sys
 from collections.abc import Sequence
 
+from runner.base.quiet import quiet_environment
 from runner.commands.arguments import Parser, stored
-from runner.quiet import quiet_environment
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -13,7 +13,7 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("folder", type=stored("sweep", "tuning"), metavar="DIR", help="folder of a sweep, or latest")
     options = parser.parse_args(arguments)
     quiet_environment()
-    from runner.progress import in_words
+    from runner.base.progress import in_words
     from runner.store import open_sweep
     from runner.sweeps.status import find_status
 

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runner.base.errors import RunnerError, StoreError
+from runner.base.quiet import quiet_environment
+from runner.base.texts import one_line
 from runner.commands.arguments import Parser, stored
-from runner.errors import RunnerError, StoreError
-from runner.quiet import quiet_environment
-from runner.texts import one_line
 
 if TYPE_CHECKING:
     from argparse import Namespace

@@ -13,12 +13,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner import progress
+from runner.base import progress
+from runner.base.errors import RunnerError
+from runner.base.progress.stages import PREPARING, READING, REPORT_CODE, SIMULATING, SOON, of_report
+from runner.base.quiet import quiet_environment
 from runner.commands import report
 from runner.commands.arguments import Parser
-from runner.errors import RunnerError
-from runner.progress.stages import PREPARING, READING, REPORT_CODE, SIMULATING, SOON, of_report
-from runner.quiet import quiet_environment
 
 if TYPE_CHECKING:
     from runner.tuning.study import Tuning

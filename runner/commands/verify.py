@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from runner import progress
+from runner.base import progress
+from runner.base.errors import RunnerError
+from runner.base.quiet import quiet_environment
 from runner.commands.arguments import Parser
 from runner.config.user_settings import outputs_dir
-from runner.errors import RunnerError
-from runner.quiet import quiet_environment
 
 State = Literal["good", "unfinished", "damaged"]
 _WORDS: Mapping[State, str] = {"good": "as written", "unfinished": "unfinished", "damaged": "damaged"}

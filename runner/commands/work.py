@@ -15,11 +15,11 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
+from runner.base.quiet import quiet_environment
+from runner.base.texts import one_line
 from runner.commands.arguments import ActionParser, Parser
 from runner.config.user_settings import outputs_dir
-from runner.quiet import quiet_environment
 from runner.reporting.changes import KINDS, Change, Value, changes, read_conclusions
-from runner.texts import one_line
 
 _TOLD = 20  # changes of a kind that are printed without --all
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import yaml
 
+from runner.base.errors import RunnerError
 from runner.comparison.pairs import CellPairs, share_seeds
 from runner.comparison.side import Side
-from runner.errors import RunnerError
 from runner.sweeps.differing import value_text
 
 _NAMED = 6  # values of a key that a message names

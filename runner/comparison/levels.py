@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.base.errors import RunnerError, nearest
 from runner.comparison.pairs import CellPairs, Cells, compare
-from runner.errors import RunnerError, nearest
 from runner.statistics import Comparison
 from runner.sweeps.measurements import Axis, Measurements
 from runner.sweeps.metric_names import check_metrics

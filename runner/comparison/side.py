@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from runner.base.errors import StoreError
 from runner.comparison.pairs import Cells
-from runner.errors import StoreError
 from runner.store import Finished, Run, Sweep, open_sweep
 from runner.sweeps.measurements import Measurements, measure, measure_sweep, with_finer
 

@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from runner.base.errors import RunnerError
+from runner.base.quantities import ROUNDING
 from runner.comparison.beyond import Beyond, beyond
 from runner.comparison.cells import Matched, match
 from runner.comparison.pairs import CellPairs, compare
 from runner.comparison.side import Side
 from runner.comparison.words import noise_alone
-from runner.errors import RunnerError
-from runner.quantities import ROUNDING
 from runner.statistics import Comparison
 from runner.sweeps.measurements import FloatArray
 from runner.sweeps.metric_names import check_metrics, is_part

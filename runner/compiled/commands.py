@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.errors import SimulationError
 from runner.compiled.code import GIVEN, ROWS, STATE, Block
 from runner.compiled.end_points import PointScalars, expressed_points, point_scalars
 from runner.compiled.expression import Value, both, equal, less, rounded, select
@@ -19,7 +20,6 @@ from runner.compiled.vectors import as_array
 from runner.controllers.controller import FloatArray
 from runner.controllers.maths import Array
 from runner.controllers.torque_law import TorqueLaw
-from runner.errors import SimulationError
 from runner.guard.faults import find_fault, place
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise

@@ -10,10 +10,10 @@ from functools import cache, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.paths import package_dir
 from runner.compiled import cache as kept
 from runner.compiled.code import GIVEN, PARS, ROWS, SCRATCH, STATE, TABLE, Part, written
 from runner.compiled.engine import Function, evaluator, load, machine_code, processor
-from runner.paths import package_dir
 
 FloatArray = NDArray[np.float64]
 LANES = 8

@@ -5,7 +5,7 @@ import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 
 _FLAGS = ("-sc", "--shell-completion")
 _MOST = 1000  # words

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
+from runner.base.errors import ConfigError
+from runner.base.paths import conf_dir
 from runner.config.per_joint import expand
 from runner.config.robot import ArmConfig, RobotConfig, StageConfig
-from runner.errors import ConfigError
-from runner.paths import conf_dir
 from runner.robots.armature import armature_file
 from runner.robots.description import find_file, find_urdf, mjcf_of, read_arm, read_urdf
 from runner.robots.inertials import Payload, set_file

@@ -7,6 +7,8 @@ from typing import Annotated, cast
 import numpy as np
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
 
+from runner.base.errors import ConfigError, nearest
+from runner.base.texts import quoted
 from runner.calibration import Tool
 from runner.calibration.procedures import CALIBRATIONS, Bench, Procedure
 from runner.config.arms import build_robot
@@ -14,12 +16,10 @@ from runner.config.compose import Composed
 from runner.config.parsing import group_of, parse, parse_kind, parse_robot
 from runner.config.problems import Problems, sure
 from runner.config.robot import RobotConfig
-from runner.errors import ConfigError, nearest
 from runner.registry import KindConfig, StrictModel
 from runner.robots import RobotModel
 from runner.robots.robot import Robot
 from runner.sensing import ForceTorqueConfig
-from runner.texts import quoted
 
 
 class CalibrationSettings(StrictModel):

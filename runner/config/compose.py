@@ -7,6 +7,8 @@ from typing import cast
 
 from omegaconf import DictConfig, OmegaConf
 
+from runner.base.errors import ConfigError
+from runner.base.texts import quoted
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.data_files import take_data_file
 from runner.config.hydra_config import hydra_config
@@ -14,8 +16,6 @@ from runner.config.in_si import put_in_si
 from runner.config.overrides import force
 from runner.config.robot_defaults import complete_stage_arms
 from runner.config.stage_defaults import complete_stages
-from runner.errors import ConfigError
-from runner.texts import quoted
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
+from runner.base.errors import ConfigError
 from runner.config.run import RunConfig
 from runner.controllers import Loop
-from runner.errors import ConfigError
 from runner.plants import PlantConfig
 from runner.plants.computation import EXACT, ComputationConfig
 from runner.plants.kinds import ComputesLate

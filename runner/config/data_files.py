@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from runner.errors import ConfigError
-from runner.paths import check_inside
+from runner.base.errors import ConfigError
+from runner.base.paths import check_inside
 
 
 def has_data_file(resolved: Mapping[str, Any]) -> bool:

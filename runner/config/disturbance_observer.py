@@ -1,7 +1,7 @@
 """Whether a run can have the disturbance observer that its config asks for."""
 
+from runner.base.errors import ConfigError
 from runner.config.run import RunConfig
-from runner.errors import ConfigError
 from runner.plants.decoupled import TorquePlantConfig
 
 

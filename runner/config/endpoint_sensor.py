@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
+from runner.base.errors import ConfigError, nearest
 from runner.config.run import RunConfig
 from runner.controllers import Loop
-from runner.errors import ConfigError, nearest
 from runner.sensing.endpoint import EndpointTicks
 
 

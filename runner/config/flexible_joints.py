@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from runner.base.errors import ConfigError
 from runner.config.run import RunConfig
 from runner.controllers.motor_pd import MotorPdConfig
-from runner.errors import ConfigError
 from runner.plants import Plant
 from runner.plants.decoupled import TorquePlantConfig
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints, links_of

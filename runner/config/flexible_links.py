@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from runner.base.errors import ConfigError
 from runner.config.flexible_joints import find_flexibility
 from runner.config.run import RunConfig
-from runner.errors import ConfigError
 from runner.plants.rk4_flexible_links import Rk4FlexibleLinksConfig
 from runner.robots.armature import with_armature
 from runner.robots.beams import stiffened

@@ -1,8 +1,8 @@
 """Whether a law that feels by torque sensors in the joints has them."""
 
+from runner.base.errors import ConfigError
 from runner.config.run import RunConfig
 from runner.controllers.hybrid_force import HybridForceConfig
-from runner.errors import ConfigError
 
 
 def check_reading(config: RunConfig) -> None:

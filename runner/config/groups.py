@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import cast
 
+from runner.base.errors import ConfigError, nearest
 from runner.config.caveats import CaveatsConfig
 from runner.config.input_shaper import InputShaperConfig
 from runner.config.limits import LimitsConfig
@@ -21,7 +22,6 @@ from runner.controllers import CONTROLLERS, ControllerConfig
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.controllers.notch_config import NotchConfig
 from runner.environments import ENVIRONMENTS
-from runner.errors import ConfigError, nearest
 from runner.plants import PLANTS, PlantConfig
 from runner.registry import KindConfig, Kinds, StrictModel
 from runner.robots.mismatch import MismatchConfig

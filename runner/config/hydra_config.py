@@ -18,12 +18,12 @@ from hydra.core.override_parser.types import Override
 from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
+from runner.base.engines import default_plant
+from runner.base.errors import ConfigError
+from runner.base.paths import conf_dir
 from runner.config.no_code import check_composed, code_refused
 from runner.config.options import groups
 from runner.config.user_settings import user_overrides
-from runner.engines import default_plant
-from runner.errors import ConfigError
-from runner.paths import conf_dir
 
 _KEPT = 512  # combinations of options, some 30 kB each
 _MOST = 1000  # files and folders in the config folders; where there are more, Hydra composes each time

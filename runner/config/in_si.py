@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from runner.base.errors import ConfigError
 from runner.config.units import Quantity, explain_quantity, read_quantity
-from runner.errors import ConfigError
 
 Place = tuple[str | int, ...]
 

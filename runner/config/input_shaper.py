@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
+from runner.base.errors import ConfigError
 from runner.controllers import Loop
-from runner.errors import ConfigError
 from runner.plants import PLANTS, PlantConfig
 from runner.registry import StrictModel
 from runner.robots.modes import Mode

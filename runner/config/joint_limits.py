@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from runner.errors import ConfigError
-from runner.limits import SAMPLES
+from runner.base.errors import ConfigError
+from runner.base.limits import SAMPLES
 from runner.robots.robot import Robot
 from runner.trajectories import Trajectory
 from runner.trajectories.joint_motion import TipOfJoints

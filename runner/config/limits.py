@@ -4,9 +4,9 @@ import math
 
 from pydantic import PositiveFloat
 
+from runner.base.errors import ConfigError
+from runner.base.limits import half_of_memory
 from runner.config.timing import Timing
-from runner.errors import ConfigError
-from runner.limits import half_of_memory
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
 

@@ -6,11 +6,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from runner.base.errors import nearest
+from runner.base.texts import quoted
 from runner.config.meanings import find_units, nested_model
 from runner.config.units import explain_quantity, quantities_in
-from runner.errors import nearest
 from runner.registry import StrictModel
-from runner.texts import quoted
 
 _NUMBERS = {
     "greater_than": "must be above {gt:g}",

@@ -16,16 +16,16 @@ from hydra.core.plugins import Plugins
 from hydra.plugins.config_source import ConfigResult, ConfigSource
 from omegaconf import DictConfig, OmegaConf
 
-from runner.config.bounded_yaml import CONFIG, YamlError, check_yaml
-from runner.config.interpolation import check_references
-from runner.config.memory import Memory
+from runner.base.bounded_yaml import CONFIG, YamlError, check_yaml
+from runner.base.engines import default_plant
+from runner.base.errors import ConfigError
+from runner.base.interpolation import check_references
+from runner.base.limits import ExcessError, read_text
+from runner.base.memory import Memory
+from runner.base.paths import check_inside, conf_dir, ships
+from runner.base.texts import quoted
 from runner.config.user_settings import refuse_settings
 from runner.config.work_folder import place_in
-from runner.engines import default_plant
-from runner.errors import ConfigError
-from runner.limits import ExcessError, read_text
-from runner.paths import check_inside, conf_dir, ships
-from runner.texts import quoted
 
 _SWEEPER = (
     ("address", str, "that of a Dask scheduler, as tcp://127.0.0.1:8786"),

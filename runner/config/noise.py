@@ -7,9 +7,9 @@ from typing import Literal
 import numpy as np
 from pydantic import PositiveFloat
 
+from runner.base.errors import ConfigError
 from runner.config.per_stage import FinitePerStage, NonNegativePerStage, by_stage
 from runner.config.problems import Problems
-from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise

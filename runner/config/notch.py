@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from runner.base.errors import ConfigError
 from runner.config.run import RunConfig
-from runner.errors import ConfigError
 
 
 def check_notch(config: RunConfig) -> None:

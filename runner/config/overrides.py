@@ -3,14 +3,14 @@
 import re
 from collections.abc import Sequence
 
-from runner.config.bounded_yaml import CONFIG
+from runner.base.bounded_yaml import CONFIG
+from runner.base.errors import ConfigError
+from runner.base.interpolation import calls_function
+from runner.base.texts import quoted
 from runner.config.in_si import with_numbers
-from runner.config.interpolation import calls_function
 from runner.config.malformed import malformed
 from runner.config.options import groups
 from runner.config.user_settings import SAYS_HOW
-from runner.errors import ConfigError
-from runner.texts import quoted
 
 _CHARACTERS = 20_000  # Hydra takes some seconds for a list of that length
 _MAY_BE_TYPED = re.compile(r"[+]*hydra\.sweeper\.(workers|address|params(\.[^@:]*)?)")

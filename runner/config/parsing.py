@@ -5,12 +5,12 @@ from typing import TypeVar
 
 from pydantic import ValidationError
 
+from runner.base.errors import ConfigError
+from runner.base.texts import quoted
 from runner.config.magnitudes import absurd
 from runner.config.messages import describe
 from runner.config.robot import OneArmConfig, RobotConfig, StagedRobotConfig
-from runner.errors import ConfigError
 from runner.registry import Kinds, StrictModel
-from runner.texts import quoted
 
 M = TypeVar("M", bound=StrictModel)
 

@@ -1,8 +1,8 @@
 """Whether controllers can believe in a payload, and a run can have one that changes on the way."""
 
+from runner.base.errors import ConfigError
 from runner.config.robot import RobotConfig
 from runner.config.run import RunConfig
-from runner.errors import ConfigError
 from runner.plants import PLANTS
 from runner.robots.mismatch import MismatchConfig
 

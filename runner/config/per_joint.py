@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 from pydantic import NonNegativeFloat, PositiveFloat
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
+from runner.base.texts import quoted
 from runner.registry import StrictModel
-from runner.texts import quoted
 
 PositivePerJoint = PositiveFloat | list[PositiveFloat]
 NonNegativePerJoint = NonNegativeFloat | list[NonNegativeFloat]

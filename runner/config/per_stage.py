@@ -6,8 +6,8 @@ from typing import Annotated, Any, TypeVar
 
 from pydantic import BeforeValidator
 
-from runner.errors import ConfigError, nearest
-from runner.texts import quoted
+from runner.base.errors import ConfigError, nearest
+from runner.base.texts import quoted
 
 T = TypeVar("T")
 

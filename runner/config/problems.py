@@ -3,8 +3,8 @@
 from collections.abc import Callable, Sequence
 from typing import TypeVar, overload
 
-from runner.config.memory import Memory
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
+from runner.base.memory import Memory
 
 A = TypeVar("A")
 B = TypeVar("B")

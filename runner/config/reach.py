@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from runner.base.errors import ConfigError
 from runner.config.joint_limits import check_joints
-from runner.errors import ConfigError
 from runner.registry import KindConfig
 from runner.robots.robot import Robot
 from runner.robots.task_space import distance_beside

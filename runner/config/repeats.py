@@ -4,8 +4,8 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from runner.base.errors import ConfigError
 from runner.config.run import RunConfig
-from runner.errors import ConfigError
 from runner.trajectories.trajectory import FloatArray, joint_reference
 
 _SAMPLES = 4096  # of the motion in a run, at ticks

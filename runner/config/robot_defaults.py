@@ -6,8 +6,8 @@ from typing import Any
 import yaml
 from omegaconf import DictConfig, OmegaConf
 
+from runner.base.paths import conf_dir
 from runner.config.robot import ArmConfig
-from runner.paths import conf_dir
 
 
 def complete_stage_arms(config: DictConfig) -> None:

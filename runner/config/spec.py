@@ -6,10 +6,10 @@ from typing import Any, Self
 
 from pydantic import field_validator, model_validator
 
+from runner.base.errors import nearest
+from runner.base.texts import quoted
 from runner.config.meanings import Units
-from runner.errors import nearest
 from runner.registry import StrictModel
-from runner.texts import quoted
 
 _METRICS = "metrics"
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from omegaconf import DictConfig, OmegaConf
 
-from runner.config.bounded_yaml import CONFIG, read_yaml
-from runner.paths import conf_dir
+from runner.base.bounded_yaml import CONFIG, read_yaml
+from runner.base.paths import conf_dir
 
 
 def complete_stages(config: DictConfig, choices: Mapping[str, str], config_dirs: Sequence[Path]) -> None:

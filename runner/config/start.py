@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from runner.base.errors import ConfigError
 from runner.controllers import CONTROLLERS, ControllerConfig
-from runner.errors import ConfigError
 from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.robot import Robot, end_points
 from runner.trajectories.trajectory import FloatArray

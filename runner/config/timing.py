@@ -5,10 +5,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from runner.base.errors import ConfigError
 from runner.config.per_stage import by_stage
 from runner.config.settings import RunSettings
 from runner.controllers import CONTROLLERS, ControllerConfig
-from runner.errors import ConfigError
 from runner.plants import PLANTS, PlantConfig
 from runner.plants.kinds import HasServo
 from runner.robots.robot import Robot

@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from runner.base.trace import FloatArray
 from runner.config.per_joint import expand
 from runner.config.per_stage import TorquePerStage, by_stage
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
-from runner.trace import FloatArray
 
 
 class TorqueLimitsConfig(StrictModel):

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from pathlib import Path
 
-from runner.errors import ConfigError, nearest
-from runner.texts import quoted
+from runner.base.errors import ConfigError, nearest
+from runner.base.texts import quoted
 
 KEYS = ("outputs", "hydra.sweeper.workers", "hydra.sweeper.address")
 SAYS_HOW = re.compile(r"(?:^[+~]*|[@:])(?:_global_\.)?(hydra|outputs)(?![^./@:])")
@@ -27,7 +27,7 @@ def refuse_settings(given: Iterable[str], path: Path) -> None:
     for text in given:
         key = text.partition("=")[0]
         if SAYS_HOW.search(key.removeprefix(f"{_AXES}.")):
-            from runner.config.bounded_yaml import line_with
+            from runner.base.bounded_yaml import line_with
 
             where = f"set it on the command line or in {settings_path()}; allowed here: keys of {_AXES}"
             found = f"{line_with(text, path)}: {quoted(text)}"
@@ -63,7 +63,7 @@ def outputs_dir() -> Path:
 def _read(path: Path) -> Mapping[str, str]:
     if not path.exists():
         return {}
-    from runner.config.bounded_yaml import line_with, read_yaml  # for the few who have such a file
+    from runner.base.bounded_yaml import line_with, read_yaml  # for the few who have such a file
 
     try:
         content = read_yaml(path.read_text(encoding="utf-8"), path) or {}

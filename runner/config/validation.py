@@ -5,6 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from runner.base.errors import ConfigError
+from runner.base.memory import Memory
+from runner.base.texts import few
 from runner.config.arms import build_loaded, build_robot
 from runner.config.computation import check_computation, computation_of, count_late
 from runner.config.disturbance_observer import check_observer
@@ -15,7 +18,6 @@ from runner.config.force_reading import check_reading
 from runner.config.groups import Groups, read_groups
 from runner.config.input_shaper import shape
 from runner.config.limits import check_memory
-from runner.config.memory import Memory
 from runner.config.noise import NoiseConfig
 from runner.config.notch import check_notch
 from runner.config.payload import check_payload, check_schedule
@@ -28,13 +30,11 @@ from runner.config.start import start_posture
 from runner.config.timing import Timing, count_steps, count_ticks
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
-from runner.errors import ConfigError
 from runner.plants import PLANTS, PlantConfig
 from runner.plants.kinds import HasServo, TurnsBases
 from runner.registry import KindConfig
 from runner.robots.model import STANDARD_GRAVITY
 from runner.robots.robot import Robot, end_points
-from runner.texts import few
 from runner.trajectories import TRAJECTORIES, Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
 from runner.trajectories.kinds import HasStart

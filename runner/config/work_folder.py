@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from runner.paths import WORK_FILE
+from runner.base.paths import WORK_FILE
 
 _GROUP = "experiment"
 

@@ -6,8 +6,8 @@ import numpy as np
 import pinocchio as pin
 from scipy.linalg import expm
 
+from runner.base.errors import ConfigError
 from runner.controllers.controller import FloatArray
-from runner.errors import ConfigError
 
 AXES = ("x", "y", "z", "rotation x", "rotation y", "rotation z")
 

@@ -6,12 +6,12 @@ import numpy as np
 import pinocchio as pin
 from pydantic import NonNegativeFloat, PositiveFloat
 
+from runner.base.errors import ConfigError
 from runner.config.per_joint import PositivePerJoint, expand
 from runner.controllers.controller import FloatArray, Loop
 from runner.controllers.null_space import NullSpaceConfig, NullSpaceTask
 from runner.controllers.resolved_rate import ResolvedRate
 from runner.controllers.tip_task import TaskName, held_orientation, task_start
-from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot

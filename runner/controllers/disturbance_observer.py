@@ -7,10 +7,10 @@ from typing import Any, Literal, NamedTuple, Protocol, cast
 import numpy as np
 from pydantic import PositiveFloat
 
+from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, FloatArray, Loop
 from runner.controllers.maths import Array, Scalar
 from runner.controllers.torque_law import Arm, PinocchioArm, TorqueLaw, structure_of
-from runner.errors import ConfigError
 from runner.guard import WatchedController
 from runner.registry import StrictModel
 from runner.robots.robot import Robot

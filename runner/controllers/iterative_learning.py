@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, PositiveFloat
 
+from runner.base.errors import ConfigError
 from runner.controllers.computed_torque import ComputedTorque, ComputedTorqueConfig
 from runner.controllers.controller import FloatArray
 from runner.controllers.joint_law import JointLawConfig, joint_law_builder
@@ -13,7 +14,6 @@ from runner.controllers.joint_law import start_posture as start_posture
 from runner.controllers.joint_motion import JointMotion
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import PinocchioArm
-from runner.errors import ConfigError
 from runner.robots.model import RobotModel
 
 _NOTHING = np.zeros(0)

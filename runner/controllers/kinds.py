@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Protocol, runtime_checkable
 
+from runner.base.errors import ConfigError
 from runner.controllers.admittance_filter import Admittance
 from runner.controllers.controller import Controller, FloatArray, Loop, PositionController
-from runner.errors import ConfigError
 from runner.guard import WatchedController, watch_loops
 from runner.guard.faults import find_fault
 from runner.registry import KindConfig, Registry

@@ -3,10 +3,10 @@
 import numpy as np
 from pydantic import PositiveFloat
 
+from runner.base.errors import ConfigError
 from runner.config.by_joint import by_joint
 from runner.config.per_stage import NotchPerStage
 from runner.controllers.controller import FloatArray
-from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
 

@@ -6,6 +6,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from pydantic import NonNegativeFloat
 
+from runner.base.errors import ConfigError
 from runner.config.per_stage import NonNegativePerStage, PositivePerStage, by_stage
 from runner.controllers.controller import FloatArray, Loop
 from runner.controllers.maths import Array, Scalar
@@ -13,7 +14,6 @@ from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.tip_task import TaskName, held_orientation, task_start
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.controllers.whole_body import WholeBody, WholeBodyLaw
-from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot

@@ -5,6 +5,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from pydantic import NonNegativeFloat
 
+from runner.base.errors import ConfigError
 from runner.config.per_stage import PositivePerStage, by_stage
 from runner.controllers.controller import Controller, FloatArray, Loop
 from runner.controllers.macro_mini import MacroMiniConfig
@@ -15,7 +16,6 @@ from runner.controllers.tip_task import TipTask
 from runner.controllers.torque_law import PinocchioArm
 from runner.controllers.whole_body import WholeBodyLaw
 from runner.controllers.whole_body_posture import HeldJoints, HeldPosture
-from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
 

@@ -4,10 +4,10 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from runner.base.errors import ConfigError
 from runner.controllers.controller import FloatArray
 from runner.controllers.maths import Array, Maths, Scalar
 from runner.controllers.torque_law import Tip
-from runner.errors import ConfigError
 from runner.robots.inverse_kinematics import solve_tip_pose
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot

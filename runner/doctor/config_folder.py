@@ -4,8 +4,8 @@ from pathlib import Path
 
 import yaml
 
+from runner.base.errors import RunnerError, StoreError
 from runner.doctor.examination import Examination
-from runner.errors import RunnerError, StoreError
 from runner.robots.joint_dynamics import FileDynamics
 from runner.robots.model import FloatArray
 from runner.store.atomic import write_atomically

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from runner.base.engines import has_pybullet
+from runner.base.errors import ConfigError
 from runner.doctor.finding import Finding
-from runner.engines import has_pybullet
-from runner.errors import ConfigError
 from runner.plants.mujoco import Mujoco
 from runner.robots.model import FloatArray, RobotModel
 

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from runner.base.errors import ConfigError
+from runner.base.texts import few
 from runner.doctor.engines import compare_engines
 from runner.doctor.finding import Finding, together
 from runner.doctor.joints import check_joints
@@ -24,14 +26,12 @@ from runner.doctor.postures import (
 )
 from runner.doctor.starting_point import StartingPoint, judge_home, propose
 from runner.doctor.tip import choose_tip, name_tips
-from runner.errors import ConfigError
 from runner.robots.description import drop_shapes, read_arm
 from runner.robots.joint_dynamics import FileDynamics, by_value, dynamics_of
 from runner.robots.mjcf import Mjcf, read_mjcf
 from runner.robots.mjcf_files import is_mjcf
 from runner.robots.model import STANDARD_GRAVITY, RobotModel
 from runner.robots.tree import UrdfTree
-from runner.texts import few
 
 _POSTURES = 300
 

@@ -4,9 +4,9 @@ import contextlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from runner.base.texts import few, quoted
 from runner.doctor.finding import Finding
 from runner.robots.tree import UrdfTree
-from runner.texts import few, quoted
 
 
 def check_meshes(tree: UrdfTree, urdf: Path, packages: Sequence[Path]) -> list[Finding]:

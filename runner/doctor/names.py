@@ -3,9 +3,9 @@
 import re
 from pathlib import Path
 
+from runner.base.errors import RunnerError
 from runner.config.options import group_options
 from runner.doctor.finding import Finding
-from runner.errors import RunnerError
 
 _GENERAL = {
     "arm_",

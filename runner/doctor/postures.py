@@ -2,13 +2,13 @@
 
 import numpy as np
 
+from runner.base.texts import few
 from runner.doctor.finding import Finding
 from runner.robots.model import FloatArray, RobotModel
 from runner.robots.task_space import task_directions
 from runner.robots.tree import UrdfTree
 from runner.robots.urdf_values import number
 from runner.robots.workspace import analyse
-from runner.texts import few
 
 _REGULAR = 1e-9  # smallest eigenvalue of a mass matrix with a diagonal of 1
 _NO_INERTIA = "links behind a joint have mass, but no inertia about its axis"

@@ -2,10 +2,10 @@
 
 import re
 
+from runner.base.errors import RunnerError, nearest
+from runner.base.texts import few
 from runner.doctor.finding import Finding
-from runner.errors import RunnerError, nearest
 from runner.robots.tree import UrdfTree, end_of, moves
-from runner.texts import few
 
 _PARTS = r"(_?\d*(_?(link|frame|site|point|body))?)"
 _TIPS = (

@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
+from runner.base.quantities import quantity
 from runner.drawing import palette
 from runner.drawing.canvas import GREY, INK, PALE, Camera, drawing, pair, scene, triad
-from runner.quantities import quantity
 from runner.robots.model import FloatArray, RobotModel
 
 _LONG = 5.2  # long side of the view from above, in inches

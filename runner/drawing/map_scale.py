@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from runner.base.quantities import digits_between, number
 from runner.drawing.figure import FloatArray, Map, MapFigure
-from runner.quantities import digits_between, number
 
 OVERLAY = 1
 """Palette index of what lies over the cells, red, which their colours do not hold."""

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from matplotlib.axis import Axis
 from matplotlib.text import Text
 
+from runner.base.texts import plain
 from runner.drawing.sheet import Sheet
-from runner.texts import plain
 
 _LONGEST = 28  # letters, beyond which a name is cut
 _MOST_LINES = 3

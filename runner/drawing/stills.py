@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
+from runner.base.texts import plain
 from runner.drawing import palette
 from runner.drawing.figure import CurveFigure, Panel, Series, shares_legend, upright
 from runner.drawing.names import Names, literal, names_below, wrapped
@@ -22,7 +23,6 @@ from runner.drawing.sheet import REPORT, Sheet, saved, style
 from runner.drawing.thinning import thin, usable
 from runner.drawing.ticks import Mark, at_2_and_5, marks
 from runner.drawing.units import in_readable_units
-from runner.texts import plain
 
 # Measures in inches, for letters of the size of a report; fixed margins, because a layout engine costs more time than
 # all the curves.

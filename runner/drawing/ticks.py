@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 
-from runner.quantities import SUPERSCRIPT
+from runner.base.quantities import SUPERSCRIPT
 
 _SMALLEST, _LARGEST = 1e-3, 1e4  # of what is written without a power of ten
 Mark = Callable[[float], str]

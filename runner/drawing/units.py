@@ -7,8 +7,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from runner.base.quantities import fitting
 from runner.drawing.figure import FloatArray, MapFigure, Panel, Series
-from runner.quantities import fitting
 
 MapOf = TypeVar("MapOf", bound=MapFigure)
 _UNIT = re.compile(r"\((m|s)\)$")

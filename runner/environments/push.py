@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
+from runner.base.errors import ConfigError
 from runner.environments.environment import Environment, FloatArray
-from runner.errors import ConfigError
 from runner.registry import StrictModel
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]

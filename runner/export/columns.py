@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runner.quantities import ROUNDING, fewest_powers, fitting, smaller_units
+from runner.base.quantities import ROUNDING, fewest_powers, fitting, smaller_units
 from runner.statistics import Interval, median_interval
 from runner.sweeps.measurements import FloatArray
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import typst
 
+from runner.base.errors import RunnerError, nearest
 from runner.drawing import map_stills, stills
 from runner.drawing.sheet import Sheet
-from runner.errors import RunnerError, nearest
 from runner.export.points import Figure, as_csv
 from runner.reporting.document import Curves, Document, Maps, Picture, Playback
 from runner.reporting.markup import Literal, spans

@@ -3,9 +3,9 @@
 import re
 from collections.abc import Iterable
 
+from runner.base.texts import plain
 from runner.export.columns import BEYOND, MISSING, Cell, Column, Unit
 from runner.export.paper_table import Label, PaperTable
-from runner.texts import plain
 
 _MEANT = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "^": r"\textasciicircum{}",

@@ -2,10 +2,10 @@
 
 import re
 
+from runner.base.quantities import SUPERSCRIPT, unit_text
+from runner.base.texts import plain
 from runner.export.columns import Cell, Column, Unit
 from runner.export.paper_table import Label, PaperTable
-from runner.quantities import SUPERSCRIPT, unit_text
-from runner.texts import plain
 
 _MEANT = re.compile(r"([\\`*{}\[\]#|~$!])|(?<![^\W_])(_)|(_)(?![^\W_])")  # an underscore within a word is itself
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.base.quantities import ROUNDING
 from runner.export.columns import Column, Unit, column
 from runner.export.pooling import Pooled, failed_cells, pool
-from runner.quantities import ROUNDING
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import axis_label, choose
 from runner.statistics import SMALLEST_SAMPLE

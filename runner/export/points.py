@@ -5,10 +5,10 @@ import io
 import math
 from collections.abc import Iterator, Sequence
 
+from runner.base.texts import table_cell
 from runner.drawing.figure import Panel, Series
 from runner.drawing.units import in_readable_units, map_in_readable_units
 from runner.reporting.document import Curves, Maps, Picture, Playback
-from runner.texts import table_cell
 
 Figure = Curves | Maps | Picture | Playback
 Row = Sequence[object]

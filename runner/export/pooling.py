@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, nearest
 from runner.reporting.sweep.subject import value_names
 from runner.sweeps.measurements import Axis, FloatArray, Measurements
 

@@ -4,10 +4,10 @@ import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from runner.base.texts import table_cell
 from runner.export.pooling import failed_cells, pool
 from runner.sweeps.measurements import Measurements
 from runner.sweeps.table import metric_columns, with_units
-from runner.texts import table_cell
 
 if TYPE_CHECKING:
     import pandas as pd

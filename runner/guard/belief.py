@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 
 if TYPE_CHECKING:
     from runner.robots.robot import Robot

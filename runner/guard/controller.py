@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.errors import ConfigError, SimulationError
+from runner.base.errors import ConfigError, SimulationError
 from runner.guard.faults import ask, checked
 from runner.guard.read_only import read_only
 

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
+from runner.base.texts import quoted
 from runner.guard.faults import ask, checked, find_fault, told_of_part
 from runner.guard.read_only import read_only
-from runner.texts import quoted
 
 FloatArray = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.errors import RunnerError, SimulationError, told
+from runner.base.errors import RunnerError, SimulationError, told
 
 
 def is_write(error: Exception) -> bool:

@@ -4,14 +4,14 @@ import copy
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from runner.errors import SimulationError
+from runner.base.errors import SimulationError
 from runner.guard.faults import find_fault, is_write, place, told_of_part
 from runner.guard.read_only import read_only
 
 if TYPE_CHECKING:
+    from runner.base.trace import Trace
     from runner.metrics.context import MetricContext
     from runner.metrics.family import MetricFamily
-    from runner.trace import Trace
 
 
 def watch_metrics(

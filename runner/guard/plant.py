@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.errors import ConfigError, SimulationError
+from runner.base.errors import ConfigError, SimulationError
 from runner.guard.faults import ask, checked, told_of_part
 from runner.guard.read_only import read_only
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.errors import SimulationError
+from runner.base.errors import SimulationError
 from runner.guard.faults import ask, checked, place
 from runner.guard.read_only import read_only
 

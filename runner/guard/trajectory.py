@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.errors import ConfigError, RunnerError
+from runner.base.errors import ConfigError, RunnerError
 from runner.guard.faults import ask, checked, find_fault, place, told_of_part
 from runner.guard.read_only import read_only
 

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from runner.base.trace import FloatArray
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.controllers import Loop
 from runner.interaction import Interaction
@@ -9,7 +10,6 @@ from runner.plants import Plant, PositionPlant
 from runner.registry import Commands
 from runner.robots.robot import Robot
 from runner.sensing.motors import MotorSide
-from runner.trace import FloatArray
 from runner.trajectories import Trajectory
 
 

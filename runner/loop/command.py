@@ -5,12 +5,12 @@ from typing import cast
 
 import numpy as np
 
+from runner.base.trace import FloatArray
 from runner.controllers import Controller, Loop, PositionController
 from runner.loop.closed_loop import ClosedLoop
 from runner.loop.endpoint import MeasuredTip
 from runner.loop.recorder import Recorder
 from runner.sensing import Encoders
-from runner.trace import FloatArray
 
 Law = Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray]
 

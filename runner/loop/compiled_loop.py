@@ -6,8 +6,8 @@ from typing import cast
 
 import numpy as np
 
+from runner.base.errors import SimulationError
 from runner.compiled.closed_loop import CompiledCommands, Whole, run_all
-from runner.errors import SimulationError
 from runner.loop.closed_loop import ClosedLoop
 from runner.loop.contact import Contact
 from runner.loop.drive import make_drive

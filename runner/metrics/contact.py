@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from runner.base.trace import FloatArray, Traces
 from runner.metrics.context import MetricContext
-from runner.trace import FloatArray, Traces
 
 UNITS = {"peak_force": "N", "steady_force": "N", "force_error": "N"}
 _STEADY_WINDOW = 0.5  # s, at the end of the run

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Protocol, runtime_checkable
 
+from runner.base.trace import FloatArray, Trace, Traces
 from runner.metrics.context import MetricContext
-from runner.trace import FloatArray, Trace, Traces
 
 
 class OwnFamily(Protocol):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from runner.base.trace import FloatArray, Traces
 from runner.metrics.context import MetricContext
-from runner.trace import FloatArray, Traces
 from runner.trajectories.vectors import component
 
 UNITS = {"settling_time": "s", "steady_state_error": "m", "overshoot": "m"}

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from runner.base.trace import FloatArray, Traces
 from runner.metrics.context import MetricContext
-from runner.trace import FloatArray, Traces
 
 UNITS = {"reach_loss_fraction": "1"}
 

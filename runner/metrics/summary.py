@@ -7,13 +7,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
+from runner.base.trace import FloatArray, Trace, Traces
 from runner.guard import watch_metrics
 from runner.metrics import contact, effort, positioning, reaching, tracking
 from runner.metrics.context import MetricContext
 from runner.metrics.family import MetricFamily, OwnFamily
 from runner.plugins import added, load
-from runner.trace import FloatArray, Trace, Traces
 from runner.trajectories.shifted import Shifted
 
 _FAMILIES: tuple[OwnFamily, ...] = (positioning, tracking, effort, reaching, contact)

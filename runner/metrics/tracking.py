@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from runner.base.trace import FloatArray, Traces
 from runner.metrics.context import MetricContext
-from runner.trace import FloatArray, Traces
 from runner.trajectories.trajectory import Trajectory, joint_reference
 
 UNITS = {

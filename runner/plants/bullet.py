@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 import pinocchio as pin
 
-from runner.engine_output import quiet_stderr
+from runner.base.engine_output import quiet_stderr
 from runner.plants.armature import LinksTorque
 from runner.plants.bullet_servers import SERVERS
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant

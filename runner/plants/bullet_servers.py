@@ -6,8 +6,8 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from runner.engine_output import caught_output, quiet_stderr
-from runner.errors import ConfigError
+from runner.base.engine_output import caught_output, quiet_stderr
+from runner.base.errors import ConfigError
 
 with quiet_stderr():  # PyBullet announces its build time
     import pybullet

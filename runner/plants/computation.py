@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, NonNegativeInt, model_validator
 
-from runner.errors import ConfigError, nearest
+from runner.base.errors import ConfigError, nearest
 from runner.registry import StrictModel
 
 Probability = Annotated[float, Field(ge=0.0, le=1.0)]

@@ -5,15 +5,15 @@ from typing import Literal
 import numpy as np
 from pydantic import NonNegativeFloat
 
+from runner.base.errors import ConfigError, nearest
+from runner.base.texts import quoted
 from runner.config.by_joint import by_joint
 from runner.config.per_stage import SpringPerStage
-from runner.errors import ConfigError, nearest
 from runner.plants.flexible_joints import Flexibility, links_of
 from runner.plants.plant import FloatArray
 from runner.registry import StrictModel
 from runner.robots.modes import Mode, find_modes
 from runner.robots.robot import Robot
-from runner.texts import quoted
 
 
 class FlexibleJointsConfig(StrictModel):

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pinocchio as pin
 
-from runner.errors import SimulationError
+from runner.base.errors import SimulationError
 from runner.plants.plant import FloatArray
 from runner.robots.chain import Chain
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from types import ModuleType
 from typing import Literal, Protocol, runtime_checkable
 
-from runner import engines
-from runner.errors import ConfigError
+from runner.base import engines
+from runner.base.errors import ConfigError
 from runner.guard import watch_plant
 from runner.plants.computation import ComputationConfig
 from runner.plants.flexible_config import FlexibleJointsConfig

@@ -7,7 +7,7 @@ import numpy as np
 import pinocchio as pin
 from pydantic import Field
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
 from runner.plants.flexible_around import flexible_around
 from runner.plants.flexible_config import FlexibleJointsConfig

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 import pinocchio as pin
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots.tool_link import TOOL_MOUNT
 
 # Links stay bodies of their own, so that a tool has a reaction in its mount.

@@ -6,9 +6,9 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 from scipy.linalg import eigh
 
+from runner.base.errors import ConfigError, nearest
 from runner.config.by_joint import by_joint
 from runner.config.per_stage import MotorPerStage
-from runner.errors import ConfigError, nearest
 from runner.plants.computation import ComputationConfig
 from runner.plants.flexible_links import FlexibleLinks
 from runner.plants.plant import FloatArray, Plant

@@ -6,12 +6,12 @@ from typing import Literal, NamedTuple
 
 from pydantic import Field, FiniteFloat, PositiveFloat, model_validator
 
+from runner.base.data_file import read_data
+from runner.base.errors import RunnerError, nearest
+from runner.base.texts import quoted
 from runner.config.magnitudes import absurd
 from runner.config.units import WRITTEN
-from runner.data_file import read_data
-from runner.errors import RunnerError, nearest
 from runner.registry import StrictModel
-from runner.texts import quoted
 
 AMPERE = "A"
 SignalKind = Literal["position", "torque", "tip"]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.recordings.columns_map import Signal, read_map
 from runner.recordings.friction import Friction, identify_friction
 from runner.recordings.metrics import both_metrics

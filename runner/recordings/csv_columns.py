@@ -10,9 +10,9 @@ from typing import TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.errors import RunnerError, nearest
-from runner.limits import RECORDING, RECORDING_ROW, RECORDING_ROWS, ExcessError
-from runner.texts import few, quoted
+from runner.base.errors import RunnerError, nearest
+from runner.base.limits import RECORDING, RECORDING_ROW, RECORDING_ROWS, ExcessError
+from runner.base.texts import few, quoted
 
 FloatArray = NDArray[np.float64]
 

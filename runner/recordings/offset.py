@@ -16,7 +16,7 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import linear_sum_assignment, minimize_scalar
 from scipy.signal import correlate, find_peaks
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.recordings.smoothing import FloatArray, cutoff, derivative, evenly, low_pass
 
 RESEMBLES = 0.5

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.errors import RunnerError
 from runner.config.magnitudes import LARGEST
-from runner.errors import RunnerError
 from runner.recordings import BAGS, is_bag
 from runner.recordings.columns_map import ColumnsMap, Factor, Signal
 from runner.recordings.csv_columns import FloatArray, read_csv_columns

@@ -5,15 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.assembly import metric_context
+from runner.base.errors import ConfigError, RunnerError
+from runner.base.trace import Trace
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.errors import ConfigError, RunnerError
 from runner.metrics import MetricContext
 from runner.recordings.columns_map import Signal
 from runner.recordings.smoothing import FloatArray
 from runner.robots.robot import end_points
 from runner.store import Run
-from runner.trace import Trace
 
 AXES = ("x", "y", "z")
 

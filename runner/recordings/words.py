@@ -2,8 +2,8 @@
 
 from collections.abc import Callable, Iterator
 
+from runner.base.quantities import quantity
 from runner.metrics import unit_of
-from runner.quantities import quantity
 from runner.recordings.compare import RecordingComparison
 
 Number = Callable[[float | None], str]

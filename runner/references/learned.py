@@ -9,14 +9,14 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
-from runner.config.bounded_yaml import Bounds, YamlError, read_yaml
+from runner.base.bounded_yaml import Bounds, YamlError, read_yaml
+from runner.base.errors import StoreError
+from runner.base.limits import Limit, read_text
+from runner.base.texts import escaped
 from runner.config.messages import describe
-from runner.errors import StoreError
-from runner.limits import Limit, read_text
 from runner.registry import StrictModel
 from runner.store import Run, Sweep
 from runner.store.atomic import write_atomically
-from runner.texts import escaped
 
 SCHEMA = 1
 _BOUNDS = Bounds(Limit(200_000_000, "bytes"), values=5_000_000)  # some 10^5 cells

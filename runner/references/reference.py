@@ -10,10 +10,10 @@ from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 from pydantic import Field, ValidationError
 
+from runner.base.errors import StoreError, nearest
+from runner.base.limits import read_text
 from runner.config.messages import describe
 from runner.config.spec import Bound
-from runner.errors import StoreError, nearest
-from runner.limits import read_text
 from runner.metrics import unit_of, units
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def load_reference(path: Path, name: str | None = None) -> Reference:
         StoreError: if it cannot be read or is no reference; lists all its problems.
     """
     # Read as the configs are: 1e-3 is a number, a key given twice an error.
-    from runner.config.bounded_yaml import STORED, YamlError, check_yaml, explain_yaml
+    from runner.base.bounded_yaml import STORED, YamlError, check_yaml, explain_yaml
 
     try:
         check_yaml(read_text(path, STORED.size), path, STORED)

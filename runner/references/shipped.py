@@ -3,9 +3,9 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runner.base.errors import RunnerError, nearest
+from runner.base.paths import works_dir
 from runner.config.options import described_files
-from runner.errors import RunnerError, nearest
-from runner.paths import works_dir
 from runner.references.reference import Reference, load_reference
 
 if TYPE_CHECKING:

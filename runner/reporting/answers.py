@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from runner.quantities import ROUNDING, number, quantity, with_ends
+from runner.base.quantities import ROUNDING, number, quantity, with_ends
 from runner.reporting.metric_titles import title
 from runner.statistics import SMALLEST_SAMPLE, Comparison, fewest_pairs, holm, holm_levels
 

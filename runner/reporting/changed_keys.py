@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
+from runner.base.errors import ConfigError
 from runner.config.compose import compose
-from runner.errors import ConfigError
 from runner.store import Run
 
 

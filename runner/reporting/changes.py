@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from runner.errors import RunnerError
-from runner.limits import RECORD, read_text
+from runner.base.errors import RunnerError
+from runner.base.limits import RECORD, read_text
 
 FILE = "conclusions.json"
 """Name of the file with a work's conclusions in the folder of its report."""

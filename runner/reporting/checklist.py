@@ -6,11 +6,11 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from runner.data_file import read_data
-from runner.expressions.evaluator import Budget, Scope
-from runner.expressions.grammar import ExpressionError
-from runner.expressions.insertions import fill
-from runner.paths import works_dir
+from runner.base.data_file import read_data
+from runner.base.expressions.evaluator import Budget, Scope
+from runner.base.expressions.grammar import ExpressionError
+from runner.base.expressions.insertions import fill
+from runner.base.paths import works_dir
 from runner.registry import StrictModel
 from runner.reporting import outline
 from runner.reporting.document import Code, Formula, Items, Notice, Provenance, Section, Table, Text

@@ -6,10 +6,10 @@ from functools import partial
 
 import numpy as np
 
+from runner.base.quantities import quantity, ranged, spread
 from runner.claims import CONTRADICTION, FACTOR, PublishedClaim, PublishedStatement, Verdict, judge_motion
 from runner.claims.judging import Simulated, scaled, simulated_by, verdict_on
 from runner.metrics.positioning import STEADY_WINDOW
-from runner.quantities import quantity, ranged, spread
 from runner.reporting.claim import Claim, ClaimResult, EquationVerdict
 from runner.reporting.figures import columns
 from runner.reporting.job import MissingError

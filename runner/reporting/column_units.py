@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from runner.quantities import Shown, fewest_powers, fitting, number, smaller_units
+from runner.base.quantities import Shown, fewest_powers, fitting, number, smaller_units
 from runner.reporting.document import Block, Document, Section, Table
 
 _UNITS = ("m", "s")

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from runner.base.texts import plain
 from runner.drawing import palette
 from runner.drawing.figure import shares_legend, upright
 from runner.drawing.thinning import band, thin, usable
 from runner.drawing.ticks import marks
 from runner.drawing.units import in_readable_units
 from runner.reporting.document import Curves, FloatArray, Panel, Series
-from runner.texts import plain
 
 Json = dict[str, Any]
 

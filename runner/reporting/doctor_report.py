@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from runner.base.quantities import number
 from runner.doctor.examination import Examination
 from runner.doctor.finding import GRADES
 from runner.drawing import arm_motion
 from runner.provenance import versions
-from runner.quantities import number
 from runner.reporting.bodies import playback_bodies
 from runner.reporting.document import Document, Notice, Playback, Provenance, Section, Table
 from runner.reporting.markup import literal, literals

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass, replace
 
-from runner.expressions.tree import Node, size
+from runner.base.expressions.tree import Node, size
 from runner.reporting.claim import EquationVerdict
 
 SHOWN: tuple[EquationVerdict, ...] = ("wrong as printed", "unreadable", "correct after repair")

@@ -10,10 +10,10 @@ from functools import cache, lru_cache
 from importlib import resources
 from urllib.parse import quote
 
-from runner import progress
+from runner.base import progress
+from runner.base.paths import templates_dir
+from runner.base.progress.stages import HTML
 from runner.drawing import palette
-from runner.paths import templates_dir
-from runner.progress.stages import HTML
 from runner.reporting import formulas, outline, playback
 from runner.reporting.curves import plotly_spec
 from runner.reporting.document import Curves, Document, Maps, Playback, RunList

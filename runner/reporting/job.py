@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
-from runner.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, nearest
 from runner.store import Calibration, Run
 
 PRESETS = ("as_reported", "sound")

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from runner.quantities import quantity, spread
+from runner.base.quantities import quantity, spread
 from runner.reporting.metric_titles import title
 from runner.store import Run
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from runner.quantities import above_rounding, number, quantity
+from runner.base.quantities import above_rounding, number, quantity
 
 ROUNDING = 1e-9  # m, rad, N or a share: far below what any of our runs can tell, far above what arithmetic loses
 

@@ -3,8 +3,8 @@
 import re
 from collections.abc import Mapping
 
+from runner.base.quantities import labelled
 from runner.metrics.summary import families, units
-from runner.quantities import labelled
 
 TITLES = {
     "settling_time": "settling time",

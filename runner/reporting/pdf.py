@@ -6,9 +6,9 @@ from pathlib import Path
 
 import typst
 
-from runner import progress
+from runner.base import progress
+from runner.base.progress.stages import FIGURES, PDF
 from runner.drawing import map_stills, stills
-from runner.progress.stages import FIGURES, PDF
 from runner.reporting import formulas, outline
 from runner.reporting.document import Curves, Document, Maps
 from runner.reporting.places import Places

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Collection
 from pathlib import Path
 
-from runner import progress
-from runner.errors import RunnerError
-from runner.progress.stages import of_report
+from runner.base import progress
+from runner.base.errors import RunnerError
+from runner.base.progress.stages import of_report
 from runner.reporting import html, outline, pdf
 from runner.reporting.column_units import in_readable_units
 from runner.reporting.document import Document

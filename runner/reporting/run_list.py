@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from runner.quantities import number, unit_text
+from runner.base.quantities import number, unit_text
+from runner.base.texts import plain
 from runner.reporting.document import RunList
 from runner.reporting.markup import literals
 from runner.reporting.metric_titles import metric_label
-from runner.texts import plain
 
 Json = dict[str, Any]
 

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from runner.errors import RunnerError, nearest
-from runner.quantities import above_rounding, with_powers
+from runner.base.errors import RunnerError, nearest
+from runner.base.quantities import above_rounding, with_powers
 from runner.reporting.document import Block, FloatArray, Notice
 from runner.reporting.figures import columns
 from runner.reporting.measured import Measured

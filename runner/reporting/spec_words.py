@@ -3,10 +3,10 @@
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
+from runner.base.errors import nearest
+from runner.base.quantities import number, quantity, ranged
 from runner.config.spec import Bound
-from runner.errors import nearest
 from runner.metrics import unit_of
-from runner.quantities import number, quantity, ranged
 from runner.reporting.metric_titles import title
 from runner.spec.history import History, ends_of, set_after
 

@@ -6,13 +6,13 @@ from pathlib import Path
 
 from pydantic import NonNegativeFloat
 
-from runner.errors import ConfigError, nearest
+from runner.base.errors import ConfigError, nearest
+from runner.base.texts import quoted
 from runner.registry import StrictModel
 from runner.robots.inertials import read_sets
 from runner.robots.model import FloatArray
 from runner.robots.robot import Robot, with_models
 from runner.robots.tree import UrdfTree
-from runner.texts import quoted
 
 
 class _ArmatureSet(StrictModel):

@@ -10,7 +10,7 @@ from itertools import accumulate, pairwise
 
 import numpy as np
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots.model import FloatArray, RobotModel
 
 _TOLERANCE = 1e-9  # of a sine (axes that are parallel) and of the arm's size (points that coincide)

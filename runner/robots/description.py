@@ -8,8 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.errors import ConfigError, nearest
-from runner.paths import check_inside, robots_dir
+from runner.base.errors import ConfigError, nearest
+from runner.base.paths import check_inside, robots_dir
 from runner.robots.armature import armature_by_joint, write_armature
 from runner.robots.inertials import (
     Payload,

@@ -12,11 +12,11 @@ import numpy as np
 import pinocchio as pin
 from pydantic import Field, NonNegativeFloat, TypeAdapter, ValidationError
 
-from runner.config.bounded_yaml import STORED, YamlError, read_yaml
-from runner.errors import ConfigError, nearest
-from runner.limits import ExcessError, read_text
+from runner.base.bounded_yaml import STORED, YamlError, read_yaml
+from runner.base.errors import ConfigError, nearest
+from runner.base.limits import ExcessError, read_text
+from runner.base.texts import quoted
 from runner.registry import StrictModel
-from runner.texts import quoted
 
 
 @dataclass(frozen=True)

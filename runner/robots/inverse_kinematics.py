@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 from scipy.linalg.lapack import dgesv
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots.model import FloatArray, RobotModel
 from runner.robots.task_space import task_directions
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from runner.base.texts import few
 from runner.robots.inertials import place_of
 from runner.robots.model import FloatArray
 from runner.robots.tree import UrdfTree
 from runner.robots.urdf_values import number, wrong_places
-from runner.texts import few
 
 _LONGEST = 300  # characters, of what a file says is left out
 

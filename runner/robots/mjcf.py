@@ -10,7 +10,7 @@ from typing import Any
 
 import mujoco
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots.mjcf_files import asset_files, follow_includes
 from runner.robots.mjcf_joints import dynamics_of, efforts_of, home_of
 from runner.robots.mjcf_losses import LeftOut, left_out, refused_model, refused_parts, refused_shapes

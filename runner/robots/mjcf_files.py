@@ -4,10 +4,10 @@ import xml.etree.ElementTree as ET
 from collections.abc import Collection, Iterable, Iterator
 from pathlib import Path
 
-from runner.errors import ConfigError
-from runner.limits import ARM_PARTS, HEIGHTS, MESH, MJCF_ELEMENTS, XML
+from runner.base.errors import ConfigError
+from runner.base.limits import ARM_PARTS, HEIGHTS, MESH, MJCF_ELEMENTS, XML
+from runner.base.texts import few, quoted
 from runner.robots.tree import parse_xml
-from runner.texts import few, quoted
 
 _DEPTH = 200
 _MAKES_MORE = {  # elements that stand for many bodies, or for code; `model` brings another file's

@@ -9,8 +9,8 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from runner.engine_output import caught_output
-from runner.errors import ConfigError, nearest
+from runner.base.engine_output import caught_output
+from runner.base.errors import ConfigError, nearest
 
 FloatArray = NDArray[np.float64]
 

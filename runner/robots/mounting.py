@@ -4,7 +4,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from runner.errors import ConfigError, nearest
+from runner.base.errors import ConfigError, nearest
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots.inertials import impossible_inertia
 
 TOOL, TOOL_TIP, TOOL_MOUNT = "tool", "tool_tip", "tool_mount"

@@ -6,9 +6,9 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from runner.errors import ConfigError, nearest
-from runner.limits import ARM_PARTS, XML, XML_ATTRIBUTES, XML_ELEMENTS, ExcessError, read_text
-from runner.texts import quoted
+from runner.base.errors import ConfigError, nearest
+from runner.base.limits import ARM_PARTS, XML, XML_ATTRIBUTES, XML_ELEMENTS, ExcessError, read_text
+from runner.base.texts import quoted
 
 _NAME = 200  # characters
 _DEPTH = 20

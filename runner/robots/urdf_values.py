@@ -4,9 +4,9 @@ import math
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 
+from runner.base.texts import quoted
 from runner.config.magnitudes import LARGEST, SMALLEST
 from runner.robots.tree import moves
-from runner.texts import quoted
 
 TENSOR = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import FiniteFloat, NonNegativeFloat
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
 

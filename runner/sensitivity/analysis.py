@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 from runner.assembly import assemble_whole, metric_context
+from runner.base.errors import RunnerError
+from runner.base.trace import FloatArray, Trace
 from runner.batch import Batcher, Together, Wanted
 from runner.compiled.directed import tangents
 from runner.compiled.engine import evaluator
@@ -16,14 +18,12 @@ from runner.config.flexible_joints import find_flexibility
 from runner.config.flexible_links import is_flexible
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.errors import RunnerError
 from runner.metrics import measure, of_run
 from runner.plants import PLANTS
 from runner.plants.rk4 import Rk4Config
 from runner.sensitivity.parameters import GROUPS, Parameter, find_keys, find_links
 from runner.sensitivity.slopes import Scene, Slopes
 from runner.sensitivity.smooth_metrics import Change, derivatives
-from runner.trace import FloatArray, Trace
 from runner.trajectories.trajectory import joint_reference
 
 

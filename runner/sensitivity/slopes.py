@@ -7,15 +7,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from runner.assembly import describe_loop, find_start
+from runner.base.errors import ConfigError, RunnerError
+from runner.base.trace import FloatArray
 from runner.batch import Wanted
 from runner.compiled.closed_loop import Whole
 from runner.compiled.directed import Setting
 from runner.compiled.structure import fixed_text
 from runner.config.run import RunConfig
-from runner.errors import ConfigError, RunnerError
 from runner.sensing.encoders import encoder_errors
 from runner.sensitivity.parameters import Key, Parameter
-from runner.trace import FloatArray
 from runner.trajectories.trajectory import Trajectory, joint_reference
 
 _PART = 1.0 / 512.0  # of a parameter's value, between the nine at which numbers are taken

@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, nearest
+from runner.base.trace import FloatArray, Trace
 from runner.metrics import MetricContext
 from runner.metrics.positioning import STEADY_WINDOW
-from runner.trace import FloatArray, Trace
 from runner.trajectories.shifted import Shifted
 
 WITHOUT = {

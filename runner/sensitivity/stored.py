@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
+from runner.base.errors import ConfigError, RunnerError
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.errors import ConfigError, RunnerError
 from runner.sensitivity.analysis import Sensitivity, analyse
 from runner.sensitivity.parameters import GROUPS
 from runner.store import Run, simulated_part

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
-from runner.errors import StoreError, unwritten
+from runner.base.errors import StoreError, unwritten
 
 _STALE = 60.0  # s; a temporary file lives for milliseconds
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from runner.errors import StoreError
+from runner.base.errors import StoreError
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.errors import StoreError
+from runner.base.errors import StoreError
 from runner.store.names import Names, best_of_each, look_up
 from runner.store.run import Run, open_run
 from runner.store.seal import DamagedError

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
+from runner.base.engines import installed
+from runner.base.memory import Memory
 from runner.compiled.engine import evaluator
 from runner.config.data_files import has_data_file, unnamed
-from runner.config.memory import Memory
-from runner.engines import installed
 from runner.plugins import GROUPS, added, source_files
 from runner.store.names import Names
 from runner.store.physics import content_digest, physics_digest

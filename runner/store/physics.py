@@ -14,14 +14,15 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-from runner.paths import package_dir
+from runner.base.paths import package_dir
 from runner.recall.answers import keep, recall
 from runner.store import syntax
 
 # Folders and their modules. A module's id stands behind "=", or is its name.
 _TABLE = """
     .: assembly batch batch_blocks batch_jobs calibration_job execution feasibility interaction job plant_error
-        pushed_links registry simulation trace walls
+        pushed_links registry simulation walls
+    base: trace
     calibration: __init__=calibration.__init__ compensation consistency gravity=calibration.gravity orientations
         repeatability tool tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
     calibration/procedures: __init__=procedures.__init__ bench gravity=procedures.gravity procedure
@@ -29,11 +30,11 @@ _TABLE = """
     compiled: algebra arm closed_loop=compiled.closed_loop code commands compile directed elementary
         end_points=compiled.end_points engine expression flexible law maths=compiled.maths motion=compiled.motion
         places program regressor structure tangent vectors=compiled.vectors
-    config: arms by_joint calibration computation=config.computation
-        disturbance_observer=config.disturbance_observer endpoint_sensor flexible_joints=config.flexible_joints
-        flexible_links=config.flexible_links force_reading=config.force_reading groups input_shaper joint_limits noise
-        notch=config.notch parsing payload per_joint per_stage plugged reach repeats robot=config.robot
-        run settings start timing torque_limits validation
+    config: arms by_joint calibration computation=config.computation disturbance_observer=config.disturbance_observer
+        endpoint_sensor flexible_joints=config.flexible_joints flexible_links=config.flexible_links
+        force_reading=config.force_reading groups input_shaper joint_limits noise notch=config.notch parsing payload
+        per_joint per_stage plugged reach repeats robot=config.robot run settings start timing torque_limits
+        validation
     controllers: __init__=controllers.__init__ adaptive admittance admittance_filter admittance_stability approach
         computed_torque controller=controllers.controller differential_inverse_kinematics
         disturbance_observer=controllers.disturbance_observer force_reading=controllers.force_reading force_stability
@@ -45,15 +46,15 @@ _TABLE = """
     environments: __init__=environments.__init__ environment=environments.environment free hand push wall
     guard: __init__=guard.__init__ belief controller=guard.controller environment=guard.environment faults metrics
         plant=guard.plant read_only sensing trajectory=guard.trajectory
-    loop: acting closed_loop=loop.closed_loop command compiled_loop contact=loop.contact drive
-        endpoint=loop.endpoint failures joint_torques recorder sensors
+    loop: acting closed_loop=loop.closed_loop command compiled_loop contact=loop.contact drive endpoint=loop.endpoint
+        failures joint_torques recorder sensors
     metrics: __init__=metrics.__init__ contact=metrics.contact context effort family positioning reaching summary
         tracking
-    plants: __init__=plants.__init__ armature=plants.armature bullet bullet_servers
-        computation=plants.computation decoupled end_points=plants.end_points flexible_around flexible_config
-        flexible_joints=plants.flexible_joints flexible_links=plants.flexible_links friction kinds=plants.kinds
-        kinematic load motion=plants.motion motor_friction mujoco mujoco_model payload_changes plant=plants.plant rk4
-        rk4_flexible_links servo set_points touched
+    plants: __init__=plants.__init__ armature=plants.armature bullet bullet_servers computation=plants.computation
+        decoupled end_points=plants.end_points flexible_around flexible_config flexible_joints=plants.flexible_joints
+        flexible_links=plants.flexible_links friction kinds=plants.kinds kinematic load motion=plants.motion
+        motor_friction mujoco mujoco_model payload_changes plant=plants.plant rk4 rk4_flexible_links servo set_points
+        touched
     robots: __init__=robots.__init__ armature=robots.armature beams cantilever chain denavit_hartenberg description
         effective_mass inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_joints mjcf_losses
         mjcf_ties mjcf_urdf model modes mounting robot=robots.robot task_space tool_link tree urdf_values workspace

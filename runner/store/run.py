@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.errors import StoreError
+from runner.base.errors import StoreError
 from runner.store.record import find_faults
 from runner.store.seal import DamagedError
 from runner.store.stored import MEND, Stored, read_job

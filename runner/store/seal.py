@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from runner.errors import StoreError
-from runner.limits import RECORD, RECORD_VALUES, ExcessError
+from runner.base.errors import StoreError
+from runner.base.limits import RECORD, RECORD_VALUES, ExcessError
 
 SCHEMA = 3
 """Of all that is stored; no other is read."""

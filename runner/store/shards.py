@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.errors import StoreError
-from runner.limits import ExcessError, open_parquet
+from runner.base.errors import StoreError
+from runner.base.limits import ExcessError, open_parquet
 from runner.store.arrow_columns import list_column, text_column, truth_column, whole_column
 from runner.store.atomic import write_atomically
 from runner.store.json_texts import encode_finite

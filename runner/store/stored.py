@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from runner.config.bounded_yaml import STORED, YamlError, read_yaml
+from runner.base.bounded_yaml import STORED, YamlError, read_yaml
 from runner.store.atomic import write_atomically
 from runner.store.seal import SCHEMA, DamagedError, digest, read_file, read_json, sealed_json
 

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.errors import StoreError
 from runner.config.spec import Bound
-from runner.errors import StoreError
 from runner.spec.history import Histories, merged, settings, today
 from runner.store.atomic import write_atomically
 from runner.store.axes import Counted, GridOverrides, read_axes

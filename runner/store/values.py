@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner import limits
+from runner.base import limits
 from runner.store.arrow_columns import optional_column
 from runner.store.seal import DamagedError
 from runner.store.stored import MEND

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import yaml
 
+from runner.base.errors import StoreError
+from runner.base.trace import Failure, FloatArray, Trace
 from runner.caveats import Found
-from runner.errors import StoreError
 from runner.metrics.summary import Summary, over_repetitions, units_of
 from runner.plant_error import PlantError
 from runner.spec import bounds_of, judge
@@ -21,7 +22,6 @@ from runner.store.json_texts import JsonTexts, encode_finite
 from runner.store.run import Run
 from runner.store.stored import write_job
 from runner.store.values import VALUES_FILE, values_parquet
-from runner.trace import Failure, FloatArray, Trace
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.store.physics import physics_digest
 from runner.sweeps.deadline import STUCK
 from runner.sweeps.queue import Queue

@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from runner import progress, store
+from runner import store
+from runner.base import progress
+from runner.base.errors import RunnerError
 from runner.batch_blocks import simulate_blocks, threads_allowed
 from runner.config.compose import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.errors import RunnerError
 from runner.plant_error import COMPARED, PLANT, hindrance, on_runge_kutta
 from runner.statistics.interval import SMALLEST_SAMPLE
 from runner.store import Run, Sweep

@@ -10,10 +10,10 @@ from hydra.core.global_hydra import GlobalHydra
 from hydra.types import RunMode
 from omegaconf import DictConfig
 
+from runner.base.paths import conf_dir
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.hydra_config import hydra_config
 from runner.config.no_code import code_refused
-from runner.paths import conf_dir
 
 
 class ConfigSource(Protocol):

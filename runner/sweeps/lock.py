@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 
 _PATIENCE = 1.0  # s; `runner status` holds the lock for an instant
 

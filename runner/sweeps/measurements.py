@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner import progress
-from runner.progress.stages import READING
+from runner.base import progress
+from runner.base.progress.stages import READING
 from runner.store import Run, Sweep
 from runner.store.axes import GridOverrides
 from runner.store.finer import finer_names, read_finer

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable, Sequence
 
-from runner.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, nearest
 
 _PART = re.compile(r".*_([xyz]|q\d+)$")
 

@@ -9,11 +9,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.progress import in_words
 from runner.batch_jobs import seconds_together
 from runner.config.compose import Composed
 from runner.config.validation import validate
 from runner.job import PROBED_TICKS, seconds_per_tick
-from runner.progress import in_words
 from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
 from runner.sweeps.deadline import TimeLimitError, deadline

@@ -8,8 +8,11 @@ from typing import NoReturn, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from runner import progress, store
+from runner import store
 from runner.assembly import assemble
+from runner.base import progress
+from runner.base.errors import ConfigError
+from runner.base.progress.stages import CHECKING
 from runner.calibration_job import CALIBRATION, TICKS
 from runner.config.calibration import validate_calibration
 from runner.config.compose import Composed
@@ -18,8 +21,6 @@ from runner.config.run import RunConfig
 from runner.config.spec import Bound
 from runner.config.sweep import SweepConfig
 from runner.config.validation import validate
-from runner.errors import ConfigError
-from runner.progress.stages import CHECKING
 from runner.store.axes import GridOverrides
 from runner.store.identity import json_text
 from runner.store.names import Names, Texts

@@ -13,13 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 from omegaconf import DictConfig
 
-from runner import progress, store
+from runner import store
+from runner.base import progress
+from runner.base.errors import ConfigError, StoreError
+from runner.base.progress.stages import SIMULATING, SOON
 from runner.config.limits import check_cpu_time, check_memory_together
 from runner.config.sweep import SweepConfig
-from runner.errors import ConfigError, StoreError
 from runner.latest import note
 from runner.plugins import in_use
-from runner.progress.stages import SIMULATING, SOON
 from runner.store.atomic import remove_leftovers
 from runner.store.finer import FOLDER as FINER
 from runner.store.names import Names

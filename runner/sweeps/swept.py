@@ -9,10 +9,10 @@ from hydra.core.config_loader import ConfigLoader
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override, RangeSweep, Transformer
 
+from runner.base.errors import ConfigError
+from runner.base.limits import CELLS
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.in_si import as_numbers
-from runner.errors import ConfigError
-from runner.limits import CELLS
 from runner.store.axes import Counted
 
 

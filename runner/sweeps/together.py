@@ -6,9 +6,9 @@ from dataclasses import astuple
 import numpy as np
 
 from runner import store
+from runner.base.errors import StoreError
 from runner.batch import Batcher
 from runner.batch_jobs import Job, Simulated, simulate_together
-from runner.errors import StoreError
 from runner.metrics.summary import MOST_LISTED, units_of
 from runner.provenance import command, job_provenance
 from runner.store.json_texts import JsonTexts

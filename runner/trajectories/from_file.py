@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, PositiveFloat, ValidationInfo, field_validator
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.trajectories.interpolation import Interpolated, Interpolation, interpolate

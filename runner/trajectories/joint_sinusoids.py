@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, PositiveFloat, ValidationInfo, field_validator
 
+from runner.base.errors import ConfigError
 from runner.config.per_joint import NonNegativePerJoint, expand
-from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.trajectories.blend import quintic_blend

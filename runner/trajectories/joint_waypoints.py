@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import PositiveFloat, ValidationInfo, field_validator
 from scipy.interpolate import BSpline
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.trajectories.joint_motion import JointMotion

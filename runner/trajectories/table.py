@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import chain, pairwise
 from pathlib import Path
 
-from runner.errors import ConfigError
-from runner.limits import TABLE, TABLE_NUMBERS, ExcessError, open_parquet
-from runner.texts import quoted
+from runner.base.errors import ConfigError
+from runner.base.limits import TABLE, TABLE_NUMBERS, ExcessError, open_parquet
+from runner.base.texts import quoted
 
 Columns = Mapping[str, Sequence[float]]
 

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import PositiveFloat, ValidationInfo, field_validator
 from scipy.interpolate import BSpline, make_interp_spline
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.registry import StrictModel
 from runner.trajectories.nearest import distance_to_curve
 from runner.trajectories.trajectory import FloatArray, Trajectory

@@ -11,7 +11,7 @@ from optuna.storages import JournalStorage
 from optuna.storages.journal import BaseJournalBackend
 from optuna.trial import FrozenTrial
 
-from runner.errors import StoreError, unwritten
+from runner.base.errors import StoreError, unwritten
 from runner.store.seal import DamagedError, Lines
 from runner.tuning.key import Key
 from runner.tuning.objective import Objective

@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from hydra.core.override_parser.types import IntervalSweep, Override, RangeSweep, Transformer
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 
 RANGES = (
     "interval(low, high), tag(log, interval(low, high)), int(interval(low, high)) for whole numbers, or "

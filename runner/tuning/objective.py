@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from runner.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, nearest
 from runner.metrics.summary import unit_of, units
 from runner.store import Run
 

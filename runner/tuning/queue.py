@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner import store
+from runner.base.errors import ConfigError
 from runner.config.compose import Composed
 from runner.config.validation import validate
-from runner.errors import ConfigError
 from runner.sweeps.grid import Grid
 from runner.sweeps.loading import Loader
 from runner.sweeps.queue import Queue

@@ -10,12 +10,12 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
 
 from runner import store
+from runner.base.errors import ConfigError, RunnerError, StoreError
+from runner.base.limits import TRIALS
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.options import groups
 from runner.config.overrides import force
-from runner.errors import ConfigError, RunnerError, StoreError
 from runner.latest import note
-from runner.limits import TRIALS
 from runner.store.names import Names
 from runner.sweeps.grid import Grid
 from runner.sweeps.loading import Loader

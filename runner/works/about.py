@@ -6,9 +6,9 @@ from typing import Annotated
 
 from pydantic import Field
 
-from runner.data_file import read_data
-from runner.errors import RunnerError, nearest
-from runner.paths import WORK_FILE
+from runner.base.data_file import read_data
+from runner.base.errors import RunnerError, nearest
+from runner.base.paths import WORK_FILE
 from runner.registry import StrictModel
 from runner.works.profiles import Profile
 

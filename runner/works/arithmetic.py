@@ -5,11 +5,11 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from runner.errors import RunnerError
-from runner.expressions import insertions
-from runner.expressions.evaluator import Budget, Scope
-from runner.expressions.grammar import ExpressionError
-from runner.texts import quoted
+from runner.base.errors import RunnerError
+from runner.base.expressions import insertions
+from runner.base.expressions.evaluator import Budget, Scope
+from runner.base.expressions.grammar import ExpressionError
+from runner.base.texts import quoted
 
 Level = str | int | float
 """What a name stands for: a number or a text."""

@@ -5,10 +5,10 @@ from typing import Annotated
 
 from pydantic import Field
 
+from runner.base.data_file import read_data
+from runner.base.errors import RunnerError, nearest
 from runner.caveats.default_plant import DEFAULT_PLANT
 from runner.caveats.registry import KEYS
-from runner.data_file import read_data
-from runner.errors import RunnerError, nearest
 from runner.registry import StrictModel
 from runner.reporting.expected_caveats import ExpectedCaveat
 

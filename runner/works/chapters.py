@@ -8,13 +8,13 @@ from inspect import signature
 from pathlib import Path
 from typing import Any
 
-from runner import progress
 from runner.audit.audit import audit
 from runner.audit.sources import Source
+from runner.base import progress
+from runner.base.errors import RunnerError
+from runner.base.limits import CHAPTER, read_text
+from runner.base.progress.stages import CHAPTERS
 from runner.claims import CLAIMS, FACTOR, Verdict, load_claims
-from runner.errors import RunnerError
-from runner.limits import CHAPTER, read_text
-from runner.progress.stages import CHAPTERS
 from runner.reporting.audit.report import rows
 from runner.reporting.claim import Claim
 from runner.reporting.claims import judged_claims, legend

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping
 from fnmatch import fnmatchcase
 
-from runner.errors import RunnerError, nearest
-from runner.paths import WORK_FILE
+from runner.base.errors import RunnerError, nearest
+from runner.base.paths import WORK_FILE
 from runner.reporting.conclusions import fallen
 from runner.reporting.document import Document
 from runner.reporting.expected_caveats import unexpected_caveats

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NoReturn
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.folder_code import folder_module
 from runner.reporting.job import MissingError
 

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from runner.assembly import assemble
+from runner.base.errors import ConfigError, RunnerError
 from runner.config.compose import Composed, compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.controllers import CONTROLLERS
-from runner.errors import ConfigError, RunnerError
 from runner.job import PROBED_TICKS
 from runner.loop.sensors import make_sensors
 from runner.simulation import simulate

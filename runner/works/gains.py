@@ -5,9 +5,9 @@ from pathlib import Path
 
 import yaml
 
+from runner.base.data_file import read_data
+from runner.base.errors import RunnerError, nearest
 from runner.config.user_settings import refuse_settings
-from runner.data_file import read_data
-from runner.errors import RunnerError, nearest
 from runner.store.atomic import write_atomically
 from runner.works.grid import Overrides
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 
 
 @dataclass(frozen=True)

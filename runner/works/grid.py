@@ -7,8 +7,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, PlainValidator, model_validator
 
-from runner.errors import RunnerError, nearest
-from runner.limits import GRID
+from runner.base.errors import RunnerError, nearest
+from runner.base.limits import GRID
 from runner.registry import StrictModel
 from runner.works.arithmetic import Level, alone, fill, names_in
 from runner.works.given import GivenPart

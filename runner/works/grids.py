@@ -28,11 +28,11 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from runner.config.bounded_yaml import STORED, read_yaml
+from runner.base.bounded_yaml import STORED, read_yaml
+from runner.base.errors import RunnerError, nearest
+from runner.base.limits import read_text
 from runner.config.messages import describe
 from runner.config.user_settings import refuse_settings
-from runner.errors import RunnerError, nearest
-from runner.limits import read_text
 from runner.registry import StrictModel
 from runner.works.arithmetic import Level
 from runner.works.gains import check_named

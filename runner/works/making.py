@@ -5,9 +5,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from runner import progress, store
+from runner import store
+from runner.base import progress
+from runner.base.progress.stages import SOON
 from runner.calibration_job import CALIBRATION
-from runner.progress.stages import SOON
 from runner.provenance import settled
 from runner.reporting.job import Made
 from runner.store import Calibration, Run

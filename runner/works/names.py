@@ -6,8 +6,8 @@ from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
 
-from runner.errors import RunnerError, nearest
-from runner.paths import WORK_FILE, works_dir, works_with
+from runner.base.errors import RunnerError, nearest
+from runner.base.paths import WORK_FILE, works_dir, works_with
 
 GROUP = "runner.works"
 """The group of entry points by which an installed package says that it is a work."""

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from runner.errors import RunnerError
-from runner.paths import example_work_dir
+from runner.base.errors import RunnerError
+from runner.base.paths import example_work_dir
 from runner.store.atomic import write_atomically
 
 

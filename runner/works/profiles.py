@@ -5,7 +5,7 @@ from typing import Annotated, TypeVar
 
 from pydantic import Field, PositiveInt
 
-from runner.errors import nearest
+from runner.base.errors import nearest
 from runner.registry import StrictModel
 from runner.works.arithmetic import Level
 from runner.works.grid import Grid, Overrides

@@ -7,7 +7,7 @@ from itertools import islice, takewhile
 from typing import Any
 
 from runner import store
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.store import Run
 from runner.sweeps.grid import Grid
 from runner.sweeps.listed import Item

@@ -28,8 +28,8 @@ from typing import Annotated, Self
 
 from pydantic import Field, PositiveInt, model_validator
 
-from runner.data_file import read_data
-from runner.errors import RunnerError, nearest
+from runner.base.data_file import read_data
+from runner.base.errors import RunnerError, nearest
 from runner.metrics.summary import unit_of, units
 from runner.tuning.key import Key
 from runner.works.arithmetic import Level

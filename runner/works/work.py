@@ -6,9 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from runner.base.errors import RunnerError, nearest
+from runner.base.paths import check_inside
 from runner.claims import CLAIMS, load_claims
-from runner.errors import RunnerError, nearest
-from runner.paths import check_inside
 from runner.plugins import use_plugins
 from runner.reporting.expected_caveats import ExpectedCaveat
 from runner.reporting.job import Job, Jobs, distinct

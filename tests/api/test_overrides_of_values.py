@@ -7,7 +7,7 @@ import pytest
 from hydra.core.override_parser.overrides_parser import OverridesParser
 
 from runner.api.overrides import run_overrides, sweep_overrides, tuning_overrides
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 
 
 def read(text):

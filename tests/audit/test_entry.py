@@ -4,7 +4,7 @@ import pytest
 
 from runner.audit.entry import Entry, entries, parts
 from runner.audit.sources import sources
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.reporting.markup import spans
 
 GOOD = {"id": "a", "number": "1", "place": "p", "title": "t", "printed": {"math": "x"}}

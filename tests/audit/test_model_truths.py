@@ -8,8 +8,8 @@ from runner.audit.entry import entries
 from runner.audit.model_truths import TRUTHS, audited_arm, sample
 from runner.audit.sources import Source, rollout_of, truth_of
 from runner.audit.verdict import AuditError
-from runner.errors import RunnerError
-from runner.paths import conf_dir
+from runner.base.errors import RunnerError
+from runner.base.paths import conf_dir
 
 ROBOTS = sorted(path.stem for path in (conf_dir() / "robot").glob("*.yaml"))
 

@@ -5,7 +5,7 @@ import pytest
 
 from runner.audit.model_truths import by_model
 from runner.audit.own_formulas import QUANTITIES, compare
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 
 MASS = """
 elements:

@@ -8,7 +8,7 @@ from runner.audit.entry import entries, parts
 from runner.audit.evaluation import evaluate
 from runner.audit.sources import sources, truth_of
 from runner.audit.verdict import Judge, error
-from runner.expressions.parser import parse
+from runner.base.expressions.parser import parse
 from runner.works.meca500.equations.truths import meca500
 from runner.works.xarm7.equations.truths import xarm7, xarm7_inverse
 

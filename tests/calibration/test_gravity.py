@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from support.turns import rotation
 
+from runner.base.errors import ConfigError
 from runner.calibration import REST, Tool, choose_orientations, consistency, identify_gravity, pose_covariances
 from runner.calibration.gravity import PARAMETERS
-from runner.errors import ConfigError
 from runner.sensing.force_torque import ForceTorqueConfig, ForceTorqueSensor
 from runner.sensing.wrench import wrench_transform
 

@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from support.turns import rotation
 
+from runner.base.errors import ConfigError
 from runner.calibration import choose_orientations
 from runner.calibration.orientations import (
     MAX_CONDITION_NUMBER,
@@ -13,7 +14,6 @@ from runner.calibration.orientations import (
     force_matrix,
     moment_matrix,
 )
-from runner.errors import ConfigError
 
 SIX = np.array([R.as_matrix() for R in Rotation.create_group("O")])  # every face of a cube down, in four ways
 

@@ -6,9 +6,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from support.turns import rotation
 
+from runner.base.errors import ConfigError
 from runner.calibration import consistency, identify_tool_centre_point, pose_covariances
 from runner.calibration.tool_centre_point import MIN_SINGULAR_VALUE
-from runner.errors import ConfigError
 
 TIP = np.array([0.012, -0.007, 0.093])
 EXACT = np.zeros((6, 6))

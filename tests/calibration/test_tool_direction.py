@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from runner.base.errors import ConfigError
 from runner.calibration import (
     ToolCentrePoint,
     consistency,
@@ -13,7 +14,6 @@ from runner.calibration import (
     pose_covariances,
 )
 from runner.calibration.tool_direction import alignment, alignment_angles
-from runner.errors import ConfigError
 
 directions = (
     st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=3)

@@ -2,8 +2,8 @@
 
 import pytest
 
+from runner.base.engines import has_pybullet
 from runner.caveats.plant_error import PlantStep, caveat_of
-from runner.engines import has_pybullet
 from runner.execution import run
 from runner.plant_error import PlantError, Worth
 

@@ -10,11 +10,11 @@ import pytest
 from support.caveat_runs import signals, stacked
 from support.engines import ASKED
 
+from runner.base.trace import Traces
 from runner.caveats import Signals, Watch, changes_since, look_together, registry, setting_of, signals_of
 from runner.caveats.today import our_thresholds
 from runner.config.caveats import CaveatsConfig
 from runner.store import run_hash
-from runner.trace import Traces
 
 ROBOTS = ("macro", "mini", "combined", "macro_mini_mini", "xarm7", "xarm7_mini", "meca500", "meca500_r4")
 

@@ -3,8 +3,8 @@
 import pytest
 import yaml
 
+from runner.base.errors import RunnerError
 from runner.claims import claim, claimed, load_claims, load_statements
-from runner.errors import RunnerError
 
 
 @pytest.fixture

@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 from support.sample_sides import LAWS, side
 
+from runner.base.errors import RunnerError
 from runner.comparison.cells import label_text, match
-from runner.errors import RunnerError
 
 
 def nothing(*_):

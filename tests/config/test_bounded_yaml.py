@@ -3,9 +3,9 @@
 import pytest
 import yaml
 
-from runner.config.bounded_yaml import CONFIG, Bounds, YamlError, check_yaml, read_yaml
-from runner.limits import Limit
-from runner.paths import conf_dir
+from runner.base.bounded_yaml import CONFIG, Bounds, YamlError, check_yaml, read_yaml
+from runner.base.limits import Limit
+from runner.base.paths import conf_dir
 
 
 def bomb(levels):

@@ -2,11 +2,11 @@
 
 import pytest
 
+from runner.base.errors import ConfigError
+from runner.base.paths import robots_dir
 from runner.config.compose import compose
 from runner.config.options import group_options
 from runner.config.validation import validate
-from runner.errors import ConfigError
-from runner.paths import robots_dir
 
 SMALL_ROBOT = """\
 # @package _global_

@@ -6,10 +6,10 @@ import math
 import pytest
 from support import strangers
 
+from runner.base.errors import ConfigError
 from runner.config.compose import compose
 from runner.config.in_si import as_numbers, put_in_si, with_numbers
 from runner.config.validation import validate
-from runner.errors import ConfigError
 from runner.store import run_hash
 
 MACRO = ("robot=macro", "trajectory=quintic")

@@ -2,11 +2,11 @@
 
 import pytest
 
-from runner.config.bounded_yaml import YamlError, check_yaml
-from runner.config.interpolation import check_references
+from runner.base.bounded_yaml import YamlError, check_yaml
+from runner.base.errors import ConfigError
+from runner.base.interpolation import check_references
+from runner.base.paths import conf_dir
 from runner.config.overrides import force
-from runner.errors import ConfigError
-from runner.paths import conf_dir
 
 
 def test_files_of_ours_refer_to_keys_alone():

@@ -2,9 +2,9 @@
 
 import pytest
 
+from runner.base.errors import ConfigError
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.errors import ConfigError
 
 
 def problems_of(*overrides):

@@ -4,12 +4,12 @@ import re
 
 import pytest
 
+from runner.base.errors import ConfigError
+from runner.base.progress.ticks import counter
 from runner.config.compose import compose
 from runner.config.limits import LimitsConfig, check_cpu_time, check_memory_together, memory_of_run
 from runner.config.validation import validate
-from runner.errors import ConfigError
 from runner.job import seconds_per_tick
-from runner.progress.ticks import counter
 from runner.store import simulated_part
 
 

@@ -9,9 +9,9 @@ import hydra
 import pytest
 from support.opened_files import opened
 
+from runner.base.errors import ConfigError
+from runner.base.paths import conf_dir
 from runner.config.compose import compose
-from runner.errors import ConfigError
-from runner.paths import conf_dir
 
 HEAD = "# @package _global_\n# A stranger's\n# experiment\n"
 OURS, HYDRAS = conf_dir(), Path(hydra.__file__).parent / "conf"

@@ -2,8 +2,8 @@
 
 import pytest
 
+from runner.base.errors import ConfigError
 from runner.config.overrides import force
-from runner.errors import ConfigError
 
 
 @pytest.mark.parametrize(

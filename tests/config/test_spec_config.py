@@ -2,10 +2,10 @@
 
 import pytest
 
+from runner.base.errors import ConfigError
 from runner.config.compose import compose
 from runner.config.spec import Bound
 from runner.config.validation import validate
-from runner.errors import ConfigError
 from runner.store import run_hash
 
 

@@ -3,10 +3,10 @@
 import pytest
 import yaml
 
+from runner.base.errors import ConfigError
+from runner.base.paths import conf_dir
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.errors import ConfigError
-from runner.paths import conf_dir
 
 COMBINED = ("robot=combined", "noise=thesis", "torque_limits=thesis")
 SECOND_MINI = {

@@ -5,10 +5,10 @@ import itertools
 import pytest
 import yaml
 
+from runner.base.paths import conf_dir
 from runner.config.compose import compose
 from runner.config.options import group_options
 from runner.config.validation import validate
-from runner.paths import conf_dir
 
 NAMES = [name for name in group_options("experiment") if name.startswith("sweep/")]
 

@@ -2,9 +2,9 @@
 
 import pytest
 
+from runner.base.errors import ConfigError
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.errors import ConfigError
 
 KEYS = "keys: position, distribution, bias, resolution, velocity"
 ABOVE_ZERO = "must be a number above 0, or a list of such numbers with one for each joint"

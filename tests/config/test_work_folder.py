@@ -2,9 +2,9 @@
 
 import pytest
 
+from runner.base.errors import ConfigError
 from runner.config.compose import compose
 from runner.config.options import group_options
-from runner.errors import ConfigError
 from runner.sweeps.loading import Loader
 
 EXPERIMENT = "# @package _global_\n# One.\ndefaults:\n  - override /robot: macro\n  - override /trajectory: goal\n"

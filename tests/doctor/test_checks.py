@@ -7,11 +7,11 @@ import pytest
 from support import strangers
 from support.strangers import X, Y, Z
 
+from runner.base.engines import has_pybullet
+from runner.base.errors import RunnerError
 from runner.doctor import engines
 from runner.doctor.examination import examine
 from runner.doctor.finding import Finding, together
-from runner.engines import has_pybullet
-from runner.errors import RunnerError
 from runner.robots.inertials import fix_inertia, impossible_inertia
 from runner.robots.tree import read_tree
 

@@ -13,7 +13,7 @@ from support.patience import PATIENCE
 from support.short_runs import DAMPING, FREQUENCY
 
 from runner import store
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.plugins import use_plugins
 from runner.sweeps import engine
 from runner.sweeps.pace import Estimate

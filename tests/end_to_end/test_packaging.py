@@ -17,7 +17,7 @@ import sys
 from pathlib import Path
 import runner
 from runner.cli import dispatch
-from runner.paths import conf_dir, robots_dir, templates_dir
+from runner.base.paths import conf_dir, robots_dir, templates_dir
 site = Path(sys.prefix)
 for folder in (Path(runner.__file__).parent, conf_dir(), robots_dir(), templates_dir()):
     assert folder.is_relative_to(site), folder

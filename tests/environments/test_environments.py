@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from runner.base.errors import ConfigError
 from runner.environments import ENVIRONMENTS
 from runner.environments.hand import HandConfig
 from runner.environments.push import PushConfig
 from runner.environments.wall import WallConfig
-from runner.errors import ConfigError
 
 TIP, REST = np.array([0.3, 0.1, 0.2]), np.zeros(3)
 

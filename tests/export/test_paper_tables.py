@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.paper_sweep import by_hand
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.export.columns import Unit
 from runner.export.latex import escaped as latex_escaped
 from runner.export.latex import latex, unit_macro

@@ -6,8 +6,8 @@ import io
 import numpy as np
 from support.sample_document import SVG, playback
 
+from runner.base.paths import templates_dir
 from runner.export.points import as_csv
-from runner.paths import templates_dir
 from runner.reporting.document import Curves, Map, Maps, Panel, Picture, Series
 
 T = np.array([0.0, 1.0, 2.0])

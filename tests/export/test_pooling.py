@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.paper_sweep import by_hand
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.export.pooling import failed_cells, pool
 from runner.sweeps.measurements import Axis
 

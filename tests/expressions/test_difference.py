@@ -2,9 +2,9 @@
 
 import pytest
 
-from runner.expressions.difference import difference
-from runner.expressions.parser import parse
-from runner.expressions.typesetting import typeset
+from runner.base.expressions.difference import difference
+from runner.base.expressions.parser import parse
+from runner.base.expressions.typesetting import typeset
 
 
 def found(first, second):

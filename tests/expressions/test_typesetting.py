@@ -2,8 +2,8 @@
 
 import pytest
 
-from runner.expressions.parser import parse
-from runner.expressions.typesetting import linear, matrix, symbol, typeset
+from runner.base.expressions.parser import parse
+from runner.base.expressions.typesetting import linear, matrix, symbol, typeset
 from runner.reporting import formulas
 
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from runner.assembly import assemble
+from runner.base.errors import ConfigError, SimulationError
 from runner.controllers import Loop
-from runner.errors import ConfigError, SimulationError
 from runner.guard import WatchedController, watch_loops
 from runner.loop.sensors import make_encoders
 from runner.simulation import simulate

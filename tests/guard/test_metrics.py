@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from runner.assembly import metric_context
-from runner.errors import SimulationError
+from runner.base.errors import SimulationError
 from runner.loop.sensors import make_encoders
 from runner.metrics import evaluate, summary
 from runner.simulation import simulate

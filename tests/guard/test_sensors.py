@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.errors import ConfigError, SimulationError
+from runner.base.errors import ConfigError, SimulationError
 from runner.guard import WatchedEncoders, WatchedTorqueSensors, WatchedWristSensor, watch_belief
 from runner.loop.sensors import make_encoders, make_wrist_sensor
 from runner.simulation import simulate

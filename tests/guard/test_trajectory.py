@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.guard import WatchedTrajectory
 from runner.loop.sensors import make_encoders
 from runner.simulation import simulate

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from support.one_run import of_one
 
+from runner.base.trace import ContactSignals
 from runner.metrics import MetricContext, contact
 from runner.metrics.contact import UNITS
-from runner.trace import ContactSignals
 from runner.trajectories.goal import Goal
 
 evaluate = of_one(contact)

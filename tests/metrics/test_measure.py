@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from runner.errors import SimulationError
+from runner.base.errors import SimulationError
+from runner.base.trace import Traces
 from runner.guard.trajectory import WatchedTrajectory
 from runner.metrics import MetricContext, evaluate, measure, of_run
-from runner.trace import Traces
 from runner.trajectories.circle import Circle
 from runner.trajectories.closed_figure import ClosedFigure
 from runner.trajectories.goal import Goal

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from runner.base.trace import Failure
 from runner.metrics import Columns, MetricContext, evaluate, units
 from runner.metrics.summary import MOST_LISTED
-from runner.trace import Failure
 from runner.trajectories.goal import Goal
 from runner.trajectories.quintic import Quintic
 

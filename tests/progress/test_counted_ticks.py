@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from support.patience import PATIENCE
 
+from runner.base.progress import ticks
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.job import simulate_job
-from runner.progress import ticks
 
 
 def test_those_of_a_repetition_under_way_count():

@@ -14,10 +14,10 @@ from types import SimpleNamespace
 import pytest
 from support.patience import PATIENCE
 
-from runner import progress
-from runner.progress import display
-from runner.progress.display import Display, in_words
-from runner.progress.work import Work
+from runner.base import progress
+from runner.base.progress import display
+from runner.base.progress.display import Display, in_words
+from runner.base.progress.work import Work
 
 
 class Terminal(io.StringIO):

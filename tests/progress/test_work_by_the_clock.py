@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.progress.work import Work
+from runner.base.progress.work import Work
 
 
 class Clock:

@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
+from runner.base.paths import conf_dir, robots_dir
 from runner.compiled import cache
-from runner.paths import conf_dir, robots_dir
 from runner.recall import answers, runs
 from runner.recall.basis import basis
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.recordings.columns_map import Signal, read_map
 
 JOINTS, UNITS = ("q1", "slide"), ("rad", "m")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.execution import run
 from runner.recordings.compare import compare_recording
 

@@ -5,8 +5,8 @@ import sys
 import numpy as np
 import pytest
 
-from runner.errors import RunnerError
-from runner.limits import Limit
+from runner.base.errors import RunnerError
+from runner.base.limits import Limit
 from runner.recordings import is_bag, ros_bag
 from runner.recordings.columns_map import ColumnsMap, Factor, Signal
 from runner.recordings.recording import read_recording

@@ -5,9 +5,9 @@ import math
 import pytest
 from pydantic import ValidationError
 
+from runner.base.errors import StoreError
 from runner.claims import load_claims
 from runner.config.options import group_options
-from runner.errors import StoreError
 from runner.metrics import unit_of
 from runner.references import Band, Reference, check_run, load_reference, shipped_references
 from runner.references.shipped import reference_path

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench.answers import CASES, false_answers, same_law, true_answers
-from runner.quantities import ROUNDING
+from runner.base.quantities import ROUNDING
 from runner.reporting.answers import ALPHA, Asked, judge
 from runner.statistics import compare_paired
 

@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.reporting.changes import FILE, Change, changes, read_conclusions
 
 OLD = {

@@ -3,7 +3,7 @@
 import pytest
 from pydantic import ValidationError
 
-from runner.paths import works_with
+from runner.base.paths import works_with
 from runner.reporting.checklist import Checklist, load_checklist
 from runner.reporting.document import Curves, Origin, Section
 

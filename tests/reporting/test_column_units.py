@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.quantities import number
+from runner.base.quantities import number
 from runner.reporting.column_units import in_readable_units, readable
 from runner.reporting.document import Document, Section, Table
 

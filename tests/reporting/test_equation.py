@@ -1,6 +1,6 @@
 """Audited equations of a report: order, verdicts, folding."""
 
-from runner.expressions.parser import parse
+from runner.base.expressions.parser import parse
 from runner.reporting.claim import EquationVerdict
 from runner.reporting.equation import FOLDED, SHOWN, Equation, EquationForm, Matrix, by_finding, by_place, of_verdict
 

@@ -3,8 +3,8 @@
 import ast
 from pathlib import Path
 
+import runner.base.quantities
 import runner.drawing
-import runner.quantities
 import runner.reporting
 
 FOLDER = Path(runner.reporting.__file__).parent
@@ -24,7 +24,7 @@ def known(paths, *rooms):
 
 
 def test_drawings_and_numbers_as_text_know_no_report():
-    assert known([*DRAWING, Path(runner.quantities.__file__)], "runner.reporting", "runner.works") == []
+    assert known([*DRAWING, Path(runner.base.quantities.__file__)], "runner.reporting", "runner.works") == []
 
 
 def test_the_vocabulary_knows_nothing_of_the_audit_and_the_works():

@@ -2,8 +2,8 @@
 
 import pytest
 
+from runner.base.texts import plain
 from runner.reporting.markup import Link, Literal, Math, spans
-from runner.texts import plain
 
 
 def test_dollars_enclose_mathematics():

@@ -5,7 +5,7 @@ import errno
 import pytest
 from support.sample_document import document
 
-from runner.errors import RunnerError, StoreError
+from runner.base.errors import RunnerError, StoreError
 from runner.reporting.render import write_report
 
 

@@ -8,9 +8,9 @@ from support.arms import checked, model_of, urdf_of
 from support.mjcf_arms import written
 from support.physics import assert_energy_kept
 
+from runner.base.errors import ConfigError
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.errors import ConfigError
 from runner.plants.rk4 import Rk4
 from runner.robots import RobotModel, read_urdf
 from runner.robots.armature import armature_file

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.arms import model_of
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots import RobotModel
 from runner.robots.denavit_hartenberg import denavit_hartenberg, frames, transform
 

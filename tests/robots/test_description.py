@@ -5,8 +5,8 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from runner.errors import ConfigError
-from runner.paths import robots_dir
+from runner.base.errors import ConfigError
+from runner.base.paths import robots_dir
 from runner.robots import RobotModel, find_urdf, read_urdf
 
 MASS = '<mass value="{m}"/>'

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import yaml
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.robots.inertials import Payload, set_file
 

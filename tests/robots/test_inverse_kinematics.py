@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support.arms import model_of, urdf_of
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots import RobotModel, inverse_kinematics, solve_tip_pose, solve_tip_position
 from runner.robots.mismatch import MismatchConfig, believe
 from runner.robots.robot import Robot, Stage

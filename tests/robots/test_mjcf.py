@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.mjcf_arms import CHAIN, disagreement, own_model, written
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots.description import read_arm, read_urdf
 from runner.robots.joint_dynamics import dynamics_of
 from runner.robots.mjcf import read_mjcf

@@ -3,7 +3,7 @@
 import pytest
 from support.mjcf_arms import CHAIN, written
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots.mjcf import read_mjcf
 
 MESH = CHAIN.replace("<worldbody>", '<asset><mesh name="m" file="FILE"/></asset><worldbody>').replace(

@@ -3,7 +3,7 @@
 import pytest
 from support.mjcf_arms import CHAIN, written
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots.description import read_urdf
 from runner.robots.mjcf import read_mjcf
 

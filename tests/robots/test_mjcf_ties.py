@@ -6,8 +6,8 @@ import pytest
 from support import strangers
 from support.mjcf_arms import CHAIN, own_model, written
 
+from runner.base.errors import ConfigError
 from runner.doctor.examination import examine
-from runner.errors import ConfigError
 from runner.robots.description import read_urdf
 from runner.robots.mjcf import read_mjcf
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from support import strangers
 from support.arms import model_of
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots import RobotModel
 
 MODELS = {name: model_of(name) for name in ("macro", "mini")}

@@ -7,7 +7,7 @@ import pinocchio as pin
 import pytest
 from support.arms import checked
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots import RobotModel
 from runner.robots.denavit_hartenberg import DenavitHartenbergRow, denavit_hartenberg, frames
 from runner.robots.mounting import Mount, mount

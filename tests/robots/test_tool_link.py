@@ -6,7 +6,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots.model import RobotModel
 from runner.robots.tool_link import ToolBody, find_tool, holding_wrench, mount_tool
 

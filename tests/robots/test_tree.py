@@ -3,7 +3,7 @@
 import pytest
 from support import strangers
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots import read_urdf
 from runner.robots.tree import read_tree
 

@@ -4,8 +4,8 @@ import pytest
 from support import strangers
 from support.strangers import Y, Z
 
+from runner.base.errors import ConfigError
 from runner.commands.doctor import main as doctor
-from runner.errors import ConfigError
 from runner.robots import RobotModel, read_urdf
 
 ARM = strangers.chain("arm", [("revolute", Z), ("revolute", Y), ("revolute", Y)])

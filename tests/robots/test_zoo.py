@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import yaml
 
+from runner.base.paths import robots_dir
 from runner.config.arms import build_robot
 from runner.config.compose import compose
 from runner.config.options import group_options
 from runner.config.robot import OneArmConfig, StagedRobotConfig
-from runner.paths import robots_dir
 
 ZOO = sorted(group_options("robot"))
 SAMPLES = 20

@@ -5,7 +5,7 @@ import pytest
 from support.arms import checked, last_of_each
 
 from runner.assembly import assemble
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.loop.joint_torques import make_joint_torque_sensor
 from runner.loop.sensors import make_encoders
 from runner.sensing import JointTorqueSensor

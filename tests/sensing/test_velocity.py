@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import dlsim, dlti
 from support.arms import checked
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.sensing import EncoderNoise, JointEncoders
 from runner.sensing.velocity import gains
 

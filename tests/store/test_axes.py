@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from runner.errors import StoreError
+from runner.base.errors import StoreError
 from runner.store import open_sweep, sweep, write_grid, write_sweep
 from runner.store.axes import Counted, GridOverrides, read_axes
 from runner.store.names import Names

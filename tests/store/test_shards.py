@@ -7,7 +7,7 @@ import pyarrow
 import pyarrow.parquet
 import pytest
 
-from runner.errors import StoreError
+from runner.base.errors import StoreError
 from runner.store import DamagedError, Finished, Outcome, SchemaError, shards
 from runner.store.shards import (
     ShardRow,

@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.engines import has_pybullet
+from runner.base.engines import has_pybullet
 from runner.plants import PLANTS
 from runner.plants.rk4 import Rk4
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from random import Random
 from typing import Any
 
-from runner.errors import RunnerError
-from runner.expressions.evaluator import Budget, Scope
+from runner.base.errors import RunnerError
+from runner.base.expressions.evaluator import Budget, Scope
 
 _WATCHED = ("open", "exec", "compile", "import", "os.", "subprocess.", "socket.", "ctypes.", "shutil.", "marshal.")
 _SYNTAX = "<unknown>"  # the file that Python names where a text is only made a syntax tree

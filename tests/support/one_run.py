@@ -1,7 +1,7 @@
 """A family of metrics of several runs, asked for one."""
 
+from runner.base.trace import Traces
 from runner.metrics import of_run
-from runner.trace import Traces
 
 
 def of_one(family):

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from runner.trace import Trace
+from runner.base.trace import Trace
 
 FloatArray = NDArray[np.float64]
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.expressions.parser import parse
+from runner.base.expressions.parser import parse
 from runner.reporting.claim import Claim, ClaimResult
 from runner.reporting.document import (
     Body,

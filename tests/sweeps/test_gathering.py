@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from runner import store
-from runner.errors import StoreError
+from runner.base.errors import StoreError
 from runner.store import simulated_part
 from runner.sweeps import gathering
 from runner.sweeps.measurements import Measurements, measure, measure_sweep

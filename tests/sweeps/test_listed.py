@@ -2,8 +2,8 @@
 
 import pytest
 
+from runner.base.errors import ConfigError
 from runner.config.compose import compose
-from runner.errors import ConfigError
 from runner.sweeps.listed import Item, Listed
 from runner.sweeps.loading import Loader
 from runner.sweeps.plan import check

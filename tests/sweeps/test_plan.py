@@ -2,8 +2,8 @@
 
 import pytest
 
+from runner.base.errors import ConfigError
 from runner.config.validation import validate
-from runner.errors import ConfigError
 from runner.store import run_hash
 from runner.sweeps.grid import plan_sweep
 from runner.sweeps.plan import check

@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.sweeps.grid import plan_sweep
 
 

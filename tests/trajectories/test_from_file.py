@@ -5,9 +5,9 @@ import pyarrow as pa
 import pyarrow.parquet
 import pytest
 
+from runner.base.errors import ConfigError
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.errors import ConfigError
 from runner.execution import run
 from runner.robots.robot import end_points
 from runner.store import run_hash

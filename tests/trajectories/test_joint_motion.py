@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.arms import checked
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots.robot import end_points
 from runner.trajectories.trajectory import joint_reference
 

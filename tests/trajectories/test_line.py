@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.trajectories.line import Line, LineConfig, build
 
 points = st.lists(st.floats(-2.0, 2.0), min_size=3, max_size=3).map(np.array)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.trajectories.quintic import Quintic
 from runner.trajectories.waypoints import WaypointsConfig, build, least_jerk
 

@@ -6,7 +6,7 @@ import shutil
 
 import pytest
 
-from runner.errors import StoreError
+from runner.base.errors import StoreError
 from runner.store.seal import Lines
 from runner.tuning.journal import Journal, read_trials
 from runner.tuning.key import Key

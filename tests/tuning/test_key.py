@@ -3,7 +3,7 @@
 import pytest
 from hydra.core.override_parser.overrides_parser import OverridesParser
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.tuning.key import Key, read_key
 
 

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.tuning.objective import Objective
 from runner.tuning.trial import Trial, best
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.works.arithmetic import alone, fill, names_in
 
 

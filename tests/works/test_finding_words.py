@@ -3,7 +3,7 @@
 import pytest
 from support.finding_words import typed_in_module
 
-from runner.paths import package_dir
+from runner.base.paths import package_dir
 from runner.reporting.prose.typed import levels_in, typed_numbers
 from runner.works.work import load_work
 

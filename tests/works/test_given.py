@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.works.given import given_parts
 from runner.works.grids import Grids
 from runner.works.work import load_work

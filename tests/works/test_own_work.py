@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from runner.base.errors import RunnerError
+from runner.base.paths import example_work_dir
 from runner.cli import dispatch
-from runner.errors import RunnerError
 from runner.execution import run
-from runner.paths import example_work_dir
 from runner.reporting.document import Table
 from runner.works.check import problems
 from runner.works.names import find_work, work_names

@@ -3,7 +3,7 @@
 import pytest
 import yaml
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.works.gains import put_in, read_gains, write_gains
 from runner.works.grids import Grids
 from runner.works.items import Way

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.works.xarm7.parts.three_joint_kinematics import BRANCHES, Branch, ThreeJointArm
 
 WRIST = 0.75

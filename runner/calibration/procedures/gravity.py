@@ -7,14 +7,14 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat
 
+from runner.base.errors import ConfigError
+from runner.base.limits import READINGS
 from runner.calibration.compensation import WrenchCompensation
 from runner.calibration.gravity import PARAMETERS, GravityCalibration, identify_gravity
 from runner.calibration.orientations import choose_orientations
 from runner.calibration.procedures.bench import Bench
 from runner.calibration.procedures.procedure import Outcome, Procedure
 from runner.calibration.tool import REST
-from runner.errors import ConfigError
-from runner.limits import READINGS
 from runner.registry import StrictModel
 from runner.robots.model import FloatArray, RobotModel
 from runner.sensing.force_torque import ForceTorqueSensor

@@ -6,12 +6,12 @@ import numpy as np
 import pinocchio as pin
 from pydantic import Field, NonNegativeFloat
 
+from runner.base.errors import ConfigError
+from runner.base.texts import quoted
 from runner.calibration.procedures.bench import Bench
-from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.inverse_kinematics import solve_tip_pose
 from runner.robots.model import FloatArray
-from runner.texts import quoted
 
 
 class TouchingConfig(StrictModel):

@@ -3,12 +3,12 @@
 from collections.abc import Iterator, Mapping, Sequence, Set
 
 from runner.audit.entry import Entry, Form
-from runner.expressions.difference import Difference, difference
-from runner.expressions.grammar import ExpressionError
-from runner.expressions.parser import parse
-from runner.expressions.shortening import holds, shortened
-from runner.expressions.tree import Node, Sum, size
-from runner.expressions.typesetting import linear
+from runner.base.expressions.difference import Difference, difference
+from runner.base.expressions.grammar import ExpressionError
+from runner.base.expressions.parser import parse
+from runner.base.expressions.shortening import holds, shortened
+from runner.base.expressions.tree import Node, Sum, size
+from runner.base.expressions.typesetting import linear
 from runner.reporting.audit.formula_marks import marked_formulas
 from runner.reporting.audit.likeness import Likeness
 from runner.reporting.audit.matrices import gathered

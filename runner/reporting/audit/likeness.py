@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping
 
 from runner.audit.entry import Entry
 from runner.audit.verdict import Judged
-from runner.expressions.difference import Difference, difference
-from runner.expressions.parser import parse
-from runner.expressions.tree import Name, Node, size
-from runner.expressions.typesetting import typeset
+from runner.base.expressions.difference import Difference, difference
+from runner.base.expressions.parser import parse
+from runner.base.expressions.tree import Name, Node, size
+from runner.base.expressions.typesetting import typeset
 
 
 class Likeness:

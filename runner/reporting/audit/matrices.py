@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping
 
-from runner.expressions.tree import Name, Node
+from runner.base.expressions.tree import Name, Node
 from runner.reporting.equation import Matrix
 
 _ELEMENT = re.compile(r"(?P<name>\w+?)_(?P<place>\d\d|[xyz])")

@@ -1,9 +1,9 @@
 """Tables of what differs between two sweeps."""
 
+from runner.base.quantities import labelled
 from runner.comparison.beyond import Value
 from runner.comparison.sweeps import SweepComparison
 from runner.config.key_units import key_unit
-from runner.quantities import labelled
 from runner.reporting.document import Block, Table
 from runner.reporting.markup import literals
 from runner.sweeps.resolved import UNITS

@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from runner.base.quantities import labelled
 from runner.comparison.cells import Matched, label_text
 from runner.comparison.sweeps import SweepComparison, by_cell
-from runner.quantities import labelled
 from runner.reporting.answers import Answer, Asked, judge
 from runner.reporting.comparison.metrics import shown
 from runner.reporting.document import Block, Curves, Panel, Series, Table

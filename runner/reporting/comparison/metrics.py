@@ -3,10 +3,10 @@
 import math
 from collections.abc import Mapping, Sequence
 
+from runner.base.quantities import quantity
 from runner.comparison.cells import label_text
 from runner.comparison.sweeps import MetricComparison, SweepComparison
 from runner.comparison.words import POOLED
-from runner.quantities import quantity
 from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, judge
 from runner.reporting.document import Block, Table, Text
 from runner.reporting.markup import literal

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from runner.quantities import number, quantity
+from runner.base.quantities import number, quantity
 from runner.reporting import figures, run_values
 from runner.reporting.document import Block, Curves, Formula, Notice, Playback
 from runner.reporting.measured import Measured

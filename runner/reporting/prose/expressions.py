@@ -13,10 +13,10 @@ from typing import Any, get_args
 
 import numpy as np
 
-from runner.errors import RunnerError
-from runner.expressions.evaluator import Budget, Scope
-from runner.expressions.grammar import ExpressionError, parse
-from runner.expressions.insertions import insertions
+from runner.base.errors import RunnerError
+from runner.base.expressions.evaluator import Budget, Scope
+from runner.base.expressions.grammar import ExpressionError, parse
+from runner.base.expressions.insertions import insertions
 from runner.reporting.claim import Claim
 from runner.reporting.document import Block, Panel, Section, Series
 from runner.reporting.job import MissingError

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from runner.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, nearest
 from runner.reporting.job import Made
 from runner.reporting.words import in_words
 from runner.store import Run

@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.reporting.document import Curves, FloatArray, Map, Maps, Panel, Series
 from runner.reporting.figures import AXES, joint_columns, origin
 from runner.reporting.prose.patterns import axes_of, called, found, other

@@ -1,6 +1,6 @@
 """What is wrong with a chapter, with the place."""
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 
 
 class ProseError(RunnerError):

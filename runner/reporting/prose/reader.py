@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from runner.errors import nearest
+from runner.base.errors import nearest
 from runner.reporting.document import Block, Section, Text
 from runner.reporting.findings import Finding, finding
 from runner.reporting.measured import Condition

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from runner.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, nearest
 from runner.reporting import run_values
 from runner.reporting.document import FloatArray
 from runner.reporting.measured import Measured

@@ -3,7 +3,7 @@
 import re
 from typing import Any
 
-from runner.quantities import number
+from runner.base.quantities import number
 from runner.reporting.measured import Measured
 from runner.reporting.prose.expressions import PLACEHOLDER, PRIVATE, Values
 from runner.reporting.prose.problem import ProseError

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from runner.errors import RunnerError, nearest
-from runner.quantities import Shown, above_rounding, labelled
+from runner.base.errors import RunnerError, nearest
+from runner.base.quantities import Shown, above_rounding, labelled
 from runner.reporting.document import Origin, Table
 from runner.reporting.figures import origin
 from runner.reporting.measured import Measured

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable, Iterator, Set
 
-from runner.expressions.insertions import insertions
+from runner.base.expressions.insertions import insertions
 
 _BOX = re.compile(r"^::: finding (.*?)^:::$", re.MULTILINE | re.DOTALL)
 _MATHEMATICS = re.compile(r"\$[^$]*\$")

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from runner.base.quantities import labelled
 from runner.drawing.thinning import spaced
-from runner.quantities import labelled
 from runner.recordings.compare import RecordingComparison
 from runner.recordings.residuals import Residual
 from runner.reporting.document import Curves, Panel, Series

@@ -3,9 +3,9 @@
 import hashlib
 from pathlib import Path
 
+from runner.base.quantities import above_rounding, quantity
 from runner.config.user_settings import outputs_dir
 from runner.metrics import unit_of
-from runner.quantities import above_rounding, quantity
 from runner.recordings import files_of, words
 from runner.recordings.compare import RecordingComparison
 from runner.recordings.recording import Recording

@@ -2,8 +2,8 @@
 
 import math
 
+from runner.base.quantities import labelled
 from runner.config.key_units import key_unit
-from runner.quantities import labelled
 from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.sweep.subject import Subject, axis_label, value_names

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from runner.base.quantities import labelled, number
 from runner.drawing.thinning import spaced
-from runner.quantities import labelled, number
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title

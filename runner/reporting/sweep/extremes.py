@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from runner.errors import StoreError
-from runner.quantities import with_ends
+from runner.base.errors import StoreError
+from runner.base.quantities import with_ends
 from runner.reporting.document import Block, Notice, Section, Table
 from runner.reporting.figures import playback, torque_and_error
 from runner.reporting.markup import literal

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.base.quantities import quantity
 from runner.comparison.cells import label_text
 from runner.comparison.levels import SEED, LevelPair, level_pairs
 from runner.comparison.pairs import compare
-from runner.quantities import quantity
 from runner.reporting.answers import Answer, Asked, judge
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import Subject, first_screen

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from runner.base.quantities import quantity
 from runner.drawing.thinning import POINTS, spaced
-from runner.quantities import quantity
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title

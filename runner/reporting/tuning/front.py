@@ -2,8 +2,8 @@
 
 from itertools import combinations
 
+from runner.base.quantities import quantity
 from runner.drawing.thinning import spaced
-from runner.quantities import quantity
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literals
 from runner.reporting.metric_titles import title

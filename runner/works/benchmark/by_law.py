@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from runner.quantities import number
+from runner.base.quantities import number
 from runner.reporting.document import Block, Section, Table, Text
 from runner.reporting.prose.patterns import found
 from runner.reporting.words import in_words

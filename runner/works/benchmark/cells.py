@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.reporting.job import Made
 from runner.reporting.prose.patterns import found
 from runner.store import Run

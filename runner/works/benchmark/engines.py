@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy import stats
 
-from runner.quantities import number
+from runner.base.quantities import number
 from runner.reporting.document import Table
 from runner.reporting.figures import origin
 from runner.reporting.measured import Measured

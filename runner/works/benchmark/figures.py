@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from runner.base.quantities import number, quantity
 from runner.drawing.figure import Map, Panel, Series
-from runner.quantities import number, quantity
 from runner.reporting.document import Curves, Maps, Origin, Table, Text
 from runner.reporting.figures import origin
 from runner.reporting.measured import Measured

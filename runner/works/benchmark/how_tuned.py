@@ -3,7 +3,7 @@
 import itertools
 from collections.abc import Mapping
 
-from runner.quantities import number
+from runner.base.quantities import number
 from runner.reporting.document import Table, Text
 from runner.reporting.words import in_words
 from runner.store import Run

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.quantities import quantity
+from runner.base.quantities import quantity
 from runner.reporting.document import Table
 from runner.reporting.figures import origin
 from runner.reporting.measured import Measured

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from runner.quantities import number
+from runner.base.quantities import number
 from runner.reporting.measured import Measured
 from runner.reporting.run_values import apart, median
 from runner.store import Run

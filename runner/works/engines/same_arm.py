@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from runner.base.quantities import number
 from runner.compiled.motion import CompiledStep
 from runner.plants.plant import FloatArray
-from runner.quantities import number
 from runner.reporting.figures import model_of
 from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import found

@@ -8,9 +8,9 @@ from typing import Any, TypeVar
 import numpy as np
 import pinocchio as pin
 
+from runner.base.errors import ConfigError
+from runner.base.quantities import number, quantity, with_powers
 from runner.controllers.admittance_filter import Admittance
-from runner.errors import ConfigError
-from runner.quantities import number, quantity, with_powers
 from runner.reporting.document import FloatArray
 from runner.reporting.figures import AXES, columns, joint_columns, model_of
 from runner.reporting.measured import ROUNDING, Measured

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from runner.quantities import number
+from runner.base.quantities import number
 from runner.reporting.document import FloatArray
 from runner.reporting.figures import joint_columns, model_of
 from runner.reporting.measured import ROUNDING

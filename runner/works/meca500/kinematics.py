@@ -10,8 +10,8 @@ from runner.audit.audit import audit, counts
 from runner.audit.entry import parts
 from runner.audit.evaluation import evaluate
 from runner.audit.verdict import Judge, Judged
-from runner.expressions.parser import parse
-from runner.quantities import number
+from runner.base.expressions.parser import parse
+from runner.base.quantities import number
 from runner.reporting.document import Table
 from runner.reporting.figures import model_of
 from runner.reporting.measured import Measured

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.quantities import number, quantity
+from runner.base.quantities import number, quantity
 from runner.reporting.document import Curves, Origin, Panel, Series, Table
 from runner.reporting.figures import origin
 from runner.reporting.measured import Measured

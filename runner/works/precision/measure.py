@@ -12,10 +12,11 @@ import numpy as np
 
 from runner import provenance, store
 from runner.assembly import assemble
+from runner.base.errors import StoreError
+from runner.base.trace import Trace
 from runner.config.compose import compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.errors import StoreError
 from runner.loop.closed_loop import ClosedLoop
 from runner.loop.sensors import make_encoders
 from runner.plants import Plant
@@ -25,7 +26,6 @@ from runner.sensing import JointEncoders
 from runner.simulation import simulate
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
-from runner.trace import Trace
 from runner.works.grids import FILE as RUNS
 from runner.works.grids import Grids
 from runner.works.precision.exact import Adaptive, Collocation, energy_drift

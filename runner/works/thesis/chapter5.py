@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
+from runner.base.quantities import spread
 from runner.controllers.macro_mini_graph import macro_mini_graph
 from runner.controllers.whole_body_graph import whole_body_graph
 from runner.drawing import block_diagram, control_steps
-from runner.quantities import spread
 from runner.reporting.document import Curves, Picture
 from runner.reporting.figures import origin
 from runner.reporting.figures_staged import macro_mini_targets

@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from runner.base.quantities import above_rounding, number, quantity, ranged
 from runner.claims import judge, load_claims
-from runner.quantities import above_rounding, number, quantity, ranged
 from runner.reporting.metric_titles import title
 from runner.reporting.plant_step import describe_plant, percent
 from runner.reporting.run_values import median

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from runner.quantities import number, quantity, ranged
+from runner.base.quantities import number, quantity, ranged
 from runner.reporting.document import FloatArray
 from runner.reporting.figures import joint_columns, model_of
 from runner.reporting.measured import ROUNDING

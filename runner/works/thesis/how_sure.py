@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from runner.base.quantities import number, quantity, with_ends
 from runner.claims import FACTOR, load_claims
-from runner.quantities import number, quantity, with_ends
 from runner.reporting.document import Curves, Panel, Series, Table
 from runner.reporting.figures import origin
 from runner.reporting.measured import Measured

@@ -9,10 +9,10 @@ import numpy as np
 import pinocchio as pin
 
 from runner import provenance
+from runner.base.errors import StoreError
 from runner.config.compose import compose
 from runner.config.robot import StagedRobotConfig
 from runner.config.validation import validate
-from runner.errors import StoreError
 from runner.robots import RobotModel
 from runner.robots.mounting import Mount, mount
 from runner.store.atomic import write_atomically

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runner.quantities import number
+from runner.base.quantities import number
 from runner.reporting.document import Block, FloatArray, Table, Text
 from runner.reporting.figures import columns, origin
 from runner.reporting.measured import Condition, Measured

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from runner.quantities import number, spread
+from runner.base.quantities import number, spread
 from runner.reporting.run_values import median
 from runner.store import Run
 

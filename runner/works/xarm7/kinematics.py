@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.quantities import number
+from runner.base.quantities import number
 from runner.reporting.figures import model_of
 from runner.robots.model import FloatArray
 from runner.store import Run

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from runner.quantities import number
+from runner.base.quantities import number
 from runner.reporting.document import FloatArray, Series
 from runner.reporting.figures import columns, joint_columns, model_of
 from runner.reporting.measured import Measured

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.optimize import minimize
 
-from runner.quantities import number
+from runner.base.quantities import number
 from runner.reporting.document import Block, FloatArray, Notice, Series
 from runner.reporting.figures import columns, joint_columns, model_of
 from runner.reporting.prose.patterns import found

@@ -7,7 +7,7 @@ import numpy as np
 
 from runner.audit.entry import Entry, entries
 from runner.audit.evaluation import evaluate
-from runner.expressions.parser import parse
+from runner.base.expressions.parser import parse
 from runner.robots.model import FloatArray, RobotModel
 from runner.works.xarm7.equations.truths.xarm7 import JOINTS, constants
 

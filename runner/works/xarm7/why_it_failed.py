@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runner.quantities import above_rounding, number
+from runner.base.quantities import above_rounding, number
 from runner.reporting.document import FloatArray, Series
 from runner.reporting.figures import joint_columns, model_of
 from runner.reporting.prose.patterns import found

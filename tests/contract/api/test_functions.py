@@ -8,7 +8,7 @@ import pytest
 
 import runner
 from runner import job
-from runner.errors import ConfigError, RunnerError, StoreError
+from runner.base.errors import ConfigError, RunnerError, StoreError
 
 SHORT = ("robot=macro", "duration=0.05", "noise=thesis", "repetitions=2")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import runner
-from runner.quantities import quantity
+from runner.base.quantities import quantity
 from runner.sweeps.measurements import measure_sweep
 from runner.sweeps.table import table
 

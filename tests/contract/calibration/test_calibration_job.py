@@ -7,9 +7,9 @@ import pytest
 import yaml
 
 from runner import calibration_job, plugins, provenance
+from runner.base.errors import StoreError
 from runner.calibration_job import calibrate
 from runner.config.compose import compose
-from runner.errors import StoreError
 from runner.store import open_calibration
 from runner.store.seal import sealed_json
 

@@ -1,6 +1,6 @@
 """`runner audit FILE`: own formulas against the model of a URDF."""
 
-from runner.paths import robots_dir
+from runner.base.paths import robots_dir
 
 RIGHT = "elements: {P_x: s1*(sin(q2 + q3) - c2), P_y: c1*(c2 - sin(q2 + q3)), P_z: cos(q2 + q3) + s2}"
 GRAVITY = "elements: {G_1: 0, G_2: 19.62*c2 - 9.81*s2, G_3: -9.81*sin(q2 + q3)}"

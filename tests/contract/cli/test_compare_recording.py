@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import runner
+from runner.base.paths import examples_dir
 from runner.execution import run
-from runner.paths import examples_dir
 from runner.recordings.compare import compare_recording
 from runner.reporting import html
 from runner.reporting.formulas import faulty

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from runner.paths import examples_dir
+from runner.base.paths import examples_dir
 
 
 def test_all_examples_are_copied_as_they_are(cli, tmp_path):

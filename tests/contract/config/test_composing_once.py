@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from runner import engines, paths
+from runner.base import engines, paths
+from runner.base.errors import ConfigError
 from runner.config.compose import compose, from_hydra
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.hydra_config import hydra_config
 from runner.config.no_code import code_refused
 from runner.config.overrides import force
-from runner.errors import ConfigError
 
 SHORT = ("robot=macro", "plant=rk4", "duration=0.05")
 

@@ -9,7 +9,7 @@ import yaml
 from support.pages import ROOT
 
 import runner
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.reporting.formulas import faulty
 from runner.reporting.run_report import run_document
 

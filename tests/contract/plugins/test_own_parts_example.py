@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from runner.paths import examples_dir
+from runner.base.paths import examples_dir
 from runner.plugins import load, use_plugins
 from runner.store import open_run, open_runs
 

@@ -12,8 +12,8 @@ import pytest
 from support.printed import without_caveats, without_results
 
 from runner import plugins
+from runner.base.errors import RunnerError
 from runner.cli import dispatch
-from runner.errors import RunnerError
 
 SPRING = '''\
 """A spring in every joint that pulls it home."""

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from support.sample_document import HOSTILE, SVG, curves, document, maps, playback
 
+from runner.base.errors import RunnerError
 from runner.drawing.sheet import column
-from runner.errors import RunnerError
 from runner.export.figures import chosen, figures_of, write_figures
 from runner.export.points import as_csv
 from runner.reporting.document import Curves, Document, Maps, Origin, Panel, Picture, Section, Series

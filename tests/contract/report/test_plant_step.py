@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.engines import has_pybullet
+from runner.base.engines import has_pybullet
 from runner.execution import run
 from runner.reporting.plant_step import describe_plant, percent
 from runner.reporting.run_report import run_document

@@ -3,9 +3,9 @@
 import pytest
 from support.sample_document import document
 
-from runner import progress
 from runner.audit.audit import audit_all
-from runner.progress.stages import AUDITING, FIGURES, HTML, PDF, of_report
+from runner.base import progress
+from runner.base.progress.stages import AUDITING, FIGURES, HTML, PDF, of_report
 from runner.reporting import outline
 from runner.reporting.render import write_report
 

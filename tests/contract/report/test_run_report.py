@@ -6,8 +6,8 @@ import pytest
 from fixtures.stored import RUNS
 from support.engines import ASKED
 
+from runner.base.quantities import quantity
 from runner.execution import run
-from runner.quantities import quantity
 from runner.reporting import outline
 from runner.reporting.document import Curves, Notice, Playback, Provenance, Table, Text
 from runner.reporting.formulas import faulty

@@ -13,7 +13,7 @@ import yaml
 from fixtures.stored import RUNS, SHORT
 
 import runner
-from runner.errors import StoreError
+from runner.base.errors import StoreError
 from runner.store import DamagedError, Run, find_run, open_run, prepare, seal
 from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json

@@ -5,7 +5,7 @@ import json
 import pytest
 from fixtures.stored import RUNS
 
-from runner.errors import StoreError
+from runner.base.errors import StoreError
 from runner.store import is_run, is_sweep, open_runs, open_sweep, write_sweep
 from runner.store.seal import sealed_json
 from runner.store.shards import ShardRun, write_shard

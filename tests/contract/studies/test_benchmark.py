@@ -11,8 +11,8 @@ from support.recorded_runs import recorded
 from support.study_sections import texts
 from support.work_plans import FULL_ALONE
 
+from runner.base.errors import RunnerError
 from runner.commands.reproduce import _chosen, _Way
-from runner.errors import RunnerError
 from runner.reporting.findings import findings
 from runner.reporting.formulas import faulty
 from runner.reporting.prose.trying import never_failing

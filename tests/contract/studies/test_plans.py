@@ -6,9 +6,9 @@ import pytest
 from support.thin_plans import Overrides
 from support.work_plans import RECORDED, planned
 
+from runner.base.engines import has_pybullet
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.engines import has_pybullet
 from runner.works.work import load_work
 
 

@@ -6,7 +6,7 @@ import sys
 import pytest
 from support.patience import PATIENCE
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.sweeps import lock
 from runner.sweeps.lock import at_work, is_at_work
 

@@ -15,9 +15,9 @@ import pytest
 from support.patience import PATIENCE
 
 from runner import store
+from runner.base.errors import ConfigError, RunnerError, StoreError
 from runner.compiled.closed_loop import CommandsRun
 from runner.compiled.engine import evaluator
-from runner.errors import ConfigError, RunnerError, StoreError
 from runner.loop.command import Command
 from runner.sweeps import lock, work
 from runner.sweeps.deadline import TimeLimitError

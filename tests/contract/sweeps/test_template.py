@@ -4,8 +4,8 @@ import random
 
 import pytest
 
+from runner.base.errors import ConfigError
 from runner.config.compose import compose
-from runner.errors import ConfigError
 from runner.sweeps.grid import plan_sweep
 
 INDEPENDENT = [

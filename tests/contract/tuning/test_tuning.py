@@ -5,7 +5,7 @@ import pytest
 from support.short_runs import DAMPING, FREQUENCY
 
 from runner import store
-from runner.errors import ConfigError, RunnerError, StoreError
+from runner.base.errors import ConfigError, RunnerError, StoreError
 from runner.store import SchemaError
 from runner.store.seal import sealed_json
 from runner.sweeps import lock

@@ -6,8 +6,8 @@ from support.arms import checked
 from support.covers import covered
 from support.physics import assert_order
 
+from runner.base.errors import ConfigError
 from runner.controllers.computed_torque import ComputedTorque, ComputedTorqueConfig, build
-from runner.errors import ConfigError
 
 ARMS = {
     name: checked(f"robot={name}", "controller=computed_torque", "trajectory=goal").arm

@@ -9,8 +9,8 @@ from support.arms import checked, last_of_each
 from support.physics import assert_same_motion
 
 from runner.assembly import assemble
+from runner.base.errors import ConfigError
 from runner.compiled import compile
-from runner.errors import ConfigError
 from runner.loop.sensors import make_encoders
 from runner.plants.rk4 import Rk4
 from runner.simulation import simulate

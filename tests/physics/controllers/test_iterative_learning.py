@@ -8,8 +8,8 @@ from support import strangers
 from support.motions import to_and_fro, write_joints
 
 from runner.assembly import assemble
+from runner.base.errors import ConfigError
 from runner.controllers.iterative_learning import IterativeLearning, IterativeLearningConfig
-from runner.errors import ConfigError
 from runner.execution import run
 from runner.loop.sensors import make_encoders
 from runner.robots.model import RobotModel

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from support.covers import covered
 
+from runner.base.errors import ConfigError
 from runner.controllers import CONTROLLERS, macro_mini
-from runner.errors import ConfigError
 from runner.robots.robot import end_points
 
 P = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # from the Mini's base into the Macro's tip frame

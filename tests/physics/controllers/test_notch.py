@@ -7,11 +7,11 @@ import pytest
 from support.arms import checked
 
 from runner.assembly import assemble
+from runner.base.errors import ConfigError
 from runner.compiled.closed_loop import Whole
 from runner.config.compose import compose
 from runner.controllers.maths import FLOATS
 from runner.controllers.notch import Notch, NotchedController
-from runner.errors import ConfigError
 from runner.loop.sensors import make_encoders
 from runner.simulation import simulate
 from runner.store import simulated_part

@@ -15,8 +15,8 @@ from support.physics import (
     torque_of,
 )
 
+from runner.base.errors import ConfigError
 from runner.controllers.operational_space import OperationalSpace, OperationalSpaceConfig, build
-from runner.errors import ConfigError
 from runner.robots import RobotModel
 
 REST = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'

@@ -7,10 +7,10 @@ from support import strangers
 from support.arms import checked
 from support.strangers import X, Y, Z
 
+from runner.base.errors import ConfigError
 from runner.controllers.maths import FLOATS
 from runner.controllers.tip_task import TipTask, held_orientation, task_start
 from runner.controllers.torque_law import PinocchioArm
-from runner.errors import ConfigError
 from runner.robots import RobotModel
 
 ROBOT = checked("robot=xarm7", "controller=operational_space").arm

@@ -5,7 +5,7 @@ import pytest
 from support.arms import checked, model_of, urdf_of
 
 from runner.assembly import assemble
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.loop.sensors import make_encoders
 from runner.plants.armature import LinksTorque
 from runner.plants.mujoco import Mujoco

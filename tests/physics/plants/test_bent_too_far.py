@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.errors import SimulationError
+from runner.base.errors import SimulationError
 from runner.plants.flexible_links import FlexibleLinks
 from runner.robots.beams import Beam
 from runner.robots.cantilever import clamped_arm

@@ -5,7 +5,7 @@ import pytest
 from support import strangers
 from support.arms import urdf_of
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots import RobotModel, find_urdf, read_urdf
 
 pybullet = pytest.importorskip("pybullet", reason="PyBullet is not installed")

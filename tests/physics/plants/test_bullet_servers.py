@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from runner.assembly import assemble
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.plants import decoupled
 
 pybullet = pytest.importorskip("pybullet", reason="PyBullet is not installed")

@@ -7,7 +7,7 @@ import pytest
 from support.arms import checked
 from support.physics import assert_energy_kept
 
-from runner.errors import SimulationError
+from runner.base.errors import SimulationError
 from runner.plants import PLANTS
 from runner.plants.computation import EXACT
 from runner.plants.flexible_links import FlexibleLinks

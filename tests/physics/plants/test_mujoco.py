@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support import strangers
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.plants import ContactPlant, ToolReactionPlant
 from runner.plants.mujoco import Mujoco, build, default_step
 from runner.robots import RobotModel

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.physics import assert_order
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.plants import PLANTS
 from runner.plants.decoupled import Decoupled
 from runner.plants.rk4 import Rk4

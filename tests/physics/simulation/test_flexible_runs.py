@@ -5,10 +5,10 @@ import pytest
 from support.arms import checked
 from support.physics import assert_order
 
+from runner.base.errors import ConfigError
 from runner.config.compose import compose
 from runner.config.flexible_joints import believe_motors
 from runner.config.validation import validate
-from runner.errors import ConfigError
 from runner.plants.flexible_joints import links_of
 from runner.robots.armature import with_armature
 from runner.store import simulated_part

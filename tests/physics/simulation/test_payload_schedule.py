@@ -5,7 +5,7 @@ import pytest
 from support.arms import checked
 
 from runner.assembly import assemble
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.execution import run
 from runner.loop.sensors import make_encoders
 from runner.simulation import simulate

@@ -8,7 +8,7 @@ import pinocchio as pin
 import pytest
 from support.engines import ASKED
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.guard import watch_environment
 from runner.interaction import Interaction
 from runner.loop.sensors import make_encoders, make_wrist_sensor

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from support.arms import checked
 
+from runner.base.errors import ConfigError
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.errors import ConfigError
 from runner.plants import PLANTS
 from runner.robots.modes import Mode
 from runner.store import simulated_part

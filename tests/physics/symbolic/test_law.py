@@ -8,13 +8,13 @@ import pytest
 from support import strangers
 from support.arms import checked
 
+from runner.base.errors import SimulationError
 from runner.compiled import compile, program
 from runner.compiled.closed_loop import CompiledCommands
 from runner.compiled.commands import Commands, LoopCode
 from runner.compiled.structure import CannotCompileError, pattern_of
 from runner.controllers import Loop
 from runner.controllers.torque_law import TorqueLaw
-from runner.errors import SimulationError
 from runner.guard.controller import WatchedController
 from runner.sensing import EncoderNoise
 

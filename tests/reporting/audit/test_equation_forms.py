@@ -4,8 +4,8 @@ import pytest
 
 from runner.audit.entry import Entry, Form, Repair
 from runner.audit.verdict import Judged
-from runner.expressions.tree import symbols
-from runner.expressions.typesetting import typeset
+from runner.base.expressions.tree import symbols
+from runner.base.expressions.typesetting import typeset
 from runner.reporting.audit.forms import forms_of
 from runner.reporting.audit.likeness import Likeness
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from runner.expressions.parser import parse
-from runner.expressions.tree import Name
+from runner.base.expressions.parser import parse
+from runner.base.expressions.tree import Name
 from runner.reporting.audit.matrices import gathered
 from runner.reporting.equation import Matrix
 

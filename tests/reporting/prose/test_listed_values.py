@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.made_up_runs import made_up_run
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.reporting.measured import Measured
 from runner.reporting.prose import read_chapter, trying
 from runner.reporting.prose.blocks import config, count, each

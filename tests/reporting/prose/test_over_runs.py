@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.made_up_runs import made_up_metric, made_up_run
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.reporting.job import Made, MissingError
 from runner.reporting.measured import Measured
 from runner.reporting.prose import blocks, plots, signals, tables

@@ -3,7 +3,7 @@
 import pytest
 from support.made_up_runs import made_up_metric, made_up_run
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.reporting.measured import Measured
 from runner.reporting.prose import read_chapter
 from runner.reporting.prose.blocks import each, named

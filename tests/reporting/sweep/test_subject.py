@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.sample_sweep import measurements, noisy, two_axes
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.reporting.sweep.subject import choose, spans_decades
 
 AXES = {"noise.position": [1e-4, 1e-3]}

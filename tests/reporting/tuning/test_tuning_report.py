@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.errors import StoreError
+from runner.base.errors import StoreError
 from runner.reporting.document import Curves, Notice, Playback, RunList, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.tuning import history

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runner.audit.evaluation import evaluate
-from runner.expressions.grammar import ExpressionError
-from runner.expressions.parser import parse
+from runner.base.expressions.grammar import ExpressionError
+from runner.base.expressions.parser import parse
 
 X = np.array([0.3, -1.2, 2.0])
 Y = np.array([1.5, 0.4, -0.7])

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from support.sample_sides import LAWS, side
 
+from runner.base.errors import RunnerError
+from runner.base.quantities import ROUNDING
 from runner.comparison.sweeps import by_cell, compare_sweeps
-from runner.errors import RunnerError
-from runner.quantities import ROUNDING
 from runner.statistics import compare_paired
 
 

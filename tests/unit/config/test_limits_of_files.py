@@ -6,7 +6,7 @@ import pyarrow as pa
 import pyarrow.parquet
 import pytest
 
-from runner.limits import ExcessError, Limit, half_of_memory, open_parquet, read_text
+from runner.base.limits import ExcessError, Limit, half_of_memory, open_parquet, read_text
 
 
 @pytest.mark.parametrize(

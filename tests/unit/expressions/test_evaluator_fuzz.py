@@ -8,8 +8,8 @@ import pytest
 from support.hostile_expressions import attempt, expression
 
 from runner.audit.evaluation import evaluate
-from runner.expressions.grammar import ExpressionError
-from runner.expressions.parser import parse
+from runner.base.expressions.grammar import ExpressionError
+from runner.base.expressions.parser import parse
 
 SEED, COUNT = 1, 20_000
 BYTES = 50_000_000

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 from runner.recordings.offset import find_offset
 
 RUN_T = np.arange(0.0, 4.0005, 1e-3)

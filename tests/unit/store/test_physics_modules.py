@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.paths import package_dir
+from runner.base.paths import package_dir
 from runner.store import physics, syntax
 
 # What works on finished runs, tells or keeps something, or makes the resolved config, which the hash has itself.
@@ -22,7 +22,7 @@ OTHERS = {
 }  # fmt: skip
 TREE = {
     "laws/__init__.py": 'from runner.laws.pd import Law\nKINDS = {"pd": "runner.laws.pd"}\n',
-    "laws/pd.py": '"""A law."""\nfrom runner.errors import Told\nGAIN = 2.0\nclass Law:\n    gain = GAIN\n',
+    "laws/pd.py": '"""A law."""\nfrom runner.base.errors import Told\nGAIN = 2.0\nclass Law:\n    gain = GAIN\n',
     "laws/pid.py": "from runner.laws.pd import GAIN\nclass Law:\n    gain = GAIN + 1.0\n",
     "loop.py": "from runner.laws import KINDS, Law\nfrom runner.laws.pid import GAIN\nmade = Law(), KINDS, GAIN\n",
 }
@@ -68,7 +68,7 @@ def test_a_move_changes_nothing(digest):
         "laws/__init__.py": "",
         "control/__init__.py": '"""Laws."""\nfrom runner.control.joint.spring import Law\n__all__ = ["Law"]\n',
         "control/kinds.py": 'from runner.control import Law\nKINDS = {"pd": "runner.control.joint.spring"}\n',
-        "control/joint/spring.py": TREE["laws/pd.py"].replace("runner.errors", "runner.base.errors"),
+        "control/joint/spring.py": TREE["laws/pd.py"].replace("runner.base.errors", "runner.base.errors"),
         "control/pid.py": TREE["laws/pid.py"].replace("laws.pd", "control.joint.spring"),
         "loops/loop.py": "from runner.control.kinds import KINDS\nfrom runner.control.pid import GAIN\n"
         "from runner.control.joint import spring\nfrom runner.control import Law\nmade = Law(), KINDS, GAIN\n",
@@ -83,7 +83,7 @@ def test_a_move_changes_nothing(digest):
         ("laws/pd.py", "A law.", "Another text."),
         ("laws/pd.py", "2.0", "2.0  # N m"),
         ("laws/pd.py", "    gain = GAIN", '    """Text."""\n\n    gain = (GAIN)'),
-        ("laws/pd.py", "from runner.errors import Told\n", ""),
+        ("laws/pd.py", "from runner.base.errors import Told\n", ""),
         (
             "loop.py",
             "from runner.laws import KINDS, Law",

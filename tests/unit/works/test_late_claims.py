@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 import yaml
 
-from runner.errors import StoreError
+from runner.base.errors import StoreError
 from runner.works.late_claims import late_claims
 
 CLAIM = {

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 from runner.robots.model import FloatArray, RobotModel
 
 MOVING = (0, 1, 3)

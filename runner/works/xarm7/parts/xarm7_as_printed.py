@@ -6,9 +6,9 @@ import numpy as np
 import pinocchio as pin
 from pydantic import NonNegativeFloat, PositiveFloat
 
+from runner.base.errors import ConfigError
 from runner.controllers.controller import FloatArray, Loop
 from runner.controllers.tip_task import TaskName, task_start
-from runner.errors import ConfigError
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot

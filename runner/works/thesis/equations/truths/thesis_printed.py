@@ -8,7 +8,7 @@ from runner.audit.entry import entries
 from runner.audit.evaluation import evaluate
 from runner.audit.model_truths import by_model
 from runner.audit.truth import FloatArray, along
-from runner.expressions.parser import Expression, parse
+from runner.base.expressions.parser import Expression, parse
 from runner.robots.model import RobotModel
 from runner.works.thesis.equations.truths.thesis import symbols_at
 

@@ -4,8 +4,8 @@ import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from runner.expressions.evaluator import Budget, Scope
-from runner.expressions.grammar import ExpressionError
+from runner.base.expressions.evaluator import Budget, Scope
+from runner.base.expressions.grammar import ExpressionError
 
 _PIECE = re.compile(r""""(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[{}]|[^"'{}]+|.""", re.DOTALL)
 

@@ -7,7 +7,7 @@ import threading
 from collections.abc import Iterator
 from typing import Any, Self, TextIO
 
-from runner.progress.work import Work
+from runner.base.progress.work import Work
 
 _LONGEST = 20  # characters of the bar
 _WIDE, _HIGH = 80, 24  # characters and lines of a terminal that does not tell
@@ -18,8 +18,8 @@ class Display:
     """Draws the work anew each second, from a thread of its own, until it ends; nothing is left of the line then.
 
     What is printed meanwhile through `sys.stdout` and `sys.stderr` takes the line's place, and the line comes back
-    below it. What C libraries print is caught elsewhere (runner/engine_output.py) by turning descriptor 2 aside, so
-    the stream should be a copy of it.
+    below it. What C libraries print is caught elsewhere (runner/base/engine_output.py) by turning descriptor 2 aside,
+    so the stream should be a copy of it.
 
     Args:
         work: The work.

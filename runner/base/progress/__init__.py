@@ -9,8 +9,8 @@ import contextlib
 import threading
 from collections.abc import Iterator
 
-from runner.progress.display import Display, in_words, terminal
-from runner.progress.work import Work
+from runner.base.progress.display import Display, in_words, terminal
+from runner.base.progress.work import Work
 
 __all__ = ["begin", "in_words", "named", "plan", "shown", "step"]
 

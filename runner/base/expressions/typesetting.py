@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence, Set
 
-from runner.expressions.tree import Call, Name, Node, Number, Power, Product, Sum
+from runner.base.expressions.tree import Call, Name, Node, Number, Power, Product, Sum
 
 _NAME = re.compile(r"([^\W\d_]+)(?:_?(\d\w*)|_(\w+))?('*)")
 _GREEK = {

@@ -12,11 +12,11 @@ from typing import Any
 import yaml
 from yaml.resolver import Resolver
 
-from runner.config.interpolation import calls_function
-from runner.errors import RunnerError
-from runner.limits import Limit
-from runner.paths import ships
-from runner.texts import quoted
+from runner.base.errors import RunnerError
+from runner.base.interpolation import calls_function
+from runner.base.limits import Limit
+from runner.base.paths import ships
+from runner.base.texts import quoted
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.texts import VALUE, lines, one_line
+from runner.base.texts import VALUE, lines, one_line
 
 if TYPE_CHECKING:
     import traceback
@@ -107,7 +107,7 @@ def _frames(error: BaseException) -> "list[traceback.FrameSummary]":
     """Return where an error passed outside of this package."""
     import traceback
 
-    ours = str(Path(__file__).resolve().parent)
+    ours = str(Path(__file__).resolve().parents[1])
     frames = traceback.extract_tb(error.__traceback__)
     return [frame for frame in frames if not frame.filename.startswith((ours, "<frozen"))]
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence, Set
 
-from runner.expressions.tree import Call, Name, Node, Number, Power, Product, Sum, parts, size
+from runner.base.expressions.tree import Call, Name, Node, Number, Power, Product, Sum, parts, size
 
 ELLIPSIS = "…"
 _SHORT = 6  # symbols of a part that is shown though nothing in it is marked

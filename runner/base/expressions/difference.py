@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from runner.expressions.tree import Call, Name, Node, Number, Power, Product, Sum, symbols
+from runner.base.expressions.tree import Call, Name, Node, Number, Power, Product, Sum, symbols
 
 _ALIKE = 0.3  # share of symbols that two terms have in common where one stands for the other
 

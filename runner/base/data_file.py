@@ -5,9 +5,9 @@ from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from runner.config.bounded_yaml import STORED, YamlError, read_yaml
-from runner.errors import RunnerError
-from runner.limits import read_text
+from runner.base.bounded_yaml import STORED, YamlError, read_yaml
+from runner.base.errors import RunnerError
+from runner.base.limits import read_text
 
 T = TypeVar("T")
 

@@ -20,8 +20,8 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from runner.errors import RunnerError, nearest
-from runner.expressions.grammar import EXCERPT, LONGEST, ExpressionError, chain, dotted, index_of, parse
+from runner.base.errors import RunnerError, nearest
+from runner.base.expressions.grammar import EXCERPT, LONGEST, ExpressionError, chain, dotted, index_of, parse
 
 _BITS = 63  # of a whole number
 _WHOLE = 2**_BITS

@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Mapping
 from functools import lru_cache
 
-from runner.errors import RunnerError
+from runner.base.errors import RunnerError
 
 LONGEST = 10_000  # characters of an expression and of a string, items of a list and of the lists in it
 EXCERPT = 30  # characters that a message shows

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 
 _REFERENCE = re.compile(r"\$\{\s*(\.*[^\s.:${}'\"\\][^\s:${}'\"\\]*)\s*\}")
 _SIZE = 2_000_000  # of a config whose references are replaced by what they stand for

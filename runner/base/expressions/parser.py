@@ -11,10 +11,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import NoReturn
 
-from runner.errors import nearest
-from runner.expressions import grammar
-from runner.expressions.grammar import ExpressionError
-from runner.expressions.tree import Call, Name, Node, Number, Power, Product, Sum
+from runner.base.errors import nearest
+from runner.base.expressions import grammar
+from runner.base.expressions.grammar import ExpressionError
+from runner.base.expressions.tree import Call, Name, Node, Number, Power, Product, Sum
 
 FUNCTIONS = {
     **dict.fromkeys(("sin", "cos", "tan", "asin", "acos", "atan", "arcsin", "arccos", "arctan", "sqrt", "abs"), 1),

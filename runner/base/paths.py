@@ -5,12 +5,12 @@ from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
-from runner.errors import ConfigError
+from runner.base.errors import ConfigError
 
 WORK_FILE = "work.yaml"
 """The file that makes a folder a work."""
 
-_PACKAGE = Path(__file__).resolve().parent
+_PACKAGE = Path(__file__).resolve().parents[1]
 
 
 @cache

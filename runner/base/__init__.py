@@ -1,0 +1,1 @@
+"""Errors, text for people, paths, bounded YAML, progress, traces and the expression evaluator."""
