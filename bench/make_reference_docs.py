@@ -32,7 +32,6 @@ from runner.config.run import RunSettings
 from runner.config.spec import Bound
 from runner.config.sweep import SweepConfig
 from runner.config.torque_limits import TorqueLimitsConfig
-from runner.config.units import WRITTEN
 from runner.controllers import CONTROLLERS
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.controllers.notch_config import NotchConfig
@@ -41,6 +40,7 @@ from runner.metrics.summary import families
 from runner.plants import PLANTS
 from runner.registry import Registry, StrictModel
 from runner.robots.mismatch import MismatchConfig
+from runner.schema.units import WRITTEN
 from runner.sensing import EndpointSensorConfig, ForceTorqueConfig, JointTorqueConfig
 from runner.trajectories import TRAJECTORIES
 from runner.works.chapters import SHARED

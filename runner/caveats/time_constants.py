@@ -7,7 +7,6 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from runner.base.trace import FloatArray
-from runner.config.per_stage import by_stage
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS
 from runner.controllers.adaptive import Adaptive, AdaptiveConfig
@@ -25,6 +24,7 @@ from runner.controllers.sliding_mode import SlidingModeConfig
 from runner.controllers.torque_law import PinocchioArm
 from runner.controllers.whole_body import WholeBodyConfig
 from runner.robots.effective_mass import mass_along, tip_mobility
+from runner.schema.per_stage import by_stage
 from runner.trajectories.trajectory import joint_reference
 
 _POSTURES = 32  # of the desired motion

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from runner.base.errors import RunnerError
 from runner.base.quiet import quiet_environment
 from runner.commands.arguments import Parser, Stored
-from runner.config.units import read_quantity
 from runner.recordings import is_bag
+from runner.schema.units import read_quantity
 
 if TYPE_CHECKING:
     from runner.store import Run

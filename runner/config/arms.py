@@ -8,7 +8,6 @@ import numpy as np
 
 from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir
-from runner.config.per_joint import expand
 from runner.config.robot import ArmConfig, RobotConfig, StageConfig
 from runner.robots.armature import armature_file
 from runner.robots.description import find_file, find_urdf, mjcf_of, read_arm, read_urdf
@@ -19,6 +18,7 @@ from runner.robots.model import FloatArray, RobotModel
 from runner.robots.mounting import Mount, mount
 from runner.robots.robot import Robot, Stage
 from runner.robots.tool_link import TOOL_TIP, ToolBody, mount_tool
+from runner.schema.per_joint import expand
 from runner.sensing.force_torque import ForceTorqueConfig
 
 _KEPT = 8

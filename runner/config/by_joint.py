@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from runner.config.per_joint import expand
-from runner.config.per_stage import OptionalPerStage, by_stage
 from runner.plants.plant import FloatArray
 from runner.robots.robot import Robot
+from runner.schema.per_joint import expand
+from runner.schema.per_stage import OptionalPerStage, by_stage
 
 
 def by_joint(key: str, value: OptionalPerStage, arm: Robot) -> FloatArray:

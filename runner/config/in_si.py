@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from runner.base.errors import ConfigError
-from runner.config.units import Quantity, explain_quantity, read_quantity
+from runner.schema.units import Quantity, explain_quantity, read_quantity
 
 Place = tuple[str | int, ...]
 

@@ -8,10 +8,10 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.base.errors import ConfigError
-from runner.config.per_stage import FinitePerStage, NonNegativePerStage, by_stage
 from runner.config.problems import Problems
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.per_stage import FinitePerStage, NonNegativePerStage, by_stage
 from runner.sensing import EncoderNoise
 from runner.sensing.velocity import DEFAULT_BANDWIDTH, Velocity
 

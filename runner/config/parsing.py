@@ -7,10 +7,10 @@ from pydantic import ValidationError
 
 from runner.base.errors import ConfigError
 from runner.base.texts import quoted
-from runner.config.magnitudes import absurd
 from runner.config.messages import describe
 from runner.config.robot import OneArmConfig, RobotConfig, StagedRobotConfig
 from runner.registry import Kinds, StrictModel
+from runner.schema.magnitudes import absurd
 
 M = TypeVar("M", bound=StrictModel)
 

@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat, field_validator
 
-from runner.config.per_joint import FrictionConfig
-from runner.config.per_stage import NonNegativePerStage, PositivePerStage, TorquePerStage
 from runner.registry import StrictModel
+from runner.schema.per_joint import FrictionConfig
+from runner.schema.per_stage import NonNegativePerStage, PositivePerStage, TorquePerStage
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 _LONGEST_NAME = 200

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from runner.base.errors import ConfigError
-from runner.config.per_stage import by_stage
 from runner.config.settings import RunSettings
 from runner.controllers import CONTROLLERS, ControllerConfig
 from runner.plants import PLANTS, PlantConfig
 from runner.plants.kinds import HasServo
 from runner.robots.robot import Robot
+from runner.schema.per_stage import by_stage
 from runner.trajectories import Trajectory
 
 _MAX_STEPS = 100_000  # of the plant in a tick

@@ -3,10 +3,10 @@
 import numpy as np
 
 from runner.base.trace import FloatArray
-from runner.config.per_joint import expand
-from runner.config.per_stage import TorquePerStage, by_stage
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.per_joint import expand
+from runner.schema.per_stage import TorquePerStage, by_stage
 
 
 class TorqueLimitsConfig(StrictModel):

@@ -7,7 +7,6 @@ import pinocchio as pin
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.errors import ConfigError
-from runner.config.per_joint import PositivePerJoint, expand
 from runner.controllers.controller import FloatArray, Loop
 from runner.controllers.null_space import NullSpaceConfig, NullSpaceTask
 from runner.controllers.resolved_rate import ResolvedRate
@@ -16,6 +15,7 @@ from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.task_space import task_directions
+from runner.schema.per_joint import PositivePerJoint, expand
 
 COMMANDS = "position"
 FOLLOWS_PATHS = True

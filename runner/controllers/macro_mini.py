@@ -7,13 +7,13 @@ import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.errors import ConfigError
-from runner.config.per_stage import PositivePerStage, by_stage
 from runner.controllers.controller import Controller, FloatArray, Loop
 from runner.controllers.inertial_damping import InertialDamping
 from runner.controllers.stage_law import StageLaw
 from runner.controllers.stage_loops import Aim, CarrierController, HeldController, RiderController
 from runner.registry import StrictModel
 from runner.robots.robot import Robot, end_points
+from runner.schema.per_stage import PositivePerStage, by_stage
 
 
 class MacroMiniConfig(StrictModel):

@@ -4,7 +4,6 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from runner.config.per_joint import PositivePerJoint, expand
 from runner.controllers.controller import FloatArray
 from runner.controllers.joint_law import JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_law import start_posture as start_posture
@@ -13,6 +12,7 @@ from runner.controllers.maths import Array, Scalar
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
+from runner.schema.per_joint import PositivePerJoint, expand
 
 
 class MotorPdConfig(JointLawConfig):

@@ -5,10 +5,10 @@ from pydantic import PositiveFloat
 
 from runner.base.errors import ConfigError
 from runner.config.by_joint import by_joint
-from runner.config.per_stage import NotchPerStage
 from runner.controllers.controller import FloatArray
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.per_stage import NotchPerStage
 
 
 class NotchConfig(StrictModel):

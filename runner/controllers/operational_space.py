@@ -7,7 +7,6 @@ import numpy as np
 from pydantic import NonNegativeFloat
 
 from runner.base.errors import ConfigError
-from runner.config.per_stage import NonNegativePerStage, PositivePerStage, by_stage
 from runner.controllers.controller import FloatArray, Loop
 from runner.controllers.maths import Array, Scalar
 from runner.controllers.sampled_stability import VelocityGain
@@ -18,6 +17,7 @@ from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.task_space import task_directions
+from runner.schema.per_stage import NonNegativePerStage, PositivePerStage, by_stage
 
 
 class OperationalSpaceConfig(StrictModel):

@@ -6,7 +6,6 @@ import numpy as np
 from pydantic import NonNegativeFloat
 
 from runner.base.errors import ConfigError
-from runner.config.per_stage import PositivePerStage, by_stage
 from runner.controllers.controller import Controller, FloatArray, Loop
 from runner.controllers.macro_mini import MacroMiniConfig
 from runner.controllers.macro_mini import build as build_stages
@@ -18,6 +17,7 @@ from runner.controllers.whole_body import WholeBodyLaw
 from runner.controllers.whole_body_posture import HeldJoints, HeldPosture
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.per_stage import PositivePerStage, by_stage
 
 
 class TipForceConfig(StrictModel):

@@ -7,7 +7,6 @@ from typing import Literal
 import numpy as np
 from pydantic import PositiveFloat
 
-from runner.config.per_joint import FrictionConfig
 from runner.plants.computation import ComputationConfig
 from runner.plants.friction import friction_of, with_friction
 from runner.plants.motion import find_motion
@@ -16,6 +15,7 @@ from runner.plants.servo import ServoConfig
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, StageBase
+from runner.schema.per_joint import FrictionConfig
 
 
 class TorquePlantConfig(StrictModel):

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from runner.base.errors import ConfigError
-from runner.config.per_joint import FrictionConfig, expand
 from runner.plants.plant import FloatArray
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
+from runner.schema.per_joint import FrictionConfig, expand
 
 if TYPE_CHECKING:
     from runner.plants.decoupled import TorquePlantConfig

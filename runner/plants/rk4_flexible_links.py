@@ -8,7 +8,6 @@ from scipy.linalg import eigh
 
 from runner.base.errors import ConfigError, nearest
 from runner.config.by_joint import by_joint
-from runner.config.per_stage import MotorPerStage
 from runner.plants.computation import ComputationConfig
 from runner.plants.flexible_links import FlexibleLinks
 from runner.plants.plant import FloatArray, Plant
@@ -17,6 +16,7 @@ from runner.robots.beams import Beam, moving_links, span
 from runner.robots.chain import Chain, cut
 from runner.robots.modes import Mode, find_modes, largest_rate
 from runner.robots.robot import Robot
+from runner.schema.per_stage import MotorPerStage
 
 _MOST_PARTS = 32
 _LIGHTEST = 1e-10  # smallest inertia of a bend over the largest

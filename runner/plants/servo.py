@@ -5,11 +5,11 @@ import pinocchio as pin
 from pydantic import NonNegativeFloat, PositiveFloat
 from scipy.linalg.lapack import dposv
 
-from runner.config.per_joint import PositivePerJoint, expand
 from runner.plants.plant import FloatArray, Plant
 from runner.plants.set_points import SetPoints
 from runner.registry import StrictModel
 from runner.robots.model import RobotModel
+from runner.schema.per_joint import PositivePerJoint, expand
 
 
 class ServoConfig(StrictModel):

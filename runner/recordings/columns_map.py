@@ -9,9 +9,9 @@ from pydantic import Field, FiniteFloat, PositiveFloat, model_validator
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.base.texts import quoted
-from runner.config.magnitudes import absurd
-from runner.config.units import WRITTEN
 from runner.registry import StrictModel
+from runner.schema.magnitudes import absurd
+from runner.schema.units import WRITTEN
 
 AMPERE = "A"
 SignalKind = Literal["position", "torque", "tip"]

@@ -4,9 +4,9 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from runner.config.units import WRITTEN
 from runner.recordings.columns_map import Factor, Signal
 from runner.recordings.smoothing import FloatArray
+from runner.schema.units import WRITTEN
 
 _ALIKE = 0.8  # correlation about zero, from which on a signal is a multiple of the run's
 _NEAR = 1.5  # factor within which a unit explains the multiple

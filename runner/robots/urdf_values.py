@@ -5,8 +5,8 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 
 from runner.base.texts import quoted
-from runner.config.magnitudes import LARGEST, SMALLEST
 from runner.robots.tree import moves
+from runner.schema.magnitudes import LARGEST, SMALLEST
 
 TENSOR = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 

@@ -33,8 +33,7 @@ _TABLE = """
     config: arms by_joint calibration computation=config.computation disturbance_observer=config.disturbance_observer
         endpoint_sensor flexible_joints=config.flexible_joints flexible_links=config.flexible_links
         force_reading=config.force_reading groups input_shaper joint_limits noise notch=config.notch parsing payload
-        per_joint per_stage plugged reach repeats robot=config.robot run settings start timing torque_limits
-        validation
+        plugged reach repeats robot=config.robot run settings start timing torque_limits validation
     controllers: __init__=controllers.__init__ adaptive admittance admittance_filter admittance_stability approach
         computed_torque controller=controllers.controller differential_inverse_kinematics
         disturbance_observer=controllers.disturbance_observer force_reading=controllers.force_reading force_stability
@@ -58,6 +57,7 @@ _TABLE = """
     robots: __init__=robots.__init__ armature=robots.armature beams cantilever chain denavit_hartenberg description
         effective_mass inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_joints mjcf_losses
         mjcf_ties mjcf_urdf model modes mounting robot=robots.robot task_space tool_link tree urdf_values workspace
+    schema: per_joint per_stage
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
         kinds=sensing.kinds motors=sensing.motors streams velocity wrench
     trajectories: __init__=trajectories.__init__ blend circle closed_figure from_file goal impulses interpolation

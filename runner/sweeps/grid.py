@@ -8,9 +8,9 @@ from pathlib import Path
 from runner.base.errors import ConfigError
 from runner.config.compose import Composed
 from runner.config.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.magnitudes import LARGEST_WHOLE
 from runner.config.options import groups
 from runner.config.overrides import force
+from runner.schema.magnitudes import LARGEST_WHOLE
 from runner.store.axes import Counted, GridOverrides
 from runner.sweeps.block import Alike, Block
 from runner.sweeps.loading import ConfigSource, Loader

@@ -7,9 +7,9 @@ import numpy as np
 from pydantic import Field, PositiveFloat, ValidationInfo, field_validator
 
 from runner.base.errors import ConfigError
-from runner.config.per_joint import NonNegativePerJoint, expand
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.per_joint import NonNegativePerJoint, expand
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.joint_motion import JointMotion
 from runner.trajectories.posture import Posture, start_of

@@ -6,8 +6,8 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BeforeValidator
 
-from runner.config.per_joint import expand
 from runner.robots.robot import Robot
+from runner.schema.per_joint import expand
 from runner.trajectories.trajectory import FloatArray
 
 

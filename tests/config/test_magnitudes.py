@@ -4,9 +4,9 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.config.compose import compose
-from runner.config.magnitudes import absurd
 from runner.config.options import group_options
 from runner.config.validation import validate
+from runner.schema.magnitudes import absurd
 
 
 @pytest.mark.parametrize("robot", group_options("robot"))

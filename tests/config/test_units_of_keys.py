@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from runner.config.units import explain_quantity, quantities_in, read_quantity
+from runner.schema.units import explain_quantity, quantities_in, read_quantity
 
 
 @pytest.mark.parametrize(

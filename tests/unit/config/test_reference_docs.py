@@ -7,7 +7,7 @@ from pydantic import Field, NonNegativeInt, PositiveFloat
 
 from bench.allowed_values import describe
 from bench.make_reference_docs import PAGE, reference_text
-from runner.config.per_stage import TorquePerStage
+from runner.schema.per_stage import TorquePerStage
 
 
 @pytest.mark.costs(3)

@@ -2,8 +2,8 @@
 
 from support.pages import ROOT
 
-from runner.config.units import WRITTEN
 from runner.recordings.columns_map import read_map
+from runner.schema.units import WRITTEN
 
 TEXT = (ROOT / "docs" / "recordings.md").read_text(encoding="utf-8")
 

@@ -5,10 +5,10 @@ from typing import Literal
 import numpy as np
 from pydantic import PositiveFloat
 
-from runner.config.per_joint import expand
 from runner.controllers.controller import FloatArray, Loop
 from runner.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.per_joint import expand
 
 
 class HeldTorquesConfig(StrictModel):

@@ -1,0 +1,1 @@
+"""Vocabulary of configs: values per joint and per stage, units, plausible magnitudes."""
