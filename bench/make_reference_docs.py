@@ -38,7 +38,7 @@ from runner.controllers.notch_config import NotchConfig
 from runner.environments import ENVIRONMENTS
 from runner.metrics.summary import families
 from runner.plants import PLANTS
-from runner.registry import Registry, StrictModel
+from runner.plugins.registry import Registry, StrictModel
 from runner.robots.mismatch import MismatchConfig
 from runner.schema.units import WRITTEN
 from runner.sensing import EndpointSensorConfig, ForceTorqueConfig, JointTorqueConfig

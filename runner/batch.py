@@ -19,7 +19,7 @@ from runner.config.run import RunConfig
 from runner.config.timing import Timing
 from runner.loop.failures import ended_well, find_failure
 from runner.metrics import MetricContext
-from runner.plugins import added
+from runner.plugins.discovery import added
 from runner.robots.robot import Robot, end_points
 from runner.sensing.encoders import encoder_errors
 from runner.trajectories.trajectory import joint_reference

@@ -19,7 +19,7 @@ from runner import store
 from runner.batch import Batcher
 from runner.batch_jobs import Job, Simulated, simulate_together
 from runner.config.limits import TICKS_AT_ONCE
-from runner.plugins import has_users_parts
+from runner.plugins.discovery import has_users_parts
 from runner.store.writing import timing
 
 MOST_THREADS = 4

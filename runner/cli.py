@@ -132,7 +132,7 @@ def dispatch(arguments: Sequence[str]) -> int:
         print(f"runner: not enough memory: {error}; shorten the run or ask for fewer repetitions", file=sys.stderr)
         return 2
     except Exception as error:
-        from runner.plugins import has_users_parts
+        from runner.plugins.discovery import has_users_parts
 
         if not (user_place(error) and has_users_parts()):  # a fault of ours: its whole trace is of use
             raise
@@ -156,7 +156,7 @@ def _take_plugins(arguments: Sequence[str]) -> list[str]:
         else:
             others.append(word)
     if named:
-        from runner.plugins import use_plugins
+        from runner.plugins.discovery import use_plugins
 
         use_plugins(named)
     return others

@@ -9,10 +9,10 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from runner import plugins
 from runner.base.engines import STAND_IN, installed
 from runner.base.paths import package_dir
 from runner.compiled.engine import evaluator
+from runner.plugins import discovery as plugins
 from runner.spec.history import today
 
 if TYPE_CHECKING:

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from runner import registry
 from runner.base.errors import ConfigError
-from runner.registry import Registry, StrictModel
+from runner.plugins import registry
+from runner.plugins.registry import Registry, StrictModel
 
 
 class Config(StrictModel):

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.mismatch import scaled
 from runner.robots.robot import with_models
 

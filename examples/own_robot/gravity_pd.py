@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.controllers import Loop
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 
 
 class GravityPDConfig(StrictModel):

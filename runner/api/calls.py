@@ -13,7 +13,7 @@ from runner.api.sweep import Sweep
 from runner.api.tuning import Tuning
 from runner.base.errors import ConfigError
 from runner.config.overrides import force
-from runner.plugins import named, use_plugins
+from runner.plugins.discovery import named, use_plugins
 
 Folders = Sequence[str | Path] | str | Path
 

@@ -12,7 +12,7 @@ from runner.audit.model_truths import by_model, sample
 from runner.audit.truth import Elements, FloatArray, columns
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 
 _EQUAL = 1e-9

@@ -11,7 +11,7 @@ from typing import Any
 
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import works_dir, works_with
-from runner.folder_code import folder_module
+from runner.plugins.folder_code import folder_module
 
 _FOLDER = "equations"
 

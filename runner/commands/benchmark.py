@@ -14,7 +14,7 @@ from runner.base.errors import RunnerError
 from runner.base.quiet import quiet_environment
 from runner.base.texts import one_line
 from runner.commands.arguments import ActionParser, Parser
-from runner.plugins import in_use, use_plugins
+from runner.plugins.discovery import in_use, use_plugins
 
 if TYPE_CHECKING:
     from runner.works.given import GivenPart

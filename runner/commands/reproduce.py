@@ -21,7 +21,7 @@ from runner.base.quiet import quiet_environment
 from runner.commands.arguments import Parser
 from runner.config.user_settings import outputs_dir
 from runner.latest import note
-from runner.plugins import in_use, named
+from runner.plugins.discovery import in_use, named
 from runner.reporting.changes import FILE
 from runner.works.names import find_work, work_names
 

@@ -20,7 +20,7 @@ from runner.compiled.vectors import as_array
 from runner.controllers.controller import FloatArray
 from runner.controllers.maths import Array
 from runner.controllers.torque_law import TorqueLaw
-from runner.guard.faults import find_fault, place
+from runner.plugins.guard.faults import find_fault, place
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
 from runner.sensing.velocity import first_state, gains, next_velocity

@@ -13,8 +13,8 @@ from runner.compiled.structure import CannotCompileError
 from runner.config.timing import Timing
 from runner.controllers.controller import FloatArray, Loop
 from runner.controllers.torque_law import TorqueLaw
-from runner.guard.controller import WatchedController
 from runner.plants.motion import Motion
+from runner.plugins.guard.controller import WatchedController
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise

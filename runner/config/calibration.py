@@ -16,7 +16,7 @@ from runner.config.compose import Composed
 from runner.config.parsing import group_of, parse, parse_kind, parse_robot
 from runner.config.problems import Problems, sure
 from runner.config.robot import RobotConfig
-from runner.registry import KindConfig, StrictModel
+from runner.plugins.registry import KindConfig, StrictModel
 from runner.robots import RobotModel
 from runner.robots.robot import Robot
 from runner.sensing import ForceTorqueConfig

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field
 from runner.base.errors import ConfigError
 from runner.controllers import Loop
 from runner.plants import PLANTS, PlantConfig
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.modes import Mode
 from runner.robots.robot import Robot
 from runner.trajectories import Trajectory

@@ -11,7 +11,7 @@ from runner.config.meanings import Units, find_units
 from runner.config.plugged import PLUGGED
 from runner.config.robot import OneArmConfig, StageConfig
 from runner.config.settings import RunSettings
-from runner.registry import Kinds, StrictModel
+from runner.plugins.registry import Kinds, StrictModel
 
 
 def key_unit(key: str) -> str:

@@ -7,7 +7,7 @@ from pydantic import PositiveFloat
 from runner.base.errors import ConfigError
 from runner.base.limits import half_of_memory
 from runner.config.timing import Timing
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 
 _GB = 1e9  # bytes

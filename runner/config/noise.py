@@ -9,7 +9,7 @@ from pydantic import PositiveFloat
 
 from runner.base.errors import ConfigError
 from runner.config.problems import Problems
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.schema.per_stage import FinitePerStage, NonNegativePerStage, by_stage
 from runner.sensing import EncoderNoise

@@ -9,7 +9,7 @@ from runner.base.errors import ConfigError
 from runner.base.texts import quoted
 from runner.config.messages import describe
 from runner.config.robot import OneArmConfig, RobotConfig, StagedRobotConfig
-from runner.registry import Kinds, StrictModel
+from runner.plugins.registry import Kinds, StrictModel
 from runner.schema.magnitudes import absurd
 
 M = TypeVar("M", bound=StrictModel)

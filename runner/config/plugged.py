@@ -7,7 +7,7 @@ import numpy as np
 
 from runner.config.parsing import group_of, parse, parse_kind
 from runner.config.problems import Problems
-from runner.registry import KindConfig, Kinds, StrictModel
+from runner.plugins.registry import KindConfig, Kinds, StrictModel
 from runner.robots.mismatch import MISMATCHES
 from runner.robots.mismatch import NONE as NO_MISMATCH
 from runner.robots.robot import Robot

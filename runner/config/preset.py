@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 
 
 class PresetConfig(StrictModel):

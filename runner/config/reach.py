@@ -4,7 +4,7 @@ import numpy as np
 
 from runner.base.errors import ConfigError
 from runner.config.joint_limits import check_joints
-from runner.registry import KindConfig
+from runner.plugins.registry import KindConfig
 from runner.robots.robot import Robot
 from runner.robots.task_space import distance_beside
 from runner.trajectories import Trajectory

@@ -14,7 +14,7 @@ from runner.controllers import ControllerConfig, Loop
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.controllers.notch_config import NotchConfig
 from runner.plants import PLANTS, PlantConfig
-from runner.registry import Commands, KindConfig
+from runner.plugins.registry import Commands, KindConfig
 from runner.robots.mismatch import MismatchConfig
 from runner.robots.model import FloatArray, RobotModel
 from runner.robots.robot import Robot

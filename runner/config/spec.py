@@ -9,7 +9,7 @@ from pydantic import field_validator, model_validator
 from runner.base.errors import nearest
 from runner.base.texts import quoted
 from runner.config.meanings import Units
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 
 _METRICS = "metrics"
 

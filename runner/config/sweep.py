@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import PositiveFloat, PositiveInt
 
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 
 
 class SweepConfig(StrictModel):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from runner.base.trace import FloatArray
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.schema.per_joint import expand
 from runner.schema.per_stage import TorquePerStage, by_stage

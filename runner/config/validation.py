@@ -32,7 +32,7 @@ from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.plants import PLANTS, PlantConfig
 from runner.plants.kinds import HasServo, TurnsBases
-from runner.registry import KindConfig
+from runner.plugins.registry import KindConfig
 from runner.robots.model import STANDARD_GRAVITY
 from runner.robots.robot import Robot, end_points
 from runner.trajectories import TRAJECTORIES, Trajectory

@@ -12,7 +12,7 @@ from runner.controllers.controller import FloatArray, Loop
 from runner.controllers.limited_motion import LimitedMotion
 from runner.controllers.tip_task import task_start
 from runner.controllers.wrist import Compensation, ToolCompensation
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.sensing.force_torque import ForceTorqueConfig
 

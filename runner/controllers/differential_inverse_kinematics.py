@@ -11,7 +11,7 @@ from runner.controllers.controller import FloatArray, Loop
 from runner.controllers.null_space import NullSpaceConfig, NullSpaceTask
 from runner.controllers.resolved_rate import ResolvedRate
 from runner.controllers.tip_task import TaskName, held_orientation, task_start
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.task_space import task_directions

@@ -11,8 +11,8 @@ from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, FloatArray, Loop
 from runner.controllers.maths import Array, Scalar
 from runner.controllers.torque_law import Arm, PinocchioArm, TorqueLaw, structure_of
-from runner.guard import WatchedController
-from runner.registry import StrictModel
+from runner.plugins.guard import WatchedController
+from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 
 

@@ -12,7 +12,7 @@ from runner.controllers.joint_motion import DesiredJoints, JointMotion
 from runner.controllers.maths import Array, Scalar
 from runner.controllers.tip_task import TaskName, task_start
 from runner.controllers.torque_law import Arm, TorqueLaw
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 

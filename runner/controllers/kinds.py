@@ -7,9 +7,9 @@ from typing import Protocol, runtime_checkable
 from runner.base.errors import ConfigError
 from runner.controllers.admittance_filter import Admittance
 from runner.controllers.controller import Controller, FloatArray, Loop, PositionController
-from runner.guard import WatchedController, watch_loops
-from runner.guard.faults import find_fault
-from runner.registry import KindConfig, Registry
+from runner.plugins.guard import WatchedController, watch_loops
+from runner.plugins.guard.faults import find_fault
+from runner.plugins.registry import KindConfig, Registry
 from runner.robots.robot import Robot
 
 

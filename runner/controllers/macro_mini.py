@@ -11,7 +11,7 @@ from runner.controllers.controller import Controller, FloatArray, Loop
 from runner.controllers.inertial_damping import InertialDamping
 from runner.controllers.stage_law import StageLaw
 from runner.controllers.stage_loops import Aim, CarrierController, HeldController, RiderController
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot, end_points
 from runner.schema.per_stage import PositivePerStage, by_stage
 

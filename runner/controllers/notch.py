@@ -10,7 +10,7 @@ import numpy as np
 from runner.controllers.controller import Controller, FloatArray, Loop
 from runner.controllers.maths import FLOATS, Array, Maths, Scalar
 from runner.controllers.torque_law import Arm, TorqueLaw, structure_of
-from runner.guard import WatchedController
+from runner.plugins.guard import WatchedController
 
 
 class NotchNumbers(NamedTuple):

@@ -6,7 +6,7 @@ from pydantic import PositiveFloat
 from runner.base.errors import ConfigError
 from runner.config.by_joint import by_joint
 from runner.controllers.controller import FloatArray
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.schema.per_stage import NotchPerStage
 

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.controllers.controller import FloatArray
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 
 
 class NullSpaceConfig(StrictModel):

@@ -13,7 +13,7 @@ from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.tip_task import TaskName, held_orientation, task_start
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.controllers.whole_body import WholeBody, WholeBodyLaw
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.task_space import task_directions

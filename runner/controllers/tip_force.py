@@ -15,7 +15,7 @@ from runner.controllers.tip_task import TipTask
 from runner.controllers.torque_law import PinocchioArm
 from runner.controllers.whole_body import WholeBodyLaw
 from runner.controllers.whole_body_posture import HeldJoints, HeldPosture
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.schema.per_stage import PositivePerStage, by_stage
 

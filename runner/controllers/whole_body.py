@@ -12,7 +12,7 @@ from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.tip_task import TipNumbers, TipTask
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.controllers.whole_body_posture import HeldJoints, HeldPosture, Posture, PostureNumbers
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots import RobotModel
 from runner.robots.robot import Robot
 

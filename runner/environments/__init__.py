@@ -1,8 +1,8 @@
 """What the world does to the arm: pushes, walls and hands at its tip, and what plug-ins put on links and joints."""
 
 from runner.environments.environment import Environment, LoadsJoints, PushesLinks
-from runner.guard import watch_environment
-from runner.registry import KindConfig, Registry
+from runner.plugins.guard import watch_environment
+from runner.plugins.registry import KindConfig, Registry
 
 ENVIRONMENTS = Registry[KindConfig, [], Environment | None](
     "environment",

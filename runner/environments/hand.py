@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.environments.environment import Environment, FloatArray
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.trajectories.blend import quintic_blend
 
 

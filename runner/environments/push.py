@@ -8,7 +8,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.errors import ConfigError
 from runner.environments.environment import Environment, FloatArray
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 
 from runner.environments.environment import Environment, FloatArray
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 

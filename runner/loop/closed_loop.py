@@ -7,7 +7,7 @@ from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.controllers import Loop
 from runner.interaction import Interaction
 from runner.plants import Plant, PositionPlant
-from runner.registry import Commands
+from runner.plugins.registry import Commands
 from runner.robots.robot import Robot
 from runner.sensing.motors import MotorSide
 from runner.trajectories import Trajectory

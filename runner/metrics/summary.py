@@ -9,11 +9,11 @@ import numpy as np
 
 from runner.base.errors import ConfigError
 from runner.base.trace import FloatArray, Trace, Traces
-from runner.guard import watch_metrics
 from runner.metrics import contact, effort, positioning, reaching, tracking
 from runner.metrics.context import MetricContext
 from runner.metrics.family import MetricFamily, OwnFamily
-from runner.plugins import added, load
+from runner.plugins.discovery import added, load
+from runner.plugins.guard import watch_metrics
 from runner.trajectories.shifted import Shifted
 
 _FAMILIES: tuple[OwnFamily, ...] = (positioning, tracking, effort, reaching, contact)

@@ -12,7 +12,7 @@ from runner.plants.friction import friction_of, with_friction
 from runner.plants.motion import find_motion
 from runner.plants.plant import FloatArray, Plant
 from runner.plants.servo import ServoConfig
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, StageBase
 from runner.schema.per_joint import FrictionConfig

@@ -6,13 +6,13 @@ from typing import Literal, Protocol, runtime_checkable
 
 from runner.base import engines
 from runner.base.errors import ConfigError
-from runner.guard import watch_plant
 from runner.plants.computation import ComputationConfig
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.motion import Motion
 from runner.plants.plant import FloatArray, Plant
 from runner.plants.servo import ServoConfig
-from runner.registry import KindConfig, Registry
+from runner.plugins.guard import watch_plant
+from runner.plugins.registry import KindConfig, Registry
 from runner.robots.modes import Mode
 from runner.robots.robot import Robot
 

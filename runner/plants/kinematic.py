@@ -8,7 +8,7 @@ import pinocchio as pin
 from runner.plants.computation import ComputationConfig
 from runner.plants.plant import FloatArray, Plant
 from runner.plants.set_points import SetPoints
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 

@@ -11,7 +11,7 @@ from runner.config.by_joint import by_joint
 from runner.plants.computation import ComputationConfig
 from runner.plants.flexible_links import FlexibleLinks
 from runner.plants.plant import FloatArray, Plant
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.beams import Beam, moving_links, span
 from runner.robots.chain import Chain, cut
 from runner.robots.modes import Mode, find_modes, largest_rate

@@ -7,7 +7,7 @@ from scipy.linalg.lapack import dposv
 
 from runner.plants.plant import FloatArray, Plant
 from runner.plants.set_points import SetPoints
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.schema.per_joint import PositivePerJoint, expand
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from runner.config.data_files import has_data_file
 from runner.latest import note
-from runner.plugins import has_users_parts, in_use
+from runner.plugins.discovery import has_users_parts, in_use
 from runner.recall.answers import keep, recall
 from runner.recall.basis import basis
 

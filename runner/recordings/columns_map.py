@@ -9,7 +9,7 @@ from pydantic import Field, FiniteFloat, PositiveFloat, model_validator
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.base.texts import quoted
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.schema.magnitudes import absurd
 from runner.schema.units import WRITTEN
 

@@ -11,7 +11,7 @@ from runner.base.expressions.evaluator import Budget, Scope
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.insertions import fill
 from runner.base.paths import works_dir
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.reporting import outline
 from runner.reporting.document import Code, Formula, Items, Notice, Provenance, Section, Table, Text
 

@@ -8,7 +8,7 @@ from pydantic import NonNegativeFloat
 
 from runner.base.errors import ConfigError, nearest
 from runner.base.texts import quoted
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.inertials import read_sets
 from runner.robots.model import FloatArray
 from runner.robots.robot import Robot, with_models

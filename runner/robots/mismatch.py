@@ -7,8 +7,8 @@ import numpy as np
 import pinocchio as pin
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
-from runner.guard import watch_belief
-from runner.registry import KindConfig, Registry, StrictModel
+from runner.plugins.guard import watch_belief
+from runner.plugins.registry import KindConfig, Registry, StrictModel
 from runner.robots.model import FloatArray, RobotModel
 from runner.robots.robot import Robot, with_models
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import NonNegativeFloat, PositiveFloat
 
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.sensing.velocity import State, Velocity, first_state, gains, next_velocity
 
 FloatArray = NDArray[np.float64]

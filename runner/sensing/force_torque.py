@@ -5,7 +5,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.model import FloatArray
 from runner.sensing.wrench import wrench_transform
 

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from pydantic import FiniteFloat, NonNegativeFloat
 
 from runner.base.errors import ConfigError
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 
 FloatArray = NDArray[np.float64]

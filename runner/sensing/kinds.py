@@ -5,8 +5,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.guard import WatchedEncoders, WatchedTorqueSensors, WatchedWristSensor
-from runner.registry import KindConfig, Registry
+from runner.plugins.guard import WatchedEncoders, WatchedTorqueSensors, WatchedWristSensor
+from runner.plugins.registry import KindConfig, Registry
 
 FloatArray = NDArray[np.float64]
 

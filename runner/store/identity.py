@@ -10,7 +10,7 @@ from runner.base.engines import installed
 from runner.base.memory import Memory
 from runner.compiled.engine import evaluator
 from runner.config.data_files import has_data_file, unnamed
-from runner.plugins import GROUPS, added, source_files
+from runner.plugins.discovery import GROUPS, added, source_files
 from runner.store.names import Names
 from runner.store.physics import content_digest, physics_digest
 

@@ -21,7 +21,7 @@ from runner.store import syntax
 # Folders and their modules. A module's id stands behind "=", or is its name.
 _TABLE = """
     .: assembly batch batch_blocks batch_jobs calibration_job execution feasibility interaction job plant_error
-        pushed_links registry simulation walls
+        pushed_links simulation walls
     base: trace
     calibration: __init__=calibration.__init__ compensation consistency gravity=calibration.gravity orientations
         repeatability tool tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
@@ -43,8 +43,6 @@ _TABLE = """
         operational_space operational_space_graph passivity resolved_rate sampled_stability sliding_mode stage_law
         stage_loops tip_force tip_task torque_law whole_body whole_body_graph whole_body_posture wrist
     environments: __init__=environments.__init__ environment=environments.environment free hand push wall
-    guard: __init__=guard.__init__ belief controller=guard.controller environment=guard.environment faults metrics
-        plant=guard.plant read_only sensing trajectory=guard.trajectory
     loop: acting closed_loop=loop.closed_loop command compiled_loop contact=loop.contact drive endpoint=loop.endpoint
         failures joint_torques recorder sensors
     metrics: __init__=metrics.__init__ contact=metrics.contact context effort family positioning reaching summary
@@ -54,6 +52,9 @@ _TABLE = """
         flexible_links=plants.flexible_links friction kinds=plants.kinds kinematic load motion=plants.motion
         motor_friction mujoco mujoco_model payload_changes plant=plants.plant rk4 rk4_flexible_links servo set_points
         touched
+    plugins: registry
+    plugins/guard: __init__=guard.__init__ belief controller=guard.controller environment=guard.environment faults
+        metrics plant=guard.plant read_only sensing trajectory=guard.trajectory
     robots: __init__=robots.__init__ armature=robots.armature beams cantilever chain denavit_hartenberg description
         effective_mass inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_joints mjcf_losses
         mjcf_ties mjcf_urdf model modes mounting robot=robots.robot task_space tool_link tree urdf_values workspace

@@ -20,7 +20,7 @@ from runner.base.progress.stages import SIMULATING, SOON
 from runner.config.limits import check_cpu_time, check_memory_together
 from runner.config.sweep import SweepConfig
 from runner.latest import note
-from runner.plugins import in_use
+from runner.plugins.discovery import in_use
 from runner.store.atomic import remove_leftovers
 from runner.store.finer import FOLDER as FINER
 from runner.store.names import Names

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import BeforeValidator, PositiveFloat, ValidationInfo, field_validator
 
 from runner.base.errors import ConfigError
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.trajectories.interpolation import Interpolated, Interpolation, interpolate
 from runner.trajectories.joint_motion import JointMotion

@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.trajectories.segment import distance_to_segment
 from runner.trajectories.trajectory import FloatArray, Trajectory
 from runner.trajectories.vectors import Point

@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 from pydantic import PositiveFloat
 
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.joint_motion import JointMotion

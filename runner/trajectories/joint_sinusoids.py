@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field, PositiveFloat, ValidationInfo, field_validator
 
 from runner.base.errors import ConfigError
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.schema.per_joint import NonNegativePerJoint, expand
 from runner.trajectories.blend import quintic_blend

@@ -8,7 +8,7 @@ from pydantic import PositiveFloat, ValidationInfo, field_validator
 from scipy.interpolate import BSpline
 
 from runner.base.errors import ConfigError
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.trajectories.joint_motion import JointMotion
 from runner.trajectories.posture import Posture, posture_of, start_of

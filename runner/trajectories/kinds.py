@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
-from runner.guard import WatchedTrajectory
-from runner.registry import KindConfig, Registry
+from runner.plugins.guard import WatchedTrajectory
+from runner.plugins.registry import KindConfig, Registry
 from runner.trajectories.trajectory import FloatArray, Trajectory
 
 if TYPE_CHECKING:  # they import Pinocchio, which who reads a stored run does not need

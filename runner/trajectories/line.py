@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.base.errors import ConfigError
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.trajectories.segment import distance_to_segment
 from runner.trajectories.trajectory import FloatArray, Trajectory
 from runner.trajectories.vectors import Point

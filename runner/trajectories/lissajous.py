@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat, ValidationInfo, field_validator
 
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.trajectories.closed_figure import ClosedFigure, Easing
 from runner.trajectories.nearest import distance_to_curve
 from runner.trajectories.trajectory import FloatArray, Trajectory

@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 from pydantic import PositiveFloat
 
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.segment import distance_to_segment
 from runner.trajectories.trajectory import FloatArray, Trajectory

@@ -9,7 +9,7 @@ from pydantic import PositiveFloat, ValidationInfo, field_validator
 from scipy.interpolate import BSpline, make_interp_spline
 
 from runner.base.errors import ConfigError
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.trajectories.nearest import distance_to_curve
 from runner.trajectories.trajectory import FloatArray, Trajectory
 from runner.trajectories.vectors import Point

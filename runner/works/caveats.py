@@ -9,7 +9,7 @@ from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.caveats.default_plant import DEFAULT_PLANT
 from runner.caveats.registry import KEYS
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.reporting.expected_caveats import ExpectedCaveat
 
 FILE = "caveats.yaml"

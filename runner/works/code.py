@@ -10,7 +10,7 @@ from types import ModuleType
 from typing import Any, NoReturn
 
 from runner.base.errors import RunnerError
-from runner.folder_code import folder_module
+from runner.plugins.folder_code import folder_module
 from runner.reporting.job import MissingError
 
 

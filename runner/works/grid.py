@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, PlainValidator, model_validator
 
 from runner.base.errors import RunnerError, nearest
 from runner.base.limits import GRID
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.works.arithmetic import Level, alone, fill, names_in
 from runner.works.given import GivenPart
 

@@ -33,7 +33,7 @@ from runner.base.errors import RunnerError, nearest
 from runner.base.limits import read_text
 from runner.config.messages import describe
 from runner.config.user_settings import refuse_settings
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.works.arithmetic import Level
 from runner.works.gains import check_named
 from runner.works.given import GivenPart

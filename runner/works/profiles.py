@@ -6,7 +6,7 @@ from typing import Annotated, TypeVar
 from pydantic import Field, PositiveInt
 
 from runner.base.errors import nearest
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.works.arithmetic import Level
 from runner.works.grid import Grid, Overrides
 

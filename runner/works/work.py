@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import check_inside
 from runner.claims import CLAIMS, load_claims
-from runner.plugins import use_plugins
+from runner.plugins.discovery import use_plugins
 from runner.reporting.expected_caveats import ExpectedCaveat
 from runner.reporting.job import Job, Jobs, distinct
 from runner.store import Calibration, Run

@@ -80,7 +80,7 @@ def test_of_a_calibration():
 def test_of_a_plug_in_that_declares_its_units(own_part):
     module = '''
         from typing import Literal
-        from runner.registry import StrictModel
+        from runner.plugins.registry import StrictModel
         class CONFIG(StrictModel):
             """Config.
 

@@ -14,7 +14,7 @@ from support.short_runs import DAMPING, FREQUENCY
 
 from runner import store
 from runner.base.errors import RunnerError
-from runner.plugins import use_plugins
+from runner.plugins.discovery import use_plugins
 from runner.sweeps import engine
 from runner.sweeps.pace import Estimate
 from runner.sweeps.queue import Queue
@@ -83,7 +83,7 @@ def test_trials_of_a_tuning_do_not_depend_on_where_they_are_made(tuned, cluster,
 PULL = """\
 import numpy as np
 
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 
 
 class CONFIG(StrictModel):

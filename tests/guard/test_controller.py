@@ -9,8 +9,8 @@ import pytest
 from runner.assembly import assemble
 from runner.base.errors import ConfigError, SimulationError
 from runner.controllers import Loop
-from runner.guard import WatchedController, watch_loops
 from runner.loop.sensors import make_encoders
+from runner.plugins.guard import WatchedController, watch_loops
 from runner.simulation import simulate
 
 

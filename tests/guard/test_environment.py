@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.guard import WatchedEnvironment
 from runner.interaction import Interaction
 from runner.loop.sensors import make_encoders, make_wrist_sensor
+from runner.plugins.guard import WatchedEnvironment
 from runner.simulation import simulate
 
 

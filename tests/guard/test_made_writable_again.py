@@ -6,14 +6,14 @@ import sys
 import numpy as np
 import pytest
 
-from runner.plugins import use_plugins
+from runner.plugins.discovery import use_plugins
 from runner.store import open_calibration, open_run
 
 LAW = """
     from typing import Literal
     import numpy as np
     from runner.controllers import Loop
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     class CONFIG(StrictModel):
         kind: Literal["NAME"]
         period: float
@@ -37,7 +37,7 @@ LAW = """
 WIND = """
     from typing import Literal
     import numpy as np
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     class CONFIG(StrictModel):
         kind: Literal["NAME"]
     class Wind:
@@ -53,7 +53,7 @@ WIND = """
 CABLE = """
     from typing import Literal
     import numpy as np
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     class CONFIG(StrictModel):
         kind: Literal["NAME"]
     class Cable:
@@ -75,7 +75,7 @@ CABLE = """
 """
 NOISE = """
     from typing import Literal
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     class CONFIG(StrictModel):
         kind: Literal["NAME"]
     class Encoders:
@@ -90,7 +90,7 @@ NOISE = """
 """
 WRIST = """
     from typing import Literal
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     class CONFIG(StrictModel):
         kind: Literal["NAME"]
     class Sensor:
@@ -104,7 +104,7 @@ WRIST = """
 """
 TORQUES = """
     from typing import Literal
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     class CONFIG(StrictModel):
         kind: Literal["NAME"]
     class Sensors:
@@ -119,7 +119,7 @@ BELIEF = """
     import copy
     from typing import Literal
     import numpy as np
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     from runner.robots.mismatch import scaled
     from runner.robots.robot import with_models
     class CONFIG(StrictModel):
@@ -139,7 +139,7 @@ PLANT = """
     from typing import Literal
     import numpy as np
     from runner.plants.rk4 import Rk4
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     class CONFIG(StrictModel):
         kind: Literal["NAME"]
         step: None
@@ -161,7 +161,7 @@ PLANT = """
 PATH = """
     from typing import Literal
     import numpy as np
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     class CONFIG(StrictModel):
         kind: Literal["NAME"]
     class Path:
@@ -192,7 +192,7 @@ CALIBRATION = """
     from typing import Literal
     import numpy as np
     from runner.calibration.procedures import Outcome
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     class CONFIG(StrictModel):
         kind: Literal["NAME"]
     class Look:

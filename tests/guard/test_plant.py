@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.guard import watch_plant
 from runner.loop.sensors import make_encoders
+from runner.plugins.guard import watch_plant
 from runner.simulation import simulate
 
 

@@ -5,7 +5,7 @@ from dataclasses import FrozenInstanceError, dataclass
 import numpy as np
 import pytest
 
-from runner.guard import read_only
+from runner.plugins.guard import read_only
 
 
 def test_an_array_is_copied_and_cannot_be_written_to():

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.guard import WatchedTrajectory
 from runner.loop.sensors import make_encoders
+from runner.plugins.guard import WatchedTrajectory
 from runner.simulation import simulate
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from runner.base.errors import SimulationError
 from runner.base.trace import Traces
-from runner.guard.trajectory import WatchedTrajectory
 from runner.metrics import MetricContext, evaluate, measure, of_run
+from runner.plugins.guard.trajectory import WatchedTrajectory
 from runner.trajectories.circle import Circle
 from runner.trajectories.closed_figure import ClosedFigure
 from runner.trajectories.goal import Goal

@@ -4,8 +4,8 @@ import sys
 
 import pytest
 
-from runner import plugins
 from runner.metrics import summary
+from runner.plugins import discovery as plugins
 from runner.reporting.metric_titles import TITLES, metric_label, title
 
 

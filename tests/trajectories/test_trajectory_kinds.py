@@ -7,7 +7,7 @@ from runner.store import open_run
 RESTING = """
     from typing import Literal
     import numpy as np
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     class CONFIG(StrictModel):
         kind: Literal["resting"]
         {fields}

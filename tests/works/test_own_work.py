@@ -278,7 +278,7 @@ from typing import Literal
 import numpy as np
 
 from runner.controllers import Loop
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 
 
 class CONFIG(StrictModel):

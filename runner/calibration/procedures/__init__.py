@@ -2,7 +2,7 @@
 
 from runner.calibration.procedures.bench import Bench
 from runner.calibration.procedures.procedure import Outcome, Procedure
-from runner.registry import KindConfig, Registry
+from runner.plugins.registry import KindConfig, Registry
 
 CALIBRATIONS = Registry[KindConfig, [Bench], Procedure](
     "calibration",

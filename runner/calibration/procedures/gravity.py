@@ -15,7 +15,7 @@ from runner.calibration.orientations import choose_orientations
 from runner.calibration.procedures.bench import Bench
 from runner.calibration.procedures.procedure import Outcome, Procedure
 from runner.calibration.tool import REST
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.model import FloatArray, RobotModel
 from runner.sensing.force_torque import ForceTorqueSensor
 from runner.sensing.wrench import wrench_transform

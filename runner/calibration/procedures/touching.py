@@ -9,7 +9,7 @@ from pydantic import Field, NonNegativeFloat
 from runner.base.errors import ConfigError
 from runner.base.texts import quoted
 from runner.calibration.procedures.bench import Bench
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.inverse_kinematics import solve_tip_pose
 from runner.robots.model import FloatArray
 

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 import yaml
 
-from runner import calibration_job, plugins, provenance
+from runner import calibration_job, provenance
 from runner.base.errors import StoreError
 from runner.calibration_job import calibrate
 from runner.config.compose import compose
+from runner.plugins import discovery as plugins
 from runner.store import open_calibration
 from runner.store.seal import sealed_json
 

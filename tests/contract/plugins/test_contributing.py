@@ -87,7 +87,7 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.controllers import Loop
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 
 
 class JacobianTransposeConfig(StrictModel):
@@ -127,7 +127,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, PositiveFloat
 
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 
 
 class SpinConfig(StrictModel):
@@ -178,7 +178,7 @@ from typing import Literal
 import numpy as np
 from pydantic import PositiveFloat
 
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 
 
 class EulerConfig(StrictModel):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from runner.base.paths import examples_dir
-from runner.plugins import load, use_plugins
+from runner.plugins.discovery import load, use_plugins
 from runner.store import open_run, open_runs
 
 HERE = examples_dir() / "own_parts"

@@ -11,9 +11,9 @@ from contextlib import redirect_stderr, redirect_stdout
 import pytest
 from support.printed import without_caveats, without_results
 
-from runner import plugins
 from runner.base.errors import RunnerError
 from runner.cli import dispatch
+from runner.plugins import discovery as plugins
 
 SPRING = '''\
 """A spring in every joint that pulls it home."""
@@ -23,7 +23,7 @@ from typing import Literal
 from pydantic import PositiveFloat
 
 from runner.controllers import Loop
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 
 
 class SpringConfig(StrictModel):

@@ -8,7 +8,7 @@ import pytest
 from support.engines import ASKED
 
 from runner.config.compose import compose
-from runner.plugins import source_files
+from runner.plugins.discovery import source_files
 from runner.store import identity, run_hash, run_hashes, simulated_part
 
 CONFIG = {"seed": 0, "controller": {"period": 0.01, "kind": "a"}, "outputs": "x", "preset": {"feedforward": True}}

@@ -124,7 +124,7 @@ def test_a_chunk_holds_calibrations_too(tmp_path, batches):
 MOODY = """
 from typing import Literal
 import numpy as np
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 
 
 class CONFIG(StrictModel):

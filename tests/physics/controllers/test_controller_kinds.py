@@ -10,7 +10,7 @@ POSITIONS = """
     import numpy as np
     from pydantic import PositiveFloat
     from runner.controllers import Loop
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     COMMANDS = "position"
     {more}
     class CONFIG(StrictModel):
@@ -30,7 +30,7 @@ TORQUES = """
     import numpy as np
     from pydantic import PositiveFloat
     from runner.controllers import Loop
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     class CONFIG(StrictModel):
         kind: Literal["{name}"]
         period: PositiveFloat

@@ -126,7 +126,7 @@ PLAIN = """
     from typing import Literal
     from pydantic import PositiveFloat
     from runner.controllers import Loop
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     class CONFIG(StrictModel):
         kind: Literal["{name}"]
         period: PositiveFloat

@@ -99,7 +99,7 @@ def test_a_delay_in_its_config_is_heeded(own_part, cli):
         from typing import Literal
         from runner.plants.rk4 import Rk4
         from runner.plants.computation import ComputationConfig
-        from runner.registry import StrictModel
+        from runner.plugins.registry import StrictModel
         class CONFIG(StrictModel):
             kind: Literal["late"]
             step: None
@@ -122,7 +122,7 @@ def test_a_delay_in_its_config_is_heeded(own_part, cli):
 FOLLOWING = """
     from typing import Literal
     import numpy as np
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     COMMANDS = "position"
     class CONFIG(StrictModel):
         kind: Literal["following"]
@@ -176,7 +176,7 @@ def test_a_plant_of_torques_without_a_servo_takes_no_law_of_positions(own_part, 
 TURNING = """
     from typing import Literal
     from runner.plants.rk4 import Rk4
-    from runner.registry import StrictModel
+    from runner.plugins.registry import StrictModel
     class CONFIG(StrictModel):
         kind: Literal["{name}"]
         step: None

@@ -15,7 +15,7 @@ from runner.compiled.commands import Commands, LoopCode
 from runner.compiled.structure import CannotCompileError, pattern_of
 from runner.controllers import Loop
 from runner.controllers.torque_law import TorqueLaw
-from runner.guard.controller import WatchedController
+from runner.plugins.guard.controller import WatchedController
 from runner.sensing import EncoderNoise
 
 LAWS = ("adaptive", "joint_pid", "passivity", "sliding_mode")

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.controllers.controller import FloatArray, Loop
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.schema.per_joint import expand
 

@@ -5,7 +5,7 @@ from typing import Literal
 from pydantic import PositiveFloat
 
 from runner.controllers.controller import FloatArray, Loop
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.works.xarm7.parts.three_joint_kinematics import Branch, ThreeJointArm
 

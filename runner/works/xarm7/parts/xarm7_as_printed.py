@@ -9,7 +9,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 from runner.base.errors import ConfigError
 from runner.controllers.controller import FloatArray, Loop
 from runner.controllers.tip_task import TaskName, task_start
-from runner.registry import StrictModel
+from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 

@@ -4,14 +4,14 @@ A part of the user's gets copies that cannot be written to, and its answers are 
 the run as a failure that names file and line. Parts of this package are not watched.
 """
 
-from runner.guard.belief import watch_belief
-from runner.guard.controller import WatchedController, watch_loops
-from runner.guard.environment import WatchedEnvironment, watch_environment
-from runner.guard.metrics import watch_metrics
-from runner.guard.plant import watch_plant
-from runner.guard.read_only import read_only
-from runner.guard.sensing import WatchedEncoders, WatchedTorqueSensors, WatchedWristSensor
-from runner.guard.trajectory import WatchedTrajectory
+from runner.plugins.guard.belief import watch_belief
+from runner.plugins.guard.controller import WatchedController, watch_loops
+from runner.plugins.guard.environment import WatchedEnvironment, watch_environment
+from runner.plugins.guard.metrics import watch_metrics
+from runner.plugins.guard.plant import watch_plant
+from runner.plugins.guard.read_only import read_only
+from runner.plugins.guard.sensing import WatchedEncoders, WatchedTorqueSensors, WatchedWristSensor
+from runner.plugins.guard.trajectory import WatchedTrajectory
 
 __all__ = [
     "WatchedController",

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.errors import ConfigError, SimulationError
-from runner.guard.faults import ask, checked
-from runner.guard.read_only import read_only
+from runner.plugins.guard.faults import ask, checked
+from runner.plugins.guard.read_only import read_only
 
 if TYPE_CHECKING:
     from runner.controllers.controller import Loop

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from runner.base.errors import ConfigError
 from runner.base.texts import quoted
-from runner.guard.faults import ask, checked, find_fault, told_of_part
-from runner.guard.read_only import read_only
+from runner.plugins.guard.faults import ask, checked, find_fault, told_of_part
+from runner.plugins.guard.read_only import read_only
 
 FloatArray = NDArray[np.float64]
 

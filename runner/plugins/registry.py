@@ -2,7 +2,7 @@
 
 A registry holds one line per kind, the module that defines it. The module is imported when the kind is first
 used, and offers `CONFIG`, the pydantic model of its config group, and `build`, which makes the object. Users add
-kinds of their own: see runner/plugins.py.
+kinds of their own: see runner/plugins/discovery.py.
 """
 
 import copy
@@ -14,7 +14,7 @@ from typing import Concatenate, Generic, Literal, ParamSpec, Protocol, TypeVar, 
 from pydantic import BaseModel, ConfigDict
 
 from runner.base.errors import ConfigError, RunnerError, nearest, told
-from runner.plugins import added, load
+from runner.plugins.discovery import added, load
 
 
 class StrictModel(BaseModel):
@@ -90,7 +90,7 @@ class Kinds:
             raise ConfigError(
                 [
                     f"{self.group}.kind: module {module.__name__} of '{kind}' needs CONFIG, a class derived from "
-                    f"runner.registry.StrictModel; found {model!r}"
+                    f"runner.plugins.registry.StrictModel; found {model!r}"
                 ]
             )
         return model

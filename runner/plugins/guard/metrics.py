@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from runner.base.errors import SimulationError
-from runner.guard.faults import find_fault, is_write, place, told_of_part
-from runner.guard.read_only import read_only
+from runner.plugins.guard.faults import find_fault, is_write, place, told_of_part
+from runner.plugins.guard.read_only import read_only
 
 if TYPE_CHECKING:
     from runner.base.trace import Trace

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.errors import ConfigError, RunnerError
-from runner.guard.faults import ask, checked, find_fault, place, told_of_part
-from runner.guard.read_only import read_only
+from runner.plugins.guard.faults import ask, checked, find_fault, place, told_of_part
+from runner.plugins.guard.read_only import read_only
 
 FloatArray = NDArray[np.float64]
 

@@ -1,0 +1,1 @@
+"""Registry of kinds, discovery of plug-ins, and the guard around user-supplied parts."""
