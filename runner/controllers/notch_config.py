@@ -4,9 +4,9 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.base.errors import ConfigError
-from runner.config.by_joint import by_joint
 from runner.controllers.controller import FloatArray
 from runner.plugins.registry import StrictModel
+from runner.robots.by_joint import by_joint
 from runner.robots.robot import Robot
 from runner.schema.per_stage import NotchPerStage
 

@@ -7,10 +7,10 @@ from pydantic import NonNegativeFloat
 
 from runner.base.errors import ConfigError, nearest
 from runner.base.texts import quoted
-from runner.config.by_joint import by_joint
 from runner.plants.flexible_joints import Flexibility, links_of
 from runner.plants.plant import FloatArray
 from runner.plugins.registry import StrictModel
+from runner.robots.by_joint import by_joint
 from runner.robots.modes import Mode, find_modes
 from runner.robots.robot import Robot
 from runner.schema.per_stage import SpringPerStage

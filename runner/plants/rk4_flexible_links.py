@@ -7,12 +7,12 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat
 from scipy.linalg import eigh
 
 from runner.base.errors import ConfigError, nearest
-from runner.config.by_joint import by_joint
 from runner.plants.computation import ComputationConfig
 from runner.plants.flexible_links import FlexibleLinks
 from runner.plants.plant import FloatArray, Plant
 from runner.plugins.registry import StrictModel
 from runner.robots.beams import Beam, moving_links, span
+from runner.robots.by_joint import by_joint
 from runner.robots.chain import Chain, cut
 from runner.robots.modes import Mode, find_modes, largest_rate
 from runner.robots.robot import Robot

@@ -30,7 +30,7 @@ _TABLE = """
     compiled: algebra arm closed_loop=compiled.closed_loop code commands compile directed elementary
         end_points=compiled.end_points engine expression flexible law maths=compiled.maths motion=compiled.motion
         places program regressor structure tangent vectors=compiled.vectors
-    config: arms by_joint calibration computation=config.computation disturbance_observer=config.disturbance_observer
+    config: arms calibration computation=config.computation disturbance_observer=config.disturbance_observer
         endpoint_sensor flexible_joints=config.flexible_joints flexible_links=config.flexible_links
         force_reading=config.force_reading groups input_shaper joint_limits noise notch=config.notch parsing payload
         plugged reach repeats robot=config.robot run settings start timing torque_limits validation
@@ -55,9 +55,10 @@ _TABLE = """
     plugins: registry
     plugins/guard: __init__=guard.__init__ belief controller=guard.controller environment=guard.environment faults
         metrics plant=guard.plant read_only sensing trajectory=guard.trajectory
-    robots: __init__=robots.__init__ armature=robots.armature beams cantilever chain denavit_hartenberg description
-        effective_mass inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_joints mjcf_losses
-        mjcf_ties mjcf_urdf model modes mounting robot=robots.robot task_space tool_link tree urdf_values workspace
+    robots: __init__=robots.__init__ armature=robots.armature beams by_joint cantilever chain denavit_hartenberg
+        description effective_mass inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_joints
+        mjcf_losses mjcf_ties mjcf_urdf model modes mounting robot=robots.robot task_space tool_link tree urdf_values
+        workspace
     schema: per_joint per_stage
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
         kinds=sensing.kinds motors=sensing.motors streams velocity wrench
