@@ -17,9 +17,9 @@ from runner.controllers.disturbance_observer import observed
 from runner.controllers.kinds import FollowsWithinReach
 from runner.controllers.notch import notched
 from runner.environments import ENVIRONMENTS
+from runner.environments.interaction import Interaction
 from runner.environments.wall import Wall
 from runner.feasibility import check_path
-from runner.interaction import Interaction
 from runner.loop.closed_loop import ClosedLoop
 from runner.metrics import MetricContext
 from runner.plants import PLANTS, Plant, PositionPlant

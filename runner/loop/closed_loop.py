@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from runner.base.trace import FloatArray
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.controllers import Loop
-from runner.interaction import Interaction
+from runner.environments.interaction import Interaction
 from runner.plants import Plant, PositionPlant
 from runner.plugins.registry import Commands
 from runner.robots.robot import Robot

@@ -5,7 +5,7 @@ from dataclasses import fields
 import numpy as np
 
 from runner.base.trace import ContactSignals, FloatArray
-from runner.interaction import Interaction
+from runner.environments.interaction import Interaction
 from runner.loop.closed_loop import ClosedLoop
 from runner.plants import TellsContact, ToolReactionPlant, innermost
 from runner.sensing import WristSensor

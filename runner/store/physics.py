@@ -20,8 +20,7 @@ from runner.store import syntax
 
 # Folders and their modules. A module's id stands behind "=", or is its name.
 _TABLE = """
-    .: assembly batch batch_blocks batch_jobs calibration_job execution feasibility interaction job plant_error
-        pushed_links simulation walls
+    .: assembly batch batch_blocks batch_jobs calibration_job execution feasibility job plant_error simulation walls
     base: trace
     calibration: __init__=calibration.__init__ compensation consistency gravity=calibration.gravity orientations
         repeatability tool tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
@@ -42,7 +41,8 @@ _TABLE = """
         macro_mini macro_mini_graph maths=controllers.maths motor_pd notch=controllers.notch notch_config null_space
         operational_space operational_space_graph passivity resolved_rate sampled_stability sliding_mode stage_law
         stage_loops tip_force tip_task torque_law whole_body whole_body_graph whole_body_posture wrist
-    environments: __init__=environments.__init__ environment=environments.environment free hand push wall
+    environments: __init__=environments.__init__ environment=environments.environment free hand interaction push
+        pushed_links wall
     loop: acting closed_loop=loop.closed_loop command compiled_loop contact=loop.contact drive endpoint=loop.endpoint
         failures joint_torques recorder sensors
     metrics: __init__=metrics.__init__ contact=metrics.contact context effort family positioning reaching summary

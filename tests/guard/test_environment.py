@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.interaction import Interaction
+from runner.environments.interaction import Interaction
 from runner.loop.sensors import make_encoders, make_wrist_sensor
 from runner.plugins.guard import WatchedEnvironment
 from runner.simulation import simulate

@@ -9,7 +9,7 @@ import pytest
 from support.engines import ASKED
 
 from runner.base.errors import ConfigError
-from runner.interaction import Interaction
+from runner.environments.interaction import Interaction
 from runner.loop.sensors import make_encoders, make_wrist_sensor
 from runner.plugins.guard import watch_environment
 from runner.simulation import simulate

@@ -5,7 +5,7 @@ import pinocchio as pin
 
 from runner.base.trace import FloatArray
 from runner.environments import Environment, LoadsJoints, PushesLinks
-from runner.pushed_links import PushedLinks
+from runner.environments.pushed_links import PushedLinks
 from runner.robots.robot import Robot
 from runner.robots.tool_link import find_tool, holding_wrench
 from runner.sensing.wrench import cross, wrench_transform
