@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from bench.arms import ARMS, Arm, assembled
-from runner.compiled import program
 from runner.compiled.closed_loop import CompiledCommands, Whole
+from runner.symbolic import program
 
 
 def main() -> bool:

@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from runner.compiled.arm import Unfolded
-from runner.compiled.code import ACTING
 from runner.compiled.commands import Commands, CommandScalars, expressed_commands
-from runner.compiled.expression import places
 from runner.compiled.motion import MotionScalars, expressed_motion, motion_pattern, motion_scalars
-from runner.compiled.places import Places
-from runner.compiled.program import LANES, Expressed, FloatArray, Frame, Program, program
-from runner.compiled.structure import Values
 from runner.plants.motion import Motion
+from runner.symbolic.arm import Unfolded
+from runner.symbolic.code import ACTING
+from runner.symbolic.expression import places
+from runner.symbolic.places import Places
+from runner.symbolic.program import LANES, Expressed, FloatArray, Frame, Program, program
+from runner.symbolic.structure import Values
 
 _AT_ONCE = 10_000  # ticks without a look at interruptions
 

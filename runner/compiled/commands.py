@@ -9,21 +9,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.errors import SimulationError
-from runner.compiled.code import GIVEN, ROWS, STATE, Block
-from runner.compiled.end_points import PointScalars, expressed_points, point_scalars
-from runner.compiled.expression import Value, both, equal, less, rounded, select
 from runner.compiled.law import LawScalars, expressed_torque, law_scalars
 from runner.compiled.maths import Expressions
-from runner.compiled.places import Places
-from runner.compiled.structure import any_number, pattern_of
-from runner.compiled.vectors import as_array
 from runner.controllers.controller import FloatArray
-from runner.controllers.maths import Array
 from runner.controllers.torque_law import TorqueLaw
 from runner.plugins.guard.faults import find_fault, place
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
 from runner.sensing.velocity import first_state, gains, next_velocity
+from runner.symbolic.code import GIVEN, ROWS, STATE, Block
+from runner.symbolic.end_points import PointScalars, expressed_points, point_scalars
+from runner.symbolic.expression import Value, both, equal, less, rounded, select
+from runner.symbolic.maths import Array
+from runner.symbolic.places import Places
+from runner.symbolic.structure import any_number, pattern_of
+from runner.symbolic.vectors import as_array
 
 _OURS = ("runner", "abc", "typing", "builtins")
 

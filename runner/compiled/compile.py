@@ -7,9 +7,7 @@ from typing import Any
 
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.compiled.commands import Commands, LoopCode
-from runner.compiled.engine import MOST_JOINTS, evaluator
 from runner.compiled.motion import CompiledLinksTorque, CompiledStep
-from runner.compiled.structure import CannotCompileError
 from runner.config.timing import Timing
 from runner.controllers.controller import FloatArray, Loop
 from runner.controllers.torque_law import TorqueLaw
@@ -18,6 +16,8 @@ from runner.plugins.guard.controller import WatchedController
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
+from runner.symbolic.engine import MOST_JOINTS, evaluator
+from runner.symbolic.structure import CannotCompileError
 
 
 def find_commands(

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.compiled.arm import Unfolded
 from runner.compiled.closed_loop import Whole
-from runner.compiled.code import GIVEN, PARS, ROWS, STATE
-from runner.compiled.places import Places
-from runner.compiled.program import LANES, Expressed, FloatArray, Frame, program
-from runner.compiled.tangent import with_tangents
+from runner.symbolic.arm import Unfolded
+from runner.symbolic.code import GIVEN, PARS, ROWS, STATE
+from runner.symbolic.places import Places
+from runner.symbolic.program import LANES, Expressed, FloatArray, Frame, program
+from runner.symbolic.tangent import with_tangents
 
 _FOLDED = (0.0, 1.0, -1.0)
 

@@ -5,16 +5,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from runner.compiled.algebra import ArmAlgebra
-from runner.compiled.arm import known
-from runner.compiled.code import ROWS, STATE, Part
-from runner.compiled.engine import MOST_JOINTS, evaluator
 from runner.compiled.motion import ArmCode, Mover
-from runner.compiled.places import Places
-from runner.compiled.program import FloatArray
-from runner.compiled.structure import any_number, arm_pattern
-from runner.compiled.vectors import Vector
 from runner.robots.model import RobotModel
+from runner.symbolic.algebra import ArmAlgebra
+from runner.symbolic.arm import known
+from runner.symbolic.code import ROWS, STATE, Part
+from runner.symbolic.engine import MOST_JOINTS, evaluator
+from runner.symbolic.places import Places
+from runner.symbolic.program import FloatArray
+from runner.symbolic.structure import any_number, arm_pattern
+from runner.symbolic.vectors import Vector
 
 
 class Springs(NamedTuple):

@@ -5,14 +5,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from runner.compiled.algebra import ArmAlgebra
-from runner.compiled.arm import ArmConstants, constants_of
-from runner.compiled.expression import Value
 from runner.compiled.maths import Expressions
-from runner.compiled.structure import CannotCompileError, scalars
-from runner.compiled.vectors import as_array
-from runner.controllers.maths import Array
 from runner.controllers.torque_law import Tip, TorqueLaw
+from runner.symbolic.algebra import ArmAlgebra
+from runner.symbolic.arm import ArmConstants, constants_of
+from runner.symbolic.expression import Value
+from runner.symbolic.maths import Array
+from runner.symbolic.structure import CannotCompileError, scalars
+from runner.symbolic.vectors import as_array
 
 
 class LawScalars(NamedTuple):

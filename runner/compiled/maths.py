@@ -1,15 +1,15 @@
-"""The functions of control laws as expressions; see runner/controllers/maths.py."""
+"""The functions of control laws as expressions; see runner/symbolic/maths.py."""
 
 from collections.abc import Callable
 from typing import Any, cast
 
 import numpy as np
 
-from runner.compiled.algebra import Factors
-from runner.compiled.elementary import angle_of
-from runner.compiled.expression import absolute, all_of, both, equal, expression, floor, less, negated, select, sqrt
-from runner.compiled.vectors import as_array, cross, dot, scale
-from runner.controllers.maths import Array, Chosen
+from runner.symbolic.algebra import Factors
+from runner.symbolic.elementary import angle_of
+from runner.symbolic.expression import absolute, all_of, both, equal, expression, floor, less, negated, select, sqrt
+from runner.symbolic.maths import Array, Chosen
+from runner.symbolic.vectors import as_array, cross, dot, scale
 
 _STEPS = 6  # of Laguerre's method, which triples the digits in each once it is near
 

@@ -5,16 +5,16 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from runner.compiled.algebra import ArmAlgebra, Factors
-from runner.compiled.arm import ArmConstants, constants_of, known
-from runner.compiled.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repeat
-from runner.compiled.expression import Value, absolute, both, equal, less, places, select
-from runner.compiled.places import Places
-from runner.compiled.program import Expressed, FloatArray, Frame, program
-from runner.compiled.structure import Values, any_number, arm_pattern
-from runner.compiled.vectors import Matrix, Vector, add, product, scale, subtract, times, transpose
 from runner.robots.model import RobotModel
 from runner.robots.robot import StageBase
+from runner.symbolic.algebra import ArmAlgebra, Factors
+from runner.symbolic.arm import ArmConstants, constants_of, known
+from runner.symbolic.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repeat
+from runner.symbolic.expression import Value, absolute, both, equal, less, places, select
+from runner.symbolic.places import Places
+from runner.symbolic.program import Expressed, FloatArray, Frame, program
+from runner.symbolic.structure import Values, any_number, arm_pattern
+from runner.symbolic.vectors import Matrix, Vector, add, product, scale, subtract, times, transpose
 
 if TYPE_CHECKING:  # plants with springs are moved by what stands here
     from runner.plants.motion import Motion

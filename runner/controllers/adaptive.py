@@ -9,10 +9,10 @@ from runner.controllers.controller import FloatArray
 from runner.controllers.joint_law import JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_law import start_posture as start_posture
 from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
-from runner.controllers.maths import Array, Scalar
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm, PinocchioArm
 from runner.robots.model import RobotModel
+from runner.symbolic.maths import Array, Scalar
 
 _SPEED, _ACCELERATION = 1.0, 2.0  # rad/s and rad/s^2, or m/s and m/s^2: of the motions that scale the gains
 _NOTHING = 1e-200  # kg m^2/s^4, by which gains stay as they are where s is zero

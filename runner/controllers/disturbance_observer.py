@@ -9,11 +9,11 @@ from pydantic import PositiveFloat
 
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, FloatArray, Loop
-from runner.controllers.maths import Array, Scalar
 from runner.controllers.torque_law import Arm, PinocchioArm, TorqueLaw, structure_of
 from runner.plugins.guard import WatchedController
 from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.symbolic.maths import Array, Scalar
 
 
 class DisturbanceObserverConfig(StrictModel):

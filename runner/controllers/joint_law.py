@@ -9,12 +9,12 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.controllers.controller import Controller, FloatArray, Loop
 from runner.controllers.joint_motion import DesiredJoints, JointMotion
-from runner.controllers.maths import Array, Scalar
 from runner.controllers.tip_task import TaskName, task_start
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
+from runner.symbolic.maths import Array, Scalar
 
 
 class JointLawConfig(StrictModel):

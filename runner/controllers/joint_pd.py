@@ -8,10 +8,10 @@ from runner.controllers.controller import FloatArray
 from runner.controllers.joint_law import JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_law import start_posture as start_posture
 from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
-from runner.controllers.maths import Array, Scalar
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
+from runner.symbolic.maths import Array, Scalar
 
 
 class JointPdConfig(JointLawConfig):

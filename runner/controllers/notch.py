@@ -8,9 +8,9 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 
 from runner.controllers.controller import Controller, FloatArray, Loop
-from runner.controllers.maths import FLOATS, Array, Maths, Scalar
 from runner.controllers.torque_law import Arm, TorqueLaw, structure_of
 from runner.plugins.guard import WatchedController
+from runner.symbolic.maths import FLOATS, Array, Maths, Scalar
 
 
 class NotchNumbers(NamedTuple):

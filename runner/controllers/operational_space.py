@@ -8,7 +8,6 @@ from pydantic import NonNegativeFloat
 
 from runner.base.errors import ConfigError
 from runner.controllers.controller import FloatArray, Loop
-from runner.controllers.maths import Array, Scalar
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.tip_task import TaskName, held_orientation, task_start
 from runner.controllers.torque_law import Arm, TorqueLaw
@@ -18,6 +17,7 @@ from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.task_space import task_directions
 from runner.schema.per_stage import NonNegativePerStage, PositivePerStage, by_stage
+from runner.symbolic.maths import Array, Scalar
 
 
 class OperationalSpaceConfig(StrictModel):

@@ -3,11 +3,11 @@
 from typing import Any, NamedTuple
 
 from runner.controllers.controller import FloatArray
-from runner.controllers.maths import Array, Scalar
 from runner.controllers.operational_space import tip_law
 from runner.controllers.torque_law import Arm, structure_of
 from runner.controllers.whole_body import WholeBodyLaw
 from runner.robots.model import RobotModel
+from runner.symbolic.maths import Array, Scalar
 
 
 class StageNumbers(NamedTuple):

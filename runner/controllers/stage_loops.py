@@ -6,13 +6,13 @@ from typing import Literal, NamedTuple, TypeVar
 import numpy as np
 
 from runner.controllers.controller import FloatArray
-from runner.controllers.maths import Array, Maths, Scalar
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.stage_law import StageLaw, StageNumbers
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, end_points
 from runner.sensing.wrench import cross
+from runner.symbolic.maths import Array, Maths, Scalar
 
 Aim = Literal["rest", "own_offset", "base_offset"]
 

@@ -9,7 +9,6 @@ from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, FloatArray, Loop
 from runner.controllers.macro_mini import MacroMiniConfig
 from runner.controllers.macro_mini import build as build_stages
-from runner.controllers.maths import FLOATS
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.tip_task import TipTask
 from runner.controllers.torque_law import PinocchioArm
@@ -18,6 +17,7 @@ from runner.controllers.whole_body_posture import HeldJoints, HeldPosture
 from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.schema.per_stage import PositivePerStage, by_stage
+from runner.symbolic.maths import FLOATS
 
 
 class TipForceConfig(StrictModel):

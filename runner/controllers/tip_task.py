@@ -6,12 +6,12 @@ import numpy as np
 
 from runner.base.errors import ConfigError
 from runner.controllers.controller import FloatArray
-from runner.controllers.maths import Array, Maths, Scalar
 from runner.controllers.torque_law import Tip
 from runner.robots.inverse_kinematics import solve_tip_pose
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.task_space import task_directions
+from runner.symbolic.maths import Array, Maths, Scalar
 
 TaskName = Literal["position", "pose"]
 

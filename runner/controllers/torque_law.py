@@ -10,8 +10,8 @@ import numpy as np
 import pinocchio as pin
 
 from runner.controllers.controller import FloatArray
-from runner.controllers.maths import FLOATS, Array, Maths, Scalar
 from runner.robots.model import RobotModel
+from runner.symbolic.maths import FLOATS, Array, Maths, Scalar
 
 
 class Tip(NamedTuple):

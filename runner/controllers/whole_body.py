@@ -7,7 +7,6 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.errors import ConfigError
 from runner.controllers.controller import FloatArray, Loop
-from runner.controllers.maths import Array, Scalar
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.tip_task import TipNumbers, TipTask
 from runner.controllers.torque_law import Arm, TorqueLaw
@@ -15,6 +14,7 @@ from runner.controllers.whole_body_posture import HeldJoints, HeldPosture, Postu
 from runner.plugins.registry import StrictModel
 from runner.robots import RobotModel
 from runner.robots.robot import Robot
+from runner.symbolic.maths import Array, Scalar
 
 
 class WholeBodyLaw(StrictModel):

@@ -5,8 +5,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from runner.controllers.controller import FloatArray
-from runner.controllers.maths import Array, Maths, Scalar
 from runner.robots.model import RobotModel
+from runner.symbolic.maths import Array, Maths, Scalar
 
 
 class PostureNumbers(NamedTuple):

@@ -3,7 +3,7 @@
 import json
 from typing import Any
 
-from runner.compiled import cache
+from runner.symbolic import cache
 
 _MOST = 1000  # answers kept
 _NAME = "answer-"  # begins the name of each

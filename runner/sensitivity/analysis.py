@@ -12,7 +12,6 @@ from runner.base.errors import RunnerError
 from runner.base.trace import FloatArray, Trace
 from runner.batch import Batcher, Together, Wanted
 from runner.compiled.directed import tangents
-from runner.compiled.engine import evaluator
 from runner.config.compose import Composed, compose
 from runner.config.flexible_joints import find_flexibility
 from runner.config.flexible_links import is_flexible
@@ -24,6 +23,7 @@ from runner.plants.rk4 import Rk4Config
 from runner.sensitivity.parameters import GROUPS, Parameter, find_keys, find_links
 from runner.sensitivity.slopes import Scene, Slopes
 from runner.sensitivity.smooth_metrics import Change, derivatives
+from runner.symbolic.engine import evaluator
 from runner.trajectories.trajectory import joint_reference
 
 

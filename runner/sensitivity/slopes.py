@@ -12,10 +12,10 @@ from runner.base.trace import FloatArray
 from runner.batch import Wanted
 from runner.compiled.closed_loop import Whole
 from runner.compiled.directed import Setting
-from runner.compiled.structure import fixed_text
 from runner.config.run import RunConfig
 from runner.sensing.encoders import encoder_errors
 from runner.sensitivity.parameters import Key, Parameter
+from runner.symbolic.structure import fixed_text
 from runner.trajectories.trajectory import Trajectory, joint_reference
 
 _PART = 1.0 / 512.0  # of a parameter's value, between the nine at which numbers are taken

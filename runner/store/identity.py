@@ -8,11 +8,11 @@ from typing import Any
 
 from runner.base.engines import installed
 from runner.base.memory import Memory
-from runner.compiled.engine import evaluator
 from runner.config.data_files import has_data_file, unnamed
 from runner.plugins.discovery import GROUPS, added, source_files
 from runner.store.names import Names
 from runner.store.physics import content_digest, physics_digest
+from runner.symbolic.engine import evaluator
 
 # These say where and under which name a run is kept, and what is told of it, not what is simulated.
 _LEFT_OUT = ("caveats", "limits", "outputs", "preset", "spec", "sweep")

@@ -26,9 +26,8 @@ _TABLE = """
         repeatability tool tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
     calibration/procedures: __init__=procedures.__init__ bench gravity=procedures.gravity procedure
         tool_centre_point=procedures.tool_centre_point tool_direction=procedures.tool_direction touching
-    compiled: algebra arm closed_loop=compiled.closed_loop code commands compile directed elementary
-        end_points=compiled.end_points engine expression flexible law maths=compiled.maths motion=compiled.motion
-        places program regressor structure tangent vectors=compiled.vectors
+    compiled: closed_loop=compiled.closed_loop commands compile directed flexible law maths=compiled.maths
+        motion=compiled.motion
     config: arms calibration computation=config.computation disturbance_observer=config.disturbance_observer
         endpoint_sensor flexible_joints=config.flexible_joints flexible_links=config.flexible_links
         force_reading=config.force_reading groups input_shaper joint_limits noise notch=config.notch parsing payload
@@ -38,9 +37,9 @@ _TABLE = """
         disturbance_observer=controllers.disturbance_observer force_reading=controllers.force_reading force_stability
         graph hybrid_force impedance inertial_damping iterative_learning joint_law
         joint_motion=controllers.joint_motion joint_pd joint_pid kinds=controllers.kinds late_stability limited_motion
-        macro_mini macro_mini_graph maths=controllers.maths motor_pd notch=controllers.notch notch_config null_space
-        operational_space operational_space_graph passivity resolved_rate sampled_stability sliding_mode stage_law
-        stage_loops tip_force tip_task torque_law whole_body whole_body_graph whole_body_posture wrist
+        macro_mini macro_mini_graph motor_pd notch=controllers.notch notch_config null_space operational_space
+        operational_space_graph passivity resolved_rate sampled_stability sliding_mode stage_law stage_loops tip_force
+        tip_task torque_law whole_body whole_body_graph whole_body_posture wrist
     environments: __init__=environments.__init__ environment=environments.environment free hand interaction push
         pushed_links wall
     loop: acting closed_loop=loop.closed_loop command compiled_loop contact=loop.contact drive endpoint=loop.endpoint
@@ -62,6 +61,8 @@ _TABLE = """
     schema: per_joint per_stage
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
         kinds=sensing.kinds motors=sensing.motors streams velocity wrench
+    symbolic: algebra arm code elementary end_points=compiled.end_points engine expression maths=controllers.maths
+        places program regressor structure tangent vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ blend circle closed_figure from_file goal impulses interpolation
         joint_motion=trajectories.joint_motion joint_quintic joint_sinusoids joint_waypoints kinds=trajectories.kinds
         line lissajous nearest posture quintic sampled_curve segment shaped shifted square table

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from runner.compiled import cache, program
 from runner.compiled.motion import CompiledStep
 from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.symbolic import cache, program
 
 MACRO = RobotModel(read_urdf(find_urdf("macro.urdf"), {}), "tip")
 

@@ -8,9 +8,9 @@ import sys
 import pytest
 
 from runner.base.paths import conf_dir, robots_dir
-from runner.compiled import cache
 from runner.recall import answers, runs
 from runner.recall.basis import basis
+from runner.symbolic import cache
 
 LINE = ("robot=macro", "plant=rk4", "duration=0.05")
 OWN = ("--config-dir", "mine", "robot=arm", *LINE[1:])

@@ -35,7 +35,7 @@ def tab(line, monkeypatch, arguments=("-sc", "query=bash")):
 def own_place(tmp_path, tmp_path_factory, monkeypatch):
     monkeypatch.chdir(tmp_path)
     place = tmp_path_factory.mktemp("cache")
-    monkeypatch.setattr("runner.compiled.cache.folder", lambda: place)
+    monkeypatch.setattr("runner.symbolic.cache.folder", lambda: place)
     robots = tmp_path / "bad" / "robot"
     robots.mkdir(parents=True)
     (robots / "broken.yaml").write_text("a: [1\nb: }")

@@ -18,7 +18,7 @@ def words(line):
 def own_place(tmp_path, tmp_path_factory, monkeypatch):
     monkeypatch.chdir(tmp_path)
     place = tmp_path_factory.mktemp("cache")
-    monkeypatch.setattr("runner.compiled.cache.folder", lambda: place)
+    monkeypatch.setattr("runner.symbolic.cache.folder", lambda: place)
 
 
 @pytest.fixture

@@ -9,11 +9,11 @@ import pytest
 
 import runner
 from runner.comparison.pairs import MOST_PAIRS
-from runner.compiled.engine import evaluator
 from runner.execution import run
 from runner.metrics.summary import MOST_LISTED
 from runner.store import DamagedError, open_run
 from runner.sweeps.measurements import measure_sweep
+from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="so many repetitions are compiled as a whole by llvmlite")
 MANY = MOST_LISTED + 1

@@ -17,7 +17,6 @@ from support.patience import PATIENCE
 from runner import store
 from runner.base.errors import ConfigError, RunnerError, StoreError
 from runner.compiled.closed_loop import CommandsRun
-from runner.compiled.engine import evaluator
 from runner.loop.command import Command
 from runner.sweeps import lock, work
 from runner.sweeps.deadline import TimeLimitError
@@ -25,6 +24,7 @@ from runner.sweeps.grid import plan_sweep
 from runner.sweeps.pace import Estimate
 from runner.sweeps.rules import one_in
 from runner.sweeps.run import Engine
+from runner.symbolic.engine import evaluator
 
 DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "trajectory=quintic", "duration=1")
 PERIODS = "controller.period=0.01,0.06"  # the second one diverges

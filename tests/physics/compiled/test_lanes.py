@@ -5,8 +5,8 @@ import pytest
 
 from runner.assembly import assemble
 from runner.compiled.closed_loop import run_all
-from runner.compiled.engine import evaluator
-from runner.compiled.program import LANES, Frame
+from runner.symbolic.engine import evaluator
+from runner.symbolic.program import LANES, Frame
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a whole by llvmlite")
 

@@ -7,8 +7,8 @@ import pytest
 
 from runner.compiled.closed_loop import CompiledCommands
 from runner.compiled.commands import Commands, LoopCode
-from runner.compiled.engine import evaluator
 from runner.sensing import EncoderNoise
+from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="laws are compiled by llvmlite")
 BENT, FOLDED = np.array([0.3, 0.4, 0.2]), np.array([0.0, 0.0, np.pi / 2])  # rad; the tip's Jacobian is singular folded

@@ -10,11 +10,11 @@ from runner.assembly import assemble
 from runner.base.errors import ConfigError
 from runner.compiled.closed_loop import Whole
 from runner.config.compose import compose
-from runner.controllers.maths import FLOATS
 from runner.controllers.notch import Notch, NotchedController
 from runner.loop.sensors import make_encoders
 from runner.simulation import simulate
 from runner.store import simulated_part
+from runner.symbolic.maths import FLOATS
 
 H, F, WIDTH = 0.002, 5.0, 2.0
 MOVE = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "duration=0.4", "noise=none", "plant=rk4")

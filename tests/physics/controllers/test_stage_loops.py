@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from runner.assembly import assemble
-from runner.controllers.maths import FLOATS
 from runner.controllers.stage_loops import CarrierController, RiderController, rider_moves
 from runner.loop.sensors import make_encoders
 from runner.robots.robot import end_points
 from runner.simulation import simulate
+from runner.symbolic.maths import FLOATS
 
 REACH = 0.2
 

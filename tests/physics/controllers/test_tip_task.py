@@ -8,10 +8,10 @@ from support.arms import checked
 from support.strangers import X, Y, Z
 
 from runner.base.errors import ConfigError
-from runner.controllers.maths import FLOATS
 from runner.controllers.tip_task import TipTask, held_orientation, task_start
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots import RobotModel
+from runner.symbolic.maths import FLOATS
 
 ROBOT = checked("robot=xarm7", "controller=operational_space").arm
 XARM7, HOME = ROBOT.model, ROBOT.home

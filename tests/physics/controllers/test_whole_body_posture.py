@@ -5,8 +5,8 @@ import pytest
 from support.arms import checked
 from support.physics import assert_passive
 
-from runner.controllers.maths import FLOATS
 from runner.controllers.whole_body_posture import HeldJoints, HeldPosture, drawn_to, without_tip_motion
+from runner.symbolic.maths import FLOATS
 
 XARM7 = checked("robot=xarm7", "controller=operational_space").arm
 MODEL, HOME, OMEGA = XARM7.model, XARM7.home, 12.0

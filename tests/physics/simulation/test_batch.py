@@ -9,11 +9,11 @@ from support.arms import checked
 from runner import batch
 from runner.assembly import assemble
 from runner.batch import Batcher, Together
-from runner.compiled.engine import evaluator
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.loop.sensors import make_encoders
 from runner.simulation import simulate
+from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a whole by llvmlite")
 SCENE = "robot=macro", "plant=rk4", "controller=operational_space", "trajectory=quintic", "duration=0.4"

@@ -9,10 +9,10 @@ import pytest
 from runner import batch_blocks
 from runner.batch import Batcher
 from runner.batch_blocks import MOST_THREADS, simulate_blocks
-from runner.compiled.engine import evaluator
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.store.writing import make_record
+from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a whole by llvmlite")
 SCENE = "robot=macro", "plant=rk4", "controller=operational_space", "noise=thesis", "torque_limits=thesis"

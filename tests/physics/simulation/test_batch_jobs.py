@@ -4,11 +4,11 @@ import pytest
 
 from runner.batch import Batcher
 from runner.batch_jobs import simulate_together
-from runner.compiled.engine import evaluator
 from runner.config.compose import compose
 from runner.config.validation import validate
 from runner.job import simulate_job
 from runner.store.writing import make_record
+from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a whole by llvmlite")
 SCENE = "robot=macro", "plant=rk4", "controller=operational_space", "noise=thesis", "torque_limits=thesis"

@@ -9,10 +9,10 @@ from support import strangers
 from support.arms import checked
 from support.strangers import X, Y, Z
 
-from runner.compiled.algebra import ArmAlgebra, Factors
-from runner.compiled.arm import constants_of
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots import RobotModel
+from runner.symbolic.algebra import ArmAlgebra, Factors
+from runner.symbolic.arm import constants_of
 
 OURS = ("macro", "mini", "combined", "xarm7", "meca500", "geared")
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from runner.compiled.code import ACTING, GIVEN, ROWS, SCRATCH, STATE, Block, Repeat
-from runner.compiled.expression import (
+from runner.symbolic.code import ACTING, GIVEN, ROWS, SCRATCH, STATE, Block, Repeat
+from runner.symbolic.expression import (
     absolute,
     both,
     equal,
@@ -17,7 +17,7 @@ from runner.compiled.expression import (
     select,
     sqrt,
 )
-from runner.compiled.program import Expressed, program
+from runner.symbolic.program import Expressed, program
 
 WIDTHS = {"given": 2, "rows": 3, "state": 2, "scratch": 4, "pars": 1, "table": 3}
 A, B = place(GIVEN, 0), place(GIVEN, 1)
@@ -106,7 +106,7 @@ def test_a_table_has_a_row_for_each_turn():
 
 
 def test_what_stands_twice_is_computed_once():
-    from runner.compiled.code import written
+    from runner.symbolic.code import written
 
     text = written([Block([(ROWS, 0, (A + B) * (A + B)), (ROWS, 1, A + B)])], [], WIDTHS, 1)
     assert (text.count("fadd"), text.count("fmul")) == (1, 1)

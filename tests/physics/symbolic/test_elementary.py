@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from runner.compiled.code import GIVEN, ROWS, Block
-from runner.compiled.elementary import angle_of, sine_cosine
-from runner.compiled.places import Places
-from runner.compiled.program import Expressed, program
+from runner.symbolic.code import GIVEN, ROWS, Block
+from runner.symbolic.elementary import angle_of, sine_cosine
+from runner.symbolic.places import Places
+from runner.symbolic.program import Expressed, program
 
 
 def computed(pattern, express, given):

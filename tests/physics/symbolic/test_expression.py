@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.compiled.expression import Expression, in_order, place, select
+from runner.symbolic.expression import Expression, in_order, place, select
 
 
 def test_zeros_and_ones_leave_nothing_behind():

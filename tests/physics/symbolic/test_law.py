@@ -9,14 +9,15 @@ from support import strangers
 from support.arms import checked
 
 from runner.base.errors import SimulationError
-from runner.compiled import compile, program
+from runner.compiled import compile
 from runner.compiled.closed_loop import CompiledCommands
 from runner.compiled.commands import Commands, LoopCode
-from runner.compiled.structure import CannotCompileError, pattern_of
 from runner.controllers import Loop
 from runner.controllers.torque_law import TorqueLaw
 from runner.plugins.guard.controller import WatchedController
 from runner.sensing import EncoderNoise
+from runner.symbolic import program
+from runner.symbolic.structure import CannotCompileError, pattern_of
 
 LAWS = ("adaptive", "joint_pid", "passivity", "sliding_mode")
 CASES = [
@@ -147,7 +148,7 @@ def test_numbers_are_parameters_and_zeros_are_not(monkeypatch):
     config = configured("macro", "operational_space", "controller.natural_frequency=25.0")
     measured = states(config.arm.model, config.arm.home)
     compiled_torques(law, measured)
-    monkeypatch.setattr("runner.compiled.closed_loop.Expressed", None)  # nothing is expressed any more
+    monkeypatch.setattr("runner.symbolic.closed_loop.Expressed", None)  # nothing is expressed any more
     assert_agree(other, other, measured)
 
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from runner.compiled.code import ACTING, GIVEN, PARS, ROWS, STATE, Block, Repeat
-from runner.compiled.elementary import sine_cosine
-from runner.compiled.expression import absolute, expression, floor, less, place, rounded, select, sqrt
-from runner.compiled.program import Expressed, program
-from runner.compiled.tangent import with_tangents
+from runner.symbolic.code import ACTING, GIVEN, PARS, ROWS, STATE, Block, Repeat
+from runner.symbolic.elementary import sine_cosine
+from runner.symbolic.expression import absolute, expression, floor, less, place, rounded, select, sqrt
+from runner.symbolic.program import Expressed, program
+from runner.symbolic.tangent import with_tangents
 
 WIDTHS = {"given": 1, "rows": 1, "state": 1, "scratch": 1, "pars": 1, "table": 3}
 A = place(PARS, 0)

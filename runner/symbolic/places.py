@@ -1,11 +1,11 @@
 """Where the numbers of a program stand: side by side, in the order in which they were asked for."""
 
-from runner.compiled.code import GIVEN, PARS, ROWS, SCRATCH, STATE, TABLE
-from runner.compiled.expression import Expression, place
+from runner.symbolic.code import GIVEN, PARS, ROWS, SCRATCH, STATE, TABLE
+from runner.symbolic.expression import Expression, place
 
 
 class Places:
-    """Places in the spaces of one program; see runner/compiled/code.py."""
+    """Places in the spaces of one program; see runner/symbolic/code.py."""
 
     def __init__(self) -> None:
         self.widths = {GIVEN: 0, ROWS: 0, STATE: 0, SCRATCH: 0, PARS: 0, TABLE: 3}

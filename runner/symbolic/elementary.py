@@ -7,7 +7,7 @@ Functions, 1980), good for |x| up to some 10^6 rad. A joint beyond that has dive
 
 import math
 
-from runner.compiled.expression import Value, absolute, equal, floor, less, rounded, select
+from runner.symbolic.expression import Value, absolute, equal, floor, less, rounded, select
 
 _PI_2 = (1.57079632673412561417e00, 6.07710050630396597660e-11, 2.02226624879595063154e-21)
 _SINE = (

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from runner.compiled.expression import Expression, expression, in_order
+from runner.symbolic.expression import Expression, expression, in_order
 
 GIVEN, ACTING, ROWS, STATE, SCRATCH, PARS, TABLE = "given", "acting", "rows", "state", "scratch", "pars", "table"
 ARRAYS = (GIVEN, ROWS, STATE, SCRATCH, PARS, TABLE)

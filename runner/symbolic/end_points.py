@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from runner.compiled.algebra import ArmAlgebra
-from runner.compiled.arm import ArmConstants, constants_of
-from runner.compiled.expression import Value
-from runner.compiled.vectors import Matrix, Vector, add, product
 from runner.robots.robot import Robot, StageBase
+from runner.symbolic.algebra import ArmAlgebra
+from runner.symbolic.arm import ArmConstants, constants_of
+from runner.symbolic.expression import Value
+from runner.symbolic.vectors import Matrix, Vector, add, product
 
 
 class PointScalars(NamedTuple):

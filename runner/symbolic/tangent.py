@@ -8,9 +8,9 @@ torque does not change with what asked for it, and sines are those of their own 
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from runner.compiled.code import ACTING, ROWS, TABLE, Block, Part, Repeat
-from runner.compiled.expression import Expression, Value, expression, in_order, less, place, select
-from runner.compiled.program import Expressed
+from runner.symbolic.code import ACTING, ROWS, TABLE, Block, Part, Repeat
+from runner.symbolic.expression import Expression, Value, expression, in_order, less, place, select
+from runner.symbolic.program import Expressed
 
 _STEPS = ("less", "equal", "and", "not", "rint", "floor", "constant")
 

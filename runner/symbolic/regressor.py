@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from runner.compiled.arm import Body
-from runner.compiled.vectors import (
+from runner.symbolic.arm import Body
+from runner.symbolic.vectors import (
     Matrix,
     Scalar,
     Vector,

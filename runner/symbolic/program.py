@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.paths import package_dir
-from runner.compiled import cache as kept
-from runner.compiled.code import GIVEN, PARS, ROWS, SCRATCH, STATE, TABLE, Part, written
-from runner.compiled.engine import Function, evaluator, load, machine_code, processor
+from runner.symbolic import cache as kept
+from runner.symbolic.code import GIVEN, PARS, ROWS, SCRATCH, STATE, TABLE, Part, written
+from runner.symbolic.engine import Function, evaluator, load, machine_code, processor
 
 FloatArray = NDArray[np.float64]
 LANES = 8
@@ -24,7 +24,7 @@ STAGES = np.array([[0.5, 1.0, 1.0], [0.5, 1.0, 2.0], [1.0, 1.0, 2.0], [0.0, 0.0,
 
 @dataclass(frozen=True)
 class Expressed:
-    """A program as expressions; see runner/compiled/code.py.
+    """A program as expressions; see runner/symbolic/code.py.
 
     Attributes:
         ticks: What each tick does.

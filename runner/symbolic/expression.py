@@ -17,7 +17,7 @@ class Expression:
     """What is computed by one operation from others; goes through NumPy's operators on arrays of objects.
 
     Attributes:
-        operation: Its name; see runner/compiled/code.py.
+        operation: Its name; see runner/symbolic/code.py.
         operands: What it is computed from: expressions, and for a constant or a place its number.
     """
 

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from runner.base.errors import RunnerError
-from runner.compiled.arm import constants_of, known
-from runner.compiled.vectors import Scalar, as_array
 from runner.controllers.torque_law import TorqueLaw
 from runner.robots.model import RobotModel
+from runner.symbolic.arm import constants_of, known
+from runner.symbolic.vectors import Scalar, as_array
 
 
 class CannotCompileError(RunnerError):

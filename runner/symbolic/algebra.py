@@ -2,10 +2,10 @@
 
 from collections.abc import Callable
 
-from runner.compiled.arm import ArmConstants, Body
-from runner.compiled.elementary import sine_cosine
-from runner.compiled.regressor import Moved, regressor
-from runner.compiled.vectors import (
+from runner.symbolic.arm import ArmConstants, Body
+from runner.symbolic.elementary import sine_cosine
+from runner.symbolic.regressor import Moved, regressor
+from runner.symbolic.vectors import (
     Matrix,
     Scalar,
     Vector,
