@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 import runner
 from bench.robot_pictures import robots
 from runner.controllers.graph import ControlGraph, Edge, Node
-from runner.controllers.operational_space_graph import operational_space_graph
+from runner.controllers.operational_space.operational_space_graph import operational_space_graph
 from runner.drawing import block_diagram, palette
 from runner.drawing.canvas import GREY, INK, drawing
 

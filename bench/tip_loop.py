@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.config.run import RunConfig
-from runner.controllers.operational_space import OperationalSpaceConfig
-from runner.controllers.whole_body import WholeBodyConfig
+from runner.controllers.operational_space.operational_space import OperationalSpaceConfig
+from runner.controllers.operational_space.whole_body import WholeBodyConfig
 from runner.loop.closed_loop import ClosedLoop
 from runner.loop.sensors import make_encoders
 
@@ -65,7 +65,7 @@ def tip_loop(config: RunConfig, closed: ClosedLoop) -> TipLoop:
     numbers = np.array([law.natural_frequency, law.null_space_frequency, law.damping_ratio], dtype=float)
     frequency, posture, damping = numbers.tolist()
     (encoders,) = make_encoders(closed, config.noise, config.settings.seed, 0)
-    first_held = 0 if len(robot.stages) == 1 else 3  # as in runner/controllers/whole_body.py
+    first_held = 0 if len(robot.stages) == 1 else 3  # as in runner/controllers/operational_space/whole_body.py
     return TipLoop(
         urdf=robot.urdf,
         tip=robot.model.tip_name,

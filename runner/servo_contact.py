@@ -14,7 +14,7 @@ import pinocchio as pin
 from scipy.linalg import expm
 
 from runner.base.trace import FloatArray
-from runner.controllers.admittance_filter import Admittance, discretise
+from runner.controllers.force.admittance_filter import Admittance, discretise
 from runner.plants.servo import ServoLaw
 from runner.robots.robot import Robot
 from runner.robots.tool_link import find_tool

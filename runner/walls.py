@@ -4,7 +4,7 @@ import math
 
 from runner.base.errors import ConfigError
 from runner.config.run import RunConfig
-from runner.controllers.admittance_stability import check_wall
+from runner.controllers.force.admittance_stability import check_wall
 from runner.controllers.kinds import ChecksStability
 from runner.environments import Environment
 from runner.environments.wall import Wall

@@ -9,20 +9,20 @@ import numpy as np
 from runner.base.trace import FloatArray
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS
-from runner.controllers.adaptive import Adaptive, AdaptiveConfig
-from runner.controllers.admittance import AdmittanceConfig
-from runner.controllers.computed_torque import ComputedTorqueConfig
-from runner.controllers.differential_inverse_kinematics import DifferentialInverseKinematicsConfig
-from runner.controllers.hybrid_force import HybridForceConfig
-from runner.controllers.iterative_learning import IterativeLearningConfig
-from runner.controllers.joint_law import JointLawConfig
-from runner.controllers.joint_pid import JointPidConfig
-from runner.controllers.macro_mini import MacroMiniConfig
-from runner.controllers.operational_space import OperationalSpaceConfig
-from runner.controllers.passivity import PassivityConfig
-from runner.controllers.sliding_mode import SlidingModeConfig
+from runner.controllers.force.admittance import AdmittanceConfig
+from runner.controllers.force.hybrid_force import HybridForceConfig
+from runner.controllers.joint_space.adaptive import Adaptive, AdaptiveConfig
+from runner.controllers.joint_space.computed_torque import ComputedTorqueConfig
+from runner.controllers.joint_space.iterative_learning import IterativeLearningConfig
+from runner.controllers.joint_space.joint_law import JointLawConfig
+from runner.controllers.joint_space.joint_pid import JointPidConfig
+from runner.controllers.joint_space.passivity import PassivityConfig
+from runner.controllers.joint_space.sliding_mode import SlidingModeConfig
+from runner.controllers.kinematic.differential_inverse_kinematics import DifferentialInverseKinematicsConfig
+from runner.controllers.macro_mini.macro_mini import MacroMiniConfig
+from runner.controllers.operational_space.operational_space import OperationalSpaceConfig
+from runner.controllers.operational_space.whole_body import WholeBodyConfig
 from runner.controllers.torque_law import PinocchioArm
-from runner.controllers.whole_body import WholeBodyConfig
 from runner.robots.effective_mass import mass_along, tip_mobility
 from runner.schema.per_stage import by_stage
 from runner.trajectories.trajectory import joint_reference

@@ -6,8 +6,8 @@ import numpy as np
 
 from runner.base.trace import FloatArray
 from runner.config.run import RunConfig
-from runner.controllers.force_stability import touch_radius
-from runner.controllers.hybrid_force import HybridForceConfig
+from runner.controllers.force.force_stability import touch_radius
+from runner.controllers.force.hybrid_force import HybridForceConfig
 from runner.controllers.kinds import LeadsByForce
 from runner.environments.wall import WallConfig
 from runner.plants import PLANTS

@@ -4,7 +4,7 @@ import numpy as np
 
 from runner.base.errors import ConfigError
 from runner.config.run import RunConfig
-from runner.controllers.motor_pd import MotorPdConfig
+from runner.controllers.joint_space.motor_pd import MotorPdConfig
 from runner.plants import Plant
 from runner.plants.decoupled import TorquePlantConfig
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints, links_of

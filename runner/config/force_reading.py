@@ -2,7 +2,7 @@
 
 from runner.base.errors import ConfigError
 from runner.config.run import RunConfig
-from runner.controllers.hybrid_force import HybridForceConfig
+from runner.controllers.force.hybrid_force import HybridForceConfig
 
 
 def check_reading(config: RunConfig) -> None:

@@ -5,21 +5,21 @@ from runner.controllers.kinds import ControllerConfig, Controllers
 
 CONTROLLERS = Controllers(
     {
-        "adaptive": "runner.controllers.adaptive",
-        "admittance": "runner.controllers.admittance",
-        "computed_torque": "runner.controllers.computed_torque",
-        "differential_inverse_kinematics": "runner.controllers.differential_inverse_kinematics",
-        "hybrid_force": "runner.controllers.hybrid_force",
-        "impedance": "runner.controllers.impedance",
-        "iterative_learning": "runner.controllers.iterative_learning",
-        "joint_pd": "runner.controllers.joint_pd",
-        "joint_pid": "runner.controllers.joint_pid",
-        "macro_mini": "runner.controllers.macro_mini",
-        "motor_pd": "runner.controllers.motor_pd",
-        "operational_space": "runner.controllers.operational_space",
-        "passivity": "runner.controllers.passivity",
-        "sliding_mode": "runner.controllers.sliding_mode",
-        "whole_body": "runner.controllers.whole_body",
+        "adaptive": "runner.controllers.joint_space.adaptive",
+        "admittance": "runner.controllers.force.admittance",
+        "computed_torque": "runner.controllers.joint_space.computed_torque",
+        "differential_inverse_kinematics": "runner.controllers.kinematic.differential_inverse_kinematics",
+        "hybrid_force": "runner.controllers.force.hybrid_force",
+        "impedance": "runner.controllers.force.impedance",
+        "iterative_learning": "runner.controllers.joint_space.iterative_learning",
+        "joint_pd": "runner.controllers.joint_space.joint_pd",
+        "joint_pid": "runner.controllers.joint_space.joint_pid",
+        "macro_mini": "runner.controllers.macro_mini.macro_mini",
+        "motor_pd": "runner.controllers.joint_space.motor_pd",
+        "operational_space": "runner.controllers.operational_space.operational_space",
+        "passivity": "runner.controllers.joint_space.passivity",
+        "sliding_mode": "runner.controllers.joint_space.sliding_mode",
+        "whole_body": "runner.controllers.operational_space.whole_body",
     }
 )
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 from typing import Protocol, runtime_checkable
 
 from runner.base.errors import ConfigError
-from runner.controllers.admittance_filter import Admittance
 from runner.controllers.controller import Controller, FloatArray, Loop, PositionController
+from runner.controllers.force.admittance_filter import Admittance
 from runner.plugins.guard import WatchedController, watch_loops
 from runner.plugins.guard.faults import find_fault
 from runner.plugins.registry import KindConfig, Registry

@@ -32,14 +32,17 @@ _TABLE = """
         endpoint_sensor flexible_joints=config.flexible_joints flexible_links=config.flexible_links
         force_reading=config.force_reading groups input_shaper joint_limits noise notch=config.notch parsing payload
         plugged reach repeats robot=config.robot run settings start timing torque_limits validation
-    controllers: __init__=controllers.__init__ adaptive admittance admittance_filter admittance_stability approach
-        computed_torque controller=controllers.controller differential_inverse_kinematics
-        disturbance_observer=controllers.disturbance_observer force_reading=controllers.force_reading force_stability
-        graph hybrid_force impedance inertial_damping iterative_learning joint_law
-        joint_motion=controllers.joint_motion joint_pd joint_pid kinds=controllers.kinds late_stability limited_motion
-        macro_mini macro_mini_graph motor_pd notch=controllers.notch notch_config null_space operational_space
-        operational_space_graph passivity resolved_rate sampled_stability sliding_mode stage_law stage_loops tip_force
-        tip_task torque_law whole_body whole_body_graph whole_body_posture wrist
+    controllers: __init__=controllers.__init__ controller=controllers.controller
+        disturbance_observer=controllers.disturbance_observer graph kinds=controllers.kinds notch=controllers.notch
+        notch_config sampled_stability torque_law
+    controllers/force: admittance admittance_filter admittance_stability force_reading=controllers.force_reading
+        force_stability hybrid_force impedance late_stability tip_force wrist
+    controllers/joint_space: adaptive computed_torque iterative_learning joint_law
+        joint_motion=controllers.joint_motion joint_pd joint_pid motor_pd passivity sliding_mode
+    controllers/kinematic: approach differential_inverse_kinematics limited_motion resolved_rate
+    controllers/macro_mini: inertial_damping macro_mini macro_mini_graph stage_law stage_loops
+    controllers/operational_space: null_space operational_space operational_space_graph tip_task whole_body
+        whole_body_graph whole_body_posture
     environments: __init__=environments.__init__ environment=environments.environment free hand interaction push
         pushed_links wall
     loop: acting closed_loop=loop.closed_loop command compiled_loop contact=loop.contact drive endpoint=loop.endpoint

@@ -9,7 +9,7 @@ import pytest
 from support.arms import model_of, urdf_of
 
 from runner.controllers.graph import ControlGraph, Edge, Node
-from runner.controllers.operational_space_graph import operational_space_graph
+from runner.controllers.operational_space.operational_space_graph import operational_space_graph
 from runner.drawing import arm_motion, block_diagram, frame_assignment, top_view, workspace_sphere
 from runner.drawing.arm import _nearest
 from runner.drawing.canvas import Camera, circle

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.controllers.admittance_filter import Admittance, discretise
 from runner.controllers.controller import FloatArray
+from runner.controllers.force.admittance_filter import Admittance, discretise
 
 ComplexArray = NDArray[np.complex128]
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.controllers.admittance_filter import AdmittanceFilter
+from runner.controllers.force.admittance_filter import AdmittanceFilter
 from runner.store import Run
 from runner.works.meca500.figures import law_of, wrenches
 

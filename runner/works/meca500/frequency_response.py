@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from runner.controllers.admittance_filter import AXES
+from runner.controllers.force.admittance_filter import AXES
 from runner.reporting.document import FloatArray, Panel, Series
 from runner.reporting.run_values import clock
 from runner.store import Run

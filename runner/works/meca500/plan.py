@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.controllers.admittance_filter import Admittance
-from runner.controllers.admittance_stability import stiffest_wall
+from runner.controllers.force.admittance_filter import Admittance
+from runner.controllers.force.admittance_stability import stiffest_wall
 from runner.reporting.job import Job, Jobs
 from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.works.grid import Overrides

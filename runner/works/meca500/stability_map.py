@@ -10,7 +10,7 @@ import numpy as np
 from runner.base.quantities import number
 from runner.caveats.touch import servo_contact
 from runner.config.validation import validate
-from runner.controllers.admittance_stability import stiffest_wall
+from runner.controllers.force.admittance_stability import stiffest_wall
 from runner.reporting.document import Panel, Series
 from runner.reporting.figures import joint_columns
 from runner.reporting.prose.patterns import found

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from runner.base.quantities import quantity
-from runner.controllers.admittance_filter import AXES
+from runner.controllers.force.admittance_filter import AXES
 from runner.reporting.document import FloatArray, Panel, Series
 from runner.reporting.figures import joint_columns, model_of
 from runner.reporting.run_values import clock

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.linalg import solve_discrete_lyapunov
 
 from runner.base.quantities import number
-from runner.controllers.admittance_filter import AXES, discretise
+from runner.controllers.force.admittance_filter import AXES, discretise
 from runner.reporting.document import FloatArray, Series, Table
 from runner.reporting.figures import joint_columns, origin
 from runner.reporting.measured import Measured

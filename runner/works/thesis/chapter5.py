@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from runner.base.quantities import spread
-from runner.controllers.macro_mini_graph import macro_mini_graph
-from runner.controllers.whole_body_graph import whole_body_graph
+from runner.controllers.macro_mini.macro_mini_graph import macro_mini_graph
+from runner.controllers.operational_space.whole_body_graph import whole_body_graph
 from runner.drawing import block_diagram, control_steps
 from runner.reporting.document import Curves, Picture
 from runner.reporting.figures import origin

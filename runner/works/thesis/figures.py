@@ -7,7 +7,7 @@ import numpy as np
 
 from runner.base.quantities import above_rounding
 from runner.claims import load_claims
-from runner.controllers.operational_space_graph import operational_space_graph
+from runner.controllers.operational_space.operational_space_graph import operational_space_graph
 from runner.drawing import block_diagram, frame_assignment
 from runner.reporting.document import Block, Curves, FloatArray, Picture, Table, Text
 from runner.reporting.figures import columns, joint_columns, model_of, origin

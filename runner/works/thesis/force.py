@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.controllers.force_stability import force_loop_limit
+from runner.controllers.force.force_stability import force_loop_limit
 from runner.reporting.document import FloatArray, Series
 from runner.reporting.figures import columns, joint_columns, model_of
 from runner.reporting.prose.patterns import found

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from runner.controllers.force_stability import force_loop_limit
+from runner.controllers.force.force_stability import force_loop_limit
 from runner.reporting.document import FloatArray, Series
 from runner.reporting.figures import model_of
 from runner.reporting.run_values import median

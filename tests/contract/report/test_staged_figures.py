@@ -8,8 +8,8 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch, Polygon
 
-from runner.controllers.macro_mini_graph import macro_mini_graph
-from runner.controllers.whole_body_graph import whole_body_graph
+from runner.controllers.macro_mini.macro_mini_graph import macro_mini_graph
+from runner.controllers.operational_space.whole_body_graph import whole_body_graph
 from runner.drawing import block_diagram, frame_assignment
 from runner.drawing.control_steps import control_steps, steps
 from runner.drawing.stills import draw

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from support.physics import assert_energy_kept
 
 from runner.base.errors import ConfigError
-from runner.controllers.admittance_filter import Admittance, AdmittanceFilter, discretise
+from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter, discretise
 from runner.sensing.wrench import wrench_transform
 from runner.works.meca500.admittance_response import step_response
 

@@ -5,8 +5,8 @@ import pytest
 from support.covers import covered
 
 from runner.base.errors import ConfigError
-from runner.controllers.admittance_filter import Admittance, AdmittanceFilter
-from runner.controllers.admittance_stability import check_wall, spectral_radius, stiffest_wall
+from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter
+from runner.controllers.force.admittance_stability import check_wall, spectral_radius, stiffest_wall
 
 LAW = Admittance(np.full(6, 2.0), np.full(6, 60.0), np.array([0.0, 300.0, 300.0, 0.0, 0.0, 0.0]))
 CONTACTS = {

@@ -7,7 +7,7 @@ from support.covers import covered
 from support.physics import assert_order
 
 from runner.base.errors import ConfigError
-from runner.controllers.computed_torque import ComputedTorque, ComputedTorqueConfig, build
+from runner.controllers.joint_space.computed_torque import ComputedTorque, ComputedTorqueConfig, build
 
 ARMS = {
     name: checked(f"robot={name}", "controller=computed_torque", "trajectory=goal").arm

@@ -114,7 +114,7 @@ YIELDING = POSITIONS.replace(
         check_stability: bool
         @property
         def law(self):
-            from runner.controllers.admittance_filter import Admittance
+            from runner.controllers.force.admittance_filter import Admittance
             return Admittance(np.full(6, 1e-3), np.full(6, 0.1), np.full(6, 1.0))
 """,
 )

@@ -9,7 +9,7 @@ from support.motions import to_and_fro, write_joints
 
 from runner.assembly import assemble
 from runner.base.errors import ConfigError
-from runner.controllers.iterative_learning import IterativeLearning, IterativeLearningConfig
+from runner.controllers.joint_space.iterative_learning import IterativeLearning, IterativeLearningConfig
 from runner.execution import run
 from runner.loop.sensors import make_encoders
 from runner.robots.model import RobotModel

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.arms import checked
 
-from runner.controllers.joint_pd import JointPd, JointPdConfig
+from runner.controllers.joint_space.joint_pd import JointPd, JointPdConfig
 
 ARMS = {name: checked(f"robot={name}", "controller=joint_pd", "trajectory=goal").arm for name in ("macro", "xarm7")}
 

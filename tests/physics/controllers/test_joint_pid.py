@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.arms import checked
 
-from runner.controllers.joint_pid import JointPid, JointPidConfig
+from runner.controllers.joint_space.joint_pid import JointPid, JointPidConfig
 
 ARM = checked("robot=xarm7", "controller=joint_pid", "trajectory=goal").arm
 LINE = ("robot=macro", "controller=joint_pid", "controller.period=0.001", "plant=rk4")

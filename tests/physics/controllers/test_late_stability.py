@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from runner.assembly import assemble
-from runner.controllers.force_stability import force_loop_radius
-from runner.controllers.late_stability import delay_limit, miss_limit, miss_radius, pattern_limit
+from runner.controllers.force.force_stability import force_loop_radius
+from runner.controllers.force.late_stability import delay_limit, miss_limit, miss_radius, pattern_limit
 from runner.loop.sensors import make_sensors
 from runner.simulation import simulate
 

@@ -5,7 +5,8 @@ import pytest
 from support.covers import covered
 
 from runner.base.errors import ConfigError
-from runner.controllers import CONTROLLERS, macro_mini
+from runner.controllers import CONTROLLERS
+from runner.controllers.macro_mini import macro_mini
 from runner.robots.robot import end_points
 
 P = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # from the Mini's base into the Macro's tip frame

@@ -9,7 +9,7 @@ from support.covers import every_case, name_of, pairwise
 from support.graph_layout import assert_loop_closed, check_structure, check_texts, check_ways
 
 from runner.controllers import CONTROLLERS
-from runner.controllers.macro_mini_graph import macro_mini_graph
+from runner.controllers.macro_mini.macro_mini_graph import macro_mini_graph
 from runner.robots.robot import StageBase
 
 CHOICES = {

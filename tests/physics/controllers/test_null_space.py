@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import approx_fprime
 
-from runner.controllers.null_space import (
+from runner.controllers.operational_space.null_space import (
     NullSpaceConfig,
     NullSpaceTask,
     log_manipulability_gradient,

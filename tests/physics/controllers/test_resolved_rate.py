@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from runner.controllers.resolved_rate import ResolvedRate
+from runner.controllers.kinematic.resolved_rate import ResolvedRate
 
 FREE = np.full(7, np.inf)
 

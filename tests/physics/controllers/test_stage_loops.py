@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runner.assembly import assemble
-from runner.controllers.stage_loops import CarrierController, RiderController, rider_moves
+from runner.controllers.macro_mini.stage_loops import CarrierController, RiderController, rider_moves
 from runner.loop.sensors import make_encoders
 from runner.robots.robot import end_points
 from runner.simulation import simulate

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from runner.controllers.tip_force import TipForce
-from runner.controllers.whole_body import WholeBody, WholeBodyLaw
+from runner.controllers.force.tip_force import TipForce
+from runner.controllers.operational_space.whole_body import WholeBody, WholeBodyLaw
 
 
 def law(**changes):

@@ -8,7 +8,7 @@ from support.arms import checked
 from support.strangers import X, Y, Z
 
 from runner.base.errors import ConfigError
-from runner.controllers.tip_task import TipTask, held_orientation, task_start
+from runner.controllers.operational_space.tip_task import TipTask, held_orientation, task_start
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots import RobotModel
 from runner.symbolic.maths import FLOATS

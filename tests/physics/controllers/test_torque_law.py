@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from runner.controllers.operational_space import OperationalSpace
-from runner.controllers.stage_law import StageLaw
+from runner.controllers.macro_mini.stage_law import StageLaw
+from runner.controllers.operational_space.operational_space import OperationalSpace
 from runner.controllers.torque_law import PinocchioArm, structure_of
 
 NUMBERS = (30.0, 1.0, True, True, 0.3)

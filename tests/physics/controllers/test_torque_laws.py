@@ -14,12 +14,12 @@ from support import strangers
 from support.arms import checked
 from support.physics import assert_agree, assert_order, critically_damped, linear_design, torque_of
 
-from runner.controllers.computed_torque import ComputedTorqueConfig
-from runner.controllers.computed_torque import build as build_computed_torque
-from runner.controllers.operational_space import OperationalSpaceConfig
-from runner.controllers.operational_space import build as build_operational_space
-from runner.controllers.whole_body import WholeBody, WholeBodyConfig
-from runner.controllers.whole_body import build as build_whole_body
+from runner.controllers.joint_space.computed_torque import ComputedTorqueConfig
+from runner.controllers.joint_space.computed_torque import build as build_computed_torque
+from runner.controllers.operational_space.operational_space import OperationalSpaceConfig
+from runner.controllers.operational_space.operational_space import build as build_operational_space
+from runner.controllers.operational_space.whole_body import WholeBody, WholeBodyConfig
+from runner.controllers.operational_space.whole_body import build as build_whole_body
 from runner.plants.rk4 import Rk4
 from runner.robots.task_space import task_directions
 

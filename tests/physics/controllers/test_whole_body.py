@@ -9,8 +9,8 @@ from support.arms import checked, model_of
 from support.physics import assert_agree, assert_passive, critically_damped, linear_design, torque_of
 
 from runner.base.errors import ConfigError
-from runner.controllers.operational_space import OperationalSpace
-from runner.controllers.whole_body import WholeBody, WholeBodyConfig, build
+from runner.controllers.operational_space.operational_space import OperationalSpace
+from runner.controllers.operational_space.whole_body import WholeBody, WholeBodyConfig, build
 from runner.plants.rk4 import Rk4
 from runner.robots import RobotModel
 

@@ -5,7 +5,12 @@ import pytest
 from support.arms import checked
 from support.physics import assert_passive
 
-from runner.controllers.whole_body_posture import HeldJoints, HeldPosture, drawn_to, without_tip_motion
+from runner.controllers.operational_space.whole_body_posture import (
+    HeldJoints,
+    HeldPosture,
+    drawn_to,
+    without_tip_motion,
+)
 from runner.symbolic.maths import FLOATS
 
 XARM7 = checked("robot=xarm7", "controller=operational_space").arm

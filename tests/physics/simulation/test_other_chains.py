@@ -9,12 +9,12 @@ from support import strangers
 
 from runner.assembly import assemble, metric_context
 from runner.base.errors import ConfigError
-from runner.controllers.macro_mini import later_home_offset
-from runner.controllers.operational_space import OperationalSpace
-from runner.controllers.stage_law import StageLaw
-from runner.controllers.stage_loops import CarrierController, RiderController
+from runner.controllers.macro_mini.macro_mini import later_home_offset
+from runner.controllers.macro_mini.stage_law import StageLaw
+from runner.controllers.macro_mini.stage_loops import CarrierController, RiderController
+from runner.controllers.operational_space.operational_space import OperationalSpace
+from runner.controllers.operational_space.whole_body import WholeBody
 from runner.controllers.torque_law import PinocchioArm
-from runner.controllers.whole_body import WholeBody
 from runner.metrics import evaluate, units
 from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.robots.robot import end_points

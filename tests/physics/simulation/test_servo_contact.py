@@ -11,8 +11,8 @@ from runner.caveats import Watch, setting_of
 from runner.caveats.touch import servo_contact
 from runner.config.compose import compose
 from runner.config.validation import validate
-from runner.controllers.admittance_filter import Admittance, discretise
-from runner.controllers.admittance_stability import spectral_radius
+from runner.controllers.force.admittance_filter import Admittance, discretise
+from runner.controllers.force.admittance_stability import spectral_radius
 from runner.loop.sensors import make_encoders, make_wrist_sensor
 from runner.plants.servo import ServoLaw
 from runner.servo_contact import contact_map, contact_radius, stiffest_servo_wall

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.thin_plans import make_runs
 
-from runner.controllers.admittance_stability import stiffest_wall
+from runner.controllers.force.admittance_stability import stiffest_wall
 from runner.works.meca500.admittance_response import sampled_frequency_response
 from runner.works.meca500.at_the_tip import filtered_turn
 from runner.works.meca500.contact import forces

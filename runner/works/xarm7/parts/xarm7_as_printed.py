@@ -8,7 +8,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.errors import ConfigError
 from runner.controllers.controller import FloatArray, Loop
-from runner.controllers.tip_task import TaskName, task_start
+from runner.controllers.operational_space.tip_task import TaskName, task_start
 from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot

@@ -8,9 +8,9 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, FloatArray, Loop
-from runner.controllers.inertial_damping import InertialDamping
-from runner.controllers.stage_law import StageLaw
-from runner.controllers.stage_loops import Aim, CarrierController, HeldController, RiderController
+from runner.controllers.macro_mini.inertial_damping import InertialDamping
+from runner.controllers.macro_mini.stage_law import StageLaw
+from runner.controllers.macro_mini.stage_loops import Aim, CarrierController, HeldController, RiderController
 from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot, end_points
 from runner.schema.per_stage import PositivePerStage, by_stage

@@ -3,9 +3,9 @@
 from typing import Any, NamedTuple
 
 from runner.controllers.controller import FloatArray
-from runner.controllers.operational_space import tip_law
+from runner.controllers.operational_space.operational_space import tip_law
+from runner.controllers.operational_space.whole_body import WholeBodyLaw
 from runner.controllers.torque_law import Arm, structure_of
-from runner.controllers.whole_body import WholeBodyLaw
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Scalar
 

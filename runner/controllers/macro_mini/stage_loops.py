@@ -6,8 +6,8 @@ from typing import Literal, NamedTuple, TypeVar
 import numpy as np
 
 from runner.controllers.controller import FloatArray
+from runner.controllers.macro_mini.stage_law import StageLaw, StageNumbers
 from runner.controllers.sampled_stability import VelocityGain
-from runner.controllers.stage_law import StageLaw, StageNumbers
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, end_points

@@ -5,7 +5,7 @@ import pinocchio as pin
 
 from runner.base.errors import ConfigError
 from runner.controllers.controller import FloatArray
-from runner.controllers.resolved_rate import ResolvedRate
+from runner.controllers.kinematic.resolved_rate import ResolvedRate
 from runner.robots.model import RobotModel
 
 _DAMPED_BELOW = 0.02  # of the reach: singular value below which the inverse is damped

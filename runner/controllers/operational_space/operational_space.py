@@ -8,10 +8,10 @@ from pydantic import NonNegativeFloat
 
 from runner.base.errors import ConfigError
 from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.operational_space.tip_task import TaskName, held_orientation, task_start
+from runner.controllers.operational_space.whole_body import WholeBody, WholeBodyLaw
 from runner.controllers.sampled_stability import VelocityGain
-from runner.controllers.tip_task import TaskName, held_orientation, task_start
 from runner.controllers.torque_law import Arm, TorqueLaw
-from runner.controllers.whole_body import WholeBody, WholeBodyLaw
 from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot

@@ -6,12 +6,12 @@ import numpy as np
 import pinocchio as pin
 from pydantic import Field, PositiveFloat
 
-from runner.controllers.admittance_filter import Admittance, AdmittanceFilter
-from runner.controllers.approach import Approach
 from runner.controllers.controller import FloatArray, Loop
-from runner.controllers.limited_motion import LimitedMotion
-from runner.controllers.tip_task import task_start
-from runner.controllers.wrist import Compensation, ToolCompensation
+from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter
+from runner.controllers.force.wrist import Compensation, ToolCompensation
+from runner.controllers.kinematic.approach import Approach
+from runner.controllers.kinematic.limited_motion import LimitedMotion
+from runner.controllers.operational_space.tip_task import task_start
 from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.sensing.force_torque import ForceTorqueConfig

@@ -8,9 +8,9 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.errors import ConfigError
 from runner.controllers.controller import FloatArray, Loop
-from runner.controllers.null_space import NullSpaceConfig, NullSpaceTask
-from runner.controllers.resolved_rate import ResolvedRate
-from runner.controllers.tip_task import TaskName, held_orientation, task_start
+from runner.controllers.kinematic.resolved_rate import ResolvedRate
+from runner.controllers.operational_space.null_space import NullSpaceConfig, NullSpaceTask
+from runner.controllers.operational_space.tip_task import TaskName, held_orientation, task_start
 from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot

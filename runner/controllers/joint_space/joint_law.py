@@ -8,8 +8,8 @@ import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.controllers.controller import Controller, FloatArray, Loop
-from runner.controllers.joint_motion import DesiredJoints, JointMotion
-from runner.controllers.tip_task import TaskName, task_start
+from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion
+from runner.controllers.operational_space.tip_task import TaskName, task_start
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel

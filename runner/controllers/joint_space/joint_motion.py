@@ -5,9 +5,9 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from runner.controllers.controller import FloatArray
-from runner.controllers.tip_task import TaskName, TipNumbers, TipTask, held_orientation
+from runner.controllers.operational_space.tip_task import TaskName, TipNumbers, TipTask, held_orientation
+from runner.controllers.operational_space.whole_body_posture import HeldPosture, PostureNumbers, drawn_to
 from runner.controllers.torque_law import Arm, structure_of
-from runner.controllers.whole_body_posture import HeldPosture, PostureNumbers, drawn_to
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Scalar
 

@@ -5,9 +5,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from runner.controllers.controller import FloatArray
-from runner.controllers.joint_law import JointLaw, JointLawConfig, joint_law_builder
-from runner.controllers.joint_law import start_posture as start_posture
-from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
+from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
+from runner.controllers.joint_space.joint_law import start_posture as start_posture
+from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel

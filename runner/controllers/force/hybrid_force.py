@@ -7,9 +7,9 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.errors import ConfigError
 from runner.controllers.controller import FloatArray, Loop
-from runner.controllers.force_reading import ForceReading, JointTorqueReading, ReadingName, WristReading
+from runner.controllers.force.force_reading import ForceReading, JointTorqueReading, ReadingName, WristReading
+from runner.controllers.force.tip_force import Acting, TipForceConfig, find_acting
 from runner.controllers.sampled_stability import VelocityGain
-from runner.controllers.tip_force import Acting, TipForceConfig, find_acting
 from runner.robots.robot import Robot
 from runner.sensing.force_torque import ForceTorqueConfig
 

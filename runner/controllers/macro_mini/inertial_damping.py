@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from runner.controllers.controller import FloatArray
+from runner.controllers.macro_mini.stage_law import StageLaw, StageNumbers
+from runner.controllers.macro_mini.stage_loops import base_at_home
 from runner.controllers.sampled_stability import VelocityGain
-from runner.controllers.stage_law import StageLaw, StageNumbers
-from runner.controllers.stage_loops import base_at_home
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.robots.robot import Robot
 from runner.symbolic.maths import Array, Scalar

@@ -6,10 +6,10 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.controllers.controller import FloatArray
-from runner.controllers.joint_law import JointLaw, JointLawConfig, joint_law_builder
-from runner.controllers.joint_law import start_posture as start_posture
-from runner.controllers.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
-from runner.controllers.passivity import passive_dynamics
+from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
+from runner.controllers.joint_space.joint_law import start_posture as start_posture
+from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
+from runner.controllers.joint_space.passivity import passive_dynamics
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel

@@ -7,10 +7,10 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.errors import ConfigError
 from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.operational_space.tip_task import TipNumbers, TipTask
+from runner.controllers.operational_space.whole_body_posture import HeldJoints, HeldPosture, Posture, PostureNumbers
 from runner.controllers.sampled_stability import VelocityGain
-from runner.controllers.tip_task import TipNumbers, TipTask
 from runner.controllers.torque_law import Arm, TorqueLaw
-from runner.controllers.whole_body_posture import HeldJoints, HeldPosture, Posture, PostureNumbers
 from runner.plugins.registry import StrictModel
 from runner.robots import RobotModel
 from runner.robots.robot import Robot

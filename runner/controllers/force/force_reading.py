@@ -5,8 +5,8 @@ from typing import Literal, Protocol
 import numpy as np
 
 from runner.controllers.controller import FloatArray
+from runner.controllers.force.wrist import ToolCompensation
 from runner.controllers.torque_law import PinocchioArm
-from runner.controllers.wrist import ToolCompensation
 from runner.robots.robot import Robot
 from runner.sensing.force_torque import ForceTorqueConfig
 

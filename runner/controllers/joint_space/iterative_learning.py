@@ -7,11 +7,11 @@ import numpy as np
 from pydantic import Field, PositiveFloat
 
 from runner.base.errors import ConfigError
-from runner.controllers.computed_torque import ComputedTorque, ComputedTorqueConfig
 from runner.controllers.controller import FloatArray
-from runner.controllers.joint_law import JointLawConfig, joint_law_builder
-from runner.controllers.joint_law import start_posture as start_posture
-from runner.controllers.joint_motion import JointMotion
+from runner.controllers.joint_space.computed_torque import ComputedTorque, ComputedTorqueConfig
+from runner.controllers.joint_space.joint_law import JointLawConfig, joint_law_builder
+from runner.controllers.joint_space.joint_law import start_posture as start_posture
+from runner.controllers.joint_space.joint_motion import JointMotion
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots.model import RobotModel

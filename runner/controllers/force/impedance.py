@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat
 
 from runner.controllers.controller import FloatArray, Loop
-from runner.controllers.tip_force import TipForce, TipForceConfig, find_acting
+from runner.controllers.force.tip_force import TipForce, TipForceConfig, find_acting
 from runner.robots.robot import Robot
 
 Three = Annotated[list[NonNegativeFloat], Field(min_length=3, max_length=3)]

@@ -7,13 +7,13 @@ from pydantic import NonNegativeFloat
 
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, FloatArray, Loop
-from runner.controllers.macro_mini import MacroMiniConfig
-from runner.controllers.macro_mini import build as build_stages
+from runner.controllers.macro_mini.macro_mini import MacroMiniConfig
+from runner.controllers.macro_mini.macro_mini import build as build_stages
+from runner.controllers.operational_space.tip_task import TipTask
+from runner.controllers.operational_space.whole_body import WholeBodyLaw
+from runner.controllers.operational_space.whole_body_posture import HeldJoints, HeldPosture
 from runner.controllers.sampled_stability import VelocityGain
-from runner.controllers.tip_task import TipTask
 from runner.controllers.torque_law import PinocchioArm
-from runner.controllers.whole_body import WholeBodyLaw
-from runner.controllers.whole_body_posture import HeldJoints, HeldPosture
 from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.schema.per_stage import PositivePerStage, by_stage

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from runner.controllers.controller import FloatArray
-from runner.controllers.force_stability import force_loop_limit
+from runner.controllers.force.force_stability import force_loop_limit
 
 
 def delay_limit(late: int) -> float:

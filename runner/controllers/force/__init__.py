@@ -1,0 +1,1 @@
+"""Control laws for contact, and the readings of force that they use."""

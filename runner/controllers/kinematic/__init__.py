@@ -1,0 +1,1 @@
+"""Controllers that command joint positions from the motion of the tip."""

@@ -1,0 +1,1 @@
+"""Control laws of an arm mounted on another arm."""

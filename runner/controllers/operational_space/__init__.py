@@ -1,0 +1,1 @@
+"""Control laws in operational space, for a whole arm."""
