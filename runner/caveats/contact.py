@@ -14,7 +14,9 @@ def _radius(setting: Setting) -> float | None:
         return round(setting.touch, _DIGITS)
     if setting.contact is None:
         return None
-    from runner.servo_contact import contact_radius  # the store knows rules, and is imported without rigid bodies
+    from runner.plants.servo_contact import (
+        contact_radius,  # the store knows rules, and is imported without rigid bodies
+    )
 
     try:
         return round(contact_radius(setting.contact), _DIGITS)

@@ -15,10 +15,10 @@ if TYPE_CHECKING:  # the store knows caveats, and is to be imported without rigi
     from runner.config.robot import RobotConfig
     from runner.config.run import RunConfig
     from runner.controllers.sampled_stability import VelocityLoop
+    from runner.plants.servo_contact import ServoContact
     from runner.robots.mismatch import MismatchConfig
     from runner.robots.model import RobotModel
     from runner.sensing import EncoderNoise
-    from runner.servo_contact import ServoContact
 
 
 @dataclass(frozen=True)

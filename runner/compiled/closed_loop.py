@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from runner.compiled.commands import Commands, CommandScalars, expressed_commands
-from runner.compiled.motion import MotionScalars, expressed_motion, motion_pattern, motion_scalars
+from runner.plants.compiled_motion import MotionScalars, expressed_motion, motion_pattern, motion_scalars
 from runner.plants.motion import Motion
 from runner.symbolic.arm import Unfolded
 from runner.symbolic.code import ACTING

@@ -7,10 +7,10 @@ from typing import Any
 
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.compiled.commands import Commands, LoopCode
-from runner.compiled.motion import CompiledLinksTorque, CompiledStep
 from runner.config.timing import Timing
 from runner.controllers.controller import FloatArray, Loop
 from runner.controllers.torque_law import TorqueLaw
+from runner.plants.compiled_motion import CompiledLinksTorque, CompiledStep
 from runner.plants.motion import Motion
 from runner.plugins.guard.controller import WatchedController
 from runner.robots.model import RobotModel

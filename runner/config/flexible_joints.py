@@ -10,10 +10,10 @@ from runner.plants.decoupled import TorquePlantConfig
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints, links_of
 from runner.plants.kinds import MayBend
 from runner.plants.motion import find_motion
+from runner.plants.motors import MotorSide
 from runner.plants.plant import innermost
 from runner.robots.armature import with_armature
 from runner.robots.robot import Robot
-from runner.sensing.motors import MotorSide
 
 _FASTEST = 0.5  # step times the largest rate: the scheme's own damping ratio, (rate h)^5/144, is 2.2e-4 there
 

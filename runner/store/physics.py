@@ -26,8 +26,7 @@ _TABLE = """
         repeatability tool tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
     calibration/procedures: __init__=procedures.__init__ bench gravity=procedures.gravity procedure
         tool_centre_point=procedures.tool_centre_point tool_direction=procedures.tool_direction touching
-    compiled: closed_loop=compiled.closed_loop commands compile directed flexible law maths=compiled.maths
-        motion=compiled.motion
+    compiled: closed_loop=compiled.closed_loop commands compile directed law maths=compiled.maths
     config: arms calibration computation=config.computation disturbance_observer=config.disturbance_observer
         endpoint_sensor flexible_joints=config.flexible_joints flexible_links=config.flexible_links
         force_reading=config.force_reading groups input_shaper joint_limits noise notch=config.notch parsing payload
@@ -49,11 +48,11 @@ _TABLE = """
         failures joint_torques recorder sensors
     metrics: __init__=metrics.__init__ contact=metrics.contact context effort family positioning reaching summary
         tracking
-    plants: __init__=plants.__init__ armature=plants.armature bullet bullet_servers computation=plants.computation
-        decoupled end_points=plants.end_points flexible_around flexible_config flexible_joints=plants.flexible_joints
-        flexible_links=plants.flexible_links friction kinds=plants.kinds kinematic load motion=plants.motion
-        motor_friction mujoco mujoco_model payload_changes plant=plants.plant rk4 rk4_flexible_links servo set_points
-        touched
+    plants: __init__=plants.__init__ armature=plants.armature bullet bullet_servers compiled_flexible=flexible
+        compiled_motion=compiled.motion computation=plants.computation decoupled end_points=plants.end_points
+        flexible_around flexible_config flexible_joints=plants.flexible_joints flexible_links=plants.flexible_links
+        friction kinds=plants.kinds kinematic load motion=plants.motion motor_friction motors=sensing.motors mujoco
+        mujoco_model payload_changes plant=plants.plant rk4 rk4_flexible_links servo set_points touched
     plugins: registry
     plugins/guard: __init__=guard.__init__ belief controller=guard.controller environment=guard.environment faults
         metrics plant=guard.plant read_only sensing trajectory=guard.trajectory
@@ -63,7 +62,7 @@ _TABLE = """
         workspace
     schema: per_joint per_stage
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
-        kinds=sensing.kinds motors=sensing.motors streams velocity wrench
+        kinds=sensing.kinds streams velocity wrench
     symbolic: algebra arm code elementary end_points=compiled.end_points engine expression maths=controllers.maths
         places program regressor structure tangent vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ blend circle closed_figure from_file goal impulses interpolation

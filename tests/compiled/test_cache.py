@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from runner.compiled.motion import CompiledStep
+from runner.plants.compiled_motion import CompiledStep
 from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.symbolic import cache, program
 

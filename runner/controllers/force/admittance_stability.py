@@ -1,6 +1,6 @@
 """Against which wall a sampled admittance stays stable, with ideal joints, which go where they are told.
 
-Behind joint servos the arm's masses and the servos' springs decide with it; see runner/servo_contact.py.
+Behind joint servos the arm's masses and the servos' springs decide with it; see runner/plants/servo_contact.py.
 """
 
 import numpy as np

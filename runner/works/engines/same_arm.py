@@ -7,7 +7,7 @@ import numpy as np
 import pinocchio as pin
 
 from runner.base.quantities import number
-from runner.compiled.motion import CompiledStep
+from runner.plants.compiled_motion import CompiledStep
 from runner.plants.plant import FloatArray
 from runner.reporting.figures import model_of
 from runner.reporting.measured import Measured

@@ -15,7 +15,7 @@ from runner.controllers.force.admittance_filter import Admittance, discretise
 from runner.controllers.force.admittance_stability import spectral_radius
 from runner.loop.sensors import make_encoders, make_wrist_sensor
 from runner.plants.servo import ServoLaw
-from runner.servo_contact import contact_map, contact_radius, stiffest_servo_wall
+from runner.plants.servo_contact import contact_map, contact_radius, stiffest_servo_wall
 from runner.simulation import simulate
 
 PRESSED = (

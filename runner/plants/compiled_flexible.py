@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from runner.compiled.motion import ArmCode, Mover
+from runner.plants.compiled_motion import ArmCode, Mover
 from runner.robots.model import RobotModel
 from runner.symbolic.algebra import ArmAlgebra
 from runner.symbolic.arm import known
