@@ -11,7 +11,7 @@ import numpy as np
 from runner.assembly import assemble
 from runner.base.trace import Trace
 from runner.compiled import compile
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.loop.sensors import make_encoders
 from runner.simulation import simulate

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from runner.assembly import assemble
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.loop.closed_loop import ClosedLoop

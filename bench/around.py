@@ -14,7 +14,7 @@ import numpy as np
 from runner.assembly import assemble, metric_context
 from runner.base.trace import Traces
 from runner.caveats import Watch, look_together, setting_of, signals_of
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.loop.sensors import make_encoders
 from runner.metrics import measure

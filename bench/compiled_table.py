@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from runner.assembly import assemble
 from runner.compiled.closed_loop import Whole
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 
 _LAWS = {

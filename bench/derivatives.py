@@ -7,7 +7,7 @@ import numpy as np
 
 from runner.compiled.closed_loop import run_all
 from runner.compiled.directed import tangents
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.sensitivity import GROUPS
 from runner.sensitivity.analysis import slopes_of
 

@@ -19,8 +19,8 @@ from typing import Any, Literal
 from bench.fuzz_files import experiment
 from bench.fuzz_grammar import keys_of, mutated, override
 from runner.base.errors import RunnerError
-from runner.config.compose import Composed, compose
-from runner.config.options import group_options, groups
+from runner.config.compose.compose import Composed, compose
+from runner.config.compose.options import group_options, groups
 from runner.config.validation import validate
 from runner.job import simulate_job
 from runner.store import run_hash

@@ -14,7 +14,7 @@ from runner import store
 from runner.base.errors import StoreError
 from runner.calibration_job import calibrate
 from runner.cli import dispatch
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.execution import execute
 from runner.metrics.summary import MOST_LISTED
 from runner.store.atomic import write_atomically

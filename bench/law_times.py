@@ -13,7 +13,7 @@ from typing import cast
 import numpy as np
 
 from runner.assembly import assemble
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.controllers import Controller
 from runner.loop.sensors import make_sensors

@@ -22,10 +22,10 @@ from runner.calibration.procedures import CALIBRATIONS
 from runner.cli import COMMANDS
 from runner.config.calibration import CalibrationSettings
 from runner.config.caveats import CaveatsConfig
+from runner.config.compose.meanings import meanings, nested_model
+from runner.config.compose.options import group_options
 from runner.config.input_shaper import InputShaperConfig
-from runner.config.meanings import meanings, nested_model
 from runner.config.noise import NoiseConfig
-from runner.config.options import group_options
 from runner.config.preset import PresetConfig
 from runner.config.robot import OneArmConfig, StageConfig
 from runner.config.run import RunSettings

@@ -17,7 +17,7 @@ import yaml
 from tqdm import tqdm
 
 from runner.base.quiet import quiet_environment
-from runner.config.options import group_options
+from runner.config.compose.options import group_options
 from runner.references.shipped import reference_path
 from runner.store import Run, open_run
 

@@ -7,7 +7,7 @@ import resource
 import time
 
 from runner.batch_blocks import simulate_blocks
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.limits import memory_of_run
 from runner.config.validation import validate
 

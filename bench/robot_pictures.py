@@ -8,7 +8,7 @@ import pinocchio as pin
 from matplotlib.figure import Figure
 from scipy.spatial import ConvexHull
 
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.drawing.canvas import GREY, INK, Camera, circle, drawing, scene, write
 from runner.reporting.bodies import playback_bodies

@@ -18,7 +18,7 @@ from pathlib import Path
 from runner import store
 from runner.assembly import assemble
 from runner.base.quiet import quiet_environment
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.job import simulate_job
 from runner.loop.sensors import make_encoders

@@ -12,7 +12,7 @@ from statistics import median
 from bench.turns import ROUNDS, Block, measure, ratio
 from runner.assembly import assemble
 from runner.base.engine_output import quiet_stderr
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.loop.sensors import make_encoders

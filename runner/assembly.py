@@ -8,6 +8,7 @@ import numpy as np
 from runner.base.trace import FloatArray
 from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.compiled.compile import compile_commands, compile_whole, describe_whole, find_commands
+from runner.config.feasibility import check_path
 from runner.config.flexible_joints import believe_motors, find_motor_side
 from runner.config.flexible_links import believe_links, is_flexible
 from runner.config.run import RunConfig
@@ -19,7 +20,6 @@ from runner.controllers.notch import notched
 from runner.environments import ENVIRONMENTS
 from runner.environments.interaction import Interaction
 from runner.environments.wall import Wall
-from runner.feasibility import check_path
 from runner.loop.closed_loop import ClosedLoop
 from runner.metrics import MetricContext
 from runner.plants import PLANTS, Plant, PositionPlant

@@ -15,7 +15,7 @@ from runner.base.progress.ticks import add_ticks, counter
 from runner.calibration import consistency
 from runner.calibration.procedures import Outcome
 from runner.config.calibration import CalibrationConfig, validate_calibration
-from runner.config.compose import Composed, compose
+from runner.config.compose.compose import Composed, compose
 from runner.latest import note
 from runner.robots.model import FloatArray
 

@@ -14,7 +14,7 @@ from runner.base.trace import Failure, Trace
 from runner.batch_blocks import simulate_blocks
 from runner.batch_jobs import NO_DEADLINE, seconds_together, warm_time
 from runner.caveats import PlantStep, Watch, setting_of, signals_of
-from runner.config.compose import Composed
+from runner.config.compose.compose import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.loop.sensors import make_sensors

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from runner.base.errors import RunnerError, StoreError
-from runner.config.user_settings import outputs_dir
+from runner.config.compose.user_settings import outputs_dir
 
 Kind = Literal["run", "sweep", "tuning", "calibration", "report"]
 WORD = "latest"

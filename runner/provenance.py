@@ -16,7 +16,7 @@ from runner.spec.history import today
 from runner.symbolic.engine import evaluator
 
 if TYPE_CHECKING:
-    from runner.config.compose import Composed
+    from runner.config.compose.compose import Composed
     from runner.config.run import RunConfig
 
 _LIBRARIES = ("arm-control-runner", "pybullet", "mujoco", "pin", "numpy", "scipy", "hydra-core")

@@ -7,7 +7,7 @@ from support.printed import without_results
 
 from runner.base import engines
 from runner.base.errors import ConfigError
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.provenance import command
 from runner.sweeps.grid import plan_sweep

@@ -12,7 +12,7 @@ from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.api.tuning import Tuning
 from runner.base.errors import ConfigError
-from runner.config.overrides import force
+from runner.config.compose.overrides import force
 from runner.plugins.discovery import named, use_plugins
 
 Folders = Sequence[str | Path] | str | Path

@@ -32,7 +32,7 @@ from runner.audit.truth import FloatArray, Symbols, Truth, along, columns, coord
 from runner.audit.urdf_chain import UrdfChain
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import conf_dir
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.robots.description import find_urdf
 from runner.robots.model import RobotModel

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from runner.base.texts import one_line
-from runner.config.user_settings import outputs_dir
+from runner.config.compose.user_settings import outputs_dir
 from runner.latest import WORD
 
 if TYPE_CHECKING:

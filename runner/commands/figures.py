@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from runner.base.errors import RunnerError
 from runner.base.quiet import quiet_environment
 from runner.commands.arguments import Parser, Stored
-from runner.config.user_settings import outputs_dir
+from runner.config.compose.user_settings import outputs_dir
 from runner.works.names import work_names
 
 if TYPE_CHECKING:

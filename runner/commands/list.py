@@ -9,7 +9,7 @@ from runner.base import engines
 from runner.base.errors import RunnerError, nearest
 from runner.base.texts import escaped, one_line
 from runner.commands.arguments import Parser
-from runner.config.options import group_options
+from runner.config.compose.options import group_options
 
 if TYPE_CHECKING:
     from runner.claims import PublishedClaim

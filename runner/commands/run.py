@@ -19,12 +19,12 @@ from omegaconf import DictConfig, OmegaConf
 from runner.base.paths import conf_dir
 from runner.base.quiet import quiet_environment
 from runner.commands.ending import tell_run, tell_sweep
-from runner.config.compose import from_hydra
-from runner.config.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.hydra_config import hydra_config, parse
-from runner.config.no_code import code_refused
-from runner.config.overrides import force
-from runner.config.user_settings import user_overrides
+from runner.config.compose.compose import from_hydra
+from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.compose.hydra_config import hydra_config, parse
+from runner.config.compose.no_code import code_refused
+from runner.config.compose.overrides import force
+from runner.config.compose.user_settings import user_overrides
 from runner.recall.runs import keep_run, plain_line
 
 if TYPE_CHECKING:

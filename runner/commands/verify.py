@@ -14,7 +14,7 @@ from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.base.quiet import quiet_environment
 from runner.commands.arguments import Parser
-from runner.config.user_settings import outputs_dir
+from runner.config.compose.user_settings import outputs_dir
 
 State = Literal["good", "unfinished", "damaged"]
 _WORDS: Mapping[State, str] = {"good": "as written", "unfinished": "unfinished", "damaged": "damaged"}

@@ -18,7 +18,7 @@ from pathlib import Path
 from runner.base.quiet import quiet_environment
 from runner.base.texts import one_line
 from runner.commands.arguments import ActionParser, Parser
-from runner.config.user_settings import outputs_dir
+from runner.config.compose.user_settings import outputs_dir
 from runner.reporting.changes import KINDS, Change, Value, changes, read_conclusions
 
 _TOLD = 20  # changes of a kind that are printed without --all

@@ -46,8 +46,8 @@ def _compose(line: Line, overrides: Sequence[str], root: str) -> Iterator[tuple[
     from omegaconf import OmegaConf
     from omegaconf.errors import OmegaConfBaseException
 
-    from runner.config.hydra_config import hydra_config
-    from runner.config.overrides import force
+    from runner.config.compose.hydra_config import hydra_config
+    from runner.config.compose.overrides import force
 
     config = hydra_config(force(overrides), line.config_dirs, root)
     ours: Any = OmegaConf.to_container(config, resolve=False)

@@ -6,7 +6,7 @@ from pathlib import PurePath
 
 from runner.base.paths import conf_dir
 from runner.completion.line import Line
-from runner.config.options import group_options, groups
+from runner.config.compose.options import group_options, groups
 
 _SIGN = re.compile(r"[+~]*")
 _FILE = re.compile(r"^  - (\w+)\s*(?:#.*)?$", re.MULTILINE)  # of a root's defaults: a file whose keys lie at the top

@@ -12,9 +12,9 @@ from runner.base.texts import quoted
 from runner.calibration import Tool
 from runner.calibration.procedures import CALIBRATIONS, Bench, Procedure
 from runner.config.arms import build_robot
-from runner.config.compose import Composed
+from runner.config.compose.compose import Composed
+from runner.config.compose.problems import Problems, sure
 from runner.config.parsing import group_of, parse, parse_kind, parse_robot
-from runner.config.problems import Problems, sure
 from runner.config.robot import RobotConfig
 from runner.plugins.registry import KindConfig, StrictModel
 from runner.robots import RobotModel

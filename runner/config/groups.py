@@ -6,13 +6,13 @@ from typing import cast
 
 from runner.base.errors import ConfigError, nearest
 from runner.config.caveats import CaveatsConfig
+from runner.config.compose.problems import Problems
 from runner.config.input_shaper import InputShaperConfig
 from runner.config.limits import LimitsConfig
 from runner.config.noise import NoiseConfig
 from runner.config.parsing import group_of, parse, parse_kind, parse_robot
 from runner.config.plugged import GroupReader
 from runner.config.preset import PresetConfig
-from runner.config.problems import Problems
 from runner.config.robot import OneArmConfig, RobotConfig
 from runner.config.settings import RunSettings
 from runner.config.spec import SpecConfig

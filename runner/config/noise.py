@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.base.errors import ConfigError
-from runner.config.problems import Problems
+from runner.config.compose.problems import Problems
 from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.schema.per_stage import FinitePerStage, NonNegativePerStage, by_stage

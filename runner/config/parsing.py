@@ -7,7 +7,7 @@ from pydantic import ValidationError
 
 from runner.base.errors import ConfigError
 from runner.base.texts import quoted
-from runner.config.messages import describe
+from runner.config.compose.messages import describe
 from runner.config.robot import OneArmConfig, RobotConfig, StagedRobotConfig
 from runner.plugins.registry import Kinds, StrictModel
 from runner.schema.magnitudes import absurd

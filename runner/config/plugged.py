@@ -5,8 +5,8 @@ from typing import TypeVar, cast
 
 import numpy as np
 
+from runner.config.compose.problems import Problems
 from runner.config.parsing import group_of, parse, parse_kind
-from runner.config.problems import Problems
 from runner.plugins.registry import KindConfig, Kinds, StrictModel
 from runner.robots.mismatch import MISMATCHES
 from runner.robots.mismatch import NONE as NO_MISMATCH

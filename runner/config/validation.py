@@ -9,6 +9,7 @@ from runner.base.errors import ConfigError
 from runner.base.memory import Memory
 from runner.base.texts import few
 from runner.config.arms import build_loaded, build_robot
+from runner.config.compose.problems import Problems, sure
 from runner.config.computation import check_computation, computation_of, count_late
 from runner.config.disturbance_observer import check_observer
 from runner.config.endpoint_sensor import endpoint_ticks
@@ -22,7 +23,6 @@ from runner.config.noise import NoiseConfig
 from runner.config.notch import check_notch
 from runner.config.payload import check_payload, check_schedule
 from runner.config.plugged import exact_encoders
-from runner.config.problems import Problems, sure
 from runner.config.reach import check_path, check_points
 from runner.config.repeats import check_repeats
 from runner.config.run import RunConfig

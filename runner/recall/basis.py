@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from runner.base.paths import conf_dir, package_dir, robots_dir
-from runner.config.user_settings import user_overrides
+from runner.config.compose.user_settings import user_overrides
 
 _MOST = 1000  # files and folders of the user's config folders; where there are more, nothing is recalled
 _LARGEST = 20_000_000  # bytes of them

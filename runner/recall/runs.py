@@ -4,14 +4,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from runner.config.data_files import has_data_file
+from runner.config.compose.data_files import has_data_file
 from runner.latest import note
 from runner.plugins.discovery import has_users_parts, in_use
 from runner.recall.answers import keep, recall
 from runner.recall.basis import basis
 
 if TYPE_CHECKING:
-    from runner.config.compose import Composed
+    from runner.config.compose.compose import Composed
     from runner.store import Run
 
 _CONFIG_DIR = ("--config-dir", "-cd")

@@ -12,7 +12,7 @@ from pydantic import Field, ValidationError
 
 from runner.base.errors import StoreError, nearest
 from runner.base.limits import read_text
-from runner.config.messages import describe
+from runner.config.compose.messages import describe
 from runner.config.spec import Bound
 from runner.metrics import unit_of, units
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from runner.base.errors import ConfigError
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.store import Run
 
 

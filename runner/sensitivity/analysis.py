@@ -12,7 +12,7 @@ from runner.base.errors import RunnerError
 from runner.base.trace import FloatArray, Trace
 from runner.batch import Batcher, Together, Wanted
 from runner.compiled.directed import tangents
-from runner.config.compose import Composed, compose
+from runner.config.compose.compose import Composed, compose
 from runner.config.flexible_joints import find_flexibility
 from runner.config.flexible_links import is_flexible
 from runner.config.run import RunConfig

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from runner.config.in_si import Place, leaves, put
-from runner.config.key_units import units_at
+from runner.config.compose.in_si import Place, leaves, put
+from runner.config.compose.key_units import units_at
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS
 from runner.robots.armature import with_armature

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from runner.base.errors import ConfigError, RunnerError
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.sensitivity.analysis import Sensitivity, analyse
 from runner.sensitivity.parameters import GROUPS

@@ -8,7 +8,7 @@ from typing import Any
 
 from runner.base.engines import installed
 from runner.base.memory import Memory
-from runner.config.data_files import has_data_file, unnamed
+from runner.config.compose.data_files import has_data_file, unnamed
 from runner.plugins.discovery import GROUPS, added, source_files
 from runner.store.names import Names
 from runner.store.physics import content_digest, physics_digest

@@ -20,7 +20,7 @@ from runner.store import syntax
 
 # Folders and their modules. A module's id stands behind "=", or is its name.
 _TABLE = """
-    .: assembly batch batch_blocks batch_jobs calibration_job execution feasibility job plant_error simulation walls
+    .: assembly batch batch_blocks batch_jobs calibration_job execution job plant_error simulation walls
     base: trace
     calibration: __init__=calibration.__init__ compensation consistency gravity=calibration.gravity orientations
         repeatability tool tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
@@ -28,7 +28,7 @@ _TABLE = """
         tool_centre_point=procedures.tool_centre_point tool_direction=procedures.tool_direction touching
     compiled: closed_loop=compiled.closed_loop commands compile directed law maths=compiled.maths
     config: arms calibration computation=config.computation disturbance_observer=config.disturbance_observer
-        endpoint_sensor flexible_joints=config.flexible_joints flexible_links=config.flexible_links
+        endpoint_sensor feasibility flexible_joints=config.flexible_joints flexible_links=config.flexible_links
         force_reading=config.force_reading groups input_shaper joint_limits noise notch=config.notch parsing payload
         plugged reach repeats robot=config.robot run settings start timing torque_limits validation
     controllers: __init__=controllers.__init__ controller=controllers.controller

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from runner.config.compose import Composed
+from runner.config.compose.compose import Composed
 
 
 @dataclass(frozen=True)

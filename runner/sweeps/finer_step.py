@@ -14,7 +14,7 @@ from runner import store
 from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.batch_blocks import simulate_blocks, threads_allowed
-from runner.config.compose import Composed
+from runner.config.compose.compose import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.plant_error import COMPARED, PLANT, hindrance, on_runge_kutta

@@ -6,10 +6,10 @@ from functools import cached_property
 from pathlib import Path
 
 from runner.base.errors import ConfigError
-from runner.config.compose import Composed
-from runner.config.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.options import groups
-from runner.config.overrides import force
+from runner.config.compose.compose import Composed
+from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.compose.options import groups
+from runner.config.compose.overrides import force
 from runner.schema.magnitudes import LARGEST_WHOLE
 from runner.store.axes import Counted, GridOverrides
 from runner.sweeps.block import Alike, Block

@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from runner.config.compose import Composed
-from runner.config.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.options import groups
-from runner.config.overrides import force
+from runner.config.compose.compose import Composed
+from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.compose.options import groups
+from runner.config.compose.overrides import force
 from runner.sweeps.block import Block
 from runner.sweeps.loading import Loader
 from runner.sweeps.swept import SweptKey, parse_sweep

@@ -11,9 +11,9 @@ from hydra.types import RunMode
 from omegaconf import DictConfig
 
 from runner.base.paths import conf_dir
-from runner.config.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.hydra_config import hydra_config
-from runner.config.no_code import code_refused
+from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.compose.hydra_config import hydra_config
+from runner.config.compose.no_code import code_refused
 
 
 class ConfigSource(Protocol):

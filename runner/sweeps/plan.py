@@ -15,7 +15,7 @@ from runner.base.errors import ConfigError
 from runner.base.progress.stages import CHECKING
 from runner.calibration_job import CALIBRATION, TICKS
 from runner.config.calibration import validate_calibration
-from runner.config.compose import Composed
+from runner.config.compose.compose import Composed
 from runner.config.limits import LimitsConfig, memory_of_run
 from runner.config.run import RunConfig
 from runner.config.spec import Bound

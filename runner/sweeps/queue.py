@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner import store
-from runner.config.compose import Composed
+from runner.config.compose.compose import Composed
 from runner.store.shards import next_number, shard_name
 from runner.sweeps.block import Part
 from runner.sweeps.rules import Rules

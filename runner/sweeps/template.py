@@ -14,8 +14,8 @@ from hydra._internal.config_loader_impl import ConfigLoaderImpl
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from omegaconf import DictConfig, OmegaConf
 
-from runner.config.compose import Composed, from_hydra
-from runner.config.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.compose.compose import Composed, from_hydra
+from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.sweeps.swept import SweptKey
 
 Place = tuple[str, ...]  # of a value in a config, such as ("noise", "position")

@@ -18,7 +18,7 @@ from runner.base.quiet import quiet_environment
 from runner.batch_jobs import Job
 from runner.calibration_job import CALIBRATION, carry_out
 from runner.config.calibration import validate_calibration
-from runner.config.compose import Composed
+from runner.config.compose.compose import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.job import simulate_job

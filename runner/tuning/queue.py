@@ -8,7 +8,7 @@ import numpy as np
 
 from runner import store
 from runner.base.errors import ConfigError
-from runner.config.compose import Composed
+from runner.config.compose.compose import Composed
 from runner.config.validation import validate
 from runner.sweeps.grid import Grid
 from runner.sweeps.loading import Loader

@@ -12,9 +12,9 @@ from hydra.core.override_parser.types import Override
 from runner import store
 from runner.base.errors import ConfigError, RunnerError, StoreError
 from runner.base.limits import TRIALS
-from runner.config.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.options import groups
-from runner.config.overrides import force
+from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.compose.options import groups
+from runner.config.compose.overrides import force
 from runner.latest import note
 from runner.store.names import Names
 from runner.sweeps.grid import Grid

@@ -9,7 +9,7 @@ import numpy as np
 
 from runner.assembly import assemble
 from runner.base.errors import ConfigError, RunnerError
-from runner.config.compose import Composed, compose
+from runner.config.compose.compose import Composed, compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.controllers import CONTROLLERS

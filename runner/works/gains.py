@@ -7,7 +7,7 @@ import yaml
 
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
-from runner.config.user_settings import refuse_settings
+from runner.config.compose.user_settings import refuse_settings
 from runner.store.atomic import write_atomically
 from runner.works.grid import Overrides
 

@@ -31,8 +31,8 @@ from pydantic import ValidationError
 from runner.base.bounded_yaml import STORED, read_yaml
 from runner.base.errors import RunnerError, nearest
 from runner.base.limits import read_text
-from runner.config.messages import describe
-from runner.config.user_settings import refuse_settings
+from runner.config.compose.messages import describe
+from runner.config.compose.user_settings import refuse_settings
 from runner.plugins.registry import StrictModel
 from runner.works.arithmetic import Level
 from runner.works.gains import check_named

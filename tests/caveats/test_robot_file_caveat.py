@@ -6,7 +6,7 @@ import pytest
 from support.caveat_runs import found
 from support.mjcf_arms import CHAIN, written
 
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.robots.mjcf import read_mjcf
 

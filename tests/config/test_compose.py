@@ -4,8 +4,8 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.base.paths import robots_dir
-from runner.config.compose import compose
-from runner.config.options import group_options
+from runner.config.compose.compose import compose
+from runner.config.compose.options import group_options
 from runner.config.validation import validate
 
 SMALL_ROBOT = """\

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from support.printed import without_caveats, without_results
 
-from runner.config.options import group_options, groups
+from runner.config.compose.options import group_options, groups
 from runner.execution import run
 
 SWING = Path(__file__).parents[2] / "examples" / "swing.csv"

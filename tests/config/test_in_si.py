@@ -7,8 +7,8 @@ import pytest
 from support import strangers
 
 from runner.base.errors import ConfigError
-from runner.config.compose import compose
-from runner.config.in_si import as_numbers, put_in_si, with_numbers
+from runner.config.compose.compose import compose
+from runner.config.compose.in_si import as_numbers, put_in_si, with_numbers
 from runner.config.validation import validate
 from runner.store import run_hash
 

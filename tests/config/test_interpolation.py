@@ -6,7 +6,7 @@ from runner.base.bounded_yaml import YamlError, check_yaml
 from runner.base.errors import ConfigError
 from runner.base.interpolation import check_references
 from runner.base.paths import conf_dir
-from runner.config.overrides import force
+from runner.config.compose.overrides import force
 
 
 def test_files_of_ours_refer_to_keys_alone():

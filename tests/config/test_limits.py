@@ -6,7 +6,7 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.base.progress.ticks import counter
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.limits import LimitsConfig, check_cpu_time, check_memory_together, memory_of_run
 from runner.config.validation import validate
 from runner.job import seconds_per_tick

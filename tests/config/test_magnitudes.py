@@ -3,8 +3,8 @@
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.config.compose import compose
-from runner.config.options import group_options
+from runner.config.compose.compose import compose
+from runner.config.compose.options import group_options
 from runner.config.validation import validate
 from runner.schema.magnitudes import absurd
 

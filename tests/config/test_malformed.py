@@ -3,7 +3,7 @@
 import pytest
 from hydra.core.override_parser.overrides_parser import OverridesParser
 
-from runner.config.malformed import explain_parser, malformed
+from runner.config.compose.malformed import explain_parser, malformed
 
 GOOD = (
     "robot=macro", "robot=macro,mini", "robot.home=[0,1,2]", "robot.name='a, b]'", 'robot.name="it\'s"', "robot.name=",

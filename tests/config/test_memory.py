@@ -1,7 +1,7 @@
 """Memory of checked parts: one call for equal arguments, and no part is shared that differs."""
 
 from runner.base.memory import Memory
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 
 

@@ -7,7 +7,7 @@ from support.mjcf_arms import CHAIN, written
 import runner
 from runner.base.errors import ConfigError
 from runner.base.paths import robots_dir
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.reporting.bodies import playback_bodies
 from runner.robots.model import RobotModel

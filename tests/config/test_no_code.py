@@ -11,7 +11,7 @@ from support.opened_files import opened
 
 from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 
 HEAD = "# @package _global_\n# A stranger's\n# experiment\n"
 OURS, HYDRAS = conf_dir(), Path(hydra.__file__).parent / "conf"

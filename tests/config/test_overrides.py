@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.config.overrides import force
+from runner.config.compose.overrides import force
 
 
 @pytest.mark.parametrize(

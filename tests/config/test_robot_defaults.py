@@ -6,7 +6,7 @@ import yaml
 import runner
 from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.robot import ArmConfig, OneArmConfig
 from runner.config.validation import validate
 

@@ -5,7 +5,7 @@ import yaml
 
 from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 
 COMBINED = ("robot=combined", "noise=thesis", "torque_limits=thesis")

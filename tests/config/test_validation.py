@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 
 KEYS = "keys: position, distribution, bias, resolution, velocity"

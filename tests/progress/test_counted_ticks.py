@@ -7,7 +7,7 @@ import pytest
 from support.patience import PATIENCE
 
 from runner.base.progress import ticks
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.job import simulate_job
 

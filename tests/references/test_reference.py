@@ -7,7 +7,7 @@ from pydantic import ValidationError
 
 from runner.base.errors import StoreError
 from runner.claims import load_claims
-from runner.config.options import group_options
+from runner.config.compose.options import group_options
 from runner.metrics import unit_of
 from runner.references import Band, Reference, check_run, load_reference, shipped_references
 from runner.references.shipped import reference_path

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.reporting.changed_keys import changed_keys, flatten
 
 

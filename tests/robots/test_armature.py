@@ -9,7 +9,7 @@ from support.mjcf_arms import written
 from support.physics import assert_energy_kept
 
 from runner.base.errors import ConfigError
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.plants.rk4 import Rk4
 from runner.robots import RobotModel, read_urdf

@@ -7,7 +7,7 @@ import yaml
 
 from runner.assembly import assemble
 from runner.base.paths import conf_dir
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.loop.sensors import make_encoders
 from runner.robots.robot import StageBase, end_points

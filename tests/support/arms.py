@@ -5,7 +5,7 @@ import functools
 from collections.abc import Mapping
 from typing import Any
 
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.robots import RobotModel, find_urdf, read_urdf

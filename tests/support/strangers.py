@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.doctor import examination
 from runner.doctor.config_folder import write_folder

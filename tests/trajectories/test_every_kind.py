@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from runner.config.compose import compose
-from runner.config.options import group_options
+from runner.config.compose.compose import compose
+from runner.config.compose.options import group_options
 from runner.trajectories import TRAJECTORIES
 from runner.trajectories.shifted import Shifted
 

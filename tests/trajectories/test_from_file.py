@@ -6,7 +6,7 @@ import pyarrow.parquet
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.execution import run
 from runner.robots.robot import end_points

@@ -4,7 +4,7 @@ import pytest
 from pydantic import ValidationError
 
 from runner.claims import CONTRADICTION, FACTOR, PublishedClaim, judge, load_claims
-from runner.config.options import group_options
+from runner.config.compose.options import group_options
 from runner.metrics import unit_of
 
 CLAIMS = load_claims("thesis")

@@ -5,7 +5,7 @@ import pytest
 from pydantic import ValidationError
 
 from runner.claims import CONTRADICTION, Extent, PublishedClaim, judge_motion, load_claims
-from runner.config.options import group_options
+from runner.config.compose.options import group_options
 from runner.references import shipped_references
 
 CLAIMS = load_claims("xarm7")

@@ -3,7 +3,7 @@
 from runner.base.quantities import labelled
 from runner.comparison.beyond import Value
 from runner.comparison.sweeps import SweepComparison
-from runner.config.key_units import key_unit
+from runner.config.compose.key_units import key_unit
 from runner.reporting.document import Block, Table
 from runner.reporting.markup import literals
 from runner.sweeps.resolved import UNITS

@@ -3,7 +3,7 @@
 import math
 
 from runner.base.quantities import labelled
-from runner.config.key_units import key_unit
+from runner.config.compose.key_units import key_unit
 from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.sweep.subject import Subject, axis_label, value_names

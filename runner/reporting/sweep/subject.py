@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.quantities import labelled, quantity
-from runner.config.key_units import key_unit
+from runner.config.compose.key_units import key_unit
 from runner.reporting.metric_titles import metric_label, title
 from runner.sweeps.measurements import Axis, FloatArray, Measurements
 from runner.sweeps.metric_names import is_part

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from runner.base.quantities import quantity
-from runner.config.key_units import key_unit
+from runner.config.compose.key_units import key_unit
 from runner.reporting.answers import CHOSEN
 from runner.reporting.cover import cover
 from runner.reporting.document import Document, FloatArray, Notice, Origin, Provenance, RunList, Section, Table, Text

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from runner.base.quantities import labelled, number, quantity
-from runner.config.key_units import key_unit
+from runner.config.compose.key_units import key_unit
 from runner.reporting.document import FloatArray
 from runner.reporting.metric_titles import metric_label, title
 from runner.tuning.key import Key

@@ -14,7 +14,7 @@ from runner import provenance, store
 from runner.assembly import assemble
 from runner.base.errors import StoreError
 from runner.base.trace import Trace
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.loop.closed_loop import ClosedLoop

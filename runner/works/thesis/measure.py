@@ -10,7 +10,7 @@ import pinocchio as pin
 
 from runner import provenance
 from runner.base.errors import StoreError
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.robot import StagedRobotConfig
 from runner.config.validation import validate
 from runner.robots import RobotModel

@@ -9,7 +9,7 @@ import yaml
 from runner import calibration_job, provenance
 from runner.base.errors import StoreError
 from runner.calibration_job import calibrate
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.plugins import discovery as plugins
 from runner.store import open_calibration
 from runner.store.seal import sealed_json

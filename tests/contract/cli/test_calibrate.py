@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.config.options import group_options
+from runner.config.compose.options import group_options
 
 SHORT = ("repetitions=3",)
 

@@ -15,7 +15,7 @@ from support.printed import without_caveats
 
 from runner import job
 from runner.cli import COMMANDS, GUIDE, HELP
-from runner.config.options import group_options
+from runner.config.compose.options import group_options
 from runner.store import open_sweep
 
 SHORT = ("robot=macro", "duration=0.05")

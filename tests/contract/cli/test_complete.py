@@ -6,7 +6,7 @@ from runner.cli import COMMANDS
 from runner.commands.list import TOPICS
 from runner.completion.complete import complete
 from runner.completion.line import read_line
-from runner.config.options import group_options
+from runner.config.compose.options import group_options
 from runner.metrics.summary import units
 
 
@@ -145,7 +145,7 @@ def test_keys_are_those_of_the_typed_choice():
 
 def test_keys_are_composed_once_for_a_line(monkeypatch):
     first = words("robot=mini controller.")
-    monkeypatch.setattr("runner.config.hydra_config.hydra_config", None)
+    monkeypatch.setattr("runner.config.compose.hydra_config.hydra_config", None)
     assert words("robot=mini controller.") == first
     with pytest.raises(TypeError):
         words("robot=macro controller.")

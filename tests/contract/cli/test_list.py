@@ -1,7 +1,7 @@
 """`runner list`: every topic, own options, unknown names."""
 
 from runner.commands.list import TOPICS
-from runner.config.options import group_options
+from runner.config.compose.options import group_options
 from runner.metrics import units
 
 

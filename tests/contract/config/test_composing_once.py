@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from runner.base import engines, paths
 from runner.base.errors import ConfigError
-from runner.config.compose import compose, from_hydra
-from runner.config.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.hydra_config import hydra_config
-from runner.config.no_code import code_refused
-from runner.config.overrides import force
+from runner.config.compose.compose import compose, from_hydra
+from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.compose.hydra_config import hydra_config
+from runner.config.compose.no_code import code_refused
+from runner.config.compose.overrides import force
 
 SHORT = ("robot=macro", "plant=rk4", "duration=0.05")
 
@@ -106,7 +106,7 @@ def test_a_calibration_and_a_run_of_the_same_options_stay_apart():
 
 def test_other_values_compose_nothing_anew(monkeypatch):
     compose(["robot=macro", "seed=1"])
-    monkeypatch.setattr("runner.config.hydra_config.code_refused", None)  # which Hydra composes within
+    monkeypatch.setattr("runner.config.compose.hydra_config.code_refused", None)  # which Hydra composes within
     assert compose(["robot=macro", "seed=2", "noise.position=1e-3"]).resolved["seed"] == 2
 
 

@@ -7,7 +7,7 @@ from importlib.metadata import EntryPoint
 import pytest
 from support.engines import ASKED
 
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.plugins.discovery import source_files
 from runner.store import identity, run_hash, run_hashes, simulated_part
 

@@ -7,7 +7,7 @@ from support.thin_plans import Overrides
 from support.work_plans import RECORDED, planned
 
 from runner.base.engines import has_pybullet
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.works.work import load_work
 

@@ -11,7 +11,7 @@ from support.precision_runs import error
 from support.work_plans import cut
 
 from runner.commands.reproduce import _chosen, _Way
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.plants.rk4 import Rk4
 from runner.reporting.document import Table

@@ -6,7 +6,7 @@ import pytest
 
 from runner import batch_jobs, job
 from runner.batch_jobs import seconds_together, warm_time
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.job import PROBED_TICKS, seconds_per_tick
 from runner.sweeps import run

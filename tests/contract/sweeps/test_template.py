@@ -5,7 +5,7 @@ import random
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.sweeps.grid import plan_sweep
 
 INDEPENDENT = [

@@ -9,7 +9,7 @@ from support.arms import checked
 from runner.assembly import assemble
 from runner.base.errors import ConfigError
 from runner.compiled.closed_loop import Whole
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.controllers.notch import Notch, NotchedController
 from runner.loop.sensors import make_encoders
 from runner.simulation import simulate

@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 
 CONFIGS = {

@@ -16,7 +16,7 @@ from runner.plants import bullet  # noqa: E402
 from runner.plants.bullet_servers import SERVERS, PhysicsServers  # noqa: E402
 
 RUN = """
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.assembly import assemble
 from runner.loop.sensors import make_encoders

@@ -4,7 +4,7 @@ from functools import cache
 
 import pytest
 
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.sensitivity import GROUPS, analyse
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from runner.assembly import assemble_whole
 from runner.batch import Batcher, Wanted
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.metrics import measure
 from runner.sensitivity import differences

@@ -9,7 +9,7 @@ from support.arms import checked
 from runner import batch
 from runner.assembly import assemble
 from runner.batch import Batcher, Together
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.loop.sensors import make_encoders
 from runner.simulation import simulate

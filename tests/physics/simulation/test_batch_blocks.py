@@ -9,7 +9,7 @@ import pytest
 from runner import batch_blocks
 from runner.batch import Batcher
 from runner.batch_blocks import MOST_THREADS, simulate_blocks
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.store.writing import make_record
 from runner.symbolic.engine import evaluator

@@ -8,7 +8,7 @@ from support.arms import checked
 
 from runner.assembly import assemble
 from runner.base.errors import ConfigError
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.loop.endpoint import make_measured_tips
 from runner.plants.flexible_joints import FlexibleJoints

@@ -9,7 +9,7 @@ from support.physics import assert_order
 
 from runner.assembly import assemble
 from runner.base.errors import ConfigError
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.plants import PLANTS
 from runner.robots.armature import with_armature
 from runner.robots.beams import stiffened

@@ -6,7 +6,7 @@ from support.arms import checked
 from support.physics import assert_order
 
 from runner.base.errors import ConfigError
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.flexible_joints import believe_motors
 from runner.config.validation import validate
 from runner.plants.flexible_joints import links_of

@@ -8,7 +8,7 @@ import pytest
 
 from runner.base.engines import has_pybullet
 from runner.base.trace import Failure
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.execution import run
 from runner.job import simulate_job

@@ -9,7 +9,7 @@ from support.arms import checked
 from runner.assembly import assemble
 from runner.caveats import Watch, setting_of
 from runner.caveats.touch import servo_contact
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.controllers.force.admittance_filter import Admittance, discretise
 from runner.controllers.force.admittance_stability import spectral_radius

@@ -5,7 +5,7 @@ import pytest
 from support.arms import checked
 
 from runner.base.errors import ConfigError
-from runner.config.compose import compose
+from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.plants import PLANTS
 from runner.robots.modes import Mode

@@ -236,7 +236,7 @@ def test_another_process_gives_the_same_bits(simulated):
     program = (
         "import sys; sys.path[:0] = sys.argv[1:3]\n"
         "import test_simulation as t\n"
-        "from runner.config.compose import compose\n"
+        "from runner.config.compose.compose import compose\n"
         "from runner.config.validation import validate\n"
         "config = validate(compose(sys.argv[3:]).resolved)\n"
         "loop = t.assemble(config)\n"

@@ -26,7 +26,7 @@ def put_in_si(resolved: dict[str, object], config_dirs: Sequence[Path] = ()) -> 
     found = [(place, text, quantity) for place, text, quantity in read if quantity is not None]
     if not found:
         return
-    from runner.config.key_units import units_at  # the models of all kinds, which few configs need here
+    from runner.config.compose.key_units import units_at  # the models of all kinds, which few configs need here
 
     of_joints: list[tuple[Place, str, str]] = []
     for place, text, quantity in found:
@@ -136,6 +136,6 @@ def with_numbers(override: str) -> str:
 
 def units_of(key: str) -> Sequence[str]:
     """Return the units in which a dotted key may count, whatever is chosen in its group."""
-    from runner.config.key_units import units_of_key  # the models of all kinds, which few command lines need
+    from runner.config.compose.key_units import units_of_key  # the models of all kinds, which few command lines need
 
     return units_of_key(key).at(key.split("."))

@@ -11,8 +11,8 @@ from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 from runner.base.bounded_yaml import explain_yaml
 from runner.base.errors import ConfigError, nearest
 from runner.base.texts import VALUE, one_line, quoted
-from runner.config.malformed import explain_parser
-from runner.config.options import group_options
+from runner.config.compose.malformed import explain_parser
+from runner.config.compose.options import group_options
 
 # What Hydra raises for a config that it cannot compose: ValueError and OSError for a file that is no text, or no
 # mapping; and OmegaConf where a value refers to itself.

@@ -7,10 +7,10 @@ from runner.base.bounded_yaml import CONFIG
 from runner.base.errors import ConfigError
 from runner.base.interpolation import calls_function
 from runner.base.texts import quoted
-from runner.config.in_si import with_numbers
-from runner.config.malformed import malformed
-from runner.config.options import groups
-from runner.config.user_settings import SAYS_HOW
+from runner.config.compose.in_si import with_numbers
+from runner.config.compose.malformed import malformed
+from runner.config.compose.options import groups
+from runner.config.compose.user_settings import SAYS_HOW
 
 _CHARACTERS = 20_000  # Hydra takes some seconds for a list of that length
 _MAY_BE_TYPED = re.compile(r"[+]*hydra\.sweeper\.(workers|address|params(\.[^@:]*)?)")

@@ -21,9 +21,9 @@ from omegaconf import DictConfig, OmegaConf
 from runner.base.engines import default_plant
 from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir
-from runner.config.no_code import check_composed, code_refused
-from runner.config.options import groups
-from runner.config.user_settings import user_overrides
+from runner.config.compose.no_code import check_composed, code_refused
+from runner.config.compose.options import groups
+from runner.config.compose.user_settings import user_overrides
 
 _KEPT = 512  # combinations of options, some 30 kB each
 _MOST = 1000  # files and folders in the config folders; where there are more, Hydra composes each time

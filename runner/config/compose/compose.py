@@ -9,13 +9,13 @@ from omegaconf import DictConfig, OmegaConf
 
 from runner.base.errors import ConfigError
 from runner.base.texts import quoted
-from runner.config.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.data_files import take_data_file
-from runner.config.hydra_config import hydra_config
-from runner.config.in_si import put_in_si
-from runner.config.overrides import force
-from runner.config.robot_defaults import complete_stage_arms
-from runner.config.stage_defaults import complete_stages
+from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.compose.data_files import take_data_file
+from runner.config.compose.hydra_config import hydra_config
+from runner.config.compose.in_si import put_in_si
+from runner.config.compose.overrides import force
+from runner.config.compose.robot_defaults import complete_stage_arms
+from runner.config.compose.stage_defaults import complete_stages
 
 
 @dataclass(frozen=True)

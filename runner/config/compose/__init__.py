@@ -1,0 +1,1 @@
+"""Composing a config: Hydra, overrides, units of input and error messages."""
