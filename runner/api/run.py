@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from runner.recordings.compare import RecordingComparison
     from runner.reporting.key_metrics import KeyMetric
-    from runner.spec import Spec
+    from runner.statistics.spec import Spec
 
 _IN_TEXT, _ON_PAGE = 1, 6
 

@@ -28,7 +28,7 @@ def find_again(key: str | None) -> "tuple[Run, Any] | None":
     answer = None if key is None else recall(key)
     if not (isinstance(answer, dict) and answer.keys() == {"run", "outputs", "thresholds", "spec"}):
         return None
-    from runner.spec import bounds_of
+    from runner.statistics.spec import bounds_of
     from runner.store import DamagedError, find_run, judged
 
     try:

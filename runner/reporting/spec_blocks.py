@@ -10,7 +10,7 @@ from runner.reporting.spec_words import HEADER, interval_text, lacking_text, lat
 from runner.store import Run
 
 if TYPE_CHECKING:
-    from runner.spec import Spec
+    from runner.statistics.spec import Spec
 
 RULE = (
     "The interval is that of Clopper and Pearson: it holds the true probability in 95 % of cases or more. A repetition "

@@ -8,11 +8,11 @@ from runner.base.quantities import number, quantity, ranged
 from runner.config.spec import Bound
 from runner.metrics import unit_of
 from runner.reporting.metric_titles import title
-from runner.spec.history import History, ends_of, set_after
+from runner.statistics.spec.history import History, ends_of, set_after
 
 if TYPE_CHECKING:
-    from runner.spec import Spec
     from runner.statistics.share import Share
+    from runner.statistics.spec import Spec
 
 HEADER = ("bound", "kept", "probability of failing", "95 % interval")
 _ALL = "all of them"

@@ -4,7 +4,7 @@ import sys
 from collections.abc import Mapping
 
 from runner.config.spec import Bound
-from runner.spec.history import settings, today
+from runner.statistics.spec.history import settings, today
 from runner.store.run import Run
 from runner.store.stored import write_job
 

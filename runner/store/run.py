@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from runner.config.spec import Bound
-    from runner.spec import Spec
-    from runner.spec.history import Histories
+    from runner.statistics.spec import Spec
+    from runner.statistics.spec.history import Histories
 
 FloatArray = NDArray[np.float64]
 
@@ -111,7 +111,7 @@ class Run(Stored):
     @cached_property
     def spec(self) -> "Spec | None":
         """The bounds on its metrics, and how many repetitions keep them; None where there are no bounds."""
-        from runner.spec import read_spec
+        from runner.statistics.spec import read_spec
 
         stored = self.record.get("spec")
         return None if stored is None else read_spec(stored)
@@ -123,8 +123,8 @@ class Run(Stored):
             bounds: The bounds, one or more.
             later: When bounds were set; those that it was made with were set before.
         """
-        from runner.spec import bounds_of, judge
-        from runner.spec.history import merged, settings
+        from runner.statistics.spec import bounds_of, judge
+        from runner.statistics.spec.history import merged, settings
 
         spec = judge(bounds, self.record["repetitions"], self.metrics, self.values)
         made_with = settings({**dict.fromkeys(later), **bounds_of(self.config)}, self.provenance["date"])

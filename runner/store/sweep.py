@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from runner.base.errors import StoreError
 from runner.config.spec import Bound
-from runner.spec.history import Histories, merged, settings, today
+from runner.statistics.spec.history import Histories, merged, settings, today
 from runner.store.atomic import write_atomically
 from runner.store.axes import Counted, GridOverrides, read_axes
 from runner.store.finished import Finished

@@ -15,7 +15,7 @@ from runner.base.trace import Failure, FloatArray, Trace
 from runner.caveats import Found
 from runner.metrics.summary import Summary, over_repetitions, units_of
 from runner.plant_error import PlantError
-from runner.spec import bounds_of, judge
+from runner.statistics.spec import bounds_of, judge
 from runner.store.arrow_columns import float_column
 from runner.store.atomic import write_atomically
 from runner.store.json_texts import JsonTexts, encode_finite

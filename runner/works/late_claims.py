@@ -6,7 +6,7 @@ from pathlib import Path
 from runner.claims import CLAIMS, load_claims
 from runner.claims.judging import simulated_by
 from runner.reporting.claims import run_name
-from runner.spec.history import merged, set_after, today
+from runner.statistics.spec.history import merged, set_after, today
 from runner.store import Run
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runner.config.spec import Bound
-from runner.spec import bounds_of, judge, read_spec
+from runner.statistics.spec import bounds_of, judge, read_spec
 
 VALUES = {
     "settling_time": np.array([1.0, 2.0, np.nan, 1.5]),

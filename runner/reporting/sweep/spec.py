@@ -15,9 +15,9 @@ from runner.reporting.spec_blocks import RULE
 from runner.reporting.spec_words import bound_text, late_text, probability
 from runner.reporting.sweep import maps
 from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_names
-from runner.spec import bounds_of
-from runner.spec.history import merged, settings
-from runner.spec.kept import within
+from runner.statistics.spec import bounds_of
+from runner.statistics.spec.history import merged, settings
+from runner.statistics.spec.kept import within
 from runner.store import Sweep
 from runner.sweeps.measurements import Axis, FloatArray
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.config.spec import Bound
-from runner.spec.history import History
+from runner.statistics.spec.history import History
 
 if TYPE_CHECKING:
     from runner.statistics.share import Share
