@@ -8,11 +8,11 @@ import time
 from collections.abc import Callable
 
 from runner.assembly import assemble, metric_context
-from runner.caveats import Watch, setting_of, signals_of
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.loop.sensors import make_encoders, make_wrist_sensor
 from runner.metrics import evaluate
+from runner.metrics.caveats import Watch, setting_of, signals_of
 from runner.simulation import simulate
 
 _BLOCKS, _CALLS = 30, 20

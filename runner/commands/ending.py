@@ -69,7 +69,7 @@ def _tell_spec(run: "Run") -> None:
 
 def _tell_caveats(run: "Run", thresholds: Any) -> None:
     """Print why a run's result may mislead, and where other thresholds than those asked for were used."""
-    from runner.caveats import changes_since
+    from runner.metrics.caveats import changes_since
 
     for caveat in run.caveats:
         print(one_line(f"runner: caveat: {caveat['rule']}: {caveat['text']}"), file=sys.stderr)

@@ -15,7 +15,7 @@ class RunSettings(StrictModel):
         repetitions: Number of closed-loop runs in the job.
         duration: Length of a run, in s; None leaves it to the trajectory.
         gravity: Magnitude of gravity along -z of the base, in m/s^2, for the plant and the controllers' model.
-        plant_error: Whether the run is held against the same run on Runge-Kutta; see runner/plant_error.py.
+        plant_error: Whether the run is held against the same run on Runge-Kutta; see runner/metrics/plant_error.py.
         outputs: Folder in which runs are stored.
     """
 

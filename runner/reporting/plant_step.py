@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from runner.base.quantities import above_rounding, number, quantity
-from runner.plant_error import COMPARED
+from runner.metrics.plant_error import COMPARED
 from runner.reporting.key_metrics import key_names
 from runner.reporting.metric_titles import title
 from runner.reporting.words import PLANT

@@ -7,7 +7,7 @@ from typing import Any
 
 from runner.base.errors import RunnerError
 from runner.base.quantities import above_rounding, number, quantity, with_powers
-from runner.caveats import changes_since
+from runner.metrics.caveats import changes_since
 from runner.references import check_run, find_shipped
 from runner.reporting.changed_keys import changed_keys, flatten
 from runner.reporting.cover import cover

@@ -20,7 +20,7 @@ from runner.store import syntax
 
 # Folders and their modules. A module's id stands behind "=", or is its name.
 _TABLE = """
-    .: assembly batch batch_blocks batch_jobs calibration_job execution job plant_error simulation walls
+    .: assembly batch batch_blocks batch_jobs calibration_job execution job simulation walls
     base: trace
     calibration: __init__=calibration.__init__ compensation consistency gravity=calibration.gravity orientations
         repeatability tool tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
@@ -46,8 +46,8 @@ _TABLE = """
         pushed_links wall
     loop: acting closed_loop=loop.closed_loop command compiled_loop contact=loop.contact drive endpoint=loop.endpoint
         failures joint_torques recorder sensors
-    metrics: __init__=metrics.__init__ contact=metrics.contact context effort family positioning reaching summary
-        tracking
+    metrics: __init__=metrics.__init__ contact=metrics.contact context effort family plant_error positioning reaching
+        summary tracking
     plants: __init__=plants.__init__ armature=plants.armature bullet bullet_servers compiled_flexible=flexible
         compiled_motion=compiled.motion computation=plants.computation decoupled end_points=plants.end_points
         flexible_around flexible_config flexible_joints=plants.flexible_joints flexible_links=plants.flexible_links

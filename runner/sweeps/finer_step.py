@@ -17,7 +17,7 @@ from runner.batch_blocks import simulate_blocks, threads_allowed
 from runner.config.compose.compose import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.plant_error import COMPARED, PLANT, hindrance, on_runge_kutta
+from runner.metrics.plant_error import COMPARED, PLANT, hindrance, on_runge_kutta
 from runner.statistics.interval import SMALLEST_SAMPLE
 from runner.store import Run, Sweep
 from runner.store.finer import FloatArray, finer_names, write_finer

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.caveats import changes_since
+from runner.metrics.caveats import changes_since
 from runner.store import Run
 from runner.store.shards import open_row
 from runner.sweeps.resolved import Resolver

@@ -7,8 +7,8 @@ from pydantic import Field
 
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
-from runner.caveats.default_plant import DEFAULT_PLANT
-from runner.caveats.registry import KEYS
+from runner.metrics.caveats.default_plant import DEFAULT_PLANT
+from runner.metrics.caveats.registry import KEYS
 from runner.plugins.registry import StrictModel
 from runner.reporting.expected_caveats import ExpectedCaveat
 

@@ -4,7 +4,7 @@ import pytest
 from support.caveat_runs import found, signals
 from support.engines import ASKED
 
-from runner.caveats import Watch, setting_of
+from runner.metrics.caveats import Watch, setting_of
 
 NOISY = ("robot=macro", "noise.position=1e-3")
 

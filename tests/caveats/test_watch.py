@@ -11,9 +11,9 @@ from support.caveat_runs import signals, stacked
 from support.engines import ASKED
 
 from runner.base.trace import Traces
-from runner.caveats import Signals, Watch, changes_since, look_together, registry, setting_of, signals_of
-from runner.caveats.today import our_thresholds
 from runner.config.caveats import CaveatsConfig
+from runner.metrics.caveats import Signals, Watch, changes_since, look_together, registry, setting_of, signals_of
+from runner.metrics.caveats.today import our_thresholds
 from runner.store import run_hash
 
 ROBOTS = ("macro", "mini", "combined", "macro_mini_mini", "xarm7", "xarm7_mini", "meca500", "meca500_r4")
@@ -176,7 +176,7 @@ def test_other_thresholds_leave_a_run_as_it_is_and_are_told(cli):
 
 
 def test_a_store_is_read_without_rigid_body_models():
-    light = "import sys, runner.store, runner.caveats; sys.exit('pinocchio' in sys.modules)"
+    light = "import sys, runner.store, runner.metrics.caveats; sys.exit('pinocchio' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", light], check=False).returncode == 0
 
 

@@ -8,7 +8,7 @@ import pytest
 from support.made_up_runs import made_up_run
 
 from runner.base.errors import RunnerError
-from runner.caveats.registry import KEYS
+from runner.metrics.caveats.registry import KEYS
 from runner.reporting.document import Notice, Table
 from runner.reporting.expected_caveats import (
     ExpectedCaveat,

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from runner.caveats import Caveat, Found
 from runner.metrics import summarize_arrays, unit_of
+from runner.metrics.caveats import Caveat, Found
 from runner.store import Finished, Outcome
 from runner.store.json_texts import JsonTexts
 from runner.store.shards import ShardRow, ShardRun, read_columns, read_outcomes, shard_name, write_shard

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from runner.caveats import Signals, Watch, setting_of
+from runner.metrics.caveats import Signals, Watch, setting_of
 
 
 def signals(q=None, tau=None, tip=None, desired=None, limits=(10.0, 10.0, 10.0)):

@@ -12,7 +12,7 @@ from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.execution import run
 from runner.job import simulate_job
-from runner.plant_error import compare, on_runge_kutta, sufficient_step
+from runner.metrics.plant_error import compare, on_runge_kutta, sufficient_step
 
 CASE = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "duration=1.5")
 OTHER = "bullet" if has_pybullet() else "mujoco"

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from runner.caveats.rule import SettingRule
-from runner.caveats.setting import Setting
+from runner.metrics.caveats.rule import SettingRule
+from runner.metrics.caveats.setting import Setting
 
 
 def _overload(setting: Setting) -> float | None:

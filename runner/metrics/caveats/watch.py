@@ -10,15 +10,15 @@ import numpy as np
 
 from runner.base.memory import Memory
 from runner.base.trace import FloatArray
-from runner.caveats import plant_error
-from runner.caveats.caveat import Caveat, Found
-from runner.caveats.plant_error import PlantStep, caveat_of
-from runner.caveats.registry import KEYS, SETTING_RULES, TRACE_RULES, rules_digest
-from runner.caveats.rule import TraceRule
-from runner.caveats.setting import Setting
-from runner.caveats.signals import Signals
 from runner.config.caveats import CaveatsConfig
-from runner.plant_error import PlantError
+from runner.metrics.caveats import plant_error
+from runner.metrics.caveats.caveat import Caveat, Found
+from runner.metrics.caveats.plant_error import PlantStep, caveat_of
+from runner.metrics.caveats.registry import KEYS, SETTING_RULES, TRACE_RULES, rules_digest
+from runner.metrics.caveats.rule import TraceRule
+from runner.metrics.caveats.setting import Setting
+from runner.metrics.caveats.signals import Signals
+from runner.metrics.plant_error import PlantError
 
 _KEYS = {name: KEYS[name] for name in CaveatsConfig.model_fields}
 _values = attrgetter(*(f"{name}.{key}" for name, key in _KEYS.items()))

@@ -1,7 +1,7 @@
 """Rule on gains that the control period does not bear."""
 
-from runner.caveats.rule import SettingRule
-from runner.caveats.setting import Setting
+from runner.metrics.caveats.rule import SettingRule
+from runner.metrics.caveats.setting import Setting
 
 _LIGHT = 2.0  # times what the joints alone would have, above which the coupling is named
 

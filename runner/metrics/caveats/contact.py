@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from runner.caveats.rule import SettingRule
-from runner.caveats.setting import Setting
+from runner.metrics.caveats.rule import SettingRule
+from runner.metrics.caveats.setting import Setting
 
 _DIGITS = 6  # of the radius; an axis without a spring has an eigenvalue of 1 but for rounding
 

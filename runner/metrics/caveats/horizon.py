@@ -2,8 +2,8 @@
 
 import math
 
-from runner.caveats.rule import SettingRule
-from runner.caveats.setting import Setting
+from runner.metrics.caveats.rule import SettingRule
+from runner.metrics.caveats.setting import Setting
 
 _ENOUGH = 3.0  # time constants, in which an exponential does 95 % of its way
 _DIGITS = 6  # of the share; two equal poles are found to half of the digits

@@ -1,7 +1,7 @@
 """Rules on what controllers are told, and believe, of the arm."""
 
-from runner.caveats.rule import SettingRule
-from runner.caveats.setting import Setting
+from runner.metrics.caveats.rule import SettingRule
+from runner.metrics.caveats.setting import Setting
 
 _FACTORS = ("mass", "centre_of_mass", "length", "gravity")
 

@@ -7,8 +7,8 @@ from typing import Any
 import yaml
 
 from runner.base.paths import conf_dir
-from runner.caveats.registry import rules_digest
 from runner.config.caveats import CaveatsConfig
+from runner.metrics.caveats.registry import rules_digest
 
 Thresholds = Mapping[str, Mapping[str, float]]
 

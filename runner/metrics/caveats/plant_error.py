@@ -2,10 +2,10 @@
 
 from typing import NamedTuple
 
-from runner.caveats.caveat import Caveat
-from runner.caveats.rule import percent
+from runner.metrics.caveats.caveat import Caveat
+from runner.metrics.caveats.rule import percent
+from runner.metrics.plant_error import PARTED, PLANT, PlantError, sufficient_step
 from runner.metrics.summary import unit_of
-from runner.plant_error import PARTED, PLANT, PlantError, sufficient_step
 
 NAME, KEY = "plant_error", "share"
 _OF_BAND = 0.01  # of the settling band: smaller differences do not matter

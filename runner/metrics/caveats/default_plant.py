@@ -1,7 +1,7 @@
 """Rule on a plant that nobody chose."""
 
-from runner.caveats.rule import SettingRule
-from runner.caveats.setting import Setting
+from runner.metrics.caveats.rule import SettingRule
+from runner.metrics.caveats.setting import Setting
 
 
 def _replaced(setting: Setting) -> float | None:

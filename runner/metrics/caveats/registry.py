@@ -5,17 +5,17 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-from runner.caveats.burden import NO_EFFORT_LIMIT, OVERLOAD
-from runner.caveats.contact import UNSTABLE_CONTACT
-from runner.caveats.default_plant import DEFAULT_PLANT
-from runner.caveats.file import ROBOT_FILE
-from runner.caveats.gains import UNSTABLE_GAINS
-from runner.caveats.horizon import SHORT_HORIZON
-from runner.caveats.knowledge import EXACT_VELOCITY, FIXED_MISMATCH
-from runner.caveats.motion import DID_NOT_FOLLOW, JOINT_LIMITS
-from runner.caveats.plant_error import KEY, NAME
-from runner.caveats.rule import SettingRule, TraceRule
-from runner.caveats.torques import CHATTER, SATURATION
+from runner.metrics.caveats.burden import NO_EFFORT_LIMIT, OVERLOAD
+from runner.metrics.caveats.contact import UNSTABLE_CONTACT
+from runner.metrics.caveats.default_plant import DEFAULT_PLANT
+from runner.metrics.caveats.file import ROBOT_FILE
+from runner.metrics.caveats.gains import UNSTABLE_GAINS
+from runner.metrics.caveats.horizon import SHORT_HORIZON
+from runner.metrics.caveats.knowledge import EXACT_VELOCITY, FIXED_MISMATCH
+from runner.metrics.caveats.motion import DID_NOT_FOLLOW, JOINT_LIMITS
+from runner.metrics.caveats.plant_error import KEY, NAME
+from runner.metrics.caveats.rule import SettingRule, TraceRule
+from runner.metrics.caveats.torques import CHATTER, SATURATION
 
 TRACE_RULES: tuple[TraceRule, ...] = (DID_NOT_FOLLOW, SATURATION, CHATTER, JOINT_LIMITS)
 SETTING_RULES: tuple[SettingRule, ...] = (

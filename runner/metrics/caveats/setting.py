@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from runner.base.trace import FloatArray
 
 if TYPE_CHECKING:  # the store knows caveats, and is to be imported without rigid-body models
-    from runner.caveats.time_constants import TimeConstant
     from runner.config.robot import RobotConfig
     from runner.config.run import RunConfig
     from runner.controllers.sampled_stability import VelocityLoop
+    from runner.metrics.caveats.time_constants import TimeConstant
     from runner.plants.servo_contact import ServoContact
     from runner.robots.mismatch import MismatchConfig
     from runner.robots.model import RobotModel
@@ -79,10 +79,10 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         config: The checked config.
         q_start: Joint positions at the start, shape (nq,), in rad; None leaves contact out, and takes home elsewhere.
     """
-    from runner.caveats.file import left_out_of
-    from runner.caveats.time_constants import slowest_part
-    from runner.caveats.touch import force_contact, servo_contact
     from runner.controllers.sampled_stability import velocity_loop
+    from runner.metrics.caveats.file import left_out_of
+    from runner.metrics.caveats.time_constants import slowest_part
+    from runner.metrics.caveats.touch import force_contact, servo_contact
     from runner.plants.kinds import StandsIn
 
     model = config.arm.model

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from runner.base.trace import FloatArray
-from runner.caveats.setting import Setting
-from runner.caveats.signals import Signals
+from runner.metrics.caveats.setting import Setting
+from runner.metrics.caveats.signals import Signals
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,9 @@
 import numpy as np
 
 from runner.base.trace import FloatArray, by_rows
-from runner.caveats.rule import TraceRule, called, percent
-from runner.caveats.setting import Setting
-from runner.caveats.signals import Signals
+from runner.metrics.caveats.rule import TraceRule, called, percent
+from runner.metrics.caveats.setting import Setting
+from runner.metrics.caveats.signals import Signals
 
 _SIZED = 60  # rows, the last one included, from which the size of a motion is told
 _END = 10  # of a motion to a goal the last tenth is looked at
