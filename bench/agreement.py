@@ -8,13 +8,13 @@ from unittest.mock import patch
 
 import numpy as np
 
-from runner.assembly import assemble
 from runner.base.trace import Trace
-from runner.compiled import compile
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.loop.sensors import make_encoders
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.compiled import compile
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 
 _SEEDS = 20
 _TARGET = 1e-11  # rad

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-from runner.assembly import assemble
 from runner.config.compose.compose import compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.loop.closed_loop import ClosedLoop
+from runner.simulation.assembly import assemble
+from runner.simulation.closed_loop import ClosedLoop
 
 _SCENE = ("trajectory=quintic", "noise=thesis", "torque_limits=thesis")
 # A robot in stages has a natural frequency for each; computed_torque takes one number for all joints.

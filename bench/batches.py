@@ -4,8 +4,8 @@ import numpy as np
 
 from bench.arms import Arm, assembled
 from bench.turns import Block
-from runner.compiled.closed_loop import Whole, run_all
-from runner.loop.sensors import make_encoders
+from runner.simulation.compiled.closed_loop import Whole, run_all
+from runner.simulation.sensors import make_encoders
 
 SIZES = (1, 40, 1000)
 TICKS = 400

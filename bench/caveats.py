@@ -7,13 +7,13 @@ only ever slows one.
 import time
 from collections.abc import Callable
 
-from runner.assembly import assemble, metric_context
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.loop.sensors import make_encoders, make_wrist_sensor
 from runner.metrics import evaluate
 from runner.metrics.caveats import Watch, setting_of, signals_of
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble, metric_context
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders, make_wrist_sensor
 
 _BLOCKS, _CALLS = 30, 20
 _TARGET = 0.25

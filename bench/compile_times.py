@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from bench.arms import ARMS, Arm, assembled
-from runner.compiled.closed_loop import CompiledCommands, Whole
+from runner.simulation.compiled.closed_loop import CompiledCommands, Whole
 from runner.symbolic import program
 
 

@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-from runner.assembly import assemble
-from runner.compiled.closed_loop import Whole
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
+from runner.simulation.assembly import assemble
+from runner.simulation.compiled.closed_loop import Whole
 
 _LAWS = {
     "adaptive": ("robot=macro", "controller=adaptive"),

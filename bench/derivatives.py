@@ -5,11 +5,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from runner.compiled.closed_loop import run_all
-from runner.compiled.directed import tangents
 from runner.config.compose.compose import compose
 from runner.sensitivity import GROUPS
 from runner.sensitivity.analysis import slopes_of
+from runner.simulation.compiled.closed_loop import run_all
+from runner.simulation.compiled.directed import tangents
 
 RUNS = {
     "macro": ("robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis"),

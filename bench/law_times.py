@@ -12,12 +12,12 @@ from typing import cast
 
 import numpy as np
 
-from runner.assembly import assemble
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.controllers import Controller
-from runner.loop.sensors import make_sensors
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_sensors
 
 TICKS = 5000
 _LAWS = {

@@ -21,8 +21,8 @@ from bench.least_loops import MissingError, least_loop
 from bench.tick import pybullet_alone, whole_run
 from bench.tip_loop import FloatArray, TipLoop, tip_loop
 from bench.turns import Block, measure, ratio
-from runner.loop.sensors import make_encoders
-from runner.simulation import simulate
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 
 TICKS = 2000
 ROUNDS = 20

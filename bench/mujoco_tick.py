@@ -12,10 +12,10 @@ from bench.arms import ARMS, Arm, assembled
 from bench.tick import whole_run
 from bench.tip_loop import FloatArray
 from bench.turns import Block, measure, ratio
-from runner.loop.closed_loop import ClosedLoop
-from runner.loop.sensors import make_encoders
 from runner.plants.mujoco import Mujoco
-from runner.simulation import simulate
+from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 
 TICKS = 2000
 ROUNDS = 20

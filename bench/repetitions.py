@@ -6,10 +6,10 @@ Blocks of repetitions keep the time of each the same, and the memory that of its
 import resource
 import time
 
-from runner.batch_blocks import simulate_blocks
 from runner.config.compose.compose import compose
 from runner.config.limits import memory_of_run
 from runner.config.validation import validate
+from runner.simulation.batch_blocks import simulate_blocks
 
 _FEW, _MANY = 1_000, 100_000
 _TIMES = 5  # that the few are made; the quickest counts

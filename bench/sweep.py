@@ -16,13 +16,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from runner import store
-from runner.assembly import assemble
 from runner.base.quiet import quiet_environment
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.job import simulate_job
-from runner.loop.sensors import make_encoders
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 
 _SHORT = ("robot=macro", "noise=thesis", "duration=1")
 _SHORTEST = ("robot=macro", "plant=rk4", "noise=thesis", "duration=0.05", "sweep.trace=never")

@@ -10,14 +10,14 @@ from collections.abc import Callable
 from statistics import median
 
 from bench.turns import ROUNDS, Block, measure, ratio
-from runner.assembly import assemble
 from runner.base.engine_output import quiet_stderr
 from runner.config.compose.compose import compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.loop.sensors import make_encoders
 from runner.plants.bullet import Bullet
-from runner.simulation import ClosedLoop, simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.loop import ClosedLoop, simulate
+from runner.simulation.sensors import make_encoders
 
 with quiet_stderr():
     import pybullet

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from runner.config.run import RunConfig
 from runner.controllers.operational_space.operational_space import OperationalSpaceConfig
 from runner.controllers.operational_space.whole_body import WholeBodyConfig
-from runner.loop.closed_loop import ClosedLoop
-from runner.loop.sensors import make_encoders
+from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.sensors import make_encoders
 
 FloatArray = NDArray[np.float64]
 

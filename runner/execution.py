@@ -8,12 +8,12 @@ from runner import store
 from runner.base import progress
 from runner.base.progress.stages import SIMULATING, SOON
 from runner.base.progress.ticks import counter
-from runner.batch_blocks import threads_allowed
 from runner.config.compose.compose import Composed, compose
 from runner.config.limits import check_cpu_time
 from runner.config.validation import validate
 from runner.job import seconds_per_tick, simulate_job
 from runner.latest import note
+from runner.simulation.batch_blocks import threads_allowed
 
 _SURELY_ALLOWED = 200_000  # ticks, which take minutes at most
 

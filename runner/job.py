@@ -8,20 +8,20 @@ from dataclasses import replace
 import numpy as np
 
 from runner import store
-from runner.assembly import assemble, metric_context
 from runner.base.errors import ConfigError, SimulationError
 from runner.base.trace import Failure, Trace
-from runner.batch_blocks import simulate_blocks
-from runner.batch_jobs import NO_DEADLINE, seconds_together, warm_time
 from runner.config.compose.compose import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.loop.sensors import make_sensors
 from runner.metrics import Columns, MetricContext, evaluate
 from runner.metrics.caveats import PlantStep, Watch, setting_of, signals_of
 from runner.metrics.plant_error import COMPARED, PlantError, compare, hindrance, on_runge_kutta
 from runner.provenance import job_provenance
-from runner.simulation import ClosedLoop, simulate
+from runner.simulation.assembly import assemble, metric_context
+from runner.simulation.batch_blocks import simulate_blocks
+from runner.simulation.batch_jobs import NO_DEADLINE, seconds_together, warm_time
+from runner.simulation.loop import ClosedLoop, simulate
+from runner.simulation.sensors import make_sensors
 from runner.store.writing import timing
 
 PROBED_TICKS = 50

@@ -49,8 +49,8 @@ def signals_of(run: store.Run, repetition: int) -> Signals:
 
 
 def _simulated(run: store.Run, repetition: int) -> Signals:
-    from runner.assembly import metric_context
     from runner.metrics import evaluate
+    from runner.simulation.assembly import metric_context
     from runner.store.writing import trace_table
 
     config = _checked(run, repetition)
@@ -88,9 +88,9 @@ def _checked(run: store.Run, repetition: int) -> "RunConfig":
 
 
 def _simulate(config: "RunConfig", repetition: int) -> "Trace":
-    from runner.assembly import assemble
-    from runner.loop.sensors import make_sensors
-    from runner.simulation import simulate
+    from runner.simulation.assembly import assemble
+    from runner.simulation.loop import simulate
+    from runner.simulation.sensors import make_sensors
 
     loop = assemble(config, repetition)
     try:

@@ -2,9 +2,9 @@
 
 import pinocchio as pin
 
-from runner.compiled.compile import compile_links_torque
 from runner.plants.plant import FloatArray
 from runner.robots.model import RobotModel
+from runner.simulation.compiled.compile import compile_links_torque
 
 
 class LinksTorque:

@@ -5,7 +5,6 @@ from typing import Literal
 import numpy as np
 import pinocchio as pin
 
-from runner.compiled.compile import compile_motion
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_joints import FlexibleJoints, links_of
@@ -15,6 +14,7 @@ from runner.plants.plant import FloatArray, Plant
 from runner.robots.model import RobotModel
 from runner.robots.modes import Mode
 from runner.robots.robot import Robot
+from runner.simulation.compiled.compile import compile_motion
 
 
 class Rk4Config(TorquePlantConfig):

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runner.assembly import metric_context
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.trace import Trace
 from runner.config.run import RunConfig
@@ -13,6 +12,7 @@ from runner.metrics import MetricContext
 from runner.recordings.columns_map import Signal
 from runner.recordings.smoothing import FloatArray
 from runner.robots.robot import end_points
+from runner.simulation.assembly import metric_context
 from runner.store import Run
 
 AXES = ("x", "y", "z")

@@ -7,11 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from runner.assembly import assemble_whole, metric_context
 from runner.base.errors import RunnerError
 from runner.base.trace import FloatArray, Trace
-from runner.batch import Batcher, Together, Wanted
-from runner.compiled.directed import tangents
 from runner.config.compose.compose import Composed, compose
 from runner.config.flexible_joints import find_flexibility
 from runner.config.flexible_links import is_flexible
@@ -23,6 +20,9 @@ from runner.plants.rk4 import Rk4Config
 from runner.sensitivity.parameters import GROUPS, Parameter, find_keys, find_links
 from runner.sensitivity.slopes import Scene, Slopes
 from runner.sensitivity.smooth_metrics import Change, derivatives
+from runner.simulation.assembly import assemble_whole, metric_context
+from runner.simulation.batch import Batcher, Together, Wanted
+from runner.simulation.compiled.directed import tangents
 from runner.symbolic.engine import evaluator
 from runner.trajectories.trajectory import joint_reference
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.trace import FloatArray
-from runner.batch import Batcher, Together
 from runner.metrics import measure
 from runner.sensitivity.analysis import Sensitivity
+from runner.simulation.batch import Batcher, Together
 
 _LARGEST, _STEPS = 2.0**-8, 9  # of a parameter's value, and of the error; each step is half the one before
 _ROUNDING = 4e-15  # of metrics that follow from lengths, angles or torques of about 1 in SI units

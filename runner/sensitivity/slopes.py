@@ -6,15 +6,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from runner.assembly import describe_loop, find_start
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.trace import FloatArray
-from runner.batch import Wanted
-from runner.compiled.closed_loop import Whole
-from runner.compiled.directed import Setting
 from runner.config.run import RunConfig
 from runner.sensing.encoders import encoder_errors
 from runner.sensitivity.parameters import Key, Parameter
+from runner.simulation.assembly import describe_loop, find_start
+from runner.simulation.batch import Wanted
+from runner.simulation.compiled.closed_loop import Whole
+from runner.simulation.compiled.directed import Setting
 from runner.symbolic.structure import fixed_text
 from runner.trajectories.trajectory import Trajectory, joint_reference
 

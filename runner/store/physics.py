@@ -20,13 +20,12 @@ from runner.store import syntax
 
 # Folders and their modules. A module's id stands behind "=", or is its name.
 _TABLE = """
-    .: assembly batch batch_blocks batch_jobs calibration_job execution job simulation walls
+    .: calibration_job execution job
     base: trace
     calibration: __init__=calibration.__init__ compensation consistency gravity=calibration.gravity orientations
         repeatability tool tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
     calibration/procedures: __init__=procedures.__init__ bench gravity=procedures.gravity procedure
         tool_centre_point=procedures.tool_centre_point tool_direction=procedures.tool_direction touching
-    compiled: closed_loop=compiled.closed_loop commands compile directed law maths=compiled.maths
     config: arms calibration computation=config.computation disturbance_observer=config.disturbance_observer
         endpoint_sensor feasibility flexible_joints=config.flexible_joints flexible_links=config.flexible_links
         force_reading=config.force_reading groups input_shaper joint_limits noise notch=config.notch parsing payload
@@ -44,8 +43,6 @@ _TABLE = """
         whole_body_graph whole_body_posture
     environments: __init__=environments.__init__ environment=environments.environment free hand interaction push
         pushed_links wall
-    loop: acting closed_loop=loop.closed_loop command compiled_loop contact=loop.contact drive endpoint=loop.endpoint
-        failures joint_torques recorder sensors
     metrics: __init__=metrics.__init__ contact=metrics.contact context effort family plant_error positioning reaching
         summary tracking
     plants: __init__=plants.__init__ armature=plants.armature bullet bullet_servers compiled_flexible=flexible
@@ -63,6 +60,10 @@ _TABLE = """
     schema: per_joint per_stage
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
         kinds=sensing.kinds streams velocity wrench
+    simulation: acting assembly batch batch_blocks batch_jobs closed_loop=loop.closed_loop command compiled_loop
+        contact=loop.contact drive endpoint=loop.endpoint failures joint_torques loop=simulation recorder sensors
+        walls
+    simulation/compiled: closed_loop=compiled.closed_loop commands compile directed law maths=compiled.maths
     symbolic: algebra arm code elementary end_points=compiled.end_points engine expression maths=controllers.maths
         places program regressor structure tangent vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ blend circle closed_figure from_file goal impulses interpolation

@@ -13,11 +13,11 @@ import numpy as np
 from runner import store
 from runner.base import progress
 from runner.base.errors import RunnerError
-from runner.batch_blocks import simulate_blocks, threads_allowed
 from runner.config.compose.compose import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.metrics.plant_error import COMPARED, PLANT, hindrance, on_runge_kutta
+from runner.simulation.batch_blocks import simulate_blocks, threads_allowed
 from runner.statistics.interval import SMALLEST_SAMPLE
 from runner.store import Run, Sweep
 from runner.store.finer import FloatArray, finer_names, write_finer

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.progress import in_words
-from runner.batch_jobs import seconds_together
 from runner.config.compose.compose import Composed
 from runner.config.validation import validate
 from runner.job import PROBED_TICKS, seconds_per_tick
+from runner.simulation.batch_jobs import seconds_together
 from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
 from runner.sweeps.deadline import TimeLimitError, deadline

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner import store
-from runner.assembly import assemble
 from runner.base import progress
 from runner.base.errors import ConfigError
 from runner.base.progress.stages import CHECKING
@@ -21,6 +20,7 @@ from runner.config.run import RunConfig
 from runner.config.spec import Bound
 from runner.config.sweep import SweepConfig
 from runner.config.validation import validate
+from runner.simulation.assembly import assemble
 from runner.store.axes import GridOverrides
 from runner.store.identity import json_text
 from runner.store.names import Names, Texts

@@ -7,15 +7,15 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.assembly import assemble
 from runner.base.errors import ConfigError, RunnerError
 from runner.config.compose.compose import Composed, compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.controllers import CONTROLLERS
 from runner.job import PROBED_TICKS
-from runner.loop.sensors import make_sensors
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_sensors
 from runner.works.alike import difference, setting
 from runner.works.estimate import Amount, counted, estimate_all, planned
 from runner.works.gains import without_gains

@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.assembly import assemble
 from runner.base.errors import ConfigError, SimulationError
 from runner.controllers import Loop
-from runner.loop.sensors import make_encoders
 from runner.plugins.guard import WatchedController, watch_loops
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 
 
 class Law:

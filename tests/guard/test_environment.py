@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from runner.environments.interaction import Interaction
-from runner.loop.sensors import make_encoders, make_wrist_sensor
 from runner.plugins.guard import WatchedEnvironment
-from runner.simulation import simulate
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders, make_wrist_sensor
 
 
 class Wind:

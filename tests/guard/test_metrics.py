@@ -6,11 +6,11 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from runner.assembly import metric_context
 from runner.base.errors import SimulationError
-from runner.loop.sensors import make_encoders
 from runner.metrics import evaluate, summary
-from runner.simulation import simulate
+from runner.simulation.assembly import metric_context
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 
 
 @pytest.mark.parametrize(

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.loop.sensors import make_encoders
 from runner.plugins.guard import watch_plant
-from runner.simulation import simulate
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 
 
 class Plant:

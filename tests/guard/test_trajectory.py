@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.loop.sensors import make_encoders
 from runner.plugins.guard import WatchedTrajectory
-from runner.simulation import simulate
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 
 
 @dataclass

@@ -5,13 +5,13 @@ import pinocchio as pin
 import pytest
 import yaml
 
-from runner.assembly import assemble
 from runner.base.paths import conf_dir
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.loop.sensors import make_encoders
 from runner.robots.robot import StageBase, end_points
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 
 P = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # from the Mini's base into the Macro's tip frame
 TOP = {

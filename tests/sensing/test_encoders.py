@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from runner.loop.sensors import make_encoders
 from runner.sensing import EncoderNoise, JointEncoders
+from runner.simulation.sensors import make_encoders
 
 PERIOD = 0.01
 

@@ -11,19 +11,19 @@ from typing import Any
 import numpy as np
 
 from runner import provenance, store
-from runner.assembly import assemble
 from runner.base.errors import StoreError
 from runner.base.trace import Trace
 from runner.config.compose.compose import compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.loop.closed_loop import ClosedLoop
-from runner.loop.sensors import make_encoders
 from runner.plants import Plant
 from runner.plants.rk4 import Rk4
 from runner.robots.model import RobotModel
 from runner.sensing import JointEncoders
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
 from runner.works.grids import FILE as RUNS

@@ -5,12 +5,12 @@ from typing import Any, cast
 
 import numpy as np
 
-from runner.assembly import assemble
 from runner.config.validation import validate
 from runner.controllers import Controller
 from runner.plants.flexible_joints import FlexibleJoints
 from runner.plants.plant import innermost
 from runner.reporting.document import FloatArray, Series
+from runner.simulation.assembly import assemble
 from runner.store import Run
 
 _WIDTH = 1e-6  # rad and rad/s, of the central differences

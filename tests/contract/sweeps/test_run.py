@@ -16,8 +16,8 @@ from support.patience import PATIENCE
 
 from runner import store
 from runner.base.errors import ConfigError, RunnerError, StoreError
-from runner.compiled.closed_loop import CommandsRun
-from runner.loop.command import Command
+from runner.simulation.command import Command
+from runner.simulation.compiled.closed_loop import CommandsRun
 from runner.sweeps import lock, work
 from runner.sweeps.deadline import TimeLimitError
 from runner.sweeps.grid import plan_sweep

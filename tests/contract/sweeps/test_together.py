@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from runner import batch, store
+from runner import store
+from runner.simulation import batch
 from runner.sweeps import work
 from runner.sweeps.grid import plan_sweep
 from runner.sweeps.listed import Item, Listed

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from runner.assembly import assemble
-from runner.compiled.closed_loop import run_all
+from runner.simulation.assembly import assemble
+from runner.simulation.compiled.closed_loop import run_all
 from runner.symbolic.engine import evaluator
 from runner.symbolic.program import LANES, Frame
 

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from runner.compiled.closed_loop import CompiledCommands
-from runner.compiled.commands import Commands, LoopCode
 from runner.sensing import EncoderNoise
+from runner.simulation.compiled.closed_loop import CompiledCommands
+from runner.simulation.compiled.commands import Commands, LoopCode
 from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="laws are compiled by llvmlite")

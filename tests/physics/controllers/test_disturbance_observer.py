@@ -8,12 +8,12 @@ import pytest
 from support.arms import checked, last_of_each
 from support.physics import assert_same_motion
 
-from runner.assembly import assemble
 from runner.base.errors import ConfigError
-from runner.compiled import compile
-from runner.loop.sensors import make_encoders
 from runner.plants.rk4 import Rk4
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.compiled import compile
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 from runner.store import open_run
 
 OBSERVED = ("disturbance_observer=momentum", "disturbance_observer.bandwidth=60")

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from runner.assembly import assemble
 from runner.controllers.force.force_stability import force_loop_radius
 from runner.controllers.force.late_stability import delay_limit, miss_limit, miss_radius, pattern_limit
-from runner.loop.sensors import make_sensors
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_sensors
 
 H = 0.01  # s, the Macro's period
 NEAR = ("robot=macro", "plant=rk4", "gravity=0", "trajectory.start=[0.7,0.6,1.2]", "trajectory.goal=[0.70001,0.6,1.2]")

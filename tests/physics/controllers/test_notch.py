@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from support.arms import checked
 
-from runner.assembly import assemble
 from runner.base.errors import ConfigError
-from runner.compiled.closed_loop import Whole
 from runner.config.compose.compose import compose
 from runner.controllers.notch import Notch, NotchedController
-from runner.loop.sensors import make_encoders
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.compiled.closed_loop import Whole
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 from runner.store import simulated_part
 from runner.symbolic.maths import FLOATS
 

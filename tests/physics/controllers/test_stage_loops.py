@@ -5,11 +5,11 @@ import dataclasses
 import numpy as np
 import pytest
 
-from runner.assembly import assemble
 from runner.controllers.macro_mini.stage_loops import CarrierController, RiderController, rider_moves
-from runner.loop.sensors import make_encoders
 from runner.robots.robot import end_points
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 from runner.symbolic.maths import FLOATS
 
 REACH = 0.2

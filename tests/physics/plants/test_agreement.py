@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from support import strangers
 
-from runner.assembly import assemble
-from runner.loop.sensors import make_encoders
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 
 CLOSED = {
     "macro": ("trajectory.goal=[0.3,0.9,1.2]", "trajectory.duration=1", "plant.step=0.001"),

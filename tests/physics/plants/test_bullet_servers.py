@@ -6,9 +6,9 @@ import sys
 import numpy as np
 import pytest
 
-from runner.assembly import assemble
 from runner.base.errors import ConfigError
 from runner.plants import decoupled
+from runner.simulation.assembly import assemble
 
 pybullet = pytest.importorskip("pybullet", reason="PyBullet is not installed")
 
@@ -18,9 +18,9 @@ from runner.plants.bullet_servers import SERVERS, PhysicsServers  # noqa: E402
 RUN = """
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.assembly import assemble
-from runner.loop.sensors import make_encoders
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.sensors import make_encoders
+from runner.simulation.loop import simulate
 config = validate(compose(["robot=macro", "noise=thesis", "torque_limits=thesis", "duration=0.5"]).resolved)
 loop = assemble(config)
 print(simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0)).q[-1].tobytes().hex())
@@ -95,8 +95,8 @@ def test_a_plant_that_raises_while_it_is_set_up_leaves_none(servers_before, monk
 @pytest.mark.parametrize(
     ("overrides", "part"),
     [
-        (("robot=meca500", "plant=bullet"), "runner.assembly.JointServo"),
-        (("robot=meca500", "plant=bullet"), "runner.assembly.Interaction"),
+        (("robot=meca500", "plant=bullet"), "runner.simulation.assembly.JointServo"),
+        (("robot=meca500", "plant=bullet"), "runner.simulation.assembly.Interaction"),
         (("robot=macro", "plant.friction.coulomb=1"), "runner.plants.friction.Frictional"),
         (("robot=combined", "plant.dynamics=decoupled"), "runner.plants.decoupled.StageBase"),
     ],

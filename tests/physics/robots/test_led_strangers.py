@@ -21,9 +21,9 @@ def test_controllers_lead_strangers(simulated_stranger, name, controller):
 
 @pytest.fixture(scope="module")
 def simulated_stranger():
-    from runner.assembly import assemble
-    from runner.loop.sensors import make_encoders
-    from runner.simulation import simulate
+    from runner.simulation.assembly import assemble
+    from runner.simulation.loop import simulate
+    from runner.simulation.sensors import make_encoders
 
     def make(name, *overrides):
         free = ("robot.friction.viscous=0", "robot.friction.coulomb=0")  # no law knows the friction of the files

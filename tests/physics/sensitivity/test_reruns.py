@@ -9,12 +9,12 @@ from operator import getitem
 import numpy as np
 import pytest
 
-from runner.assembly import assemble_whole
-from runner.batch import Batcher, Wanted
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.metrics import measure
 from runner.sensitivity import differences
+from runner.simulation.assembly import assemble_whole
+from runner.simulation.batch import Batcher, Wanted
 from runner.store import simulated_part
 
 NULL_SPACE, BANDWIDTH = "controller.null_space_frequency", "disturbance_observer.bandwidth"

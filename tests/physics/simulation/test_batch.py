@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from support.arms import checked
 
-from runner import batch
-from runner.assembly import assemble
-from runner.batch import Batcher, Together
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.loop.sensors import make_encoders
-from runner.simulation import simulate
+from runner.simulation import batch
+from runner.simulation.assembly import assemble
+from runner.simulation.batch import Batcher, Together
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a whole by llvmlite")

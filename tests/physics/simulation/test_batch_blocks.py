@@ -6,11 +6,11 @@ import threading
 import numpy as np
 import pytest
 
-from runner import batch_blocks
-from runner.batch import Batcher
-from runner.batch_blocks import MOST_THREADS, simulate_blocks
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
+from runner.simulation import batch_blocks
+from runner.simulation.batch import Batcher
+from runner.simulation.batch_blocks import MOST_THREADS, simulate_blocks
 from runner.store.writing import make_record
 from runner.symbolic.engine import evaluator
 

@@ -2,11 +2,11 @@
 
 import pytest
 
-from runner.batch import Batcher
-from runner.batch_jobs import simulate_together
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.job import simulate_job
+from runner.simulation.batch import Batcher
+from runner.simulation.batch_jobs import simulate_together
 from runner.store.writing import make_record
 from runner.symbolic.engine import evaluator
 

@@ -9,10 +9,10 @@ from support.arms import last_of_each
 from support.covers import name_of, pairwise
 from support.printed import without_caveats, without_results
 
-from runner.assembly import assemble, metric_context
-from runner.loop.sensors import make_encoders
 from runner.metrics import evaluate
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble, metric_context
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 from runner.store import open_run
 
 TRACKING = ("robot=combined", "preset=sound", "trajectory=quintic", "trajectory.duration=3", "duration=3")

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from support.arms import checked
 
-from runner.assembly import assemble
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.loop.endpoint import make_measured_tips
 from runner.plants.flexible_joints import FlexibleJoints
+from runner.simulation.assembly import assemble
+from runner.simulation.endpoint import make_measured_tips
 
 KEY = "plant.flexible_joints"
 FLEXIBLE = (

@@ -7,7 +7,6 @@ import pytest
 from support.arms import checked
 from support.physics import assert_order
 
-from runner.assembly import assemble
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.plants import PLANTS
@@ -15,6 +14,7 @@ from runner.robots.armature import with_armature
 from runner.robots.beams import stiffened
 from runner.robots.cantilever import cantilever_roots
 from runner.robots.modes import Mode
+from runner.simulation.assembly import assemble
 from runner.store import simulated_part
 from runner.trajectories.impulses import zero_vibration
 

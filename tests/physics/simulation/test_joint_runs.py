@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from support.physics import assert_order
 
-from runner.assembly import assemble, metric_context
 from runner.execution import run
-from runner.loop.sensors import make_encoders
 from runner.metrics import evaluate
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble, metric_context
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 
 JOINTS = ("robot=macro", "trajectory=joint_quintic", "plant=rk4", "trajectory.duration=1", "duration=1.5")
 
@@ -54,7 +54,7 @@ def test_compiled_and_through_pinocchio_it_is_one_law(checked_config, monkeypatc
     more = (f"controller.feedforward={feedforward}", f"controller.integral_gain={gain}")
     config = checked_config(*JOINTS, "controller=computed_torque", *more)
     whole = traced(config)
-    monkeypatch.setattr("runner.assembly._compile", lambda *_: None)
+    monkeypatch.setattr("runner.simulation.assembly._compile", lambda *_: None)
     plain = traced(config)
     np.testing.assert_allclose(whole.q, plain.q, atol=1e-9)
     np.testing.assert_allclose(whole.tau, plain.tau, atol=1e-6)
@@ -63,7 +63,7 @@ def test_compiled_and_through_pinocchio_it_is_one_law(checked_config, monkeypatc
 def test_bullet_s_commands_are_compiled_too(checked_config, monkeypatch):
     config = checked_config(*JOINTS[:2], "plant=mujoco", *JOINTS[3:], "controller=computed_torque")
     compiled = traced(config)
-    monkeypatch.setattr("runner.assembly._compile", lambda *_: None)
+    monkeypatch.setattr("runner.simulation.assembly._compile", lambda *_: None)
     np.testing.assert_allclose(compiled.q, traced(config).q, atol=1e-9)
 
 

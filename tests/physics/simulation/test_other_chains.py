@@ -7,7 +7,6 @@ import pinocchio as pin
 import pytest
 from support import strangers
 
-from runner.assembly import assemble, metric_context
 from runner.base.errors import ConfigError
 from runner.controllers.macro_mini.macro_mini import later_home_offset
 from runner.controllers.macro_mini.stage_law import StageLaw
@@ -18,6 +17,7 @@ from runner.controllers.torque_law import PinocchioArm
 from runner.metrics import evaluate, units
 from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.robots.robot import end_points
+from runner.simulation.assembly import assemble, metric_context
 
 CHAINS = ["macro_mini_mini", "xarm7_mini"]
 PLANTS = ["default", "rk4"]

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from support.arms import checked
 
-from runner.assembly import assemble
 from runner.base.errors import ConfigError
 from runner.execution import run
-from runner.loop.sensors import make_encoders
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 
 ENGINES = ("rk4", "bullet", "mujoco")
 HELD = ("robot=macro", "controller=computed_torque", "trajectory=joint_quintic", "trajectory.duration=0.5")

@@ -10,9 +10,9 @@ from support.engines import ASKED
 
 from runner.base.errors import ConfigError
 from runner.environments.interaction import Interaction
-from runner.loop.sensors import make_encoders, make_wrist_sensor
 from runner.plugins.guard import watch_environment
-from runner.simulation import simulate
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders, make_wrist_sensor
 
 NOTHING = np.zeros(6)
 

@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from support.arms import checked
 
-from runner.assembly import assemble
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.controllers.force.admittance_filter import Admittance, discretise
 from runner.controllers.force.admittance_stability import spectral_radius
-from runner.loop.sensors import make_encoders, make_wrist_sensor
 from runner.metrics.caveats import Watch, setting_of
 from runner.metrics.caveats.touch import servo_contact
 from runner.plants.servo import ServoLaw
 from runner.plants.servo_contact import contact_map, contact_radius, stiffest_servo_wall
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders, make_wrist_sensor
 
 PRESSED = (
     "experiment=meca500/wall", "environment.distance=0", "environment.damping=0", "trajectory.goal=[0.185,0.01,0.06]",

@@ -8,11 +8,11 @@ import sys
 import numpy as np
 import pytest
 
-from runner.assembly import assemble
 from runner.controllers import Loop
-from runner.loop.sensors import make_encoders
 from runner.sensing import EncoderNoise, JointEncoders
-from runner.simulation import ClosedLoop, simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.loop import ClosedLoop, simulate
+from runner.simulation.sensors import make_encoders
 
 NOISY = ("noise.position=1e-3", "duration=0.5")
 

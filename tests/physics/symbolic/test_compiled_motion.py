@@ -5,8 +5,8 @@ import pytest
 from support import strangers
 from support.arms import checked
 
-from runner.compiled import compile
 from runner.plants.rk4 import Rk4
+from runner.simulation.compiled import compile
 
 
 @pytest.mark.parametrize("name", ["macro", "mini", "combined", "xarm7", "meca500", "franka", "crane", "mixed"])

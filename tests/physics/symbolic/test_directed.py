@@ -5,14 +5,14 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from runner.compiled.closed_loop import Whole
-from runner.compiled.commands import Commands, LoopCode
-from runner.compiled.directed import Setting, tangents
 from runner.controllers.torque_law import TorqueLaw
 from runner.plants.motion import ArmMotion, Motion
 from runner.robots.mismatch import scaled
 from runner.robots.model import RobotModel
 from runner.sensing import EncoderNoise
+from runner.simulation.compiled.closed_loop import Whole
+from runner.simulation.compiled.commands import Commands, LoopCode
+from runner.simulation.compiled.directed import Setting, tangents
 
 URDF = """<robot name="wheel"><link name="base"/><link name="rod"><inertial><origin xyz="0.4 0 0"/><mass value="2"/>
 <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.18"/></inertial></link><link name="tip"/>

@@ -9,13 +9,13 @@ from support import strangers
 from support.arms import checked
 
 from runner.base.errors import SimulationError
-from runner.compiled import compile
-from runner.compiled.closed_loop import CompiledCommands
-from runner.compiled.commands import Commands, LoopCode
 from runner.controllers import Loop
 from runner.controllers.torque_law import TorqueLaw
 from runner.plugins.guard.controller import WatchedController
 from runner.sensing import EncoderNoise
+from runner.simulation.compiled import compile
+from runner.simulation.compiled.closed_loop import CompiledCommands
+from runner.simulation.compiled.commands import Commands, LoopCode
 from runner.symbolic import program
 from runner.symbolic.structure import CannotCompileError, pattern_of
 

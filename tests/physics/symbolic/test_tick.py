@@ -7,11 +7,11 @@ import pytest
 from support.arms import checked
 from support.physics import assert_same_motion
 
-from runner.assembly import assemble
-from runner.compiled import compile
-from runner.compiled.closed_loop import CompiledCommands, Whole, run_all
-from runner.loop.sensors import make_encoders
-from runner.simulation import simulate
+from runner.simulation.assembly import assemble
+from runner.simulation.compiled import compile
+from runner.simulation.compiled.closed_loop import CompiledCommands, Whole, run_all
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_encoders
 
 NOISY = "noise=thesis", "torque_limits=thesis"
 RUNS = [

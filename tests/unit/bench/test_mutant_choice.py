@@ -22,7 +22,7 @@ def low(a):
 def high(a):
     return a * 5
 """
-PATH, USER = "runner/plants/m.py", "runner/loop/user.py"
+PATH, USER = "runner/plants/m.py", "runner/simulation/user.py"
 BLOCKS = [key(PATH, "low", 0), key(PATH, "low", 1), key(PATH, "low", 2), key(PATH, "high", 0), key(USER, "ask", 0)]
 TESTS = {  # blocks that it runs, CPU time in s
     "tests/a/test_far.py::test_all": ([0, 1, 2, 3, 4], 1.0),
@@ -40,7 +40,7 @@ def tree(tmp_path):
         PATH: SOURCE,
         USER: "from runner.plants.m import LIMIT\n\n\ndef ask():\n    return LIMIT\n",
         "runner/plants/constants.py": "WIDE = 2\n",
-        "runner/loop/other.py": "from runner.plants.constants import WIDE\n",
+        "runner/simulation/other.py": "from runner.plants.constants import WIDE\n",
         "tests/a/test_far.py": "",
         "tests/new/plants/test_m.py": "",  # it was moved since
         "tests/a/test_user.py": "",

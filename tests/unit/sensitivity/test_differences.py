@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from runner.batch import Together
 from runner.sensitivity.differences import differences
+from runner.simulation.batch import Together
 
 MODULE = import_module(differences.__module__)
 

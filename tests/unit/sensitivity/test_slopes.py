@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from runner.compiled.directed import Setting
 from runner.sensitivity.slopes import _PART, NoDerivativeError, Scene
+from runner.simulation.compiled.directed import Setting
 
 VALUE = 2.0
 STEP = VALUE * _PART  # between two values at which numbers are taken

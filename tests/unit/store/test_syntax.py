@@ -93,7 +93,7 @@ def test_each_version_of_python_gives_one_digest():
         ),
         BEFORE.replace("import numpy as np\n", "").replace("step\n", "step\nimport numpy\n").replace("np.", "numpy."),
         BEFORE + '__all__ = ["force"]\n',
-        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from runner.loop import Loop\n" + BEFORE,
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from runner.simulation import Loop\n" + BEFORE,
     ],
 )
 def test_what_is_prose_or_place_leaves_no_trace(text):

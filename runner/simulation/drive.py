@@ -3,10 +3,10 @@
 from typing import Protocol, cast
 
 from runner.base.trace import FloatArray
-from runner.loop.closed_loop import ClosedLoop
-from runner.loop.recorder import Recorder
 from runner.plants import Plant, PositionPlant
 from runner.plants.load import push
+from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.recorder import Recorder
 
 
 class Drive(Protocol):

@@ -16,10 +16,10 @@ from itertools import chain
 import numpy as np
 
 from runner import store
-from runner.batch import Batcher
-from runner.batch_jobs import Job, Simulated, simulate_together
 from runner.config.limits import TICKS_AT_ONCE
 from runner.plugins.discovery import has_users_parts
+from runner.simulation.batch import Batcher
+from runner.simulation.batch_jobs import Job, Simulated, simulate_together
 from runner.store.writing import timing
 
 MOST_THREADS = 4

@@ -10,18 +10,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runner.assembly import assemble_whole, metric_context, reach_of
 from runner.base.memory import Memory
 from runner.base.progress.ticks import add_ticks
 from runner.base.trace import FloatArray, Trace, Traces
-from runner.compiled.closed_loop import Signals, Whole, run_all
 from runner.config.run import RunConfig
 from runner.config.timing import Timing
-from runner.loop.failures import ended_well, find_failure
 from runner.metrics import MetricContext
 from runner.plugins.discovery import added
 from runner.robots.robot import Robot, end_points
 from runner.sensing.encoders import encoder_errors
+from runner.simulation.assembly import assemble_whole, metric_context, reach_of
+from runner.simulation.compiled.closed_loop import Signals, Whole, run_all
+from runner.simulation.failures import ended_well, find_failure
 from runner.trajectories.trajectory import joint_reference
 
 _MOST_BYTES = 32e6  # of the signals of runs that are simulated together

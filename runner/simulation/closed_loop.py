@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 
 from runner.base.trace import FloatArray
-from runner.compiled.closed_loop import CompiledCommands, Whole
 from runner.controllers import Loop
 from runner.environments.interaction import Interaction
 from runner.plants import Plant, PositionPlant
 from runner.plants.motors import MotorSide
 from runner.plugins.registry import Commands
 from runner.robots.robot import Robot
+from runner.simulation.compiled.closed_loop import CompiledCommands, Whole
 from runner.trajectories import Trajectory
 
 

@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from runner.base.errors import SimulationError
 from runner.base.trace import Failure, FloatArray, Trace
-from runner.loop.acting import Acting
-from runner.loop.closed_loop import ClosedLoop
-from runner.loop.contact import Contact
-from runner.loop.failures import find_divergence
 from runner.plants import TellsEndPoints, innermost
 from runner.robots.robot import end_points
+from runner.simulation.acting import Acting
+from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.contact import Contact
+from runner.simulation.failures import find_divergence
 
 CHECK_EVERY = 64
 """Ticks between two looks for divergence, which the metrics never see."""

@@ -4,8 +4,8 @@ import numpy as np
 
 from runner.base.errors import SimulationError
 from runner.base.trace import Failure, FloatArray
-from runner.compiled.closed_loop import Signals
 from runner.robots.model import RobotModel
+from runner.simulation.compiled.closed_loop import Signals
 
 # Above this the equations still hold but no arm does: a run that gets there has diverged.
 DIVERGED_SPEED = 1e6  # rad/s, or m/s of a joint that slides

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.errors import SimulationError
-from runner.compiled.law import LawScalars, expressed_torque, law_scalars
-from runner.compiled.maths import Expressions
 from runner.controllers.controller import FloatArray
 from runner.controllers.torque_law import TorqueLaw
 from runner.plugins.guard.faults import find_fault, place
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
 from runner.sensing.velocity import first_state, gains, next_velocity
+from runner.simulation.compiled.law import LawScalars, expressed_torque, law_scalars
+from runner.simulation.compiled.maths import Expressions
 from runner.symbolic.code import GIVEN, ROWS, STATE, Block
 from runner.symbolic.end_points import PointScalars, expressed_points, point_scalars
 from runner.symbolic.expression import Value, both, equal, less, rounded, select

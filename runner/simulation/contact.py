@@ -6,9 +6,9 @@ import numpy as np
 
 from runner.base.trace import ContactSignals, FloatArray
 from runner.environments.interaction import Interaction
-from runner.loop.closed_loop import ClosedLoop
 from runner.plants import TellsContact, ToolReactionPlant, innermost
 from runner.sensing import WristSensor
+from runner.simulation.closed_loop import ClosedLoop
 
 _NOTHING = np.zeros(6)
 

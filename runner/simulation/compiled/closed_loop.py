@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from runner.compiled.commands import Commands, CommandScalars, expressed_commands
 from runner.plants.compiled_motion import MotionScalars, expressed_motion, motion_pattern, motion_scalars
 from runner.plants.motion import Motion
+from runner.simulation.compiled.commands import Commands, CommandScalars, expressed_commands
 from runner.symbolic.arm import Unfolded
 from runner.symbolic.code import ACTING
 from runner.symbolic.expression import places

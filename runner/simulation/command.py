@@ -7,10 +7,10 @@ import numpy as np
 
 from runner.base.trace import FloatArray
 from runner.controllers import Controller, Loop, PositionController
-from runner.loop.closed_loop import ClosedLoop
-from runner.loop.endpoint import MeasuredTip
-from runner.loop.recorder import Recorder
 from runner.sensing import Encoders
+from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.endpoint import MeasuredTip
+from runner.simulation.recorder import Recorder
 
 Law = Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray]
 

@@ -6,10 +6,10 @@ import numpy as np
 
 from runner.config.endpoint_sensor import endpoint_ticks
 from runner.config.run import RunConfig
-from runner.loop.closed_loop import ClosedLoop
 from runner.plants import Plant, PositionPlant, TellsEndPoints, innermost
 from runner.robots.model import FloatArray, RobotModel
 from runner.sensing.endpoint import EndpointSensor
+from runner.simulation.closed_loop import ClosedLoop
 
 _SEED = 2**32 - 3  # in the seeds of these sensors; the loops' places count from 0, others are 2**32 - 2 and - 1
 

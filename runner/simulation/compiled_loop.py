@@ -7,13 +7,13 @@ from typing import cast
 import numpy as np
 
 from runner.base.errors import SimulationError
-from runner.compiled.closed_loop import CompiledCommands, Whole, run_all
-from runner.loop.closed_loop import ClosedLoop
-from runner.loop.contact import Contact
-from runner.loop.drive import make_drive
-from runner.loop.failures import find_failure
-from runner.loop.recorder import CHECK_EVERY, Recorder
 from runner.sensing import Encoders, JointEncoders
+from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.compiled.closed_loop import CompiledCommands, Whole, run_all
+from runner.simulation.contact import Contact
+from runner.simulation.drive import make_drive
+from runner.simulation.failures import find_failure
+from runner.simulation.recorder import CHECK_EVERY, Recorder
 
 
 def run_commands(

@@ -5,8 +5,6 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
-from runner.compiled.closed_loop import CompiledCommands, Whole
-from runner.compiled.commands import Commands, LoopCode
 from runner.config.timing import Timing
 from runner.controllers.controller import FloatArray, Loop
 from runner.controllers.torque_law import TorqueLaw
@@ -16,6 +14,8 @@ from runner.plugins.guard.controller import WatchedController
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
+from runner.simulation.compiled.closed_loop import CompiledCommands, Whole
+from runner.simulation.compiled.commands import Commands, LoopCode
 from runner.symbolic.engine import MOST_JOINTS, evaluator
 from runner.symbolic.structure import CannotCompileError
 

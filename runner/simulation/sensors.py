@@ -6,10 +6,6 @@ import numpy as np
 
 from runner.config.computation import computation_of
 from runner.config.run import RunConfig
-from runner.loop.acting import Acting
-from runner.loop.closed_loop import ClosedLoop
-from runner.loop.endpoint import MeasuredTip, make_measured_tips
-from runner.loop.joint_torques import make_joint_torque_sensor
 from runner.sensing import (
     NOISES,
     WRIST_SENSORS,
@@ -21,6 +17,10 @@ from runner.sensing import (
     TorqueSensors,
     WristSensor,
 )
+from runner.simulation.acting import Acting
+from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.endpoint import MeasuredTip, make_measured_tips
+from runner.simulation.joint_torques import make_joint_torque_sensor
 
 _COMPUTATION = 2**32 - 4  # in the seeds; the loops' places count from 0, others are 2**32 - 3 to - 1
 

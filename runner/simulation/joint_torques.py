@@ -7,10 +7,10 @@ import numpy as np
 from runner.base.trace import FloatArray
 from runner.config.run import RunConfig
 from runner.controllers.kinds import ReadsJointTorques
-from runner.loop.closed_loop import ClosedLoop
-from runner.loop.recorder import Recorder
 from runner.plants.friction import friction_of
 from runner.sensing import JOINT_TORQUE_SENSORS, JointTorqueSensor, TorqueSensors
+from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.recorder import Recorder
 
 _SEED = 2**32 - 2  # in the seeds of these sensors; the loops' places count from 0, and beliefs have 2**32 - 1
 

@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from runner.compiled.maths import Expressions
 from runner.controllers.torque_law import Tip, TorqueLaw
+from runner.simulation.compiled.maths import Expressions
 from runner.symbolic.algebra import ArmAlgebra
 from runner.symbolic.arm import ArmConstants, constants_of
 from runner.symbolic.expression import Value

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.compiled.closed_loop import Whole
+from runner.simulation.compiled.closed_loop import Whole
 from runner.symbolic.arm import Unfolded
 from runner.symbolic.code import GIVEN, PARS, ROWS, STATE
 from runner.symbolic.places import Places

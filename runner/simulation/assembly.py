@@ -6,8 +6,6 @@ from contextlib import ExitStack
 import numpy as np
 
 from runner.base.trace import FloatArray
-from runner.compiled.closed_loop import CompiledCommands, Whole
-from runner.compiled.compile import compile_commands, compile_whole, describe_whole, find_commands
 from runner.config.feasibility import check_path
 from runner.config.flexible_joints import believe_motors, find_motor_side
 from runner.config.flexible_links import believe_links, is_flexible
@@ -20,7 +18,6 @@ from runner.controllers.notch import notched
 from runner.environments import ENVIRONMENTS
 from runner.environments.interaction import Interaction
 from runner.environments.wall import Wall
-from runner.loop.closed_loop import ClosedLoop
 from runner.metrics import MetricContext
 from runner.plants import PLANTS, Plant, PositionPlant
 from runner.plants.kinds import HasServo
@@ -29,8 +26,11 @@ from runner.plants.servo import JointServo
 from runner.plants.touched import Touched
 from runner.robots.mismatch import believe
 from runner.robots.robot import Robot
+from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.compiled.closed_loop import CompiledCommands, Whole
+from runner.simulation.compiled.compile import compile_commands, compile_whole, describe_whole, find_commands
+from runner.simulation.walls import put_up, touches_by_tip
 from runner.trajectories.joint_motion import TipOfJoints
-from runner.walls import put_up, touches_by_tip
 
 _BELIEFS = 2**32 - 1  # in the seeds of what controllers believe; the loops' places count from 0
 

@@ -7,17 +7,17 @@ import numpy as np
 from runner.base.errors import SimulationError
 from runner.base.progress.ticks import counted
 from runner.base.trace import Trace
-from runner.compiled.closed_loop import CompiledCommands, Whole
-from runner.loop.acting import Acting, evenly_late
-from runner.loop.closed_loop import ClosedLoop
-from runner.loop.command import Command
-from runner.loop.compiled_loop import run_commands, run_whole
-from runner.loop.contact import Contact
-from runner.loop.drive import make_drive
-from runner.loop.endpoint import MeasuredTip
-from runner.loop.joint_torques import JointTorques
-from runner.loop.recorder import Recorder
 from runner.sensing import Encoders, TorqueSensors, WristSensor
+from runner.simulation.acting import Acting, evenly_late
+from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.command import Command
+from runner.simulation.compiled.closed_loop import CompiledCommands, Whole
+from runner.simulation.compiled_loop import run_commands, run_whole
+from runner.simulation.contact import Contact
+from runner.simulation.drive import make_drive
+from runner.simulation.endpoint import MeasuredTip
+from runner.simulation.joint_torques import JointTorques
+from runner.simulation.recorder import Recorder
 from runner.trajectories.trajectory import joint_reference
 
 __all__ = ["ClosedLoop", "simulate"]

@@ -1,0 +1,1 @@
+"""Control loops and whole closed loops as machine code."""
