@@ -17,13 +17,13 @@ from runner.config.validation import validate
 from runner.metrics import measure
 from runner.metrics.caveats import Watch, look_together, setting_of, signals_of
 from runner.metrics.summary import units_of
-from runner.provenance import job_provenance
 from runner.sensing import encoder_errors
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 from runner.store import Outcome
 from runner.store.json_texts import JsonTexts
+from runner.store.provenance import job_provenance
 from runner.store.shards import ShardRow, shard_name, write_shard
 from runner.store.writing import record_texts, timing
 

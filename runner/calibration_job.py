@@ -9,15 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from runner import provenance, store
+from runner import store
 from runner.base import progress
 from runner.base.progress.ticks import add_ticks, counter
 from runner.calibration import consistency
 from runner.calibration.procedures import Outcome
 from runner.config.calibration import CalibrationConfig, validate_calibration
 from runner.config.compose.compose import Composed, compose
-from runner.latest import note
 from runner.robots.model import FloatArray
+from runner.store import provenance
+from runner.store.latest import note
 
 CALIBRATION = "calibrate"
 """Root of a calibration's config; that of a run is "config"."""

@@ -194,7 +194,7 @@ def _choose(arguments: Sequence[str]) -> int:
 def _run(arguments: Sequence[str]) -> int:
     """Make a run or a sweep, or tell again of the run that the same line gave before."""
     from runner.base.quiet import quiet_environment
-    from runner.recall.runs import find_again, line_key
+    from runner.store.recall.runs import find_again, line_key
 
     quiet_environment()
     key = line_key(arguments)

@@ -16,12 +16,12 @@ from runner.config.validation import validate
 from runner.metrics import Columns, MetricContext, evaluate
 from runner.metrics.caveats import PlantStep, Watch, setting_of, signals_of
 from runner.metrics.plant_error import COMPARED, PlantError, compare, hindrance, on_runge_kutta
-from runner.provenance import job_provenance
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.batch_blocks import simulate_blocks
 from runner.simulation.batch_jobs import NO_DEADLINE, seconds_together, warm_time
 from runner.simulation.loop import ClosedLoop, simulate
 from runner.simulation.sensors import make_sensors
+from runner.store.provenance import job_provenance
 from runner.store.writing import timing
 
 PROBED_TICKS = 50

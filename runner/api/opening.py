@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from runner import store
 from runner.api.door import door
-from runner.latest import find_folder
+from runner.store.latest import find_folder
 
 if TYPE_CHECKING:
     from runner.api.run import Run

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from runner.base.errors import RunnerError, nearest
-from runner.latest import Kind, find_folder
+from runner.store.latest import Kind, find_folder
 
 
 class Stored:

@@ -18,8 +18,8 @@ from runner.commands.arguments import Parser, stored
 from runner.commands.columns import aligned, number
 
 if TYPE_CHECKING:
-    from runner.references import Band, Finding, Learned, Move, Reference
     from runner.store import Run, Sweep
+    from runner.store.references import Band, Finding, Learned, Move, Reference
 
 _MOVE_COLUMNS = ("cell", "metric", "was", "is", "moved", "beyond the seeds' spread")
 
@@ -47,7 +47,7 @@ def main(arguments: Sequence[str]) -> int:
     options = parser.parse_args(arguments)
     quiet_environment()
     from runner import store
-    from runner.references import cell_names, learn, load_learned
+    from runner.store.references import cell_names, learn, load_learned
 
     if options.learn:
         count = learn(store.open_sweep(options.folder), options.learn)
@@ -82,7 +82,7 @@ def _probability(text: str) -> float:
 
 def _check_sweep(sweep: "Sweep", learned: "Learned", markdown: bool) -> int:
     """Print what moved since a sweep's reference was learned; return 1 where it is more than the seeds' spread."""
-    from runner.references import find_moves
+    from runner.store.references import find_moves
 
     moves = find_moves(sweep, learned)
     beyond = sum(move.beyond for move in moves)
@@ -126,7 +126,7 @@ def _markdown(rows: "Sequence[Sequence[str]]") -> list[str]:
 
 def _check_bands(runs: "Sequence[Run]", path: Path | None) -> int:
     """Check the medians of all runs; print one line if all hold, else a table of those that do not."""
-    from runner.references import check_run, find_shipped, load_reference
+    from runner.store.references import check_run, find_shipped, load_reference
 
     given = load_reference(path) if path else None
     pairs = [(run, given or find_shipped(run)) for run in runs]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from runner.base.texts import one_line
 from runner.config.compose.user_settings import outputs_dir
-from runner.latest import WORD
+from runner.store.latest import WORD
 
 if TYPE_CHECKING:
     from runner.store import Run

@@ -12,7 +12,7 @@ from runner.base.progress.stages import READING, SOON, of_report
 from runner.base.quiet import quiet_environment
 from runner.commands.arguments import Parser, stored
 from runner.config.compose.user_settings import outputs_dir
-from runner.latest import note
+from runner.store.latest import note
 
 if TYPE_CHECKING:
     from runner.reporting.document import Document

@@ -20,9 +20,9 @@ from runner.base.progress.stages import of_audit, of_work
 from runner.base.quiet import quiet_environment
 from runner.commands.arguments import Parser
 from runner.config.compose.user_settings import outputs_dir
-from runner.latest import note
 from runner.plugins.discovery import in_use, named
 from runner.reporting.changes import FILE
+from runner.store.latest import note
 from runner.works.names import find_work, work_names
 
 if TYPE_CHECKING:

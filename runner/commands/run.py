@@ -25,7 +25,7 @@ from runner.config.compose.hydra_config import hydra_config, parse
 from runner.config.compose.no_code import code_refused
 from runner.config.compose.overrides import force
 from runner.config.compose.user_settings import user_overrides
-from runner.recall.runs import keep_run, plain_line
+from runner.store.recall.runs import keep_run, plain_line
 
 if TYPE_CHECKING:
     from runner.store import Run

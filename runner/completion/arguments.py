@@ -8,8 +8,8 @@ from runner.commands.arguments import Parser, Stored, UsageError
 from runner.completion.line import Line
 from runner.completion.overrides import override_words
 from runner.completion.places import files, stored_folders
-from runner.recall.answers import keep, recall
-from runner.recall.basis import basis
+from runner.store.recall.answers import keep, recall
+from runner.store.recall.basis import basis
 
 _NO_OPTION = "--?"  # which every parser refuses
 

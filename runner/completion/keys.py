@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from runner.completion.line import Line
-from runner.recall.answers import keep, recall
-from runner.recall.basis import basis
+from runner.store.recall.answers import keep, recall
+from runner.store.recall.basis import basis
 
 
 def keys(line: Line, word: str, root: str) -> Iterator[str]:

@@ -3,7 +3,7 @@
 import os
 from collections.abc import Iterator, Sequence
 
-from runner.latest import WORD, Kind, folder_of
+from runner.store.latest import WORD, Kind, folder_of
 
 _FEW = 50
 

@@ -6,11 +6,11 @@ from runner.base.quantities import number
 from runner.doctor.examination import Examination
 from runner.doctor.finding import GRADES
 from runner.drawing import arm_motion
-from runner.provenance import versions
 from runner.reporting.bodies import playback_bodies
 from runner.reporting.document import Document, Notice, Playback, Provenance, Section, Table
 from runner.reporting.markup import literal, literals
 from runner.robots.model import FloatArray, RobotModel
+from runner.store.provenance import versions
 
 _SWING = 0.3  # rad, or share of the travel, by which each joint is shown
 _FRAMES = 24  # for each joint

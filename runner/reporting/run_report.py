@@ -8,7 +8,6 @@ from typing import Any
 from runner.base.errors import RunnerError
 from runner.base.quantities import above_rounding, number, quantity, with_powers
 from runner.metrics.caveats import changes_since
-from runner.references import check_run, find_shipped
 from runner.reporting.changed_keys import changed_keys, flatten
 from runner.reporting.cover import cover
 from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text
@@ -20,6 +19,7 @@ from runner.reporting.plant_step import describe_plant, percent
 from runner.reporting.spec_blocks import spec_abstract, spec_blocks, spec_of_several
 from runner.reporting.words import PLANT, in_words
 from runner.store import Run
+from runner.store.references import check_run, find_shipped
 
 _KEY_METRICS = 4
 _AT_REST = 4.0  # times the settling time, after which an arm is taken to rest

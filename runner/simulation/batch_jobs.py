@@ -15,8 +15,8 @@ from runner.config.compose.compose import Composed
 from runner.config.run import RunConfig
 from runner.metrics import measure, summarize_arrays
 from runner.metrics.caveats import Found, Setting, Watch, look_together, setting_of, signals_of
-from runner.provenance import job_provenance
 from runner.simulation.batch import Batcher, Wanted
+from runner.store.provenance import job_provenance
 from runner.store.writing import timing
 
 Job = tuple[RunConfig, Composed]

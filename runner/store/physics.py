@@ -15,8 +15,8 @@ from functools import cache
 from pathlib import Path
 
 from runner.base.paths import package_dir
-from runner.recall.answers import keep, recall
 from runner.store import syntax
+from runner.store.recall.answers import keep, recall
 
 # Folders and their modules. A module's id stands behind "=", or is its name.
 _TABLE = """

@@ -19,10 +19,10 @@ from runner.base.errors import ConfigError, StoreError
 from runner.base.progress.stages import SIMULATING, SOON
 from runner.config.limits import check_cpu_time, check_memory_together
 from runner.config.sweep import SweepConfig
-from runner.latest import note
 from runner.plugins.discovery import in_use
 from runner.store.atomic import remove_leftovers
 from runner.store.finer import FOLDER as FINER
+from runner.store.latest import note
 from runner.store.names import Names
 from runner.sweeps.differing import Resolved
 from runner.sweeps.ends import Ends

@@ -8,10 +8,10 @@ import numpy as np
 from runner import store
 from runner.base.errors import StoreError
 from runner.metrics.summary import MOST_LISTED, units_of
-from runner.provenance import command, job_provenance
 from runner.simulation.batch import Batcher
 from runner.simulation.batch_jobs import Job, Simulated, simulate_together
 from runner.store.json_texts import JsonTexts
+from runner.store.provenance import command, job_provenance
 from runner.store.shards import ShardRow
 from runner.store.writing import record_texts
 from runner.sweeps.deadline import TimeLimitError, deadline

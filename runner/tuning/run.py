@@ -15,7 +15,7 @@ from runner.base.limits import TRIALS
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.options import groups
 from runner.config.compose.overrides import force
-from runner.latest import note
+from runner.store.latest import note
 from runner.store.names import Names
 from runner.sweeps.grid import Grid
 from runner.sweeps.loading import Loader

@@ -9,9 +9,9 @@ from runner import store
 from runner.base import progress
 from runner.base.progress.stages import SOON
 from runner.calibration_job import CALIBRATION
-from runner.provenance import settled
 from runner.reporting.job import Made
 from runner.store import Calibration, Run
+from runner.store.provenance import settled
 from runner.sweeps.listed import Item
 from runner.sweeps.loading import Loader
 from runner.sweeps.plan import check

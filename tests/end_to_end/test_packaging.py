@@ -9,8 +9,8 @@ import pytest
 from support.pages import ROOT
 from support.printed import without_caveats, without_results
 
-from runner.references import shipped_references
-from runner.references.shipped import reference_path
+from runner.store.references import shipped_references
+from runner.store.references.shipped import reference_path
 
 SCRIPT = """\
 import sys

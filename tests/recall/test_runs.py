@@ -8,8 +8,8 @@ import sys
 import pytest
 
 from runner.base.paths import conf_dir, robots_dir
-from runner.recall import answers, runs
-from runner.recall.basis import basis
+from runner.store.recall import answers, runs
+from runner.store.recall.basis import basis
 from runner.symbolic import cache
 
 LINE = ("robot=macro", "plant=rk4", "duration=0.05")
@@ -134,7 +134,7 @@ def test_source_and_what_is_installed_count(tmp_path, monkeypatch):
     package, place = tmp_path / "package", tmp_path / "site"
     package.mkdir()
     place.mkdir()
-    monkeypatch.setattr("runner.recall.basis.package_dir", lambda: package)
+    monkeypatch.setattr("runner.store.recall.basis.package_dir", lambda: package)
     monkeypatch.syspath_prepend(str(place))
     digests = {basis(LINE, [])}
     (package / "law.py").write_text("1")
@@ -156,10 +156,10 @@ def test_the_folder_counts(tmp_path, monkeypatch):
 def test_a_large_config_folder_is_not_read(tmp_path, monkeypatch):
     (tmp_path / "a.yaml").write_text("a: 1")
     assert basis(LINE, [tmp_path]) is not None
-    monkeypatch.setattr("runner.recall.basis._LARGEST", 3)
+    monkeypatch.setattr("runner.store.recall.basis._LARGEST", 3)
     assert basis(LINE, [tmp_path]) is None
-    monkeypatch.setattr("runner.recall.basis._LARGEST", 100)
-    monkeypatch.setattr("runner.recall.basis._MOST", 1)
+    monkeypatch.setattr("runner.store.recall.basis._LARGEST", 100)
+    monkeypatch.setattr("runner.store.recall.basis._MOST", 1)
     assert basis(LINE, [tmp_path]) is None
 
 

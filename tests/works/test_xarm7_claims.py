@@ -6,7 +6,7 @@ from pydantic import ValidationError
 
 from runner.claims import CONTRADICTION, Extent, PublishedClaim, judge_motion, load_claims
 from runner.config.compose.options import group_options
-from runner.references import shipped_references
+from runner.store.references import shipped_references
 
 CLAIMS = load_claims("xarm7")
 T = np.linspace(0.0, 2.0 * np.pi, 101)

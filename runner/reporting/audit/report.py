@@ -4,7 +4,6 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 
-from runner import provenance
 from runner.audit.audit import counts
 from runner.audit.inventory import inventory
 from runner.audit.rollout import run_rollout
@@ -31,6 +30,7 @@ from runner.reporting.document import (
     Text,
 )
 from runner.reporting.markup import literals, marked
+from runner.store import provenance
 
 COMMAND = "runner reproduce audit"
 DATA = "equations.csv"

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from runner import provenance, store
+from runner import store
 from runner.base.errors import StoreError
 from runner.base.trace import Trace
 from runner.config.compose.compose import compose
@@ -24,6 +24,7 @@ from runner.simulation.assembly import assemble
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
+from runner.store import provenance
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
 from runner.works.grids import FILE as RUNS

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from runner import provenance
 from runner.base.errors import StoreError
 from runner.config.compose.compose import compose
 from runner.config.robot import StagedRobotConfig
 from runner.config.validation import validate
 from runner.robots import RobotModel
 from runner.robots.mounting import Mount, mount
+from runner.store import provenance
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
 

@@ -6,7 +6,7 @@ import shutil
 import numpy as np
 import pytest
 
-from runner.references import shipped_references
+from runner.store.references import shipped_references
 
 GOOD = "schema: 1\nmetrics:\n  peak_torque: {min: 0.0, reason: torques have no sign here}\n"
 BAD = """\

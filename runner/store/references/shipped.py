@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import works_dir
 from runner.config.compose.options import described_files
-from runner.references.reference import Reference, load_reference
+from runner.store.references.reference import Reference, load_reference
 
 if TYPE_CHECKING:
     from runner.store import Run

@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from runner.config.compose.data_files import has_data_file
-from runner.latest import note
 from runner.plugins.discovery import has_users_parts, in_use
-from runner.recall.answers import keep, recall
-from runner.recall.basis import basis
+from runner.store.latest import note
+from runner.store.recall.answers import keep, recall
+from runner.store.recall.basis import basis
 
 if TYPE_CHECKING:
     from runner.config.compose.compose import Composed

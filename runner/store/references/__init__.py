@@ -1,8 +1,8 @@
 """Reference bands: what a run's metrics are checked against."""
 
-from runner.references.learned import Learned, Move, cell_names, find_moves, learn, load_learned
-from runner.references.reference import Band, Finding, Reference, check_run, load_reference
-from runner.references.shipped import find_shipped, shipped_references
+from runner.store.references.learned import Learned, Move, cell_names, find_moves, learn, load_learned
+from runner.store.references.reference import Band, Finding, Reference, check_run, load_reference
+from runner.store.references.shipped import find_shipped, shipped_references
 
 __all__ = [
     "Band",
