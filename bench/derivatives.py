@@ -5,9 +5,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from runner.analysis.sensitivity import GROUPS
+from runner.analysis.sensitivity.analysis import slopes_of
 from runner.config.compose.compose import compose
-from runner.sensitivity import GROUPS
-from runner.sensitivity.analysis import slopes_of
 from runner.simulation.compiled.closed_loop import run_all
 from runner.simulation.compiled.directed import tangents
 

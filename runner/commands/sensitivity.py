@@ -16,8 +16,8 @@ from runner.commands.arguments import Parser, stored
 from runner.commands.columns import aligned, number
 
 if TYPE_CHECKING:
-    from runner.sensitivity import Sensitivity
-    from runner.sensitivity.differences import Differences
+    from runner.analysis.sensitivity import Sensitivity
+    from runner.analysis.sensitivity.differences import Differences
     from runner.store import Run
 
 _SHOWN = (
@@ -44,7 +44,7 @@ def main(arguments: Sequence[str]) -> int:
     options = parser.parse_args(arguments)
     quiet_environment()
     from runner import store
-    from runner.sensitivity import check_smooth, differences, of_run
+    from runner.analysis.sensitivity import check_smooth, differences, of_run
 
     run = store.open_run(options.run)
     progress.begin("differentiating", total=None, unit="parameters")

@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from runner import store
+from runner.analysis.sensitivity import GROUPS, of_run
 from runner.base.errors import RunnerError
-from runner.sensitivity import GROUPS, of_run
 
 MACRO = ("robot=macro", "plant=rk4", "trajectory=quintic", "duration=0.05")
 

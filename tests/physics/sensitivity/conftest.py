@@ -4,8 +4,8 @@ from functools import cache
 
 import pytest
 
+from runner.analysis.sensitivity import GROUPS, analyse
 from runner.config.compose.compose import compose
-from runner.sensitivity import GROUPS, analyse
 
 
 @pytest.fixture(scope="session")

@@ -9,10 +9,10 @@ from operator import getitem
 import numpy as np
 import pytest
 
+from runner.analysis.sensitivity import differences
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.metrics import measure
-from runner.sensitivity import differences
 from runner.simulation.assembly import assemble_whole
 from runner.simulation.batch import Batcher, Wanted
 from runner.store import simulated_part

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from runner.sensitivity.slopes import _PART, NoDerivativeError, Scene
+from runner.analysis.sensitivity.slopes import _PART, NoDerivativeError, Scene
 from runner.simulation.compiled.directed import Setting
 
 VALUE = 2.0

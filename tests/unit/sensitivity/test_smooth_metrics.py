@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from runner.analysis.sensitivity.smooth_metrics import WITHOUT, Change, derivatives
 from runner.metrics import MetricContext, evaluate
-from runner.sensitivity.smooth_metrics import WITHOUT, Change, derivatives
 from runner.trajectories.quintic import Quintic
 
 STEP, ROWS, PARAMETERS = 1e-6, 400, 2

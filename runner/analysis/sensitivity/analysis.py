@@ -7,6 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from runner.analysis.sensitivity.parameters import GROUPS, Parameter, find_keys, find_links
+from runner.analysis.sensitivity.slopes import Scene, Slopes
+from runner.analysis.sensitivity.smooth_metrics import Change, derivatives
 from runner.base.errors import RunnerError
 from runner.base.trace import FloatArray, Trace
 from runner.config.compose.compose import Composed, compose
@@ -17,9 +20,6 @@ from runner.config.validation import validate
 from runner.metrics import measure, of_run
 from runner.plants import PLANTS
 from runner.plants.rk4 import Rk4Config
-from runner.sensitivity.parameters import GROUPS, Parameter, find_keys, find_links
-from runner.sensitivity.slopes import Scene, Slopes
-from runner.sensitivity.smooth_metrics import Change, derivatives
 from runner.simulation.assembly import assemble_whole, metric_context
 from runner.simulation.batch import Batcher, Together, Wanted
 from runner.simulation.compiled.directed import tangents

@@ -6,11 +6,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from runner.analysis.sensitivity.parameters import Key, Parameter
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.trace import FloatArray
 from runner.config.run import RunConfig
 from runner.sensing.encoders import encoder_errors
-from runner.sensitivity.parameters import Key, Parameter
 from runner.simulation.assembly import describe_loop, find_start
 from runner.simulation.batch import Wanted
 from runner.simulation.compiled.closed_loop import Whole

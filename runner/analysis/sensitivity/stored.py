@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
+from runner.analysis.sensitivity.analysis import Sensitivity, analyse
+from runner.analysis.sensitivity.parameters import GROUPS
 from runner.base.errors import ConfigError, RunnerError
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.sensitivity.analysis import Sensitivity, analyse
-from runner.sensitivity.parameters import GROUPS
 from runner.store import Run, simulated_part
 
 

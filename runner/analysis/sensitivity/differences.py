@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.analysis.sensitivity.analysis import Sensitivity
 from runner.base.trace import FloatArray
 from runner.metrics import measure
-from runner.sensitivity.analysis import Sensitivity
 from runner.simulation.batch import Batcher, Together
 
 _LARGEST, _STEPS = 2.0**-8, 9  # of a parameter's value, and of the error; each step is half the one before
