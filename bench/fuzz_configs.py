@@ -22,9 +22,9 @@ from runner.base.errors import RunnerError
 from runner.config.compose.compose import Composed, compose
 from runner.config.compose.options import group_options, groups
 from runner.config.validation import validate
-from runner.job import simulate_job
 from runner.store import run_hash
 from runner.store.writing import make_record
+from runner.sweeps.job import simulate_job
 
 CPU = 5.0  # s, over what a sound case takes
 MEMORY = 500  # MB, likewise

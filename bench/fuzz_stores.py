@@ -12,20 +12,20 @@ from pathlib import Path
 
 from runner import store
 from runner.base.errors import StoreError
-from runner.calibration_job import calibrate
 from runner.cli import dispatch
 from runner.config.compose.compose import compose
-from runner.execution import execute
 from runner.metrics.summary import MOST_LISTED
 from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
 from runner.store.shards import open_row, read_outcomes, shard_files
+from runner.sweeps.calibration_job import calibrate
+from runner.sweeps.execution import execute
 from runner.sweeps.grid import plan_sweep
 from runner.sweeps.run import Engine, run_sweep
 from runner.sweeps.status import read_pace
-from runner.tuning.objective import Objective
-from runner.tuning.run import tune
-from runner.tuning.study import open_tuning
+from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.run import tune
+from runner.sweeps.tuning.study import open_tuning
 
 
 @dataclass(frozen=True)

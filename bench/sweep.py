@@ -19,10 +19,10 @@ from runner import store
 from runner.base.quiet import quiet_environment
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.job import simulate_job
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
+from runner.sweeps.job import simulate_job
 
 _SHORT = ("robot=macro", "noise=thesis", "duration=1")
 _SHORTEST = ("robot=macro", "plant=rk4", "noise=thesis", "duration=0.05", "sweep.trace=never")

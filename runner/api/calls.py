@@ -38,7 +38,7 @@ def run(*overrides: str, config_dirs: Folders = (), plugins: Sequence[str] = (),
         RunnerError: for a config that cannot be run (a ConfigError, which lists all its problems), or a folder that
             cannot be written.
     """
-    from runner import execution
+    from runner.sweeps import execution
 
     use_plugins(plugins)
     texts = run_overrides(overrides, values)
@@ -127,8 +127,8 @@ def tune(
         RunnerError: if a key cannot be tuned, a config in its range not be run, or there is no such metric.
     """
     from runner.sweeps.run import Engine
-    from runner.tuning import run as tuning
-    from runner.tuning.objective import Objective
+    from runner.sweeps.tuning import run as tuning
+    from runner.sweeps.tuning.objective import Objective
 
     use_plugins(plugins)
     folders, texts = config_folders(config_dirs), tuning_overrides(overrides, values)
@@ -165,7 +165,7 @@ def calibrate(
     Raises:
         RunnerError: for a config that cannot be carried out, or a folder that cannot be written.
     """
-    from runner import calibration_job
+    from runner.sweeps import calibration_job
 
     use_plugins(plugins)
     texts = run_overrides(overrides, values)

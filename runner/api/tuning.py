@@ -14,7 +14,7 @@ from runner.base.texts import one_line
 if TYPE_CHECKING:
     import pandas as pd
 
-    from runner.tuning.study import Tuning as StoredTuning
+    from runner.sweeps.tuning.study import Tuning as StoredTuning
 
 
 class Tuning:
@@ -65,7 +65,7 @@ class Tuning:
         return Run(store.Finished(self.folder.parent.parent).open(self.stored.trials[best[0]].run))
 
     def _best(self) -> list[int]:
-        from runner.tuning.trial import best
+        from runner.sweeps.tuning.trial import best
 
         return best(self.stored.trials, self.stored.study.objectives)
 

@@ -21,7 +21,7 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--config-dir", type=Path, action="append", default=[], metavar="DIR", help="folder of yours")
     options = parser.parse_args(arguments)
     quiet_environment()
-    from runner.calibration_job import calibrate
+    from runner.sweeps.calibration_job import calibrate
 
     done = calibrate(*options.overrides, config_dirs=options.config_dir)
     for warning in done.provenance["warnings"]:

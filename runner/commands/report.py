@@ -72,7 +72,7 @@ def compose_report(folders: Sequence[Path], metrics: Sequence[str] = ()) -> "tup
         StoreError: If a run is missing or damaged.
     """
     from runner import store
-    from runner.tuning.study import is_tuning
+    from runner.sweeps.tuning.study import is_tuning
 
     tunings = [is_tuning(folder) for folder in folders]
     sweeps = [store.is_sweep(folder) for folder in folders]
@@ -118,7 +118,7 @@ def _of_sweeps(folders: Sequence[Path], metrics: Sequence[str], _: Path) -> "tup
 
 def _of_tuning(folders: Sequence[Path], _: Sequence[str], reports: Path) -> "tuple[Document, str]":
     from runner.reporting.tuning.report import tuning_document
-    from runner.tuning.study import open_tuning
+    from runner.sweeps.tuning.study import open_tuning
 
     return tuning_document(open_tuning(folders[0]), reports / "any"), folders[0].resolve().name
 

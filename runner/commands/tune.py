@@ -21,7 +21,7 @@ from runner.commands import report
 from runner.commands.arguments import Parser
 
 if TYPE_CHECKING:
-    from runner.tuning.study import Tuning
+    from runner.sweeps.tuning.study import Tuning
 
 _TRIALS = 100
 _AT_ONCE = 4
@@ -59,8 +59,8 @@ def main(arguments: Sequence[str]) -> int:
         if not folder.is_dir():
             raise RunnerError(f"--config-dir: no folder {folder}")
     quiet_environment()
-    from runner.tuning.objective import Objective
-    from runner.tuning.run import tune
+    from runner.sweeps.tuning.objective import Objective
+    from runner.sweeps.tuning.run import tune
 
     progress.plan({SIMULATING: None, PREPARING: REPORT_CODE, READING: SOON, **of_report(("html", "pdf"))})
     tuning = tune(
@@ -76,8 +76,8 @@ def main(arguments: Sequence[str]) -> int:
 
 def _tell(tuning: "Tuning") -> int:
     from runner.reporting.answers import CHOSEN
-    from runner.tuning.study import at_ends
-    from runner.tuning.trial import best
+    from runner.sweeps.tuning.study import at_ends
+    from runner.sweeps.tuning.trial import best
 
     trials, objectives = tuning.trials, tuning.study.objectives
     failed = sum(bool(trial.failure) for trial in trials)

@@ -115,7 +115,7 @@ def _sweep(folder: Path) -> None:
 
 
 def _tuning(folder: Path) -> None:
-    from runner.tuning.study import open_tuning
+    from runner.sweeps.tuning.study import open_tuning
 
     open_tuning(folder)
     _sweep(folder)

@@ -20,7 +20,6 @@ from runner.store.recall.answers import keep, recall
 
 # Folders and their modules. A module's id stands behind "=", or is its name.
 _TABLE = """
-    .: calibration_job execution job
     base: trace
     calibration: __init__=calibration.__init__ compensation consistency gravity=calibration.gravity orientations
         repeatability tool tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
@@ -64,6 +63,7 @@ _TABLE = """
         contact=loop.contact drive endpoint=loop.endpoint failures joint_torques loop=simulation recorder sensors
         walls
     simulation/compiled: closed_loop=compiled.closed_loop commands compile directed law maths=compiled.maths
+    sweeps: calibration_job execution job
     symbolic: algebra arm code elementary end_points=compiled.end_points engine expression maths=controllers.maths
         places program regressor structure tangent vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ blend circle closed_figure from_file goal impulses interpolation

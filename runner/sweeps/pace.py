@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from runner.base.progress import in_words
 from runner.config.compose.compose import Composed
 from runner.config.validation import validate
-from runner.job import PROBED_TICKS, seconds_per_tick
 from runner.simulation.batch_jobs import seconds_together
 from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
 from runner.sweeps.deadline import TimeLimitError, deadline
+from runner.sweeps.job import PROBED_TICKS, seconds_per_tick
 from runner.sweeps.plan import Checked, Plan
 from runner.sweeps.status import NOTE
 

@@ -12,7 +12,6 @@ from runner import store
 from runner.base import progress
 from runner.base.errors import ConfigError
 from runner.base.progress.stages import CHECKING
-from runner.calibration_job import CALIBRATION, TICKS
 from runner.config.calibration import validate_calibration
 from runner.config.compose.compose import Composed
 from runner.config.limits import LimitsConfig, memory_of_run
@@ -25,6 +24,7 @@ from runner.store.axes import GridOverrides
 from runner.store.identity import json_text
 from runner.store.names import Names, Texts
 from runner.sweeps.block import Block
+from runner.sweeps.calibration_job import CALIBRATION, TICKS
 from runner.sweeps.differing import Resolved
 from runner.sweeps.resolved import is_one_arm, resolve
 

@@ -15,19 +15,19 @@ from runner import store
 from runner.base.errors import DISK_FULL, RunnerError, StoreError, unwritten, user_place
 from runner.base.progress.ticks import told
 from runner.base.quiet import quiet_environment
-from runner.calibration_job import CALIBRATION, carry_out
 from runner.config.calibration import validate_calibration
 from runner.config.compose.compose import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.job import simulate_job
 from runner.plugins.discovery import use_only
 from runner.simulation.batch_jobs import Job
 from runner.store.provenance import job_provenance
 from runner.store.shards import ShardRun, find_shards, outcome, read_outcomes, write_shard
 from runner.store.writing import cut_short_record
 from runner.sweeps.block import Part
+from runner.sweeps.calibration_job import CALIBRATION, carry_out
 from runner.sweeps.deadline import TimeLimitError, deadline
+from runner.sweeps.job import simulate_job
 from runner.sweeps.rules import Rules
 from runner.sweeps.shelf import Shelf, without_trace, write_failure, write_log
 from runner.sweeps.together import make_together

@@ -12,10 +12,10 @@ from runner.config.compose.compose import Composed, compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.controllers import CONTROLLERS
-from runner.job import PROBED_TICKS
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_sensors
+from runner.sweeps.job import PROBED_TICKS
 from runner.works.alike import difference, setting
 from runner.works.estimate import Amount, counted, estimate_all, planned
 from runner.works.gains import without_gains

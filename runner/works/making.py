@@ -8,10 +8,10 @@ from pathlib import Path
 from runner import store
 from runner.base import progress
 from runner.base.progress.stages import SOON
-from runner.calibration_job import CALIBRATION
 from runner.reporting.job import Made
 from runner.store import Calibration, Run
 from runner.store.provenance import settled
+from runner.sweeps.calibration_job import CALIBRATION
 from runner.sweeps.listed import Item
 from runner.sweeps.loading import Loader
 from runner.sweeps.plan import check

@@ -12,10 +12,10 @@ from runner.store import Run
 from runner.sweeps.grid import Grid
 from runner.sweeps.listed import Item
 from runner.sweeps.loading import Loader
-from runner.tuning.key import Key
-from runner.tuning.objective import Objective
-from runner.tuning.sampler import ended, propose
-from runner.tuning.trial import Trial, best
+from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.sampler import ended, propose
+from runner.sweeps.tuning.trial import Trial, best
 from runner.works.gains import Gains
 from runner.works.grid import Overrides
 from runner.works.items import Way, make_items

@@ -31,7 +31,7 @@ from pydantic import Field, PositiveInt, model_validator
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.metrics.summary import unit_of, units
-from runner.tuning.key import Key
+from runner.sweeps.tuning.key import Key
 from runner.works.arithmetic import Level
 from runner.works.given import GivenPart
 from runner.works.grid import FlatOverrides, Grid, Overrides

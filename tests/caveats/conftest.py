@@ -1,6 +1,6 @@
 import pytest
 
-from runner.execution import run
+from runner.sweeps.execution import run
 
 
 @pytest.fixture(scope="session")

@@ -9,8 +9,8 @@ from runner.base.progress.ticks import counter
 from runner.config.compose.compose import compose
 from runner.config.limits import LimitsConfig, check_cpu_time, check_memory_together, memory_of_run
 from runner.config.validation import validate
-from runner.job import seconds_per_tick
 from runner.store import simulated_part
+from runner.sweeps.job import seconds_per_tick
 
 
 @pytest.fixture(autouse=True)

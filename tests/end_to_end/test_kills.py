@@ -83,7 +83,7 @@ def test_a_tuning_that_is_killed_ends_as_if_it_had_not_been(tuned, tmp_path, gat
     options = ("--minimize=peak_torque", "--trials=12", "--at-once=3")
     for workers in (0, 1):
         words = ("tune", *overrides, *options, f"hydra.sweeper.workers={workers}")
-        killed(gate.command("runner.tuning.journal:Journal.append", 2, *words))
+        killed(gate.command("runner.sweeps.tuning.journal:Journal.append", 2, *words))
     journal = next((tmp_path / "killed" / "tunings").glob("*/journal.log"))
     assert len(journal.read_text().splitlines()) == 1 + 2 + 2
     other = tuned(FREQUENCY, DAMPING, f"outputs={tmp_path}/killed", trials=12)

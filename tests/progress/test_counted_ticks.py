@@ -9,7 +9,7 @@ from support.patience import PATIENCE
 from runner.base.progress import ticks
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.job import simulate_job
+from runner.sweeps.job import simulate_job
 
 
 def test_those_of_a_repetition_under_way_count():

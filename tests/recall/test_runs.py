@@ -90,7 +90,7 @@ def test_a_new_file_that_comes_first_counts(cli, composed, mine):
 
 
 def test_a_file_that_changes_while_the_run_is_made_leaves_nothing_to_keep(cli, composed, mine, monkeypatch):
-    from runner import execution
+    from runner.sweeps import execution
 
     make = execution.find_or_make
 

@@ -4,11 +4,11 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from runner.execution import run
 from runner.robots.mismatch import MismatchConfig, believe
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
+from runner.sweeps.execution import run
 
 WN = 20.0  # rad/s
 SAGGING = (

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Protocol, TypeVar
 
 from runner import store
-from runner.calibration_job import calibrate
-from runner.execution import run
 from runner.store import Calibration, Run
+from runner.sweeps.calibration_job import calibrate
+from runner.sweeps.execution import run
 
 Overrides = tuple[str, ...]
 

@@ -8,8 +8,8 @@ from runner.base.errors import StoreError
 from runner.comparison.cells import one_cell
 from runner.comparison.pairs import compare
 from runner.comparison.side import side_of_run
-from runner.execution import run
 from runner.store.finer import finer_names, read_finer
+from runner.sweeps.execution import run
 from runner.sweeps.finer_step import DRAWS, work_out
 
 TASK = ("robot=macro", "trajectory=quintic", "trajectory.duration=0.5", "duration=0.6", "noise=thesis")

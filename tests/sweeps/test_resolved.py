@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.execution import run
 from runner.robots.model import RobotModel
+from runner.sweeps.execution import run
 from runner.sweeps.resolved import DISTANCE, Resolver
 
 

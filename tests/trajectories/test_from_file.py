@@ -8,10 +8,10 @@ import pytest
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.execution import run
 from runner.robots.robot import end_points
 from runner.store import run_hash
 from runner.store.identity import simulated_part
+from runner.sweeps.execution import run
 from runner.sweeps.grid import plan_sweep
 
 T = np.linspace(0.0, 2.0, 21)

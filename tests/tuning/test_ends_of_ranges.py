@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from runner.tuning.key import Key
-from runner.tuning.objective import Objective
-from runner.tuning.study import Study, Tuning, at_ends
-from runner.tuning.trial import Trial
+from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.study import Study, Tuning, at_ends
+from runner.sweeps.tuning.trial import Trial
 
 RATIO = Key("controller.damping_ratio", 0.5, 1.5, None, False, False)
 GOALS = [Objective("peak_torque", "minimize"), Objective("rms_torque", "minimize")]

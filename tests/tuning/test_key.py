@@ -4,7 +4,7 @@ import pytest
 from hydra.core.override_parser.overrides_parser import OverridesParser
 
 from runner.base.errors import ConfigError
-from runner.tuning.key import Key, read_key
+from runner.sweeps.tuning.key import Key, read_key
 
 
 def read(text):

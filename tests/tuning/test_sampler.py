@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from runner.tuning.key import Key
-from runner.tuning.objective import Objective
-from runner.tuning.sampler import ended, importances, propose, read_ended
-from runner.tuning.trial import Trial
+from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.sampler import ended, importances, propose, read_ended
+from runner.sweeps.tuning.trial import Trial
 
 KEYS = [
     Key("x", 1e-2, 1e2, None, True, False),

@@ -9,8 +9,8 @@ import pytest
 from runner.base.errors import RunnerError
 from runner.base.paths import example_work_dir
 from runner.cli import dispatch
-from runner.execution import run
 from runner.reporting.document import Table
+from runner.sweeps.execution import run
 from runner.works.check import problems
 from runner.works.names import find_work, work_names
 from runner.works.new import write_new

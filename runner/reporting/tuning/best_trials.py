@@ -10,7 +10,7 @@ from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
 from runner.reporting.tuning.subject import Subject, key_label, key_value
 from runner.store import Run
-from runner.tuning.objective import Objective
+from runner.sweeps.tuning.objective import Objective
 
 
 def section(subject: Subject, runs: Mapping[int, Run], commands: Mapping[int, str]) -> Section:

@@ -7,7 +7,7 @@ from runner.reporting.markup import literals
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import spans_decades
 from runner.reporting.tuning.subject import Subject, key_label, label
-from runner.tuning.sampler import importances
+from runner.sweeps.tuning.sampler import importances
 
 
 def section(subject: Subject) -> Section:

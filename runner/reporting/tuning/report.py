@@ -18,7 +18,7 @@ from runner.reporting.tuning import best_trials, front, history, keys
 from runner.reporting.tuning.subject import Subject, key_label, key_value
 from runner.store import Sweep, open_run
 from runner.sweeps.measurements import Measurements, measure_sweep
-from runner.tuning.study import Tuning, at_ends
+from runner.sweeps.tuning.study import Tuning, at_ends
 
 _MOST_FAILURES = 40
 

@@ -10,10 +10,10 @@ from runner.base.quantities import labelled, number, quantity
 from runner.config.compose.key_units import key_unit
 from runner.reporting.document import FloatArray
 from runner.reporting.metric_titles import metric_label, title
-from runner.tuning.key import Key
-from runner.tuning.objective import Objective
-from runner.tuning.study import Tuning
-from runner.tuning.trial import Trial, best
+from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.study import Tuning
+from runner.sweeps.tuning.trial import Trial, best
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import runner
-from runner import job
 from runner.base.errors import ConfigError, RunnerError, StoreError
+from runner.sweeps import job
 
 SHORT = ("robot=macro", "duration=0.05", "noise=thesis", "repetitions=2")
 

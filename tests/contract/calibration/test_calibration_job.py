@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import yaml
 
-from runner import calibration_job
 from runner.base.errors import StoreError
-from runner.calibration_job import calibrate
 from runner.config.compose.compose import compose
 from runner.plugins import discovery as plugins
 from runner.store import open_calibration, provenance
 from runner.store.seal import sealed_json
+from runner.sweeps import calibration_job
+from runner.sweeps.calibration_job import calibrate
 
 
 @pytest.fixture

@@ -13,10 +13,10 @@ import yaml
 from support.engines import ASKED
 from support.printed import without_caveats
 
-from runner import job
 from runner.cli import COMMANDS, GUIDE, HELP
 from runner.config.compose.options import group_options
 from runner.store import open_sweep
+from runner.sweeps import job
 
 SHORT = ("robot=macro", "duration=0.05")
 VERSION = tomllib.loads((Path(__file__).parents[3] / "pyproject.toml").read_text())["project"]["version"]

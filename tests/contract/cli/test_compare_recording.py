@@ -10,11 +10,11 @@ import pytest
 
 import runner
 from runner.base.paths import examples_dir
-from runner.execution import run
 from runner.recordings.compare import compare_recording
 from runner.reporting import html
 from runner.reporting.formulas import faulty
 from runner.reporting.recording.report import recording_document, report_folder
+from runner.sweeps.execution import run
 
 HERE = examples_dir() / "recording"
 VISCOUS, COULOMB = (1.2, 0.8, 0.5), (1.5, 1.0, 0.6)  # of the arm in make_recording.py

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from fixtures.stored import RUNS
 
-from runner.execution import run
 from runner.reporting.figures import (
     columns,
     desired_motion,
@@ -16,6 +15,7 @@ from runner.reporting.figures import (
     playback,
     torque_and_error,
 )
+from runner.sweeps.execution import run
 
 
 @pytest.fixture

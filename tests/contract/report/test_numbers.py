@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.execution import run
 from runner.reporting.job import Made, MissingError
 from runner.reporting.measured import Measured
 from runner.reporting.prose import read_chapter
@@ -13,6 +12,7 @@ from runner.reporting.prose.blocks import metric, percent, to_digits
 from runner.reporting.prose.plots import over
 from runner.reporting.prose.signals import setting
 from runner.reporting.prose.tables import column, level, table
+from runner.sweeps.execution import run
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,6 @@ from fixtures.stored import RUNS
 from support.engines import ASKED
 
 from runner.base.quantities import quantity
-from runner.execution import run
 from runner.reporting import outline
 from runner.reporting.document import Curves, Notice, Playback, Provenance, Table, Text
 from runner.reporting.formulas import faulty
@@ -15,6 +14,7 @@ from runner.reporting.metric_titles import title
 from runner.reporting.render import write_report
 from runner.reporting.run_report import provenance, run_document
 from runner.reporting.words import PLANT
+from runner.sweeps.execution import run
 
 
 @pytest.fixture

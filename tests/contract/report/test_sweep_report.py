@@ -5,13 +5,13 @@ import shutil
 import pytest
 from fixtures.stored import GRID, NOISY
 
-from runner.execution import run
 from runner.reporting import outline
 from runner.reporting.document import Maps, Playback, RunList
 from runner.reporting.formulas import faulty
 from runner.reporting.render import write_report
 from runner.reporting.sweep.report import sweep_document
 from runner.store import open_sweep, write_sweep
+from runner.sweeps.execution import run
 
 PERIODS, RATES = (0.005, 0.01, 0.02, 0.04), (20, 40, 80)
 

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from runner.config.spec import Bound
-from runner.execution import run
 from runner.reporting.document import Notice
 from runner.reporting.outline import blocks
 from runner.reporting.spec_words import spec_rows
 from runner.reporting.sweep.report import sweep_document
 from runner.store import judged, open_run, open_sweep, write_sweep
+from runner.sweeps.execution import run
 
 SHORT = ("robot=macro", "plant=rk4", "noise=thesis", "duration=0.3", "repetitions=12")
 METRIC = "cross_track_error"

@@ -9,9 +9,9 @@ import pytest
 
 import runner
 from runner.comparison.pairs import MOST_PAIRS
-from runner.execution import run
 from runner.metrics.summary import MOST_LISTED
 from runner.store import DamagedError, open_run
+from runner.sweeps.execution import run
 from runner.sweeps.measurements import measure_sweep
 from runner.symbolic.engine import evaluator
 

@@ -10,10 +10,10 @@ from scipy import stats
 from support.study_sections import every_run, texts, unfinished_texts
 
 from runner.claims import load_claims
-from runner.execution import run
 from runner.reporting.findings import Finding
 from runner.statistics.share import count_share
 from runner.store import Run
+from runner.sweeps.execution import run
 from runner.works.thesis import how_sure
 from runner.works.thesis.judged import DRAWN, Judged, judge_by_seeds
 from runner.works.work import load_work

@@ -4,15 +4,14 @@ import contextlib
 
 import pytest
 
-from runner import job
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.job import PROBED_TICKS, seconds_per_tick
 from runner.simulation import batch_jobs
 from runner.simulation.batch_jobs import seconds_together, warm_time
-from runner.sweeps import run
+from runner.sweeps import job, run
 from runner.sweeps.engine import in_process
 from runner.sweeps.grid import plan_sweep
+from runner.sweeps.job import PROBED_TICKS, seconds_per_tick
 from runner.sweeps.pace import START_UP, Estimate
 from runner.sweeps.run import Engine, run_sweep
 

@@ -10,7 +10,7 @@ from runner.store import SchemaError
 from runner.store.seal import sealed_json
 from runner.sweeps import lock
 from runner.sweeps.lock import at_work
-from runner.tuning.study import journal_path, open_tuning
+from runner.sweeps.tuning.study import journal_path, open_tuning
 
 DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "duration=1")
 STOP = "sweep.on_failure=stop"

@@ -9,11 +9,11 @@ from support.motions import to_and_fro, write_joints
 
 from runner.base.errors import ConfigError
 from runner.controllers.joint_space.iterative_learning import IterativeLearning, IterativeLearningConfig
-from runner.execution import run
 from runner.robots.model import RobotModel
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
+from runner.sweeps.execution import run
 
 H, OMEGA, GAIN = 0.001, 30.0, 0.8
 CIRCLE = ("robot=macro", "controller=iterative_learning", "trajectory=circle", "trajectory.easing=none",

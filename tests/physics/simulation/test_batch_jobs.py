@@ -4,10 +4,10 @@ import pytest
 
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.job import simulate_job
 from runner.simulation.batch import Batcher
 from runner.simulation.batch_jobs import simulate_together
 from runner.store.writing import make_record
+from runner.sweeps.job import simulate_job
 from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a whole by llvmlite")

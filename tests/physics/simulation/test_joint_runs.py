@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from support.physics import assert_order
 
-from runner.execution import run
 from runner.metrics import evaluate
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
+from runner.sweeps.execution import run
 
 JOINTS = ("robot=macro", "trajectory=joint_quintic", "plant=rk4", "trajectory.duration=1", "duration=1.5")
 

@@ -5,10 +5,10 @@ import pytest
 from support.arms import checked
 
 from runner.base.errors import ConfigError
-from runner.execution import run
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
+from runner.sweeps.execution import run
 
 ENGINES = ("rk4", "bullet", "mujoco")
 HELD = ("robot=macro", "controller=computed_torque", "trajectory=joint_quintic", "trajectory.duration=0.5")

@@ -10,9 +10,9 @@ from runner.base.engines import has_pybullet
 from runner.base.trace import Failure
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.execution import run
-from runner.job import simulate_job
 from runner.metrics.plant_error import compare, on_runge_kutta, sufficient_step
+from runner.sweeps.execution import run
+from runner.sweeps.job import simulate_job
 
 CASE = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "duration=1.5")
 OTHER = "bullet" if has_pybullet() else "mujoco"
@@ -145,8 +145,8 @@ def test_nothing_is_stored_where_nobody_asks_or_nothing_is_to_be_compared(tmp_pa
 
 
 def test_what_runge_kutta_cannot_make_is_told(tmp_path, monkeypatch):
-    from runner import job
     from runner.base.errors import ConfigError
+    from runner.sweeps import job
 
     def refuse(resolved, config_dirs):
         if resolved["plant"]["kind"] == "rk4":

@@ -9,9 +9,9 @@ import pytest
 from support.thin_plans import make_runs
 from support.work_plans import xarm7_studies
 
-from runner.execution import run
 from runner.reporting.prose.signals import largest_of
 from runner.store import Run
+from runner.sweeps.execution import run
 from runner.works.xarm7.figures import ROWS, first_saturation, lag, sag
 from runner.works.xarm7.null_space import between_commands, drifts, way
 from runner.works.xarm7.payload import largest_payloads, lost_when, stretched

@@ -8,9 +8,9 @@ import optuna
 from optuna.distributions import BaseDistribution, FloatDistribution, IntDistribution
 from optuna.trial import FrozenTrial, TrialState, create_trial
 
-from runner.tuning.key import Key
-from runner.tuning.objective import Objective
-from runner.tuning.trial import Trial
+from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.trial import Trial
 
 SPREAD = 10
 """Number of the first trials of `runner tune`, which are spread evenly over the ranges."""

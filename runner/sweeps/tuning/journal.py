@@ -13,10 +13,10 @@ from optuna.trial import FrozenTrial
 
 from runner.base.errors import StoreError, unwritten
 from runner.store.seal import DamagedError, Lines
-from runner.tuning.key import Key
-from runner.tuning.objective import Objective
-from runner.tuning.sampler import ended, read_ended
-from runner.tuning.trial import Trial
+from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.sampler import ended, read_ended
+from runner.sweeps.tuning.trial import Trial
 
 
 class Journal:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runner.tuning.objective import Objective
+from runner.sweeps.tuning.objective import Objective
 
 
 @dataclass(frozen=True)

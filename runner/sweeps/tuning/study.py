@@ -9,9 +9,9 @@ from pathlib import Path
 from runner.store.atomic import write_atomically
 from runner.store.seal import DamagedError, read_json, sealed_json
 from runner.store.sweep import write_jobs
-from runner.tuning.key import Key
-from runner.tuning.objective import Objective
-from runner.tuning.trial import Trial, best
+from runner.sweeps.tuning.key import Key
+from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.trial import Trial, best
 
 _FILE = "tuning.json"
 _MEND = "the tuning's command makes it again"
@@ -113,7 +113,7 @@ def open_tuning(folder: Path) -> Tuning:
     Raises:
         DamagedError: if the folder is no tuning or damaged.
     """
-    from runner.tuning.journal import read_trials  # Optuna, which `is_tuning` answers without
+    from runner.sweeps.tuning.journal import read_trials  # Optuna, which `is_tuning` answers without
 
     path, journal = folder / _FILE, journal_path(folder)
     try:

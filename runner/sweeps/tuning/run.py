@@ -23,11 +23,11 @@ from runner.sweeps.lock import at_work
 from runner.sweeps.plan import Checked, Plan, check
 from runner.sweeps.run import Engine, clean, make_jobs, make_rules
 from runner.sweeps.swept import is_simulated
-from runner.tuning.journal import Journal
-from runner.tuning.key import RANGES, Key, read_key
-from runner.tuning.objective import Objective
-from runner.tuning.queue import TrialQueue
-from runner.tuning.study import Study, Tuning, journal_path
+from runner.sweeps.tuning.journal import Journal
+from runner.sweeps.tuning.key import RANGES, Key, read_key
+from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.queue import TrialQueue
+from runner.sweeps.tuning.study import Study, Tuning, journal_path
 
 
 def tune(

@@ -11,9 +11,9 @@ from runner.base.progress.ticks import counter
 from runner.config.compose.compose import Composed, compose
 from runner.config.limits import check_cpu_time
 from runner.config.validation import validate
-from runner.job import seconds_per_tick, simulate_job
 from runner.simulation.batch_blocks import threads_allowed
 from runner.store.latest import note
+from runner.sweeps.job import seconds_per_tick, simulate_job
 
 _SURELY_ALLOWED = 200_000  # ticks, which take minutes at most
 
