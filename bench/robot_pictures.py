@@ -10,9 +10,9 @@ from scipy.spatial import ConvexHull
 
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.drawing.canvas import GREY, INK, Camera, circle, drawing, scene, write
-from runner.reporting.bodies import playback_bodies
-from runner.reporting.document import Body
+from runner.report.bodies import playback_bodies
+from runner.report.charts.canvas import GREY, INK, Camera, circle, drawing, scene, write
+from runner.report.document import Body
 from runner.robots.model import FloatArray
 
 ARMS = ("panda", "fr3", "iiwa14", "gen3", "sawyer", "ur5e", "ur10e", "xarm7", "z1", "so101")

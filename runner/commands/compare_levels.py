@@ -6,13 +6,13 @@ from pathlib import Path
 
 from runner.base.texts import one_line
 from runner.commands.columns import COMPARED, aligned, answer_cells
-from runner.comparison.caveats import caveats_of
-from runner.comparison.cells import label_text
-from runner.comparison.levels import levels
-from runner.comparison.side import Side, open_side, stored_part
-from runner.comparison.words import NOISE_ALONE, counted, noise_alone
-from runner.reporting.answers import EXPLAINED, Asked, judge
-from runner.reporting.sweep.subject import first_screen, whole_metrics
+from runner.report.answers import EXPLAINED, Asked, judge
+from runner.report.comparison.caveats import caveats_of
+from runner.report.comparison.cells import label_text
+from runner.report.comparison.levels import levels
+from runner.report.comparison.side import Side, open_side, stored_part
+from runner.report.comparison.words import NOISE_ALONE, counted, noise_alone
+from runner.report.sweep.subject import first_screen, whole_metrics
 from runner.store import open_sweep
 from runner.sweeps.finer_step import work_out_sweep
 

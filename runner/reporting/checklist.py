@@ -12,8 +12,8 @@ from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.insertions import fill
 from runner.base.paths import works_dir
 from runner.plugins.registry import StrictModel
-from runner.reporting import outline
-from runner.reporting.document import Code, Formula, Items, Notice, Provenance, Section, Table, Text
+from runner.report import outline
+from runner.report.document import Code, Formula, Items, Notice, Provenance, Section, Table, Text
 
 _FILE = "checklist.yaml"
 _MISSING, _NOWHERE = "missing", "–"

@@ -7,14 +7,14 @@ from functools import partial
 import numpy as np
 
 from runner.base.quantities import quantity, ranged, spread
-from runner.claims import CONTRADICTION, FACTOR, PublishedClaim, PublishedStatement, Verdict, judge_motion
-from runner.claims.judging import Simulated, scaled, simulated_by, verdict_on
 from runner.metrics.positioning import STEADY_WINDOW
-from runner.reporting.claim import Claim, ClaimResult, EquationVerdict
-from runner.reporting.figures import columns
+from runner.report.claim import Claim, ClaimResult, EquationVerdict
+from runner.report.claims import CONTRADICTION, FACTOR, PublishedClaim, PublishedStatement, Verdict, judge_motion
+from runner.report.claims.judging import Simulated, scaled, simulated_by, verdict_on
+from runner.report.figures import columns
+from runner.report.words import PLANT
 from runner.reporting.job import MissingError
 from runner.reporting.run_values import median
-from runner.reporting.words import PLANT
 from runner.store import Run
 
 _DIGITS = 4  # at least as many as a source prints

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import Any
 
-from runner.reporting.document import Block, Notice, Section, Table, Text
+from runner.report.document import Block, Notice, Section, Table, Text
+from runner.report.markup import literal
 from runner.reporting.job import distinct
-from runner.reporting.markup import literal
 from runner.store import Run
 
 _TOLD = 20  # unexpected caveats that the report names one by one

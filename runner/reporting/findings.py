@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from runner.reporting.document import Document, Notice
+from runner.report.document import Document, Notice
+from runner.report.outline import chapters
 from runner.reporting.measured import Condition
-from runner.reporting.outline import chapters
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,10 @@ import numpy as np
 
 from runner.base.errors import RunnerError, nearest
 from runner.base.quantities import above_rounding, with_powers
-from runner.reporting.document import Block, FloatArray, Notice
-from runner.reporting.figures import columns
+from runner.report.document import Block, FloatArray, Notice
+from runner.report.figures import columns
+from runner.report.words import in_words
 from runner.reporting.measured import Measured
-from runner.reporting.words import in_words
 from runner.store import Run
 
 

@@ -2,15 +2,15 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
+from runner.report.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text, Verdicts
+from runner.report.markup import literal, literals
+from runner.report.outline import numbered
+from runner.report.run_report import provenance
+from runner.report.tally import hanging
 from runner.reporting.checklist import Checklist
 from runner.reporting.citing import citing_section
-from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text, Verdicts
 from runner.reporting.expected_caveats import ExpectedCaveat, caveats_section, unexpected_caveats
 from runner.reporting.job import LeftOutError, Made, MissingError, distinct
-from runner.reporting.markup import literal, literals
-from runner.reporting.outline import numbered
-from runner.reporting.run_report import provenance
-from runner.reporting.tally import hanging
 from runner.store import Calibration, Run
 
 

@@ -14,15 +14,15 @@ from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.base.limits import CHAPTER, read_text
 from runner.base.progress.stages import CHAPTERS
-from runner.claims import CLAIMS, FACTOR, Verdict, load_claims
-from runner.reporting.audit.report import rows
-from runner.reporting.claim import Claim
+from runner.report.audit.report import rows
+from runner.report.claim import Claim
+from runner.report.claims import CLAIMS, FACTOR, Verdict, load_claims
+from runner.report.document import Equations, Origin, Section, Verdicts
+from runner.report.outline import numbered
 from runner.reporting.claims import judged_claims, legend
-from runner.reporting.document import Equations, Origin, Section, Verdicts
 from runner.reporting.findings import Finding
 from runner.reporting.job import Made
 from runner.reporting.measured import Measured
-from runner.reporting.outline import numbered
 from runner.reporting.prose import blocks, plots, read_chapter, signals, tables
 from runner.reporting.prose.reader import Reading
 from runner.reporting.work_report import parts

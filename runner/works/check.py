@@ -5,10 +5,10 @@ from fnmatch import fnmatchcase
 
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import WORK_FILE
+from runner.report.document import Document
+from runner.report.formulas import faulty
 from runner.reporting.conclusions import fallen
-from runner.reporting.document import Document
 from runner.reporting.expected_caveats import unexpected_caveats
-from runner.reporting.formulas import faulty
 from runner.reporting.job import LeftOutError, MissingError
 from runner.reporting.prose.trying import never_failing
 from runner.reporting.prose.typed import levels_in, typed_numbers

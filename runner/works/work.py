@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import check_inside
-from runner.claims import CLAIMS, load_claims
 from runner.plugins.discovery import use_plugins
+from runner.report.claims import CLAIMS, load_claims
 from runner.reporting.expected_caveats import ExpectedCaveat
 from runner.reporting.job import Job, Jobs, distinct
 from runner.store import Calibration, Run
@@ -26,7 +26,7 @@ from runner.works.profiles import Profile
 from runner.works.tunings import Tuning
 
 if TYPE_CHECKING:  # drawing comes with these
-    from runner.reporting.document import Cover, Document, Section
+    from runner.report.document import Cover, Document, Section
     from runner.works.chapters import Chapters
 
 Calibrations = Mapping[str, tuple[str, ...]]
@@ -192,7 +192,7 @@ class Work:
 
     def _by_profile(self, runs: Mapping[str, Run]) -> "Iterator[Section]":
         """Yield what the profile makes otherwise than the whole work; nothing where that is nothing."""
-        from runner.reporting.document import Section, Text
+        from runner.report.document import Section, Text
 
         dropped, repetitions = self.dropped(), self._profile.repetitions if self._profile else None
         if not (dropped or repetitions):
@@ -204,7 +204,7 @@ class Work:
 
     def _cover(self, runs: Mapping[str, Run]) -> "Cover | None":
         """Return the picture of the first screen; None where there is none, or its run was not made."""
-        from runner.reporting.cover import cover
+        from runner.report.cover import cover
 
         wanted = self.about.cover
         if wanted is None or wanted.run not in runs or runs[wanted.run].status == "failed":

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from support.sample_sides import LAWS, side
 
-from runner.comparison.beyond import ABSENT, Value, beyond
-from runner.comparison.cells import match
+from runner.report.comparison.beyond import ABSENT, Value, beyond
+from runner.report.comparison.cells import match
 
 
 def nothing(*_):

@@ -4,7 +4,7 @@ import pytest
 
 from runner.base.expressions.parser import parse
 from runner.base.expressions.typesetting import linear, matrix, symbol, typeset
-from runner.reporting import formulas
+from runner.report import formulas
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,8 @@ import pytest
 from pydantic import ValidationError
 
 from runner.base.paths import works_with
+from runner.report.document import Curves, Origin, Section
 from runner.reporting.checklist import Checklist, load_checklist
-from runner.reporting.document import Curves, Origin, Section
 
 CONTENT = {
     "title": "Checklist",

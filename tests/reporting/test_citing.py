@@ -2,8 +2,8 @@
 
 from support.made_up_runs import made_up_run
 
+from runner.report.document import Code
 from runner.reporting.citing import citing_section
-from runner.reporting.document import Code
 
 
 def codes(section):

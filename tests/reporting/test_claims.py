@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from support.made_up_runs import made_up_metric, made_up_run
 
-from runner.claims import CONTRADICTION, PublishedClaim, PublishedStatement
+from runner.report.claims import CONTRADICTION, PublishedClaim, PublishedStatement
+from runner.report.document import Verdicts
+from runner.report.words import PRESET
 from runner.reporting.claims import judged_claims, judged_statements, legend, run_name
-from runner.reporting.document import Verdicts
 from runner.reporting.job import PRESETS, MissingError
-from runner.reporting.words import PRESET
 
 NUMBER = {
     "number": 1,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.reporting.document import Document, Section, Text
+from runner.report.document import Document, Section, Text
 from runner.reporting.findings import finding, findings
 from runner.reporting.measured import Measured
 

@@ -4,11 +4,11 @@ import ast
 from pathlib import Path
 
 import runner.base.quantities
-import runner.drawing
-import runner.reporting
+import runner.report
+import runner.report.charts
 
-FOLDER = Path(runner.reporting.__file__).parent
-DRAWING = sorted(Path(runner.drawing.__file__).parent.glob("*.py"))
+FOLDER = Path(runner.report.__file__).parent
+DRAWING = sorted(Path(runner.report.charts.__file__).parent.glob("*.py"))
 
 
 def imported(path):
@@ -24,7 +24,7 @@ def known(paths, *rooms):
 
 
 def test_drawings_and_numbers_as_text_know_no_report():
-    assert known([*DRAWING, Path(runner.base.quantities.__file__)], "runner.reporting", "runner.works") == []
+    assert known([*DRAWING, Path(runner.base.quantities.__file__)], "runner.report", "runner.works") == []
 
 
 def test_the_vocabulary_knows_nothing_of_the_audit_and_the_works():

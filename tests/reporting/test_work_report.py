@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.reporting.document import Section, Text
+from runner.report.document import Section, Text
 from runner.reporting.job import Made, MissingError
 from runner.reporting.work_report import parts
 

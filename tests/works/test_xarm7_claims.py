@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from runner.claims import CONTRADICTION, Extent, PublishedClaim, judge_motion, load_claims
 from runner.config.compose.options import group_options
+from runner.report.claims import CONTRADICTION, Extent, PublishedClaim, judge_motion, load_claims
 from runner.store.references import shipped_references
 
 CLAIMS = load_claims("xarm7")

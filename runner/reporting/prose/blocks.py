@@ -9,13 +9,14 @@ from dataclasses import replace
 from typing import Any
 
 from runner.base.quantities import number, quantity
-from runner.reporting import figures, run_values
-from runner.reporting.document import Block, Curves, Formula, Notice, Playback
+from runner.report import figures
+from runner.report.document import Block, Curves, Formula, Notice, Playback
+from runner.report.plant_step import describe_plant
+from runner.report.words import PLANT
+from runner.reporting import run_values
 from runner.reporting.measured import Measured
-from runner.reporting.plant_step import describe_plant
 from runner.reporting.prose.patterns import axes_of, called, found
 from runner.reporting.prose.reading import Signal, config_value, number_of
-from runner.reporting.words import PLANT
 from runner.store import Run
 
 

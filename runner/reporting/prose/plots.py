@@ -7,8 +7,8 @@ from typing import Literal
 import numpy as np
 
 from runner.base.errors import RunnerError
-from runner.reporting.document import Curves, FloatArray, Map, Maps, Panel, Series
-from runner.reporting.figures import AXES, joint_columns, origin
+from runner.report.document import Curves, FloatArray, Map, Maps, Panel, Series
+from runner.report.figures import AXES, joint_columns, origin
 from runner.reporting.prose.patterns import axes_of, called, found, other
 from runner.reporting.prose.reading import Signal, number_of, times_of, trace_of
 from runner.store import Run

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from runner.base.errors import nearest
-from runner.reporting.document import Block, Section, Text
+from runner.report.document import Block, Section, Text
 from runner.reporting.findings import Finding, finding
 from runner.reporting.measured import Condition
 from runner.reporting.prose.expressions import Values

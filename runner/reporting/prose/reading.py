@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from runner.base.errors import RunnerError, nearest
+from runner.report.document import FloatArray
 from runner.reporting import run_values
-from runner.reporting.document import FloatArray
 from runner.reporting.measured import Measured
 from runner.reporting.run_values import clock
 from runner.store import Run

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from runner.report.document import FloatArray
+from runner.report.figures import columns, joint_columns, model_of
 from runner.reporting import run_values
-from runner.reporting.document import FloatArray
-from runner.reporting.figures import columns, joint_columns, model_of
 from runner.reporting.prose.reading import Signal, check_signal, config_value, trace_of
 from runner.store import Run
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 
 from runner.base.errors import RunnerError, nearest
 from runner.base.quantities import Shown, above_rounding, labelled
-from runner.reporting.document import Origin, Table
-from runner.reporting.figures import origin
+from runner.report.document import Origin, Table
+from runner.report.figures import origin
+from runner.report.metric_titles import title
 from runner.reporting.measured import Measured
-from runner.reporting.metric_titles import title
 from runner.reporting.prose.patterns import Found, axes_of, called, found, other
 from runner.reporting.prose.reading import Signal
 from runner.reporting.run_values import cell, median

@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from runner.base.quantities import number
-from runner.reporting.document import Block, Section, Table, Text
+from runner.report.document import Block, Section, Table, Text
+from runner.report.words import in_words
 from runner.reporting.prose.patterns import found
-from runner.reporting.words import in_words
 from runner.store import Run
 from runner.sweeps.differing import entries
 from runner.works.benchmark.cells import UNTUNED, tuned

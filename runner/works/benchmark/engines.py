@@ -6,11 +6,11 @@ import numpy as np
 from scipy import stats
 
 from runner.base.quantities import number
-from runner.reporting.document import Table
-from runner.reporting.figures import origin
+from runner.report.document import Table
+from runner.report.figures import origin
+from runner.report.words import PLANT, in_words
 from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import found
-from runner.reporting.words import PLANT, in_words
 from runner.store import Run
 from runner.works.benchmark.cells import Cell, cells
 from runner.works.benchmark.made import CONDITIONS

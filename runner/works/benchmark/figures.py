@@ -5,12 +5,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from runner.base.quantities import number, quantity
-from runner.drawing.figure import Map, Panel, Series
-from runner.reporting.document import Curves, Maps, Origin, Table, Text
-from runner.reporting.figures import origin
+from runner.report.charts.figure import Map, Panel, Series
+from runner.report.document import Curves, Maps, Origin, Table, Text
+from runner.report.figures import origin
+from runner.report.words import in_words
 from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import found
-from runner.reporting.words import in_words
 from runner.store import Run
 from runner.works.benchmark.cells import ROUND, UNTUNED, Cell, tuned
 from runner.works.benchmark.leads import Entry, FloatArray, Lead

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.reporting.document import Table
+from runner.report.document import Table
+from runner.report.words import in_words
 from runner.reporting.measured import Measured
-from runner.reporting.words import in_words
 from runner.store import Run
 from runner.works.benchmark.cells import ROUND, Cell
 from runner.works.benchmark.figures import answer, any_origin, error_words

@@ -5,11 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.optimize import brentq
 
-from runner.drawing.figure import Map
-from runner.reporting.document import Maps
+from runner.report.charts.figure import Map
+from runner.report.document import Maps
+from runner.report.words import in_words
 from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import found
-from runner.reporting.words import in_words
 from runner.store import Run
 from runner.works.benchmark.cells import UNTUNED, tuned
 from runner.works.benchmark.figures import any_origin, ratio, typical

@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.reporting.answers import ALPHA, SHARE
+from runner.report.answers import ALPHA, SHARE
 from runner.statistics import Comparison, compare_paired, holm, holm_levels
 
 FloatArray = NDArray[np.float64]

@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 
-from runner.reporting.answers import SHARE
+from runner.report.answers import SHARE
+from runner.report.words import in_words
 from runner.reporting.job import LeftOutError, Made
 from runner.reporting.prose.patterns import found
-from runner.reporting.words import in_words
 from runner.store import Run
 from runner.works.benchmark.cells import ALL_SEEDS, ROUND, Cell, cells
 

@@ -5,11 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from runner.base.quantities import quantity
-from runner.reporting.document import Table
-from runner.reporting.figures import origin
+from runner.report.document import Table
+from runner.report.figures import origin
+from runner.report.words import in_words
 from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import found
-from runner.reporting.words import in_words
 from runner.store import Run
 from runner.works.benchmark.made import ARMS, CONDITIONS
 

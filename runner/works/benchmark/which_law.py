@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
+from runner.report.words import in_words
 from runner.reporting.measured import Measured
-from runner.reporting.words import in_words
 from runner.store import Run
 from runner.works.benchmark.cells import UNTUNED
 from runner.works.benchmark.figures import ratio

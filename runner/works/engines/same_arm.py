@@ -9,7 +9,7 @@ import pinocchio as pin
 from runner.base.quantities import number
 from runner.plants.compiled_motion import CompiledStep
 from runner.plants.plant import FloatArray
-from runner.reporting.figures import model_of
+from runner.report.figures import model_of
 from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import found
 from runner.robots import RobotModel

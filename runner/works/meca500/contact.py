@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from runner.reporting.document import FloatArray
-from runner.reporting.figures import columns
+from runner.report.document import FloatArray
+from runner.report.figures import columns
 from runner.store import Run
 from runner.works.meca500.figures import law_of, servo_compliance, wrenches
 

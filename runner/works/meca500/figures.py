@@ -11,8 +11,8 @@ import pinocchio as pin
 from runner.base.errors import ConfigError
 from runner.base.quantities import number, quantity, with_powers
 from runner.controllers.force.admittance_filter import Admittance
-from runner.reporting.document import FloatArray
-from runner.reporting.figures import AXES, columns, joint_columns, model_of
+from runner.report.document import FloatArray
+from runner.report.figures import AXES, columns, joint_columns, model_of
 from runner.reporting.measured import ROUNDING, Measured
 from runner.reporting.prose.tables import Column
 from runner.robots import RobotModel

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from runner.controllers.force.admittance_filter import AXES
-from runner.reporting.document import FloatArray, Panel, Series
+from runner.report.document import FloatArray, Panel, Series
 from runner.reporting.run_values import clock
 from runner.store import Run
 from runner.works.meca500.admittance_response import ComplexArray, frequency_response, sampled_frequency_response

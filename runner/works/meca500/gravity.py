@@ -7,8 +7,8 @@ from runner.base.quantities import number, quantity, with_interval
 from runner.calibration import identify_gravity
 from runner.calibration.orientations import check_orientations, force_matrix, moment_matrix
 from runner.calibration.procedures.gravity import even_postures
-from runner.reporting.document import FloatArray, Panel, Series, Table
-from runner.reporting.figures import joint_columns, origin
+from runner.report.document import FloatArray, Panel, Series, Table
+from runner.report.figures import joint_columns, origin
 from runner.reporting.measured import ROUNDING
 from runner.reporting.prose.patterns import Found, found
 from runner.reporting.prose.tables import Column

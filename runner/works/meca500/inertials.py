@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from runner.base.quantities import number
-from runner.reporting.document import FloatArray
-from runner.reporting.figures import joint_columns, model_of
+from runner.report.document import FloatArray
+from runner.report.figures import joint_columns, model_of
 from runner.reporting.measured import ROUNDING
 from runner.reporting.run_values import median
 from runner.store import Run

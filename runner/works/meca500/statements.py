@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from runner.audit.audit import audit
-from runner.claims import Verdict, load_statements
-from runner.reporting.claim import EquationVerdict
+from runner.report.claim import EquationVerdict
+from runner.report.claims import Verdict, load_statements
+from runner.report.document import Verdicts
 from runner.reporting.claims import judged_statements
-from runner.reporting.document import Verdicts
 from runner.works.chapters import Concluded
 
 _SAMPLES = 200

@@ -7,8 +7,8 @@ import numpy as np
 
 from runner.base.quantities import quantity
 from runner.controllers.force.admittance_filter import AXES
-from runner.reporting.document import FloatArray, Panel, Series
-from runner.reporting.figures import joint_columns, model_of
+from runner.report.document import FloatArray, Panel, Series
+from runner.report.figures import joint_columns, model_of
 from runner.reporting.run_values import clock
 from runner.store import Run
 from runner.works.meca500.admittance_response import step_response

@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 
 from runner.calibration import consistency, identify_tool_centre_point, joint_deviation, pose_covariances
-from runner.reporting.document import FloatArray, Table
+from runner.report.document import FloatArray, Table
 from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import found
 from runner.sensing.wrench import cross_matrix

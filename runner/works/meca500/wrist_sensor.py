@@ -5,8 +5,8 @@ from scipy.linalg import solve_discrete_lyapunov
 
 from runner.base.quantities import number
 from runner.controllers.force.admittance_filter import AXES, discretise
-from runner.reporting.document import FloatArray, Series, Table
-from runner.reporting.figures import joint_columns, origin
+from runner.report.document import FloatArray, Series, Table
+from runner.report.figures import joint_columns, origin
 from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import found
 from runner.reporting.run_values import values

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from runner.base.quantities import number, quantity
-from runner.reporting.document import Curves, Origin, Panel, Series, Table
-from runner.reporting.figures import origin
+from runner.report.document import Curves, Origin, Panel, Series, Table
+from runner.report.figures import origin
 from runner.reporting.measured import Measured
 from runner.store import Run
 from runner.works.precision.tried import (

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from runner.reporting.figures import columns, joint_columns
+from runner.report.figures import columns, joint_columns
 from runner.reporting.job import MissingError
 from runner.reporting.prose.patterns import found
 from runner.store import Run

@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from runner.drawing import top_view
-from runner.reporting.document import FloatArray, Picture
-from runner.reporting.figures import columns, model_of, origin
+from runner.report.charts import top_view
+from runner.report.document import FloatArray, Picture
+from runner.report.figures import columns, model_of, origin
 from runner.reporting.measured import Measured
 from runner.store import Run
 

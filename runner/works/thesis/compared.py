@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.quantities import number, quantity, ranged
-from runner.claims import PublishedClaim
-from runner.drawing.thinning import envelope
 from runner.metrics.caveats.torques import CHATTER
-from runner.reporting.document import FloatArray, Panel, Series
-from runner.reporting.figures import AXES, columns, until_time
+from runner.report.charts.thinning import envelope
+from runner.report.claims import PublishedClaim
+from runner.report.document import FloatArray, Panel, Series
+from runner.report.figures import AXES, columns, until_time
 from runner.store import Run
 
 APART = 20.0

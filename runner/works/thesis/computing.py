@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from runner.controllers.force.late_stability import delay_limit, miss_limit, pattern_limit
-from runner.reporting.document import Series
+from runner.report.document import Series
 from runner.reporting.prose.patterns import found
 from runner.reporting.run_values import clock
 from runner.store import Run

@@ -8,8 +8,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import pinocchio as pin
 
-from runner.reporting.document import FloatArray
-from runner.reporting.figures import joint_columns, model_of
+from runner.report.document import FloatArray
+from runner.report.figures import joint_columns, model_of
 from runner.reporting.run_values import clock
 from runner.store import Run
 

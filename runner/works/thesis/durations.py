@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.reporting.document import Series
+from runner.report.document import Series
 from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import found
 from runner.reporting.run_values import values

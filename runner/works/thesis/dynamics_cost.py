@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from runner.base.quantities import number
-from runner.reporting.document import Curves, Panel, Series, Table
+from runner.report.document import Curves, Panel, Series, Table
 from runner.reporting.job import MissingError
 from runner.reporting.measured import Measured
 from runner.store import Run

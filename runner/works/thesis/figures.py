@@ -6,15 +6,15 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from runner.base.quantities import above_rounding
-from runner.claims import load_claims
 from runner.controllers.operational_space.operational_space_graph import operational_space_graph
-from runner.drawing import block_diagram, frame_assignment
-from runner.reporting.document import Block, Curves, FloatArray, Picture, Table, Text
-from runner.reporting.figures import columns, joint_columns, model_of, origin
+from runner.report.charts import block_diagram, frame_assignment
+from runner.report.claims import load_claims
+from runner.report.document import Block, Curves, FloatArray, Picture, Table, Text
+from runner.report.figures import columns, joint_columns, model_of, origin
+from runner.report.words import PRESET, in_words
 from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import found
 from runner.reporting.run_values import median
-from runner.reporting.words import PRESET, in_words
 from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.store import Run
 from runner.works.thesis.compared import Compared

@@ -6,8 +6,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.reporting.document import FloatArray, Series
-from runner.reporting.figures import columns, joint_columns, model_of
+from runner.report.document import FloatArray, Series
+from runner.report.figures import columns, joint_columns, model_of
 from runner.reporting.prose.patterns import found
 from runner.reporting.run_values import clock
 from runner.robots.cantilever import frequency_errors

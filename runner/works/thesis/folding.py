@@ -8,8 +8,8 @@ from collections.abc import Callable
 import numpy as np
 
 from runner.base.quantities import number, quantity, ranged
-from runner.reporting.document import FloatArray
-from runner.reporting.figures import joint_columns, model_of
+from runner.report.document import FloatArray
+from runner.report.figures import joint_columns, model_of
 from runner.reporting.measured import ROUNDING
 from runner.reporting.run_values import clock
 from runner.store import Run

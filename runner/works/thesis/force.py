@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.controllers.force.force_stability import force_loop_limit
-from runner.reporting.document import FloatArray, Series
-from runner.reporting.figures import columns, joint_columns, model_of
+from runner.report.document import FloatArray, Series
+from runner.report.figures import columns, joint_columns, model_of
 from runner.reporting.prose.patterns import found
 from runner.reporting.run_values import clock, delay_of
 from runner.robots.effective_mass import mass_along, tip_mobility

@@ -5,13 +5,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from runner.base.quantities import number, quantity, with_ends
-from runner.claims import FACTOR, load_claims
-from runner.reporting.document import Curves, Panel, Series, Table
-from runner.reporting.figures import origin
+from runner.report.claims import FACTOR, load_claims
+from runner.report.document import Curves, Panel, Series, Table
+from runner.report.figures import origin
+from runner.report.sweep.intervals import at_texts
+from runner.report.words import PRESET
 from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import found
-from runner.reporting.sweep.intervals import at_texts
-from runner.reporting.words import PRESET
 from runner.statistics.share import count_share
 from runner.store import Run
 from runner.works.thesis.judged import DRAWN, Judged, judge_by_seeds

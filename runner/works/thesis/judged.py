@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.claims import PublishedClaim, Verdict
-from runner.claims.judging import compared_with, simulated_by, verdict_on
 from runner.metrics.summary import over_repetitions
+from runner.report.claims import PublishedClaim, Verdict
+from runner.report.claims.judging import compared_with, simulated_by, verdict_on
+from runner.report.document import FloatArray
 from runner.reporting.claims import run_name
-from runner.reporting.document import FloatArray
 from runner.reporting.run_values import median
 from runner.store import Run
 

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from runner.reporting.document import FloatArray
-from runner.reporting.figures import AXES, columns
+from runner.report.document import FloatArray
+from runner.report.figures import AXES, columns
 from runner.reporting.run_values import clock
 from runner.store import Run
 

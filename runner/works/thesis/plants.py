@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from runner.reporting.figures import joint_columns
+from runner.report.figures import joint_columns
 from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import found
 from runner.store import Run

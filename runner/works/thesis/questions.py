@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.reporting.figures import joint_columns, model_of
+from runner.report.figures import joint_columns, model_of
+from runner.report.words import PRESET
 from runner.reporting.job import PRESETS
 from runner.reporting.run_values import cell
-from runner.reporting.words import PRESET
 from runner.store import Run
 
 _REST = "steady_state_error"

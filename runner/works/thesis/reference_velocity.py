@@ -3,8 +3,8 @@
 import numpy as np
 import pinocchio as pin
 
-from runner.reporting.document import FloatArray
-from runner.reporting.figures import columns, joint_columns, model_of
+from runner.report.document import FloatArray
+from runner.report.figures import columns, joint_columns, model_of
 from runner.reporting.prose.signals import largest_of
 from runner.reporting.run_values import clock, median
 from runner.store import Run

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.reporting.figures import columns
+from runner.report.figures import columns
 from runner.reporting.measured import Measured
 from runner.store import Run
 

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from runner.reporting.document import FloatArray
-from runner.reporting.figures import joint_columns
+from runner.report.document import FloatArray
+from runner.report.figures import joint_columns
 from runner.store import Run
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.quantities import number
-from runner.reporting.document import Block, FloatArray, Table, Text
-from runner.reporting.figures import columns, origin
+from runner.report.document import Block, FloatArray, Table, Text
+from runner.report.figures import columns, origin
 from runner.reporting.measured import Condition, Measured
 from runner.reporting.prose.patterns import found
 from runner.reporting.run_values import clock, failures

@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 
 from runner.controllers.force.force_stability import force_loop_limit
-from runner.reporting.document import FloatArray, Series
-from runner.reporting.figures import model_of
+from runner.report.document import FloatArray, Series
+from runner.report.figures import model_of
 from runner.reporting.run_values import median
 from runner.robots.effective_mass import tip_mobility
 from runner.store import Run

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.reporting.figures import columns
+from runner.report.figures import columns
 from runner.reporting.run_values import clock
 from runner.store import Run
 from runner.works.thesis.figures import rest_of_way

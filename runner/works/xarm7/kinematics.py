@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from runner.base.quantities import number
-from runner.reporting.figures import model_of
+from runner.report.figures import model_of
 from runner.robots.model import FloatArray
 from runner.store import Run
 from runner.works.xarm7.parts.three_joint_kinematics import BRANCHES, MOVING, Branch, ThreeJointArm

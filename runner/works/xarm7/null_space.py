@@ -5,8 +5,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from runner.base.quantities import number
-from runner.reporting.document import FloatArray, Series
-from runner.reporting.figures import columns, joint_columns, model_of
+from runner.report.document import FloatArray, Series
+from runner.report.figures import columns, joint_columns, model_of
 from runner.reporting.measured import Measured
 from runner.reporting.prose.patterns import called, found
 from runner.reporting.prose.reading import Signal, trace_of

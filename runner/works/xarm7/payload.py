@@ -6,8 +6,8 @@ import numpy as np
 from scipy.optimize import minimize
 
 from runner.base.quantities import number
-from runner.reporting.document import Block, FloatArray, Notice, Series
-from runner.reporting.figures import columns, joint_columns, model_of
+from runner.report.document import Block, FloatArray, Notice, Series
+from runner.report.figures import columns, joint_columns, model_of
 from runner.reporting.prose.patterns import found
 from runner.store import Run
 from runner.works.xarm7.figures import SHOULDER

@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from runner.drawing import arm_motion
-from runner.reporting.document import FloatArray, Picture
-from runner.reporting.figures import columns, joint_columns, model_of, origin
+from runner.report.charts import arm_motion
+from runner.report.document import FloatArray, Picture
+from runner.report.figures import columns, joint_columns, model_of, origin
 from runner.reporting.prose.reading import trace_of
 from runner.store import Run
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.quantities import above_rounding, number
-from runner.reporting.document import FloatArray, Series
-from runner.reporting.figures import joint_columns, model_of
+from runner.report.document import FloatArray, Series
+from runner.report.figures import joint_columns, model_of
 from runner.reporting.prose.patterns import found
 from runner.reporting.run_values import cell, median
 from runner.robots import RobotModel

@@ -8,8 +8,8 @@ import pyarrow.parquet
 import pytest
 
 import runner
-from runner.comparison.pairs import MOST_PAIRS
 from runner.metrics.summary import MOST_LISTED
+from runner.report.comparison.pairs import MOST_PAIRS
 from runner.store import DamagedError, open_run
 from runner.sweeps.execution import run
 from runner.sweeps.measurements import measure_sweep

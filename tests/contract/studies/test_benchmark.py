@@ -13,8 +13,8 @@ from support.work_plans import FULL_ALONE
 
 from runner.base.errors import RunnerError
 from runner.commands.reproduce import _chosen, _Way
+from runner.report.formulas import faulty
 from runner.reporting.findings import findings
-from runner.reporting.formulas import faulty
 from runner.reporting.prose.trying import never_failing
 from runner.works.benchmark import engines
 from runner.works.benchmark.cells import cells

@@ -14,7 +14,7 @@ from runner.commands.reproduce import _chosen, _Way
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.plants.rk4 import Rk4
-from runner.reporting.document import Table
+from runner.report.document import Table
 from runner.reporting.job import MissingError
 from runner.robots.model import RobotModel
 from runner.store import Run

@@ -6,9 +6,9 @@ import pytest
 from fixtures.studies import Made, made_up_costs
 from support.study_sections import every_run
 
-from runner.reporting.document import Document, Section
+from runner.report.document import Document, Section
+from runner.report.formulas import faulty
 from runner.reporting.findings import findings
-from runner.reporting.formulas import faulty
 from runner.reporting.measured import Measured
 from runner.works.thesis import dynamics_cost, figures, stage_sampling
 

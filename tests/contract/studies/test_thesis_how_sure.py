@@ -9,7 +9,7 @@ from fixtures.studies import Made
 from scipy import stats
 from support.study_sections import every_run, texts, unfinished_texts
 
-from runner.claims import load_claims
+from runner.report.claims import load_claims
 from runner.reporting.findings import Finding
 from runner.statistics.share import count_share
 from runner.store import Run

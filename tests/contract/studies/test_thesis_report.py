@@ -5,14 +5,14 @@ from collections import Counter
 
 import pytest
 
-from runner.reporting import outline
-from runner.reporting.document import Curves, Picture, Table, Text, Verdicts
-from runner.reporting.formulas import faulty
+from runner.report import outline
+from runner.report.document import Curves, Picture, Table, Text, Verdicts
+from runner.report.formulas import faulty
+from runner.report.places import Places
+from runner.report.render import write_report
+from runner.report.tally import tallies
+from runner.report.words import PRESET
 from runner.reporting.job import PRESETS
-from runner.reporting.places import Places
-from runner.reporting.render import write_report
-from runner.reporting.tally import tallies
-from runner.reporting.words import PRESET
 
 ONCE = (
     *("2.3", "2.4", "3.1", "3.4", "3.6", "3.7", "3.8", "4.1", "4.3"),

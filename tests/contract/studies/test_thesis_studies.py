@@ -8,10 +8,10 @@ import pytest
 from fixtures.studies import Made
 from support.study_sections import every_run, texts
 
-from runner.reporting import formulas
+from runner.report import formulas
+from runner.report.document import Document, Section, Table
+from runner.report.figures import torque_and_error
 from runner.reporting.checklist import load_checklist
-from runner.reporting.document import Document, Section, Table
-from runner.reporting.figures import torque_and_error
 from runner.reporting.job import MissingError
 from runner.store import Run
 from runner.works.thesis import measure

@@ -5,12 +5,12 @@ import re
 import numpy as np
 import pytest
 
-from runner.reporting import outline
-from runner.reporting.document import Curves, Notice, Picture, Playback, Section, Table, Text, Verdicts
+from runner.report import outline
+from runner.report.document import Curves, Notice, Picture, Playback, Section, Table, Text, Verdicts
+from runner.report.formulas import faulty
+from runner.report.render import write_report
 from runner.reporting.findings import findings
-from runner.reporting.formulas import faulty
 from runner.reporting.job import PRESETS
-from runner.reporting.render import write_report
 from runner.works.chapters import Chapters
 from runner.works.work import load_work
 

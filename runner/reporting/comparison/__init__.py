@@ -1,1 +1,0 @@
-"""The report that holds several sweeps against each other."""
