@@ -41,7 +41,7 @@ def robots_dir() -> Path:
 
 def works_dir() -> Path:
     """Return the folder of the published works, a folder each."""
-    return _PACKAGE / "works"
+    return _PACKAGE / "studies"
 
 
 def works_with(file: str) -> list[str]:

@@ -19,7 +19,7 @@ class Code:
 
     Args:
         folder: The folder.
-        package: The installed package that it is, such as "runner.works.thesis"; None for a folder that is none.
+        package: The installed package that it is, such as "runner.studies.thesis"; None for a folder that is none.
         allowed: Whether the command allows code of such a folder.
 
     Attributes:

@@ -9,7 +9,7 @@ from pathlib import Path
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import WORK_FILE, works_dir, works_with
 
-GROUP = "runner.works"
+GROUP = "runner.studies"
 """The group of entry points by which an installed package says that it is a work."""
 
 
@@ -49,7 +49,7 @@ def find_work(text: str, others: Sequence[str] = ()) -> Place:
         RunnerError: if there is none.
     """
     if (works_dir() / text / WORK_FILE).is_file() and "/" not in text:
-        return Place(text, works_dir() / text, f"runner.works.{text}")
+        return Place(text, works_dir() / text, f"runner.studies.{text}")
     for point in _installed():
         if point.name == text:
             return Place(text, _folder_of(point), point.value)

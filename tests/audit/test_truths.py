@@ -9,8 +9,8 @@ from runner.audit.evaluation import evaluate
 from runner.audit.sources import sources, truth_of
 from runner.audit.verdict import Judge, error
 from runner.base.expressions.parser import parse
-from runner.works.meca500.equations.truths import meca500
-from runner.works.xarm7.equations.truths import xarm7, xarm7_inverse
+from runner.studies.meca500.equations.truths import meca500
+from runner.studies.xarm7.equations.truths import xarm7, xarm7_inverse
 
 SAMPLES = 40
 

@@ -16,7 +16,7 @@ from runner.robots.denavit_hartenberg import (
     modified_transform,
 )
 from runner.robots.inertials import Payload
-from runner.works.meca500.equations.truths import meca500 as report
+from runner.studies.meca500.equations.truths import meca500 as report
 
 TABLE = [replace(row, a=row.a / 1000.0, d=row.d / 1000.0) for row in report.TABLE]  # in m
 

@@ -9,7 +9,7 @@ import numpy as np
 from runner.store import Run
 from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
-from runner.works.precision import measure
+from runner.studies.precision import measure
 
 FIRST, FOURTH, OFF = 0.1, 50.0, 1e-15  # errors by the step: rad/s, rad/s^4; how far both ways of one scheme are apart
 

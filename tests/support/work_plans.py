@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from support.thin_plans import Overrides, stand_ins
 
 from runner.reporting.job import Job
-from runner.works.precision.measure import PLANT
+from runner.studies.precision.measure import PLANT
 from runner.works.work import load_work
 
 FULL_ALONE = ("late_and_limited.md",)  # chapters of the benchmark's full profile alone

@@ -222,7 +222,7 @@ def test_an_installed_package_is_a_work_by_its_entry_point(tmp_path, made, monke
     info = tmp_path / "a_paper-1.0.dist-info"
     info.mkdir()
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: a-paper\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text("[runner.works]\nsmith_2020 = a_paper\n")
+    (info / "entry_points.txt").write_text("[runner.studies]\nsmith_2020 = a_paper\n")
     monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
     assert "smith_2020" in work_names()
     _, (section,) = read("smith_2020", made)

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from runner.audit.entry import entries
-from runner.works.thesis.equations.appendix import Harmonic, canonical, evaluate, motion, parse, read_appendix
-from runner.works.thesis.equations.truths import thesis_appendix
-from runner.works.thesis.equations.truths.thesis import symbols
-from runner.works.thesis.equations.truths.thesis_appendix import appendix_damages, damages, true_series
-from runner.works.thesis.equations.truths.thesis_arms import COMBINED
+from runner.studies.thesis.equations.appendix import Harmonic, canonical, evaluate, motion, parse, read_appendix
+from runner.studies.thesis.equations.truths import thesis_appendix
+from runner.studies.thesis.equations.truths.thesis import symbols
+from runner.studies.thesis.equations.truths.thesis_appendix import appendix_damages, damages, true_series
+from runner.studies.thesis.equations.truths.thesis_arms import COMBINED
 
 TRUTH = COMBINED.audited.truth("model.dynamics")
 TERMS = (1011, 592, 427, 359, 325, 239)

@@ -9,9 +9,9 @@ import pytest
 from runner.report.claims import load_claims
 from runner.report.words import PRESET
 from runner.store import Run
-from runner.works.thesis.compared import APART, Compared
-from runner.works.thesis.engines import parting, step_of_both
-from runner.works.thesis.takeaways import takeaway
+from runner.studies.thesis.compared import APART, Compared
+from runner.studies.thesis.engines import parting, step_of_both
+from runner.studies.thesis.takeaways import takeaway
 
 CLAIMS = [claim for claim in load_claims("thesis") if claim.experiment == "thesis/figure_3_5"]
 

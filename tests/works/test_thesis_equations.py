@@ -9,9 +9,9 @@ import pytest
 from runner.audit.entry import entries, parts
 from runner.audit.truth import along
 from runner.audit.verdict import AuditError, Judge
-from runner.works.thesis.equations.truths import thesis_measures, thesis_operational
-from runner.works.thesis.equations.truths.thesis import regular_symbols, symbols, symbols_at
-from runner.works.thesis.equations.truths.thesis_arms import COMBINED, MACRO, MINI
+from runner.studies.thesis.equations.truths import thesis_measures, thesis_operational
+from runner.studies.thesis.equations.truths.thesis import regular_symbols, symbols, symbols_at
+from runner.studies.thesis.equations.truths.thesis_arms import COMBINED, MACRO, MINI
 
 WRONG = {
     "J_ij",

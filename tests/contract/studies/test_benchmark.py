@@ -16,14 +16,14 @@ from runner.commands.reproduce import _chosen, _Way
 from runner.report.formulas import faulty
 from runner.reporting.findings import findings
 from runner.reporting.prose.trying import never_failing
-from runner.works.benchmark import engines
-from runner.works.benchmark.cells import cells
-from runner.works.benchmark.figures import said
-from runner.works.benchmark.halves import halves
-from runner.works.benchmark.horizon import grown
-from runner.works.benchmark.how_tuned import ends_of
-from runner.works.benchmark.late_and_limited import bearable
-from runner.works.benchmark.made import ARMS, CONDITIONS, turned
+from runner.studies.benchmark import engines
+from runner.studies.benchmark.cells import cells
+from runner.studies.benchmark.figures import said
+from runner.studies.benchmark.halves import halves
+from runner.studies.benchmark.horizon import grown
+from runner.studies.benchmark.how_tuned import ends_of
+from runner.studies.benchmark.late_and_limited import bearable
+from runner.studies.benchmark.made import ARMS, CONDITIONS, turned
 from runner.works.work import load_work
 
 WORK = load_work("benchmark")

@@ -13,7 +13,7 @@ pytest.importorskip("pybullet", reason="PyBullet is not installed")
 from runner.commands.reproduce import _chosen, _Way
 from runner.report.figures import model_of
 from runner.store import Run
-from runner.works.engines import contact, same_arm, side_by_side
+from runner.studies.engines import contact, same_arm, side_by_side
 
 
 @pytest.fixture

@@ -12,9 +12,9 @@ from support.study_sections import blocks
 from runner.calibration import REST, GravityCalibration, Tool, WrenchCompensation
 from runner.calibration.tool_centre_point import identify_tool_centre_point
 from runner.report.document import Curves, Table
-from runner.works.meca500.figures import consistency, error, fit, predicted, refusal
-from runner.works.meca500.gravity import angles, exact_readings, force_step, swapped_moment_step
-from runner.works.meca500.tool_centre_point import common_point_covariance, independent_rows_covariance
+from runner.studies.meca500.figures import consistency, error, fit, predicted, refusal
+from runner.studies.meca500.gravity import angles, exact_readings, force_step, swapped_moment_step
+from runner.studies.meca500.tool_centre_point import common_point_covariance, independent_rows_covariance
 
 GRAVITY = 9.81
 PARAMETERS = np.array([0.25, 0.3, 0.01, -0.003, 0.028, 0.4, -0.3, 0.8, 0.01, -0.02, 0.005])

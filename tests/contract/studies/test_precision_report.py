@@ -18,8 +18,8 @@ from runner.report.document import Table
 from runner.reporting.job import MissingError
 from runner.robots.model import RobotModel
 from runner.store import Run
-from runner.works.precision import measure, tried
-from runner.works.precision.exact import Adaptive, Collocation, energy_drift
+from runner.studies.precision import measure, tried
+from runner.studies.precision.exact import Adaptive, Collocation, energy_drift
 from runner.works.work import load_work
 
 WORK = load_work("precision")

@@ -10,7 +10,7 @@ from runner.report.document import Document, Section
 from runner.report.formulas import faulty
 from runner.reporting.findings import findings
 from runner.reporting.measured import Measured
-from runner.works.thesis import dynamics_cost, figures, stage_sampling
+from runner.studies.thesis import dynamics_cost, figures, stage_sampling
 
 
 @pytest.mark.parametrize(("claim", "ends"), [(3, (0.1, 0.15)), (4, (0.007, 0.044))])

@@ -8,7 +8,7 @@ import pytest
 from fixtures.studies import Made
 
 from runner.store import Run
-from runner.works.thesis import figures, folding
+from runner.studies.thesis import figures, folding
 
 NAME = "folding/sound/tip_goal/quintic"
 

@@ -13,9 +13,9 @@ from runner.report.claims import load_claims
 from runner.reporting.findings import Finding
 from runner.statistics.share import count_share
 from runner.store import Run
+from runner.studies.thesis import how_sure
+from runner.studies.thesis.judged import DRAWN, Judged, judge_by_seeds
 from runner.sweeps.execution import run
-from runner.works.thesis import how_sure
-from runner.works.thesis.judged import DRAWN, Judged, judge_by_seeds
 from runner.works.work import load_work
 
 CLAIMS = load_claims("thesis")

@@ -14,7 +14,7 @@ from runner.report.figures import torque_and_error
 from runner.reporting.checklist import load_checklist
 from runner.reporting.job import MissingError
 from runner.store import Run
-from runner.works.thesis import measure
+from runner.studies.thesis import measure
 from runner.works.work import load_work
 
 STUDIES = ("coupling", "mass_ratio", "stage_sampling", "folding", "stretch", "reference_velocity", "bandwidth", "turns",

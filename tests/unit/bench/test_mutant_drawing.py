@@ -77,7 +77,7 @@ def test_the_table_counts_by_package_and_shows_what_was_not_found():
         for path, status in [
             ("runner/plants/rk4.py", "killed"),
             ("runner/plants/rk4.py", "timeout"),
-            ("runner/works/thesis/a.py", "survived"),
+            ("runner/studies/thesis/a.py", "survived"),
             ("runner/cli.py", "not covered"),
         ]
     ]
@@ -90,6 +90,6 @@ def test_the_table_counts_by_package_and_shows_what_was_not_found():
         "all": ["1", "1", "1", "1"],
     }
     assert lines[5:] == [
-        "survived: runner/works/thesis/a.py:7 f", "  - a < b", "  + a <= b",
+        "survived: runner/studies/thesis/a.py:7 f", "  - a < b", "  + a <= b",
         "not covered: runner/cli.py:7 f", "  - a < b", "  + a <= b",
     ]  # fmt: skip

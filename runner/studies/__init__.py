@@ -1,0 +1,1 @@
+"""Studies: reproductions of published papers, and comparisons of our own."""

@@ -1,0 +1,60 @@
+"""The chapter with a section for each arm: groups of laws under each condition, and every error."""
+
+from collections.abc import Mapping, Sequence
+
+from runner.report.document import Section, Table, Text
+from runner.report.words import in_words
+from runner.store import Run
+from runner.studies.benchmark.cells import UNTUNED
+from runner.studies.benchmark.figures import any_origin, error_words
+from runner.studies.benchmark.made import ARMS, CONDITIONS, QUESTIONS, all_cells, arms_of, laws_of, turned
+
+_WIDE = 6  # conditions that stand in one table
+
+
+def section(runs: Mapping[str, Run]) -> Section:
+    """Return the chapter."""
+    text = (
+        "A law is ahead of another if its error is smaller by more than 2 % on the same seeds, with whichever tuning "
+        "of the two, by tests corrected for all comparisons on the arm and question (Holm); intervals have the level "
+        "of their test. Where nothing is drawn there is no interval, and it is ahead if it is so along every path. "
+        "Laws of one group are tied: the first group holds those that no law is shown to be ahead of, and a law of "
+        "another one is behind a law of the group before it. Errors are root mean squares of the tip's distance from "
+        "where it should be, of the median seed, and the geometric mean over paths and tunings. A repetition that "
+        "failed counts as an error beyond every number; the share of these stands with it."
+    )
+    return Section("Arm by arm", (Text(text),), [_arm(runs, arm) for arm in arms_of(runs)])
+
+
+def _arm(runs: Mapping[str, Run], arm: str) -> Section:
+    title = ARMS[arm].replace("planar", "Planar")
+    blocks = [_groups(runs, arm, question) for question in QUESTIONS]
+    for question in QUESTIONS:
+        blocks += _errors(runs, arm, question, (), f"{QUESTIONS[question]}, tuned")
+    blocks += _errors(runs, arm, "first", UNTUNED, "from the first second, not tuned")
+    return Section(title, blocks)
+
+
+def _groups(runs: Mapping[str, Run], arm: str, question: str) -> Table:
+    rows = []
+    for condition, cell in all_cells(runs, arm, question).items():
+        groups = [", ".join(map(in_words, own)) for own in cell.groups]
+        listed = "; ".join(f"{place}. {own}" for place, own in enumerate(groups, start=1))
+        later = [turned(runs, arm, condition) or "none"] if question == "learned" else []
+        rows.append([CONDITIONS[condition], error_words(cell.best), listed, *later])
+    later = ["change in a later round"] if question == "learned" else []
+    header = ["condition", "smallest error", "groups, the first one ahead", *later]
+    return Table(f"{ARMS[arm]}, {QUESTIONS[question]}: groups of laws.", header, rows, (1,), any_origin(runs))
+
+
+def _errors(runs: Mapping[str, Run], arm: str, question: str, gains: Sequence[str], words: str) -> list[Table]:
+    made = all_cells(runs, arm, question, gains)
+    names = list(made)
+    tables = []
+    for start in range(0, len(names), _WIDE):
+        chosen = names[start : start + _WIDE]
+        rows = [[in_words(law), *(error_words(made[name].entry(law)) for name in chosen)] for law in laws_of(runs, arm)]
+        header = ["law", *(CONDITIONS[name] for name in chosen)]
+        caption = f"{ARMS[arm]}: errors, {words}."
+        tables.append(Table(caption, header, rows, range(1, len(header)), any_origin(runs)))
+    return tables

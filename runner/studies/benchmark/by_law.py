@@ -1,0 +1,132 @@
+"""The chapter with a section for each law: what it is told, its gains, where it stands, what a tick of it takes."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from runner.base.quantities import number
+from runner.report.document import Block, Section, Table, Text
+from runner.report.words import in_words
+from runner.reporting.prose.patterns import found
+from runner.store import Run
+from runner.studies.benchmark.cells import UNTUNED, tuned
+from runner.studies.benchmark.figures import any_origin, error_words, ratio
+from runner.studies.benchmark.made import ARMS, CONDITIONS, QUESTIONS, all_cells, arms_of, laws_of
+from runner.sweeps.differing import entries
+
+_MODEL = "mass matrix, Coriolis and gravity terms"
+_HOME = "gravity term, inertias at home"
+_DOES = {
+    "operational_space": "It closes its loop at the tip, in Cartesian coordinates.",
+    "computed_torque": "It makes every joint a second-order system of its bandwidth.",
+    "with_integral": "Computed torque with an integral of the joint errors.",
+    "joint_pd": "Every joint alone, by position and velocity gains.",
+    "joint_pid": "Joint PD with an integral, which stands still at a torque limit.",
+    "passivity": "It feeds back through constant inertias, and does not cancel what the motion brings along.",
+    "sliding_mode": "The passivity-based law with a switching term inside a boundary layer.",
+    "adaptive": "The passivity-based law; it changes the model that it begins with while it moves.",
+    "observed": "Computed torque; what disturbs the joints' momenta is found and taken off its torques.",
+    "observed_pd": "Joint PD with the same observer.",
+}
+_TOLD = {
+    "operational_space": (_MODEL, "no", "no"),
+    "computed_torque": (_MODEL, "no", "no"),
+    "with_integral": (_MODEL, "no", "no"),
+    "joint_pd": (_HOME, "no", "no"),
+    "joint_pid": (_HOME, "no", "no"),
+    "passivity": (_MODEL, "no", "no"),
+    "sliding_mode": (_MODEL, "no", "no"),
+    "adaptive": (f"{_MODEL}, to begin with", "finds it", "no"),
+    "observed": (_MODEL, "finds it", "no"),
+    "observed_pd": (f"{_MODEL} for its observer, {_HOME}", "finds it", "no"),
+    "iterative_learning": (_MODEL, "learns it", "yes"),
+}
+_UNKNOWN = "not told here"
+_LAW_KEYS = ("controller.", "disturbance_observer.")
+
+
+def section(runs: Mapping[str, Run]) -> Section:
+    """Return the chapter."""
+    text = (
+        "All laws read positions and velocities of the joints; none of ours reads torque sensors. Untuned gains follow "
+        "from one bandwidth for each arm; tuned ones are the best of the same number of trials for every law, for each "
+        "question, by different seeds."
+    )
+    laws = laws_of(runs, arms_of(runs)[0])
+    return Section("Law by law", (Text(text), _knowledge(runs, laws)), [_law(runs, law) for law in laws])
+
+
+def _knowledge(runs: Mapping[str, Run], laws: Sequence[str]) -> Table:
+    """Return what each law is told; iterative learning stands in a chapter of its own."""
+    rows = []
+    for law in (*laws, "iterative_learning"):
+        model, friction, repeats = _TOLD.get(law, (_UNKNOWN,) * 3)
+        rows.append([in_words(law), model, friction, "no" if law in _TOLD else _UNKNOWN, repeats])
+    header = ["law", "model", "friction", "torque sensor", "that a motion repeats"]
+    return Table("What each law is told beside the joints' positions and velocities.", header, rows)
+
+
+def _law(runs: Mapping[str, Run], law: str) -> Section:
+    words = in_words(law)
+    blocks: list[Block] = [Text(_DOES.get(law, "A law from outside.")), _places(runs, law), _gains(runs, law)]
+    cost = _cost(runs, law)
+    return Section(words[0].upper() + words[1:], [*blocks, Text(cost)] if cost else blocks)
+
+
+def _places(runs: Mapping[str, Run], law: str) -> Table:
+    """Return its error and group under each condition on each arm, and how much of the error tuning took away."""
+    rows = []
+    for arm in arms_of(runs):
+        before = all_cells(runs, arm, gains=UNTUNED)
+        for question, words in QUESTIONS.items():
+            for name, cell in all_cells(runs, arm, question).items():
+                entry = cell.entry(law)
+                group = next(str(place) for place, own in enumerate(cell.groups, start=1) if law in own)
+                behind = ratio(entry, cell.best)
+                gained = ratio(before[name].entry(law), entry) if question == "first" else None
+                texts = ["beyond" if behind is None else number(behind, zeros=True)]
+                texts.append("" if question != "first" else "beyond" if gained is None else number(gained, zeros=True))
+                rows.append([ARMS[arm], words, CONDITIONS[name], error_words(entry), group, *texts])
+    header = ["arm", "question", "condition", "error", "group", "over the smallest", "untuned over tuned"]
+    return Table(f"{in_words(law)}: where it stands.", header, rows, (3, 4, 5, 6), any_origin(runs), folded=True)
+
+
+def _gains(runs: Mapping[str, Run], law: str) -> Table:
+    """Return the gains of each arm: of its bandwidth, and of each tuning."""
+    rows = []
+    tunings = [(question, own) for question in QUESTIONS for own in tuned(runs)]
+    for arm in arms_of(runs):
+        by_gains = [keys_of(runs, arm, law, "first", *UNTUNED), *(keys_of(runs, arm, law, *own) for own in tunings)]
+        differing = [key for key in by_gains[0] if len({own.get(key) for own in by_gains}) > 1]
+        for key in differing or ["none"]:
+            rows.append([ARMS[arm], key, *(_short(own.get(key, "")) for own in by_gains)])
+    header = ["arm", "key", "not tuned", *(f"{question}, {own}" for question, own in tunings)]
+    caption, numbers = f"{in_words(law)}: gains that were tuned, by question and tuning.", range(2, len(header))
+    return Table(caption, header, rows, numbers, any_origin(runs), (1,))
+
+
+def keys_of(runs: Mapping[str, Run], arm: str, law: str, question: str, gains: str) -> dict[str, str]:
+    """Return the keys of a law and its observer with their values, as texts, of a tuning."""
+    config = found(runs, f"{question}/{arm}/{law}/{{task}}/exact/{gains}")[0].run.config
+    own = {group: config[group] for group in ("controller", "disturbance_observer") if group in config}
+    return {key: value for key, value in entries(own) if key.startswith(_LAW_KEYS)}
+
+
+def _short(value: str) -> str:
+    try:
+        return number(float(value))
+    except ValueError:
+        return value
+
+
+def _cost(runs: Mapping[str, Run], law: str) -> str:
+    """Return what a tick of it took on the engine's Macro; nothing where no clock was read."""
+    timed = [one.run.record["timing"].get("tick_time_median")
+             for one in found(runs, f"engine/{{arm}}/{law}/{{task}}/exact/{{gains}}")]  # fmt: skip
+    taken = [each for each in timed if each]
+    if not taken:
+        return ""
+    return (
+        f"A control tick of it took {number(1e6 * float(np.median(taken)), 2)} µs on the Macro, law and plant, when "
+        "its runs were made: a clock's reading, which another machine does not repeat."
+    )

@@ -1,0 +1,213 @@
+"""What the chapters call: the answer as tables, maps and numbers over arms, laws and conditions."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from runner.base.quantities import number, quantity
+from runner.report.charts.figure import Map, Panel, Series
+from runner.report.document import Curves, Maps, Origin, Table, Text
+from runner.report.figures import origin
+from runner.report.words import in_words
+from runner.reporting.measured import Measured
+from runner.reporting.prose.patterns import found
+from runner.store import Run
+from runner.studies.benchmark.cells import ROUND, UNTUNED, Cell, tuned
+from runner.studies.benchmark.leads import Entry, FloatArray, Lead
+from runner.studies.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, laws_of, one_cell, turned
+
+_IN_A_TABLE = 4  # arms
+_NAMED = 5  # tied laws that are named
+_FAR = 1.1  # ratio of errors that three digits tell from one
+
+
+def best_laws(runs: Mapping[str, Run], question: str, caption: str) -> list[Table]:
+    """Return the laws that none is shown to be ahead of, on each arm under each condition, and who is next.
+
+    Args:
+        runs: The runs of the work.
+        question: One of QUESTIONS.
+        caption: What is seen.
+    """
+    arms = arms_of(runs)
+    made = {arm: all_cells(runs, arm, question) for arm in arms}
+    tables = []
+    for start in range(0, len(arms), _IN_A_TABLE):
+        some = arms[start : start + _IN_A_TABLE]
+        rows = [[CONDITIONS[name], *(said(runs, arm, question, name) for arm in some)] for name in made[some[0]]]
+        tables.append(Table(caption, ["condition", *(ARMS[arm] for arm in some)], rows, (), any_origin(runs)))
+    return tables
+
+
+def behind_the_best(runs: Mapping[str, Run], question: str, caption: str) -> Maps:
+    """Return the error of every law over the smallest one as maps, an arm each; runs that failed are marked."""
+    panels = []
+    for arm in arms_of(runs):
+        made, laws = all_cells(runs, arm, question), laws_of(runs, arm)[::-1]
+        ratios = np.array([[ratio(cell.entry(law), cell.best) for cell in made.values()] for law in laws], dtype=float)
+        failed = np.array([[cell.entry(law).failed > 0.0 for cell in made.values()] for law in laws])
+        hints = [f"{number(float(each))} times the smallest error" for each in ratios.flat]
+        values = np.where(np.isfinite(ratios), ratios, np.nan)
+        names = [CONDITIONS[name] for name in made]
+        panels.append(Map(ARMS[arm], "", "", names, list(map(in_words, laws)), values, failed, hints=hints))
+    return Maps(caption, "error over the smallest", panels, True, 1, any_origin(runs))
+
+
+def troubles(runs: Mapping[str, Run], question: str, gains: str, caption: str) -> Maps | Text:
+    """Return the share of repetitions of each law that failed as maps, an arm each; a sentence where none did.
+
+    Args:
+        runs: The runs of the work.
+        question: One of QUESTIONS.
+        gains: "tuned" or "untuned".
+        caption: What is seen.
+    """
+    panels = []
+    for arm in arms_of(runs):
+        made, laws = all_cells(runs, arm, question, _chosen(gains)), laws_of(runs, arm)[::-1]
+        shares = 100.0 * np.array([[cell.entry(law).failed for cell in made.values()] for law in laws])
+        names = [CONDITIONS[name] for name in made]
+        panels.append(Map(ARMS[arm], "", "", names, list(map(in_words, laws)), shares, np.zeros(shares.shape, bool)))
+    if not any(panel.values.any() for panel in panels):
+        return Text(f"{caption} Here there are none, of no law on no arm under no condition.")
+    return Maps(caption, "repetitions that failed (%)", panels, False, 1, any_origin(runs))
+
+
+def error_against(runs: Mapping[str, Run], metric: str, label: str, condition: str, caption: str) -> Curves:
+    """Return the error of each law in the first round against what another metric says of its torques, by arm.
+
+    Args:
+        runs: The runs of the work.
+        metric: The metric, such as "torque_chatter".
+        label: Its axis, with unit.
+        condition: The condition.
+        caption: What is seen.
+    """
+    panels = []
+    for arm in arms_of(runs):
+        cell, series = all_cells(runs, arm)[condition], []
+        for index, law in enumerate(laws_of(runs, arm)):
+            entry = cell.entry(law)
+            used = [typical(runs, arm, law, condition, own, metric) for own in tuned(runs)]
+            series.append(Series(in_words(law), np.array(used), entry.by_tuning, "points", color=index))
+        panels.append(Panel(ARMS[arm], label, "error (m)", series, y_log=True))
+    return Curves(caption, panels, 2, any_origin(runs))
+
+
+def settings(runs: Mapping[str, Run], caption: str) -> Table:
+    """Return what is the same for all laws of an arm, and what the conditions do to it."""
+    header = ["arm", "bandwidth", "period", "masses wrong by up to", "friction", "viscous friction", "encoder noise"]
+    rows = []
+    for arm in arms_of(runs):
+        config = found(runs, f"first/{arm}/joint_pd/{{task}}/all/untuned")[0].run.config
+        friction = config["plant"]["friction"]
+        rows.append(
+            [
+                ARMS[arm],
+                quantity(config["controller"]["natural_frequency"], "rad/s"),
+                quantity(config["controller"]["period"], "s"),
+                quantity(100.0 * config["mismatch"]["spread"], "%"),
+                f"{_listed(friction['coulomb'])} N m",
+                f"{_listed(friction['viscous'])} N m s/rad",
+                quantity(float(np.max(config["noise"]["position"])), "rad"),
+            ]
+        )
+    return Table(caption, header, rows, range(1, 7), any_origin(runs))
+
+
+def spread(runs: Mapping[str, Run], question: str, caption: str) -> Table:
+    """Return how far the errors of the tunings of each law are apart on each arm, with all wrong at once."""
+    arms = arms_of(runs)
+    rows = []
+    for law in laws_of(runs, arms[0]):
+        found_on = [all_cells(runs, arm, question)["all"].entry(law).by_tuning for arm in arms]
+        rows.append([in_words(law), *(_apart(own) for own in found_on)])
+    return Table(caption, ["law", *(ARMS[arm] for arm in arms)], rows, range(1, 1 + len(arms)), any_origin(runs))
+
+
+def failed(runs: Mapping[str, Run], gains: str, condition: str, *arms: str) -> list[Measured]:
+    """Return the share of repetitions that failed of each law under a condition, in per cent.
+
+    Args:
+        runs: The runs of the work.
+        gains: "tuned" or "untuned".
+        condition: The condition.
+        arms: The arms; all where none is named.
+    """
+    return [
+        Measured(f"repetitions of {in_words(each.law)} that failed, {gains}, {ARMS[arm]}", 100.0 * each.failed, "%")
+        for arm in arms or arms_of(runs)
+        for each in one_cell(runs, arm, condition, gains=_chosen(gains)).entries
+    ]
+
+
+def ratio(one: Entry, other: Entry) -> float | None:
+    """Return the error of a law over that of another one; None where both or the other one failed."""
+    return one.score / other.score if np.isfinite(other.score) else None
+
+
+def error_words(entry: Entry) -> str:
+    """Return the error of a law, and the share of its repetitions that failed."""
+    if entry.failed == 0.0:
+        return quantity(entry.score, "m")
+    failed = f"{number(100.0 * entry.failed, 2)} % failed"
+    return f"{quantity(entry.score, 'm')}, {failed}" if np.isfinite(entry.score) else failed
+
+
+def lead_words(lead: Lead) -> str:
+    """Return how far a law is ahead, with the interval where seeds are drawn."""
+    digits = 3 if lead.factor > _FAR else 4
+    factor, *ends = (number(value, digits, zeros=True) for value in (lead.factor, *(lead.interval or ())))
+    return f"{factor} times ({' to '.join(ends)})" if ends else f"{factor} times"
+
+
+def _chosen(gains: str) -> Sequence[str]:
+    return () if gains == "tuned" else UNTUNED
+
+
+def any_origin(runs: Mapping[str, Run]) -> Origin:
+    """Return where a table over several arms is from: the command of one of the runs."""
+    return origin(found(runs, f"first/{{arm={arms_of(runs)[0]}}}/{{law}}/{{task}}/{{condition}}/{{gains}}")[0].run)
+
+
+def said(runs: Mapping[str, Run], arm: str, question: str, condition: str) -> str:
+    """Return the answer to a question on an arm; where a later round changes it, that it does."""
+    cell = all_cells(runs, arm, question)[condition]
+    passed = turned(runs, arm, condition) if question == "learned" else ""
+    if not passed:
+        return answer(cell)
+    return f"no answer: in round {ROUND} {', '.join(map(in_words, cell.groups[0]))}; {passed}"
+
+
+def answer(cell: Cell) -> str:
+    """Return the laws that none is shown to be ahead of, and how far one that stands alone is ahead."""
+    if not np.isfinite(cell.best.score):
+        return "all failed"
+    first = cell.groups[0]
+    if len(first) > _NAMED:
+        return f"{in_words(first[0])}; tied with {len(first) - 1} others"
+    if len(first) > 1:
+        return f"{in_words(first[0])}; tied with {', '.join(map(in_words, first[1:]))}"
+    lead = cell.leads[cell.best.law, cell.entries[1].law]
+    return f"{in_words(cell.best.law)}, {lead_words(lead)} ahead of {in_words(lead.other)}"
+
+
+def _apart(errors: FloatArray) -> str:
+    return number(float(errors.max() / errors.min()), zeros=True) if np.isfinite(errors).all() else "failed"
+
+
+def _listed(value: object) -> str:
+    values = np.atleast_1d(np.asarray(value, dtype=float))
+    low, high = number(float(values.min())), number(float(values.max()))
+    return low if low == high else f"{low} to {high}"
+
+
+def typical(runs: Mapping[str, Run], arm: str, law: str, condition: str, gains: str, metric: str) -> float:
+    """Return the mean over the paths of the median of a metric; NaN where a run has none."""
+    own = [one.run for one in found(runs, f"first/{arm}/{law}/{{task}}/{condition}/{gains}")]
+    return float(np.mean([_median(run, metric) for run in own]))
+
+
+def _median(run: Run, metric: str) -> float:
+    median = run.metrics[metric]["median"] if metric in run.metrics else None
+    return np.nan if median is None else float(median)

@@ -1,0 +1,88 @@
+"""Sinusoidal loads: amplitude and phase of the answer against the analytic ones."""
+
+from typing import Any
+
+import numpy as np
+
+from runner.controllers.force.admittance_filter import AXES
+from runner.report.document import FloatArray, Panel, Series
+from runner.reporting.run_values import clock
+from runner.store import Run
+from runner.studies.meca500.admittance_response import ComplexArray, frequency_response, sampled_frequency_response
+from runner.studies.meca500.figures import Runs, displacement, law_of, loads_of, once, servo_compliance
+from runner.studies.meca500.plan import FREQUENCIES, REPORTED, SINE_CASES
+
+_SETTLED = 0.6  # s, by which the transient has faded to 1e-4
+
+
+def settled() -> float:
+    """Return from when on sines are fitted, in s."""
+    return _SETTLED
+
+
+@once
+def fitted_response(run: Run) -> ComplexArray:
+    """Return x / f of each axis of a run under a sine, shape (6,), in m/N and rad/(N m)."""
+    environment, times = run.config["environment"], clock(run)
+    late = times >= _SETTLED
+    angle = 2.0 * np.pi * float(environment["frequency"]) * (times[late] - float(environment["begin"]))
+    basis = np.column_stack([np.sin(angle), np.cos(angle)])
+    (sine, cosine), *_ = np.linalg.lstsq(basis, displacement(run)[late], rcond=None)
+    return np.asarray((sine + 1j * cosine) / loads_of(run))
+
+
+def sine(run: Run) -> dict[str, Any]:
+    """Return how a run under a sine answers, each axis over the analytic answer as a text by its name.
+
+    In per cent: how far an axis is off_sampled, the sampled law with the give of servos where there are some, and
+    off_continuous, and what a delay of half a period makes; samples that a period of the sine holds; and how many times
+    the law's own answer the give is at least.
+    """
+    omega = 2.0 * np.pi * float(run.config["environment"]["frequency"])
+    law, period, found = law_of(run), float(run.config["controller"]["period"]), fitted_response(run)
+    exact, sampled = (own[0] for own in (frequency_response(law, np.array([omega])),
+                      sampled_frequency_response(law, period, np.array([omega]))))  # fmt: skip
+    give = _give(run) if run.config["plant"]["kind"] != "kinematic" else np.zeros(len(AXES))
+    told = {
+        axis: f"{abs(over):.3f}, {np.degrees(np.angle(over)):+.1f}°"
+        for axis, over in zip(AXES, found / exact, strict=True)
+    }
+    return told | {
+        "off_sampled": 100.0 * float(np.abs(found / (sampled + give) - 1.0).max()),
+        "off_continuous": 100.0 * float(np.abs(found / exact - 1.0).max()),
+        "half": 200.0 * float(np.sin(omega * period / 4.0)),
+        "samples": 2.0 * np.pi / (omega * period),
+        "give": float((np.abs(give) / np.abs(exact)).min()),
+    }
+
+
+def bode(runs: Runs) -> list[Panel]:
+    """Return amplitude and phase along x and about x, with the laws' own."""
+    servo, points = runs[f"sine/servo, 1 ms/{FREQUENCIES[0]}"], np.array(FREQUENCIES)
+    fine = np.geomspace(points[0], points[-1], 200)
+    exact = frequency_response(law_of(servo), 2.0 * np.pi * fine)
+    sampled = sampled_frequency_response(law_of(servo), REPORTED, 2.0 * np.pi * fine)
+    drawn = [
+        ("analytic", fine, exact, "dashed"),
+        ("sampled law, 16.7 ms", fine, sampled, "dotted"),
+        ("analytic, and yielding of the servos", fine, exact + _give(servo), "dotted"),
+    ]
+    for case in SINE_CASES:
+        found = np.array([fitted_response(runs[f"sine/{case}/{frequency}"]) for frequency in FREQUENCIES])
+        drawn.append((case, points, found, "points"))
+    panels = []
+    for axis, unit in (("x", "m/N"), ("rotation x", "rad/(N m)")):
+        index = AXES.index(axis)
+        for title, label, of in (("amplitude", f"amplitude ({unit})", np.abs), ("phase", "phase (degrees)", _phase)):
+            series = [Series(name, x, of(y[:, index]), style) for name, x, y, style in drawn]  # type: ignore[arg-type]
+            panels.append(Panel(f"{axis}, {title}", "frequency (Hz)", label, series, True, title == "amplitude"))
+    return panels
+
+
+def _phase(response: ComplexArray) -> FloatArray:
+    return np.degrees(np.unwrap(np.angle(response)))
+
+
+def _give(run: Run) -> FloatArray:
+    """Return what the servos' springs add to x / f of each axis, under the loads of all, shape (6,)."""
+    return servo_compliance(run) @ loads_of(run) / loads_of(run)

@@ -1,0 +1,229 @@
+"""Gravity compensation (section 4 of the report), right and as it is printed, judged by the true tool and sensor."""
+
+import numpy as np
+import pinocchio as pin
+
+from runner.base.quantities import number, quantity, with_interval
+from runner.calibration import identify_gravity
+from runner.calibration.orientations import check_orientations, force_matrix, moment_matrix
+from runner.calibration.procedures.gravity import even_postures
+from runner.report.document import FloatArray, Panel, Series, Table
+from runner.report.figures import joint_columns, origin
+from runner.reporting.measured import ROUNDING
+from runner.reporting.prose.patterns import Found, found
+from runner.reporting.prose.tables import Column
+from runner.robots import RobotModel
+from runner.store import Calibration
+from runner.studies.meca500.figures import Calibrations, Runs, degrees, error, flange_of, predicted, refusal, wrenches
+
+_EXACT = "gravity/noise/0"
+_ORIENTATIONS = 300
+_INTERVAL, _HALF = 95.0, 1.959964  # per cent that an interval holds, and its half width in standard deviations
+_SCALED = {"kg": ("g", 1e3), "rad": ("mrad", 1e3), "m": ("mm", 1e3), "N": ("mN", 1e3), "N m": ("mN m", 1e3)}
+_CASES = ("nothing taken off", "biases alone", "identified tool and biases")
+
+
+def identified(done: Calibration) -> dict[str, float]:
+    """Return the largest relative error in the first repetition, and in how many cases an interval holds the truth.
+
+    The latter in per cent, as is what an interval is to hold.
+    """
+    relative = np.abs(done.values("errors")[0]) / np.abs(_truth(done))
+    return {"relative": float(relative.max()), "held": 100.0 * float(np.mean(_held(done))), "interval": _INTERVAL}
+
+
+def parameters(calibrations: Calibrations, name: str, caption: str) -> Table:
+    """Return the identified tool and sensor beside the truth."""
+    done, exact = calibrations[name], calibrations[_EXACT]
+    rows = []
+    for column, value in enumerate(done.truth):
+        unit, factor = _SCALED[done.summary("errors", value)["unit"]]
+        deviation = done.summary("deviations", value)["median"]
+        rows.append(
+            [
+                value.replace("_", " "),
+                unit,
+                number(factor * done.truth[value], 4),
+                *with_interval(factor * done.values("estimates", value)[0, 0], _HALF * factor * deviation),
+                *(number(factor * what(value)(done)) for what in (error, predicted)),
+                f"{100 * float(np.mean(_held(done)[:, column])):.0f} %",
+                number(abs(factor * exact.values("errors", value)[0, 0]), 2, rounding=ROUNDING),
+            ]
+        )
+    header = ["value", "unit", "true", "found", "interval", "error", "predicted", "held", "without noise"]
+    return Table(caption, header, rows, (2, 3, 4, 5, 6, 7, 8), origin(done))
+
+
+def choice() -> Column:
+    """Return a column with how the orientations of gravity/CHOICE/LEVEL are chosen."""
+    words = {"best": "by conditioning", "first": "evenly over the joints"}
+
+    def text(_: Runs, row: Found) -> str:
+        kind, level = row.name.split("/")[1:]
+        return words.get(kind, f"within {degrees(float(level)):.0f}° of home" if kind == "spread" else "")
+
+    return Column("orientations", text)
+
+
+def refused(caption: str) -> Table:
+    """Return which sets of orientations are refused, and why."""
+    quarters = np.arange(4) * np.pi / 2
+    sets = {
+        "2 orientations": [np.zeros(3), np.array([1.0, 0.0, 0.0])],
+        "4 orientations turned about the vertical": [np.array([0.0, 0.0, turn]) for turn in quarters],
+        "4 orientations tilted by 10 deg all around": [
+            np.radians(10.0) * np.array([np.cos(turn), np.sin(turn), 0.0]) for turn in quarters
+        ],
+    }
+
+    def attempt(vectors: list[FloatArray]) -> str:
+        return refusal(lambda: check_orientations(np.array([pin.exp3(vector) for vector in vectors])))
+
+    return Table(caption, ["set", "reason given"], [[name, attempt(vectors)] for name, vectors in sets.items()])
+
+
+def residual(done: Calibration) -> dict[str, float]:
+    """Return the root mean square of what compensation leaves, and the noise of a reading, in mN and mN m."""
+    left = _left_over(done)[1][_CASES[2]]
+    noise = np.array(done.config["wrist_sensor"]["noise"])
+    return {
+        "orientations": _ORIENTATIONS,
+        "force": 1e3 * _rms(left[..., 0]),
+        "moment": 1e3 * _rms(left[..., 1]),
+        "force_noise": 1e3 * float(np.linalg.norm(noise[:3])),
+        "moment_noise": 1e3 * float(np.linalg.norm(noise[3:])),
+    }
+
+
+def left_over(calibrations: Calibrations, name: str) -> list[list[str]]:
+    """Return force in N and moment in N m felt though nothing touches the tool, rms and largest, for each case."""
+    return [
+        [case, *(number(value) for part in (0, 1) for value in (_rms(left[..., part]), float(left[..., part].max())))]
+        for case, left in _left_over(calibrations[name])[1].items()
+    ]
+
+
+def left_over_panels(calibrations: Calibrations, name: str) -> list[Panel]:
+    """Return what compensation leaves over how far the flange's z axis is from straight down."""
+    orientations, left = _left_over(calibrations[name])
+    tilt = np.degrees(np.arccos(np.clip(-orientations[:, 2, 2], -1.0, 1.0)))
+    order = np.argsort(tilt)
+    panels = []
+    for part, (title, unit) in enumerate((("Force", "N"), ("Moment", "N m"))):
+        middle, high = np.percentile(left[_CASES[2]][:, order, part], [50, 95], axis=0)
+        series = [
+            Series("median of the repetitions", tilt[order], middle, "points"),
+            Series("95th percentile", tilt[order], high, "points"),
+        ]
+        panels.append(Panel(title, "flange's z axis from straight down (deg)", f"left over ({unit})", series))
+    return panels
+
+
+def weighed(runs: Runs, pattern: str, caption: str) -> Table:
+    """Return the identification from the plant's own reaction at the tool's joint, in place of the sensor's model."""
+    at_rest = [each.run for each in found(runs, pattern)]
+    first = at_rest[0]
+    flange = RobotModel(first.urdf, first.config["robot"]["tip"], first.config["gravity"])
+    orientations = np.array([flange.tip_pose(joint_columns(run.trace, "q")[-1])[:3, :3] for run in at_rest])
+    reactions = np.array([wrenches(run, "reaction")[-1] for run in at_rest])
+    no_errors = np.zeros((len(at_rest), 3, 3))
+    done = identify_gravity(reactions, orientations, float(first.config["gravity"]), np.zeros(6), no_errors)
+    tool = first.config["robot"]["tool"]
+    off = np.abs(done.values - np.array([tool["mass"], 0.0, *tool["centre_of_mass"], *np.zeros(6)]))
+    header = ["mass (kg)", "$theta$ (rad)", "centre of mass (m)", "force biases (N)", "moment biases (N m)"]
+    cells = [number(float(part.max()), 2, rounding=ROUNDING) for part in np.split(off, [1, 2, 5, 8])]
+    return Table(caption, header, [cells], tuple(range(5)), origin(first))
+
+
+def misprints(calibrations: Calibrations) -> dict[str, str]:
+    """Return what the equations as printed and right give of exact readings, as texts."""
+    exact = calibrations[_EXACT]
+    truth, R, gravity = _truth(exact), _orientations(exact), float(exact.config["gravity"])
+    readings = exact_readings(truth, R, gravity)
+    given = {
+        "mass": quantity(float(truth[0]), "kg"),
+        "theta": f"{truth[1]:g}",
+        "swapped": _in_mm(swapped_moment_step(readings[:, :3], readings[:, 3:])),
+        "centre": _in_mm(truth[2:5]),
+        "moment": quantity(float(np.abs(truth[8:] - truth[5:8]).max()), "N m"),
+        "counted": number(1.0 / abs(float(np.sin(truth[1]))), 2),
+    }
+    for key, orientations in (("columns", R.transpose(0, 2, 1)), ("rows", R)):
+        G_c, G_s, G, left = force_step(readings[:, :3], orientations)
+        of_forces = "0 N" if left < 1e-9 else quantity(left, "N")
+        theta = float(np.arctan2(G_s, G_c))
+        given[key] = f"{quantity(G / gravity, 'kg')}, $theta = {theta:.3g}$ rad, {of_forces} of the forces left over"
+    return given
+
+
+def angles(calibrations: Calibrations, angle: float) -> list[str]:
+    """Return a mounting angle, in rad, and what arc cosine, arc sine and the right formula make of it."""
+    exact = calibrations[_EXACT]
+    turned, R = _truth(exact), _orientations(exact)
+    turned[1] = angle
+    G_c, G_s, G, _ = force_step(exact_readings(turned, R, float(exact.config["gravity"]))[:, :3], R)
+    cosine, sine = np.clip([G_c / G, G_s / G], -1.0, 1.0)
+    found = (np.arccos(cosine), np.arcsin(sine), np.arctan2(G_s, G_c))
+    return [f"{angle:g}", *(f"{value:.3f}" for value in found)]
+
+
+def exact_readings(parameters: FloatArray, orientations: FloatArray, gravity: float) -> FloatArray:
+    """Return what a sensor without noise reads of a tool at rest, by what a calibration estimates, shape (N, 6)."""
+    mass, theta, (r, F_0, M_0) = parameters[0], parameters[1], np.split(parameters[2:], 3)
+    weight = mass * gravity * np.array([np.cos(theta), np.sin(theta), 1.0])
+    forces = (force_matrix(orientations) @ np.concatenate([weight, F_0])).reshape(-1, 3)
+    moments = moment_matrix(forces) @ np.concatenate([r, M_0 - np.cross(r, F_0)])
+    return np.hstack([forces, moments.reshape(-1, 3)])
+
+
+def force_step(forces: FloatArray, orientations: FloatArray) -> tuple[float, float, float, float]:
+    """Solve the force step with the third rows of the orientations; return G_c, G_s, G and the rms of what is left.
+
+    All in N. The report does not define r. With r the inverse rotation its r_02, r_12, r_22 are these rows; with
+    r = 0R6 they are the third columns: that is this function with each orientation, 0R6, transposed.
+    """
+    B = force_matrix(orientations)
+    solution = np.linalg.lstsq(B, forces.reshape(-1), rcond=None)[0]
+    G_c, G_s, G = solution[:3].tolist()
+    return G_c, G_s, G, _rms(forces.reshape(-1) - B @ solution)
+
+
+def swapped_moment_step(forces: FloatArray, moments: FloatArray) -> FloatArray:
+    """Return the centre of mass with G_y and G_z swapped, as in the section's first equations, shape (3,), in m."""
+    A = moment_matrix(forces[:, [0, 2, 1]])
+    return np.array(np.linalg.lstsq(A, moments.reshape(-1), rcond=None)[0][:3], dtype=float)
+
+
+def _truth(done: Calibration) -> FloatArray:
+    return np.array(list(done.truth.values()))
+
+
+def _orientations(done: Calibration) -> FloatArray:
+    """Return 0R6 of each posture, shape (N, 3, 3)."""
+    model = flange_of(done)
+    return np.array([model.tip_pose(q)[:3, :3] for q in done.postures])
+
+
+def _held(done: Calibration) -> np.ndarray:
+    """Return whether each interval of each repetition holds the truth, shape (repetitions, 11)."""
+    return np.abs(done.values("errors")) < _HALF * done.values("deviations")
+
+
+def _left_over(done: Calibration) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Return orientations, shape (N, 3, 3), and by what is taken off the force and moment left, shape (..., N, 2)."""
+    model = flange_of(done)
+    orientations = np.array([model.tip_pose(q)[:3, :3] for q in even_postures(model, _ORIENTATIONS)])
+    truth, gravity = _truth(done), float(done.config["gravity"])
+    true = exact_readings(truth, orientations, gravity)
+    estimated = [exact_readings(own, orientations, gravity) for own in done.values("estimates")]
+    left: list[FloatArray] = [true[None], (true - truth[5:])[None], true - np.array(estimated)]
+    parts = (np.linalg.norm(values.reshape(*values.shape[:-1], 2, 3), axis=-1) for values in left)
+    return orientations, dict(zip(_CASES, parts, strict=True))
+
+
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _in_mm(centre: FloatArray) -> str:
+    return f"centre of mass ({', '.join(f'{1e3 * value:.1f}' for value in centre)}) mm"

@@ -1,0 +1,138 @@
+"""The report's kinematics against our own: table, transform and Jacobians, element by element."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from runner.audit.audit import audit, counts
+from runner.audit.entry import parts
+from runner.audit.evaluation import evaluate
+from runner.audit.verdict import Judge, Judged
+from runner.base.expressions.parser import parse
+from runner.base.quantities import number
+from runner.report.document import Table
+from runner.report.figures import model_of
+from runner.reporting.measured import Measured
+from runner.robots.denavit_hartenberg import modified_frames
+from runner.robots.model import RobotModel
+from runner.studies.meca500.equations.truths.meca500 import TABLE
+from runner.studies.meca500.figures import Runs
+
+_COUNT, _SAMPLES = 1000, 200
+_MILLIMETRES = 1000.0
+_NOTHING = 1e-4  # mm or degrees: the chord of two equal rotations is known to the root of rounding
+_SIZES = {"T": (3, 4), "J_g0": (6, 6), "J_g6": (6, 6)}
+_WORDS = {"correct": "right", "correct after repair": "right, mended", "unreadable": "text lost"}
+_RUN = "plants/kinematic"
+_TURNED = {
+    "with both turns": (),
+    "without -90° of joint 2": (1,),
+    "without 180° of joint 6": (5,),
+    "as printed, without both": (1, 5),
+}
+
+
+def equations() -> dict[str, Measured]:
+    """Return how many equations are right, wrong and lost, and in how many postures that is judged."""
+    judged = _judged()
+    total = counts(judged)
+    cells = [cell for name in _SIZES for row in elements(name, "").rows for cell in row[1:]]
+    (_, transform), (linear, of_linear), (angular, of_angular) = (
+        _readable(judged, rows) for rows in (r"T_\d\d", "J_g._[012]", "J_g._[345]")
+    )
+    found = {
+        "postures": ("postures in which the table of the arm is judged", _COUNT),
+        "samples": ("postures in which the printed elements are judged", _SAMPLES),
+        "all": ("equations", len(judged)),
+        "right": ("equations right as printed", total["correct"]),
+        "mended": ("equations right after repair", total["correct after repair"]),
+        "wrong": ("equations wrong as printed", total["wrong as printed"]),
+        "lost": ("equations that cannot be read", total["unreadable"]),
+        "names": ("equations that only name things", total["definition"]),
+        "cells": ("elements without a readable equation", cells.count(_WORDS["unreadable"])),
+        "transform_wrong": ("wrong elements of the transform", transform),
+        "linear": ("readable equations of the linear rows", linear),
+        "linear_wrong": ("wrong ones of the linear rows", of_linear),
+        "angular": ("readable equations of the angular rows", angular),
+        "angular_wrong": ("wrong ones of the angular rows", of_angular),
+        "axes": ("those that are the joint's axis without terms that bear an angle", _axes(judged)),
+    }
+    return {key: Measured(words, count) for key, (words, count) in found.items()}
+
+
+def frame_off(runs: Runs, case: str) -> list[Measured]:
+    """Return mean and largest distance and mean turn of frame 6 by Table 1 with or without its lost turns."""
+    run = runs[_RUN]
+    flange = RobotModel(run.urdf, run.config["robot"]["tip"], run.config["gravity"])
+    low, high = np.clip(model_of(run).position_limits, -np.pi, np.pi)
+    drawn = np.random.default_rng(0).uniform(low, high, (_COUNT, len(TABLE)))
+    true = np.array([flange.tip_pose(q) for q in drawn])
+    table = [replace(row, theta=0.0) if index in _TURNED[case] else row for index, row in enumerate(TABLE)]
+    poses = np.array([modified_frames(table, q)[-1] for q in drawn])
+    distance = np.linalg.norm(poses[:, :3, 3] - _MILLIMETRES * true[:, :3, 3], axis=1)
+    chord = np.linalg.norm(poses[:, :3, :3] - true[:, :3, :3], axis=(1, 2))  # 2 sqrt(2) sin(angle / 2)
+    angle = np.degrees(2.0 * np.arcsin(np.minimum(chord / np.sqrt(8.0), 1.0)))
+    return [
+        Measured(f"mean distance of frame 6 {case}", float(distance.mean()), "mm"),
+        Measured(f"largest distance of frame 6 {case}", float(distance.max()), "mm"),
+        Measured(f"mean turn of frame 6 {case}", float(angle.mean()), "°"),
+    ]
+
+
+def table_one(runs: Runs) -> list[list[str]]:
+    """Return how far frame 6 is off by Table 1 with and without its lost turns: a row for each case."""
+    return [[case, *(number(off.value, rounding=_NOTHING) for off in frame_off(runs, case))] for case in _TURNED]
+
+
+def elements(name: str, caption: str) -> Table:
+    """Return the verdict on each element of a printed matrix, T, J_g0 or J_g6, in its place."""
+    rows, columns = _SIZES[name]
+    found: dict[tuple[int, int], str] = {}
+    for each in _judged():
+        for element in (each.entry.repair or each.entry.printed).elements:
+            place = re.fullmatch(rf"{name}_(\d)(\d)", element)
+            if place is not None:
+                found.setdefault((int(place[1]), int(place[2])), _cell(each, element))
+    cells = [[str(row), *(found.get((row, column), "text lost") for column in range(columns))] for row in range(rows)]
+    return Table(caption, ["row", *(f"column {column}" for column in range(columns))], cells)
+
+
+def _judged() -> list[Judged]:
+    return [each for each in audit("meca500", _SAMPLES) if each.entry.place[0] in "17"]
+
+
+def _readable(judged: Sequence[Judged], names: str) -> tuple[int, int]:
+    """Return how many equations for elements of such names can be read, and how many of these are wrong."""
+    found = [
+        each.verdict
+        for each in judged
+        if each.measured is not None and any(re.match(names, name) for name in each.measured.elements)
+    ]
+    return len(found), found.count("wrong as printed")
+
+
+def _axes(judged: Sequence[Judged]) -> int:
+    """Return how many wrong equations of the angular rows are right where every bare angle is zero."""
+    wrong = {each.entry.id for each in judged if each.verdict == "wrong as printed"}
+    found = 0
+    for part in parts("meca500"):
+        symbols = Judge(part, _SAMPLES).symbols
+        zeros = {name: 0.0 * values if re.fullmatch(r"theta\d", name) else values for name, values in symbols.items()}
+        for entry in part.entries:
+            form, right = entry.repair or entry.printed, entry.corrected
+            names = [name for name in form.elements if re.match("J_g._[345]", name)]
+            if entry.id in wrong and right is not None and names:
+                off = [
+                    evaluate(parse(form.elements[name]), zeros) - evaluate(parse(right.elements[name]), symbols)
+                    for name in names
+                ]
+                found += bool(np.abs(off).max() <= entry.tolerance)
+    return found
+
+
+def _cell(judged: Judged, element: str) -> str:
+    if judged.verdict in _WORDS or judged.measured is None:
+        return _WORDS.get(judged.verdict, "text lost")
+    return f"wrong by up to {number(judged.measured.elements[element], 2)}"

@@ -1,0 +1,97 @@
+"""The tool centre point by touching one point (section 2 of the report), judged by the true one."""
+
+import numpy as np
+import pinocchio as pin
+
+from runner.calibration import consistency, identify_tool_centre_point, joint_deviation, pose_covariances
+from runner.report.document import FloatArray, Table
+from runner.reporting.measured import Measured
+from runner.reporting.prose.patterns import found
+from runner.sensing.wrench import cross_matrix
+from runner.store import Calibration
+from runner.studies.meca500.figures import Calibrations, fit, flange_of, predicted, refusal
+
+_KIND = "tool_centre_point"
+
+
+def deviation(done: Calibration) -> float:
+    """Return the standard deviation of each joint, in rad."""
+    home = np.array(done.config["robot"]["home"])[None]
+    return joint_deviation(flange_of(done), home, done.config["calibration"]["repeatability"])
+
+
+def power_of_spread(calibrations: Calibrations) -> Measured:
+    """Return the power of the spread with which the predicted error goes."""
+    done = found(calibrations, f"{_KIND}/spread/{{level}}")
+    spreads = np.array([float(each.levels["level"]) for each in done])
+    errors = np.array([predicted()(calibrations[each.name]) for each in done])
+    return Measured("power of the spread in the predicted error", fit(spreads, errors))
+
+
+def shared_pose(calibrations: Calibrations, name: str) -> dict[str, Measured]:
+    """Return what becomes of errors where pose 1 is taken as new in each row, which all hold it, or as no other."""
+    done = calibrations[name]
+    model = flange_of(done)
+    poses = np.array([model.tip_pose(q) for q in done.postures])
+    covariances = pose_covariances(model, done.postures, deviation(done))
+    tips = tip_covariances(poses, covariances, np.array(done.config["robot"]["tool"]["tip"]))
+    wrong, errors = independent_rows_covariance(poses, tips), done.values("errors")
+    judged = consistency(errors, np.repeat(wrong[None], len(errors), axis=0), 0.99)
+    covariance_of = {
+        "wrong": ("with rows taken as independent", wrong),
+        "right": ("with pose 1 shared", identify_tool_centre_point(poses, covariances).covariance),
+        "together": ("with no pose singled out", common_point_covariance(poses, tips)),
+    }
+    return {
+        key: Measured(f"predicted error {title}", 1e6 * float(np.sqrt(np.trace(covariance))), "µm")
+        for key, (title, covariance) in covariance_of.items()
+    } | {
+        "errors": Measured("errors", len(errors)),
+        "nees": Measured("NEES with rows taken as independent", float(judged.mean)),
+        "lower": Measured("lower end of its band", float(judged.lower)),
+        "upper": Measured("upper end of its band", float(judged.upper)),
+    }
+
+
+def tip_covariances(poses: FloatArray, covariances: FloatArray, tip: FloatArray) -> FloatArray:
+    """Return the covariance of the tip's position, from that of each pose of the flange, shape (N, 3, 3), in m^2."""
+    levers = np.array([np.hstack([np.eye(3), -cross_matrix(pose[:3, :3] @ tip)]) for pose in poses])
+    return np.asarray(levers @ covariances @ levers.transpose(0, 2, 1))
+
+
+def independent_rows_covariance(poses: FloatArray, tips: FloatArray) -> FloatArray:
+    """Return sigma^2 (A'A)^-1, shape (3, 3), in m^2, with sigma^2 twice the mean variance of a tip's coordinate.
+
+    `poses` and `tips` are what tip_covariances takes and gives.
+    """
+    A = (poses[0, :3, :3] - poses[1:, :3, :3]).reshape(-1, 3)
+    return np.asarray(2.0 * np.einsum("kii->", tips) / (3.0 * len(tips)) * np.linalg.inv(A.T @ A))
+
+
+def common_point_covariance(poses: FloatArray, tips: FloatArray) -> FloatArray:
+    """Return the covariance of p where R_k p - c = -P_k is solved for p and c, shape (3, 3), in m^2, likewise."""
+    A = np.vstack([np.hstack([pose[:3, :3], -np.eye(3)]) for pose in poses])
+    blocks = np.linalg.pinv(A)[:3].reshape(3, len(poses), 3).transpose(1, 0, 2)
+    return np.asarray(np.sum(blocks @ tips @ blocks.transpose(0, 2, 1), axis=0))
+
+
+def refused(calibrations: Calibrations, caption: str) -> Table:
+    """Return which sets of poses are refused, and why."""
+    tip = np.array(calibrations[f"{_KIND}/base"].config["robot"]["tool"]["tip"])
+    axis = np.array([0.0, 0.6, 0.8])
+    attempts = {
+        "2 poses": [np.zeros(3), 0.5 * axis],
+        "4 poses turned about one axis by 0, 20, 40 and 60 deg": [np.radians(20.0 * k) * axis for k in range(4)],
+        "4 poses turned about one axis but for 0.2 deg": [
+            np.radians(20.0 * k) * axis + np.radians(0.2) * np.eye(3)[k % 3] for k in range(4)
+        ],
+        "4 poses tilted by 0.1 deg": [np.radians(0.1) * v for v in (*np.eye(3), -np.ones(3) / np.sqrt(3.0))],
+    }
+
+    def attempt(turns: list[FloatArray]) -> str:
+        poses = np.tile(np.eye(4), (len(turns), 1, 1))
+        poses[:, :3, :3] = [pin.exp3(turn) for turn in turns]
+        poses[:, :3, 3] = -poses[:, :3, :3] @ tip
+        return refusal(lambda: identify_tool_centre_point(poses, np.zeros((len(turns), 6, 6))))
+
+    return Table(caption, ["set", "reason given"], [[name, attempt(turns)] for name, turns in attempts.items()])

@@ -1,0 +1,91 @@
+"""The combined arm's laws as they ran, and its numbers beside those of the Macro alone."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from runner.base.quantities import spread
+from runner.controllers.macro_mini.macro_mini_graph import macro_mini_graph
+from runner.controllers.operational_space.whole_body_graph import whole_body_graph
+from runner.report.charts import block_diagram, control_steps
+from runner.report.document import Curves, Picture
+from runner.report.figures import origin
+from runner.report.figures_staged import macro_mini_targets
+from runner.reporting.job import PRESETS
+from runner.reporting.run_values import clock
+from runner.store import Run
+from runner.studies.thesis.folding import singular_value
+
+_OF_COUPLED_LAWS = (
+    *("coupling", "macro_target", "mini_reference_velocity", "wrist_rotation", "gravity_compensation", "feedforward"),
+    *("schedule", "beyond_reach"),
+)
+
+_WHOLE_BODY = (
+    "Block diagram of one controller for the whole arm: the tip's target and all measured joints go in, the torques of "
+    "Macro and Mini come out"
+)
+_DOES = {
+    "independent": "each follows a target of its own; the Mini keeps its offset at home, which turns with the wrist",
+    "independent_base": "each follows a target of its own; the Mini keeps its offset at home in the base frame, for "
+    "which it reads the Macro's wrist",
+    "one_way": "the Mini's target is what is left of the way from the Macro's measured end point to the desired tip",
+    "two_way": "the Mini's target is what is left of the way from the Macro's measured end point to the desired tip, "
+    "and the Macro's target moves with the Mini's measured posture",
+    "mini_held": "the Macro follows the tip's target, the Mini's joints are held at home",
+}
+
+
+def whole_body_law(runs: Mapping[str, Run], run: str, caption: str, number: str) -> Picture:
+    """Return the block diagram of the law for the whole arm that a run executed."""
+    controller = runs[run].config["controller"]
+    graph = whole_body_graph(
+        controller["gravity_compensation"],
+        controller["feedforward"],
+        torque_limited=True,
+        goal=False,
+        speed_limited=controller["max_tip_speed"] is not None,
+        posture_task=controller["null_space_frequency"] > 0.0,
+    )
+    return Picture(caption, block_diagram(graph), _WHOLE_BODY, 0.68, origin(runs[run], number))
+
+
+def coupled_laws(runs: Mapping[str, Run], run: str, caption: str, number: str = "") -> Picture:
+    """Return the block diagram of the two laws that a run executed."""
+    config = runs[run].config
+    controller = config["controller"]
+    graph = macro_mini_graph(
+        **{key: controller[key] for key in _OF_COUPLED_LAWS},
+        torque_limited=config["torque_limits"]["max"] is not None,
+        goal=config["trajectory"]["kind"] == "goal",
+    )
+    does = _DOES[controller["coupling"]]
+    limited = "with" if config["torque_limits"]["max"] is not None else "without"
+    words = f"Block diagram of two control loops, Macro and Mini, {limited} torque limits: {does}"
+    return Picture(caption, block_diagram(graph), words, 0.68, origin(runs[run], number))
+
+
+def steps(runs: Mapping[str, Run], run: str, caption: str, number: str) -> Picture:
+    """Return the flow chart of the control steps of method 3."""
+    drawing = control_steps("both", "hold")
+    return Picture(caption, drawing, "Flow chart of the control steps", 0.45, origin(runs[run], number))
+
+
+def shares(runs: Mapping[str, Run], caption: str, number: str, *names: str) -> Curves:
+    """Return how Macro and Mini share the way to the desired tip in some runs, in x direction, a row for each."""
+    figures = [macro_mini_targets(runs[name], number, caption) for name in names]
+    return replace(figures[0], panels=[panel for figure in figures for panel in figure.panels])
+
+
+def unfolded(run: Run) -> float:
+    """Return the smallest singular value of the Mini's Jacobian at the start of a run, at home, in m."""
+    return float(singular_value(run)[0])
+
+
+def folded(run: Run) -> float:
+    """Return the largest such value over the last half second, in m."""
+    return float(singular_value(run)[clock(run) >= clock(run)[-1] - 0.5].max())
+
+
+def spreads(runs: Mapping[str, Run], title: str, name: str, *metrics: str) -> list[str]:
+    """Return the metrics of an experiment under each preset behind its title, as a row of a table."""
+    return [title, *(spread(runs[f"{name}/{preset}"].metrics[metric]) for preset in PRESETS for metric in metrics)]

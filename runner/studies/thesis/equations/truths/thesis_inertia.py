@@ -1,0 +1,110 @@
+"""What (3.11), (3.16) and (4.5) of the thesis say of links that resist turning; its point masses cannot tell."""
+
+import xml.etree.ElementTree as ET
+from functools import lru_cache
+
+import numpy as np
+
+from runner.audit.model_truths import AuditedArm, Dynamics, by_model
+from runner.audit.truth import Elements, FloatArray, Symbols, Truth, Way
+from runner.robots.model import RobotModel
+from runner.studies.thesis.equations.truths.thesis_arms import MACRO, MINI, Arm
+
+_SHAPE = np.diag([0.02, 0.05, 0.09])  # of m L^2, about the masses of links 2 and 3, along the axes of the link
+_LINKS = (("q3", "link2"), ("tip", "link3"))  # where each one's mass is, and its frame
+
+
+def _tensor(arm: Arm) -> FloatArray:
+    return _SHAPE * arm.masses[2] * arm.a[2] ** 2
+
+
+@lru_cache(maxsize=2)
+def _turning(arm: Arm) -> AuditedArm:
+    """Return an arm with links 2 and 3 that resist turning."""
+    tree = ET.fromstring(arm.audited.urdf)  # noqa: S314 - a text of ours
+    for link in tree.iter("link"):
+        inertia = link.find("inertial/inertia")
+        if inertia is not None and link.get("name") in ("link2", "link3"):
+            inertia.attrib.update({f"i{axis}{axis}": repr(float(_tensor(arm)[i, i])) for i, axis in enumerate("xyz")})
+    urdf = ET.tostring(tree, encoding="unicode")
+    return AuditedArm(RobotModel(urdf, "tip"), urdf, arm.audited.joints)
+
+
+def _at(arm: Arm, frame: str) -> Dynamics:
+    return by_model(arm.audited.at(frame).model)
+
+
+def _mass_matrix(arm: Arm, turned: int) -> Way:
+    """Return M by (3.11) with the inertia turned into the base frame so many times."""
+
+    def matrix(s: Symbols) -> Elements:
+        q = arm.q(s)
+        total = np.zeros((len(q), 3, 3))
+        for (end, link), mass in zip(_LINKS, arm.masses[1:], strict=True):
+            J_v, J_w = _at(arm, end).jacobian(q)[:, :3], _at(arm, link).jacobian(q)[:, 3:]
+            R = _at(arm, link).pose(q)[:, :3, :3]
+            inertia = np.tile(_tensor(arm), (len(q), 1, 1))
+            for _ in range(turned):
+                inertia = R @ inertia @ R.transpose(0, 2, 1)
+            total += mass * J_v.transpose(0, 2, 1) @ J_v + J_w.transpose(0, 2, 1) @ inertia @ J_w
+        return {"M": total}
+
+    return matrix
+
+
+turned_once, turned_twice = _mass_matrix(MACRO, 1), _mass_matrix(MACRO, 2)
+mini_turned_once, mini_turned_twice = _mass_matrix(MINI, 1), _mass_matrix(MINI, 2)
+"""(3.11) with I_C in the link's own frame, and with the I_C that (3.16) or (4.5) gives, turned already."""
+
+
+mass_matrix, mini_mass_matrix = (_turning(arm).truth("model.mass_matrix") for arm in (MACRO, MINI))
+
+
+# The tensors of the thesis' own links: zero.
+
+
+def no_tensor(s: Symbols) -> Elements:
+    """Return three tensors of zeros."""
+    return {"I": np.zeros((len(s["q1"]), 3, 3, 3))}
+
+
+def no_turning(s: Symbols) -> Elements:
+    """Return a matrix of zeros."""
+    return {"M": np.zeros((len(s["q1"]), 3, 3))}
+
+
+def _tensors(arm: Arm) -> Truth:
+    def by_model(s: Symbols) -> Elements:
+        tensors = np.array([inertia.inertia for inertia in list(arm.model.pin_model.inertias)[1:]])
+        return {"I": np.tile(tensors, (len(s["q1"]), 1, 1, 1))}
+
+    def by_urdf(s: Symbols) -> Elements:
+        links = [link.find("inertial/inertia") for link in ET.fromstring(arm.audited.urdf).iter("link")]  # noqa: S314
+        written = [[float(tag.attrib[f"i{key}"]) for key in _KEYS] for tag in links[1:4] if tag is not None]
+        return {"I": np.tile(np.array(written).reshape(3, 3, 3), (len(s["q1"]), 1, 1, 1))}
+
+    return Truth(by_model, by_urdf, ("Pinocchio", "the URDF as written"))
+
+
+_KEYS = ("xx", "xy", "xz", "xy", "yy", "yz", "xz", "yz", "zz")
+macro_tensors, mini_tensors = _tensors(MACRO), _tensors(MINI)
+
+
+def _of_link(link: int) -> Truth:
+    """Return what turning adds to the Mini's M by one of its links."""
+
+    def by_link(s: Symbols) -> Elements:
+        q, at = MINI.q(s), _at(MINI, f"link{link}")
+        tensor, R = list(MINI.model.pin_model.inertias)[link].inertia, at.pose(q)[:, :3, :3]
+        J_w = at.jacobian(q)[:, 3:]
+        return {"M": J_w.transpose(0, 2, 1) @ (R @ tensor @ R.transpose(0, 2, 1)) @ J_w}
+
+    def by_rest(s: Symbols) -> Elements:
+        Js = [np.sqrt(MINI.masses[i - 1]) * MINI.end_jacobian(i, MINI.q(s))[:, :3] for i in (2, 3)]
+        points = np.sum([J.transpose(0, 2, 1) @ J for J in Js], axis=0)
+        return {"M": by_model(MINI.model).mass_matrix(MINI.q(s)) - points}
+
+    return Truth(by_link, by_rest, ("Pinocchio's inertias", "what the point masses leave of Pinocchio's M"))
+
+
+mini_turning_5, mini_turning_6 = _of_link(2), _of_link(3)

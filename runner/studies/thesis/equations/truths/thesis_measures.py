@@ -1,0 +1,212 @@
+"""Truths of what the thesis says of its arms in numbers and words: measures, homes, workspaces, frames, names."""
+
+from itertools import combinations
+
+import numpy as np
+
+from runner.audit.chains import product, rotation
+from runner.audit.truth import Elements, FloatArray, Symbols, Truth, along, coordinates
+from runner.studies.thesis.equations.truths.thesis_arms import COMBINED, GRAVITY, MACRO, MINI, Arm
+from runner.studies.thesis.equations.truths.thesis_kinematics import tip_pose
+
+_BASE_OF_MINI = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # 3_R_3', from the Mini's base
+
+
+def _still(values: dict[str, float], s: Symbols) -> Elements:
+    return {name: np.full(len(s["q1"]), value) for name, value in values.items()}
+
+
+def _home(arm: Arm) -> FloatArray:
+    return np.zeros((1, arm.joints.stop - arm.joints.start))
+
+
+# Table 2.1.
+
+
+def _lengths(arm: Arm) -> Truth:
+    def by_origins(s: Symbols) -> Elements:
+        model = arm.model
+        origins = model.frame_poses(_home(arm)[0], (*model.joint_names, model.tip_name))[:, :3, 3]
+        lengths = np.linalg.norm(np.diff(origins, axis=0), axis=1)
+        return _still({f"L_{arm.joints.start + i + 1}": length for i, length in enumerate(lengths)}, s)
+
+    def by_tip(s: Symbols) -> Elements:
+        model = arm.model
+        stretched = [model.tip_position(np.array([0.0, 0.0, angle])) for angle in (-np.pi / 2, np.pi / 2)]
+        reach, fold = (float(np.linalg.norm(point)) for point in stretched)
+        last = float(np.linalg.norm(model.tip_jacobian(np.zeros(3))[:3, 2]))
+        first = arm.joints.start + 1
+        height = model.tip_position(np.array([0.0, 0.0, -np.pi / 2]))[2]  # links 2 and 3 lie level
+        return _still({f"L_{first}": height, f"L_{first + 1}": reach - last, f"L_{first + 2}": (reach - fold) / 2}, s)
+
+    return Truth(
+        by_origins, by_tip, ("distances of the model's joint origins", "postures and a column of the Jacobian")
+    )
+
+
+def _masses(arm: Arm) -> Truth:
+    numbers = [arm.joints.start + i for i in (1, 2, 3)]
+
+    def by_links(s: Symbols) -> Elements:
+        masses = [inertia.mass for inertia in list(arm.model.pin_model.inertias)[1:]]
+        return _still({f"m_{number}": mass for number, mass in zip(numbers, masses, strict=True)}, s)
+
+    def by_torques(s: Symbols) -> Elements:
+        model, home = arm.model, np.zeros(3)
+        L2, L3 = arm.a[1:]
+        m3 = model.mass_matrix(home)[2, 2] / L3**2
+        m2 = model.gravity_torque(home)[1] / (9.81 * L2) - m3
+        return _still(dict(zip((f"m_{number}" for number in numbers), (model.mass - m2 - m3, m2, m3), strict=True)), s)
+
+    return Truth(by_links, by_torques, ("the model's links", "what the joints feel at home: inertia and weight"))
+
+
+macro_links, mini_links = _lengths(MACRO), _lengths(MINI)
+macro_masses, mini_masses = _masses(MACRO), _masses(MINI)
+
+
+# Workspace and home.
+
+
+def _reach(arm: Arm) -> Truth:
+    def by_search(s: Symbols) -> Elements:
+        q3 = np.linspace(-np.pi, np.pi, 721)
+        tips = arm.frame(3, np.column_stack([0 * q3, 0 * q3, q3]))[:, :3, 3]
+        return _still({"R": float(np.linalg.norm(tips, axis=1).max())}, s)
+
+    return Truth(
+        lambda s: _still({"R": arm.model.reach}, s),
+        by_search,
+        ("sum of the model's link lengths", "largest distance over all positions of joint 3"),
+    )
+
+
+def _at_home(arm: Arm) -> Truth:
+    return arm.both(lambda d, s: coordinates("x", np.tile(d.pose(_home(arm))[0, :3, 3], (len(s["q1"]), 1))))
+
+
+macro_reach, mini_reach = _reach(MACRO), _reach(MINI)
+macro_home, mini_home, combined_home = _at_home(MACRO), _at_home(MINI), _at_home(COMBINED)
+
+
+# Joint axes, and the frame between the arms.
+
+
+def printed_axes(s: Symbols) -> Elements:
+    """Return z, x, x for either arm, section 2.1."""
+    z, x = [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]
+    return {"axes": np.tile([z, x, x, z, x, x], (len(s["q1"]), 1, 1))}
+
+
+def _axes_of_frames(s: Symbols) -> Elements:
+    axes = np.array([COMBINED.frame(joint, _home(COMBINED))[0, :3, 2] for joint in range(6)])
+    return {"axes": np.tile(axes, (len(s["q1"]), 1, 1))}
+
+
+axes_at_home = Truth(
+    lambda s: {"axes": np.tile(COMBINED.model.tip_jacobian(np.zeros(6))[3:].T, (len(s["q1"]), 1, 1))},
+    _axes_of_frames,
+    ("angular Jacobian by Pinocchio", "z axes of the Denavit-Hartenberg frames"),
+)
+
+combined_tip = Truth(
+    lambda s: {"T": tip_pose(COMBINED, COMBINED.q(s))},
+    lambda s: {"T": COMBINED.frame(6, COMBINED.q(s))},
+    ("Pinocchio", "product of elementary turns and shifts, joint 4 along link 3"),
+)
+
+
+def tables_chained(s: Symbols) -> Elements:
+    """Return Table 4.1 put right behind Table 3.1: 0T_E times 3T_6."""
+    return {"T": tip_pose(MACRO, MACRO.q(s)) @ tip_pose(MINI, MINI.q(s))}
+
+
+def tables_chained_with_turn(s: Symbols) -> Elements:
+    """Return the same with the turn between frame E of the Macro and the Mini's base."""
+    turn = np.eye(4)
+    turn[:3, :3] = _BASE_OF_MINI
+    return {"T": tip_pose(MACRO, MACRO.q(s)) @ turn @ tip_pose(MINI, MINI.q(s))}
+
+
+# The Mini's reference and its weight depend on how its base is turned.
+
+
+def base_of_mini(q: FloatArray) -> FloatArray:
+    """Return how the Mini's base, frame 3, is turned at the Macro's joint positions (T, 3), shape (T, 3, 3)."""
+    return np.asarray(tip_pose(MACRO, q)[:, :3, :3] @ _BASE_OF_MINI)
+
+
+def difference_in_base_frame(s: Symbols) -> Elements:
+    """Return tip minus Macro end point, both in frame 0, section 5.2."""
+    tip, wrist = tip_pose(COMBINED, COMBINED.q(s)), tip_pose(MACRO, MACRO.q(s))
+    return {"r": tip[:, :3, 3] - wrist[:, :3, 3]}
+
+
+def difference_in_frame_3(s: Symbols) -> Elements:
+    """Return the same turned into frame 3."""
+    return {"r": along(base_of_mini(MACRO.q(s)).transpose(0, 2, 1), difference_in_base_frame(s)["r"])}
+
+
+mini_offset = MINI.both(lambda d, s: {"r": d.pose(MINI.q(s))[:, :3, 3]})
+
+
+def path_of_macro(s: Symbols) -> Elements:
+    """Return tip minus Mini reference, expressed in the base frame, section 5.2."""
+    turned = along(base_of_mini(MACRO.q(s)), tip_pose(MINI, MINI.q(s))[:, :3, 3])
+    return {"x": tip_pose(COMBINED, COMBINED.q(s))[:, :3, 3] - turned}
+
+
+macro_end_point = MACRO.both(lambda d, s: {"x": d.pose(MACRO.q(s))[:, :3, 3]})
+
+
+def upright_weight(s: Symbols) -> Elements:
+    """Return G of section 4.2, which takes gravity as (0, 0, -9.81) in frame 3."""
+    c5, s56 = s["c5"], s["s56"]
+    return {"G": np.column_stack([0.0 * c5, 0.1962 * c5 - 0.0981 * s56, -0.0981 * s56])}
+
+
+def turned_weight(s: Symbols) -> Elements:
+    """Return G with gravity turned into frame 3."""
+    g = base_of_mini(MACRO.q(s)).transpose(0, 2, 1) @ GRAVITY
+    return {"G": MINI.weight(MINI.q(s), g)}
+
+
+riding_weight = COMBINED.both(lambda d, s: {"G": d.gravity(COMBINED.q(s))[:, 3:]})
+
+
+# Names.
+
+
+def _sums(*groups: str) -> Truth:
+    def angles(name: str, s: Symbols) -> list[FloatArray]:
+        first, *rest = list(name.replace("_", ""))
+        return [s[f"q{first}"], *((-1.0 if "_" in name else 1.0) * s[f"q{digit}"] for digit in rest)]
+
+    def by_turns(s: Symbols) -> Elements:
+        turns = {name: product([rotation("z", angle) for angle in angles(name, s)]) for name in groups}
+        return {f"{letter}{name}": T[:, row, 0] for row, letter in enumerate("cs") for name, T in turns.items()}
+
+    def by_phases(s: Symbols) -> Elements:
+        phases = {name: np.prod(np.exp(1j * np.array(angles(name, s))), axis=0) for name in groups}
+        return {f"c{n}": z.real for n, z in phases.items()} | {f"s{n}": z.imag for n, z in phases.items()}
+
+    return Truth(by_turns, by_phases, ("products of turns about one axis", "products of complex phases"))
+
+
+macro_names = _sums("1", "2", "3", "12", "1_2", "123", "1_2_3")
+mini_names = _sums("4", "5", "6", "45", "4_5", "456", "4_5_6")
+
+
+# Sizes of the symbolic columns (3.22) and (3.23).
+
+
+def _by_listing(s: Symbols) -> Elements:
+    pairs = {n: len(list(combinations(range(int(n)), 2))) for n in np.unique(s["n"])}
+    return {"squares": s["n"].copy(), "products": np.array([float(pairs[n]) for n in s["n"]])}
+
+
+column_sizes = Truth(
+    lambda s: {"squares": s["n"], "products": np.array([np.triu(np.ones((int(n), int(n))), 1).sum() for n in s["n"]])},
+    _by_listing,
+    ("entries above the diagonal of n by n", "pairs listed"),
+)

@@ -1,0 +1,191 @@
+"""Truths of operational-space dynamics and control, sections 3.2 and 3.3 of the thesis, on the Macro.
+
+With its three joints the linear Jacobian is square; the samples keep off its singular postures. The formulas are
+carried out with M, V, G and J as the thesis prints them; the truth is the motion of the model, and of the chain.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from runner.audit.chains import derivative
+from runner.audit.model_truths import Dynamics, by_model, by_urdf
+from runner.audit.truth import Elements, FloatArray, Symbols, Truth, along, columns
+from runner.studies.thesis.equations.truths import thesis_printed as printed
+from runner.studies.thesis.equations.truths.thesis_arms import MACRO
+
+_WAYS = ("Pinocchio", "energies of the URDF's bodies, rates by differences")
+_K_P, _K_V = 30.0**2, 2.0 * 30.0  # 1/s^2, 1/s: omega_n = 30 rad/s, xi = 1, section 3.3.1
+_GOAL = np.array([0.1679, -0.7571, 0.4255])  # m
+
+
+def _transposed(matrices: FloatArray) -> FloatArray:
+    return matrices.transpose(0, 2, 1)
+
+
+def _solve(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
+    return np.asarray(np.linalg.solve(matrices, vectors[..., None])[..., 0], dtype=float)
+
+
+# The formulas with the thesis' own M, V, G and J.
+
+
+def _inverse_jacobian(s: Symbols) -> FloatArray:
+    return np.asarray(np.linalg.inv(printed.linear_jacobian(MACRO.q(s))), dtype=float)
+
+
+def jacobian_rate(s: Symbols) -> Elements:
+    """Return h by (3.30) and (3.31): the rate of J by differences, times dq."""
+    q, dq = MACRO.q(s), MACRO.dq(s)
+
+    def jacobian(time: FloatArray) -> FloatArray:
+        return printed.linear_jacobian(q + time * dq)
+
+    return {"h": along(derivative(jacobian, np.zeros((len(q), 1)), 0), dq)}
+
+
+def kinetic_energy_matrix(s: Symbols) -> Elements:
+    """Return Lambda by (3.27)."""
+    inverse = _inverse_jacobian(s)
+    return {"Lambda": _transposed(inverse) @ printed.mass_matrix(MACRO.q(s)) @ inverse}
+
+
+def centrifugal_force(s: Symbols) -> Elements:
+    """Return mu by (3.28)."""
+    V = printed.coriolis_torque(MACRO.q(s), MACRO.dq(s))
+    at_tip = along(_transposed(_inverse_jacobian(s)), V)
+    return {"mu": at_tip - along(kinetic_energy_matrix(s)["Lambda"], jacobian_rate(s)["h"])}
+
+
+def gravity_force(s: Symbols) -> Elements:
+    """Return p by (3.29)."""
+    return {"p": along(_transposed(_inverse_jacobian(s)), printed.gravity_torque(MACRO.q(s)))}
+
+
+def _force(s: Symbols, acceleration: FloatArray) -> FloatArray:
+    inertia = along(kinetic_energy_matrix(s)["Lambda"], acceleration)
+    return np.asarray(inertia + centrifugal_force(s)["mu"] + gravity_force(s)["p"])
+
+
+def end_effector_force(s: Symbols) -> Elements:
+    """Return F by (3.26) for the motion of the sample."""
+    q, ddq = MACRO.q(s), MACRO.ddq(s)
+    return {"F": _force(s, along(printed.linear_jacobian(q), ddq) + jacobian_rate(s)["h"])}
+
+
+# The truth.
+
+
+def _model_bias(s: Symbols) -> FloatArray:
+    rows = zip(MACRO.q(s), MACRO.dq(s), strict=True)
+    return np.array([MACRO.model.tip_bias_acceleration(*row) for row in rows])
+
+
+def _chain_bias(s: Symbols) -> FloatArray:
+    return MACRO.bias_acceleration(3, MACRO.q(s), MACRO.dq(s))
+
+
+def _truth(d: Dynamics, bias: FloatArray, s: Symbols) -> Elements:
+    """Return what the tip's motion asks for, found in joint space: the joints that give it, then their torques."""
+    q, dq = MACRO.q(s), MACRO.dq(s)
+    M, V, G, J = d.mass_matrix(q), d.velocity_torque(q, dq[None])[0], d.gravity(q), d.jacobian(q)[:, :3]
+
+    def torque(acceleration: FloatArray) -> FloatArray:
+        return np.asarray(along(M, _solve(J, acceleration - bias)) + V)
+
+    def force(tau: FloatArray) -> FloatArray:
+        return _solve(_transposed(J), tau)
+
+    columns = [force(along(M, _solve(J, np.tile(e, (len(J), 1))))) for e in np.eye(3)]
+    return {
+        "h": bias,
+        "Lambda": np.stack(columns, axis=2),
+        "mu": force(torque(0.0 * bias)),
+        "p": force(G),
+        "F": force(along(M, MACRO.ddq(s)) + V + G),
+        "tau": torque(_input(s)) + G,
+    }
+
+
+_PINOCCHIO, _URDF = by_model(MACRO.model), by_urdf(MACRO.audited.urdf, MACRO.model)
+operational = Truth(lambda s: _truth(_PINOCCHIO, _model_bias(s), s), lambda s: _truth(_URDF, _chain_bias(s), s), _WAYS)
+
+
+# Control: the tip's acceleration under the torques that a law gives.
+
+
+def _input(s: Symbols) -> FloatArray:
+    """Return any control input F*, shape (T, 3), in m/s^2."""
+    return columns(s, ("ddq4", "ddq5", "ddq6"))
+
+
+def _torque(s: Symbols, acceleration: FloatArray) -> FloatArray:
+    """Return J' F with F by (3.32) for an input F*."""
+    return along(_transposed(printed.linear_jacobian(MACRO.q(s))), _force(s, acceleration))
+
+
+def control_torque(s: Symbols) -> Elements:
+    """Return J' F with F by (3.32)."""
+    return {"tau": _torque(s, _input(s))}
+
+
+def chosen_input(s: Symbols) -> Elements:
+    """Return the tip's acceleration that the thesis derives: F* itself."""
+    return {"acceleration": _input(s)}
+
+
+def _state(s: Symbols) -> tuple[FloatArray, FloatArray]:
+    q = MACRO.q(s)
+    return MACRO.frame(3, q)[:, :3, 3], along(printed.linear_jacobian(q), MACRO.dq(s))
+
+
+def _desired(s: Symbols) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return any desired position, velocity and acceleration of the tip."""
+    return columns(s, ("x_0", "x_t", "a")), columns(s, ("d", "dq4", "dq5")), _input(s)
+
+
+def _goal_input(s: Symbols) -> FloatArray:
+    """Return F* by (3.33)."""
+    x, dx = _state(s)
+    return np.asarray(-_K_V * dx - _K_P * (x - _GOAL))
+
+
+def _tracking_input(s: Symbols) -> FloatArray:
+    """Return F* by (3.40)."""
+    (x, dx), (x_d, dx_d, ddx_d) = _state(s), _desired(s)
+    return np.asarray(ddx_d - _K_V * (dx - dx_d) - _K_P * (x - x_d))
+
+
+def goal_acceleration(s: Symbols) -> Elements:
+    """Return the tip's acceleration that the thesis derives for a goal, F* of (3.33).
+
+    It is the second derivative of the error by (3.34), with the gains of (3.37) and (3.38).
+    """
+    return {"acceleration": _goal_input(s)}
+
+
+def tracking_loop(s: Symbols) -> Elements:
+    """Return the same by (3.41)."""
+    return {"acceleration": _tracking_input(s) - _desired(s)[2]}
+
+
+def _closed(law: Callable[[Symbols], FloatArray], desired: Callable[[Symbols], FloatArray | float]) -> Truth:
+    """Return the tip's acceleration, less the desired one, under the torques of (3.32) with a law's F*."""
+
+    def by_pinocchio(s: Symbols) -> Elements:
+        q, dq = MACRO.q(s), MACRO.dq(s)
+        rows = zip(q, dq, _torque(s, law(s)), strict=True)
+        ddq = np.array([MACRO.model.forward_dynamics(*row) for row in rows])
+        return {"acceleration": along(_PINOCCHIO.jacobian(q)[:, :3], ddq) + _model_bias(s) - desired(s)}
+
+    def by_energies(s: Symbols) -> Elements:
+        q, dq = MACRO.q(s), MACRO.dq(s)
+        free = _torque(s, law(s)) - _URDF.torque(q, dq, 0.0 * q)
+        motion = along(_URDF.jacobian(q)[:, :3], _solve(_URDF.mass_matrix(q), free))
+        return {"acceleration": motion + _chain_bias(s) - desired(s)}
+
+    return Truth(by_pinocchio, by_energies, _WAYS)
+
+
+any_closed, goal_closed = (_closed(law, lambda _: 0.0) for law in (_input, _goal_input))
+tracking_closed = _closed(_tracking_input, lambda s: _desired(s)[2])

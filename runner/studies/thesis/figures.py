@@ -1,0 +1,211 @@
+"""What several chapters of the thesis call: the arms and laws that they draw, and numbers that more than one reads."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from runner.base.quantities import above_rounding
+from runner.controllers.operational_space.operational_space_graph import operational_space_graph
+from runner.report.charts import block_diagram, frame_assignment
+from runner.report.claims import load_claims
+from runner.report.document import Block, Curves, FloatArray, Picture, Table, Text
+from runner.report.figures import columns, joint_columns, model_of, origin
+from runner.report.words import PRESET, in_words
+from runner.reporting.measured import Measured
+from runner.reporting.prose.patterns import found
+from runner.reporting.run_values import median
+from runner.robots.denavit_hartenberg import denavit_hartenberg
+from runner.store import Run
+from runner.studies.thesis.compared import Compared
+from runner.studies.thesis.engines import parting, step_of_both
+from runner.studies.thesis.equations.truths.thesis_printed import compare
+from runner.studies.thesis.takeaways import takeaway
+
+_MEANINGS = {
+    "M": ("mass matrix, (3.17)", "kg m²"),
+    "V": ("centrifugal and Coriolis torque, (3.19)", "N m"),
+    "G": ("gravity torque, (3.24)", "N m"),
+    "J": ("basic Jacobian, (3.5)", "m"),
+    "T": ("tip transform, (3.1)", "m"),
+}
+_BROKEN = 10.0  # times the tip error of the thesis' own Mini
+
+
+def frames(
+    runs: Mapping[str, Run], run: str, caption: str, arm: str, width: float, number: str, first: int, tip: str
+) -> Picture:
+    """Return the joint axes and Denavit-Hartenberg frames of an arm at home, from its frame 0 by number to the tip."""
+    words = f"{arm} at home with its joint axes and Denavit-Hartenberg frames"
+    return Picture(caption, frame_assignment(model_of(runs[run]), first, tip), words, width, origin(runs[run], number))
+
+
+def dh_table(runs: Mapping[str, Run], run: str, caption: str, number: str, first: int) -> Table:
+    """Return the Denavit-Hartenberg table of an arm whose frame 0 has a number, angles as multiples of pi."""
+    rows = []
+    for link, row in enumerate(denavit_hartenberg(model_of(runs[run])), start=first + 1):
+        turn = f"$q_{link}$" if row.theta == 0.0 else f"{_angle(row.theta)} + $q_{link}$"
+        rows.append([str(link), turn, f"{row.d:g}", f"{row.a:g}", _angle(row.alpha)])
+    header = ["link", "$theta_i$ (rad)", "$d_i$ (m)", "$a_i$ (m)", "$alpha_i$ (rad)"]
+    return Table(caption, header, rows, (), origin(runs[run], number))
+
+
+def _angle(value: float) -> str:
+    """Return an angle as a multiple of pi where it is one."""
+    if value == 0.0:
+        return "0"
+    twelfths = round(12.0 * value / math.pi)
+    if abs(12.0 * value / math.pi - twelfths) > 1e-9:
+        return f"{value:.6g}"
+    divisor = math.gcd(twelfths, 12)
+    top, bottom = twelfths // divisor, 12 // divisor
+    head = "$-pi" if top == -1 else "$pi" if top == 1 else f"${top} pi"
+    return f"{head}$" if bottom == 1 else f"{head} slash {bottom}$"
+
+
+def printed_matrices(runs: Mapping[str, Run], run: str, caption: str, mini: bool, samples: int) -> Table:
+    """Return how far the thesis' matrices, mended, and the model of an arm are apart at so many random states."""
+    differences = compare(model_of(runs[run]), mini, samples, np.random.default_rng(0))
+    rows = [
+        [f"${symbol}$", meaning, above_rounding(differences[symbol], unit)]
+        for symbol, (meaning, unit) in _MEANINGS.items()
+    ]
+    return Table(caption, ["symbol", "quantity", "largest difference"], rows, (2,), origin(runs[run]))
+
+
+def law(runs: Mapping[str, Run], run: str, caption: str, number: str) -> Picture:
+    """Return the block diagram of the law of one arm that a run executed."""
+    controller, limited = runs[run].config["controller"], runs[run].config["torque_limits"]["max"] is not None
+    goal = runs[run].config["trajectory"]["kind"] == "goal"
+    graph = operational_space_graph(controller["gravity_compensation"], controller["feedforward"], limited, goal)
+    to, limit = "a goal at rest" if goal else "a moving target", "with" if limited else "without"
+    words = f"Block diagram of one arm's loop: {to}, operational-space controller, arm {limit} torque limits, encoders"
+    return Picture(caption, block_diagram(graph), words, 0.68, origin(runs[run], number))
+
+
+def reproduced(
+    runs: Mapping[str, Run], number: str, what: str, metrics: Sequence[str], until: float | None = None
+) -> list[Block]:
+    """Return one published figure, such as "3.5", with both presets in it, and what the plant's step is worth in it.
+
+    Args:
+        runs: The runs of the work by name.
+        number: Number of the figure.
+        what: What moves, in a few words.
+        metrics: The metrics that its caption compares.
+        until: End of the time axis, in s; None shows the whole runs.
+    """
+    experiment = f"figure_{number.replace('.', '_')}"
+    own = {words: runs[f"{experiment}/{preset}"] for preset, words in PRESET.items()}
+    first = next(iter(own.values()))
+    claims = [each for each in load_claims("thesis") if each.experiment == f"thesis/{experiment}" and each.printed]
+    figure = Compared(own, claims, until)
+    joints = list(range(1, len(first.provenance["joints"]) + 1))
+    panels = figure.torques(joints)
+    if len(first.provenance["stages"]) > 1:
+        panels += figure.ticks(joints[3:]) if figure.chatters() else []
+        panels += figure.errors("macro_error", "Macro's error")
+    panels += figure.errors("error", "Tip error")
+    if first.config["trajectory"]["kind"] == "goal":
+        panels += figure.enlarged()
+    told = {each.metric: each.number for each in claims}
+    text = " ".join(filter(None, [step_of_both(own, metrics), *parting(own, told)]))
+    caption = f"{takeaway(metrics, own)} {what}; curves of repetition 0, numbers are medians (smallest to largest)."
+    return [Curves(f"{caption} {figure.scales()}".strip(), panels, 3, origin(first, f"figure {number}")), Text(text)]
+
+
+def printed(claim: int, end: int, words: str) -> Measured:
+    """Return an end of the range that the thesis prints for a claim: 0 is the lower, -1 the upper one."""
+    published = next(each for each in load_claims("thesis") if each.number == claim)
+    return Measured(words, published.printed[end], published.unit)
+
+
+def rest_of_way(run: Run) -> FloatArray:
+    """Return |x_d - x_E|, from the Macro's end point to the target, shape (T,), in m."""
+    return np.asarray(np.linalg.norm(columns(run.trace, "desired") - columns(run.trace, "macro_tip"), axis=1))
+
+
+def extension(run: Run) -> FloatArray:
+    """Return |p|, from the Macro's end point to the tip, shape (T,), in m."""
+    return np.asarray(np.linalg.norm(columns(run.trace, "tip") - columns(run.trace, "macro_tip"), axis=1))
+
+
+def moved_by_bias(run: Run) -> float | None:
+    """Return by how much the bias of the Macro's encoders puts the tip elsewhere at the last posture, in m.
+
+    The controllers bring the tip that they believe to the goal: all of the Macro's joints are off by the bias, the
+    Mini's are right. The largest axis of J_M b to first order, J_M the Macro's columns of the whole arm's tip Jacobian.
+    """
+    q = joint_columns(run.trace, "q")[-1]
+    if not np.isfinite(q).all():
+        return None
+    joints = sum(not joint.startswith("mini_") for joint in run.provenance["joints"])
+    moved = model_of(run).tip_jacobian(q)[:3, :joints] @ np.full(joints, run.config["noise"]["bias"]["macro"])
+    return float(np.abs(moved).max())
+
+
+def diverges_at(runs: Mapping[str, Run], run: str, words: str) -> Measured:
+    """Return when a run diverges; no value where it does not."""
+    return Measured(words, (runs[run].failure or {}).get("time"), "s")
+
+
+def at_rest(run: Run) -> list[float]:
+    """Return the steady-state errors of the repetitions of a run that do not diverge, in m."""
+    if "steady_state_error" not in run.metrics:
+        return []
+    values = run.values("steady_state_error")
+    return [float(value) for value in values[~np.isnan(values)]]
+
+
+def of_repetitions(
+    runs: Mapping[str, Run], words: str, what: Callable[..., float | None], unit: str, *names: str
+) -> Measured:
+    """Return what a function gives for a run, or for two, of which repetitions may have diverged, by words."""
+    return Measured(words, what(*(runs[name] for name in names)), unit)
+
+
+def count_diverging(run: Run) -> int:
+    """Return how many repetitions of a run diverge."""
+    return int(run.config["repetitions"]) - len(at_rest(run))
+
+
+def mass_of(runs: Mapping[str, Run], name: str, words: str = "mass of the Mini") -> Measured:
+    """Return the mass of a run's Mini."""
+    masses = runs[name].config["robot"]["stages"]["mini"]["masses"]
+    return Measured(words, float(sum(masses.values())), "kg")
+
+
+def around_the_break(runs: Mapping[str, Run], payload: str) -> tuple[str, str]:
+    """Return the runs of the heaviest Mini with which one-way control works without noise, and of the next one.
+
+    It is broken where the tip errs more than ten times as much as that of the thesis' Mini. Where none works, or none
+    is broken, both are one.
+    """
+    names = [one.name for one in found(runs, f"mass/{{mass}}/{payload}")]
+    limit = median(runs[f"mass/0.2/{payload}"], "max_axis_error")
+    errors = [median(runs[name], "max_axis_error") for name in names]
+    broken = [error is None or limit is None or error > _BROKEN * limit for error in errors]
+    first = broken.index(True) if any(broken) else len(names)
+    return names[max(first - 1, 0)], names[min(first, len(names) - 1)]
+
+
+def fastest(runs: Mapping[str, Run], pattern: str) -> str:
+    """Return the name of the run that settles first among those of a pattern; the first one where none settles."""
+    times = {one.name: median(one.run, "settling_time") for one in found(runs, pattern)}
+    return min(times, key=lambda name: math.inf if times[name] is None else float(times[name] or 0.0))
+
+
+def level_in_words(name: str, place: int) -> str:
+    """Return a part of a run's name in words, counted from 0."""
+    return in_words(name.split("/")[place])
+
+
+def excess(simulated: Callable[[Run], float | None], predicted: Callable[[Run], float]) -> Callable[[Run], str]:
+    """Return what gives by how much a value of a run is larger than predicted, in per cent, for a table."""
+
+    def text(run: Run) -> str:
+        value, closed = simulated(run), predicted(run)
+        more = 100.0 * (value / closed - 1.0) if closed and value is not None else math.nan
+        return "below 0.01 %" if abs(more) < 0.01 else f"{more:+.2f} %"
+
+    return text

@@ -1,0 +1,107 @@
+"""How close the Mini is to a singular posture, the sag that keeps it from folding, and what repetitions then tell.
+
+Folded, the Mini is chaotic: what a single run gives is decided by rounding, what all repetitions have in common is not.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from runner.base.quantities import number, quantity, ranged
+from runner.report.document import FloatArray
+from runner.report.figures import joint_columns, model_of
+from runner.reporting.measured import ROUNDING
+from runner.reporting.run_values import clock
+from runner.store import Run
+from runner.studies.thesis.figures import at_rest
+from runner.studies.thesis.left_out_gravity import missing_acceleration
+
+_PARTED = 1.0  # rad
+
+
+def singular_value(run: Run) -> FloatArray:
+    """Return the smallest singular value of the Mini's Jacobian at each tick, shape (T,), in m."""
+    return _singular_values(run)[:, -1]
+
+
+def volume(run: Run) -> FloatArray:
+    """Return the manipulability |det J| of the Mini at each tick, shape (T,), in m^3."""
+    return np.asarray(_singular_values(run).prod(axis=1))
+
+
+def first(signal: Callable[[Run], FloatArray]) -> Callable[[Run], float]:
+    """Return the first value of a signal."""
+    return lambda run: float(signal(run)[0])
+
+
+def closest(signal: Callable[[Run], FloatArray]) -> Callable[[Run], float]:
+    """Return the value of a signal where the Mini is closest to a singular posture."""
+    return lambda run: float(signal(run)[_row(run)])
+
+
+def volume_of_closest(run: Run) -> str:
+    """Return the manipulability there for a table: folded, it is smaller than what is called rounding elsewhere."""
+    return number(closest(volume)(run))
+
+
+def time_of_closest(run: Run) -> str:
+    """Return when that is, in s."""
+    return f"{clock(run)[_row(run)]:.2f}"
+
+
+def sag(run: Run) -> float:
+    """Return the closed form of the Macro's sag at the end of a run, in m."""
+    rate = float(run.config["controller"]["natural_frequency"]["macro"])
+    return missing_acceleration(run, len(run.trace) - 1) / rate**2
+
+
+def farthest_at_rest(run: Run) -> float | None:
+    """Return the largest steady-state error of the repetitions that do not diverge, in m; None where all do."""
+    return max(at_rest(run), default=None)
+
+
+def spread_at_rest(run: Run) -> float | None:
+    """Return by how much the steady-state errors of those repetitions differ, in m; None where all diverge."""
+    errors = at_rest(run)
+    return max(errors) - min(errors) if errors else None
+
+
+def at_rest_text(run: Run) -> str:
+    """Return the range of the steady-state errors of those repetitions for a table; one number where they are alike."""
+    errors = at_rest(run)
+    if not errors:
+        return "failed"
+    low, high = min(errors), max(errors)
+    return ranged(low, high, "m") if high - low > ROUNDING else quantity(high, "m", rounding=ROUNDING)
+
+
+def parting(first: Run, second: Run) -> FloatArray:
+    """Return the distance between the joint positions of two runs at their common ticks, shape (T,), in rad."""
+    a, b = (joint_columns(run.trace, "q") for run in (first, second))
+    rows = min(len(a), len(b))
+    return np.asarray(np.linalg.norm(a[:rows] - b[:rows], axis=1))
+
+
+def largest_parting(first: Run, second: Run) -> float:
+    """Return the largest distance, in rad."""
+    return float(np.nanmax(parting(first, second)))
+
+
+def parted_at(first: Run, second: Run) -> float | None:
+    """Return from when on two runs have been 1 rad apart, in s; None where they never are."""
+    apart = parting(first, second) >= _PARTED
+    return float(clock(first)[int(apart.argmax())]) if apart.any() else None
+
+
+def _row(run: Run) -> int:
+    singular = singular_value(run)
+    return int(np.nanargmin(singular)) if np.isfinite(singular).any() else 0
+
+
+def _singular_values(run: Run) -> FloatArray:
+    """Return those of the Mini's columns of the whole arm's Jacobian, shape (T, 3): they depend on no frame."""
+    model, positions = model_of(run), joint_columns(run.trace, "q")
+    values, finite = np.full((len(positions), 3), np.nan), np.isfinite(positions).all(axis=1)
+    jacobians = [model.tip_jacobian(q)[:3, 3:] for q in positions[finite]]
+    values[finite] = np.linalg.svd(np.reshape(jacobians, (-1, 3, 3)), compute_uv=False)
+    return values

@@ -1,0 +1,180 @@
+"""How sure the verdicts are: tables, a figure and numbers of the claims judged by many seeds."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from runner.base.quantities import number, quantity, with_ends
+from runner.report.claims import FACTOR, load_claims
+from runner.report.document import Curves, Panel, Series, Table
+from runner.report.figures import origin
+from runner.report.sweep.intervals import at_texts
+from runner.report.words import PRESET
+from runner.reporting.measured import Measured
+from runner.reporting.prose.patterns import found
+from runner.statistics.share import count_share
+from runner.store import Run
+from runner.studies.thesis.judged import DRAWN, Judged, judge_by_seeds
+
+_RUNS = "sure/{figure}/{preset}/{seeds}"
+_BESIDE = 0.12  # of a claim's place, so that the bars of both presets are seen
+_COLORS = {"as_reported": 1, "sound": 0}  # palette indices, as in all figures of the report
+
+
+def judged(runs: Mapping[str, Run]) -> list[Judged]:
+    """Return every claim under every preset, judged by the seeds of the Runge-Kutta plant."""
+    claims = load_claims("thesis")
+    made = found(runs, _RUNS)
+    given = []
+    for preset in PRESET:
+        seeds = {one.levels["figure"]: one.run for one in made if one.levels["preset"] == preset}
+        own = {figure: runs[f"{figure}/{preset}"] for figure in seeds}
+        given += [judge_by_seeds(claim, claims, seeds, own, preset) for claim in claims]
+    return sorted(given, key=lambda each: each.claim.number)
+
+
+def distributions(runs: Mapping[str, Run], caption: str, given: Sequence[Judged]) -> Table:
+    """Return median and quantiles of each claim, beside the work's own median and verdict."""
+    header = ["claim", "under", "compared with", "median", "1 % to 99 %", "verdict", "own median", "own verdict"]
+    return Table(caption, header, [_distribution(each) for each in given], (), origin(found(runs, _RUNS)[0].run))
+
+
+def turned(runs: Mapping[str, Run], caption: str, given: Sequence[Judged]) -> Table:
+    """Return how often the claims on which some seed speaks otherwise would be judged otherwise."""
+    header = ["claim", "under", "verdict", "otherwise", "one seed", "groups drawn", "groups that share none"]
+    rows = [_turned(each) for each in given if each.otherwise(each.alone)]
+    return Table(caption, header, rows, (), origin(found(runs, _RUNS)[0].run))
+
+
+def around_printed(runs: Mapping[str, Run], caption: str, given: Sequence[Judged]) -> Curves:
+    """Return simulated values over what they are compared with, between the factors within which a claim matches."""
+    numbers = list(dict.fromkeys(each.claim.number for each in given))
+    series: list[Series] = []
+    for side, (preset, words) in zip((-1, 1), PRESET.items(), strict=True):
+        shown = [each for each in given if each.preset == preset and each.values.size and each.printed]
+        ends = np.array([each.quantiles() / (each.printed or 1.0) for each in shown]).reshape(-1, 3)
+        middle, low, high = np.where(np.isfinite(ends), ends, np.nan).T
+        x = np.array([numbers.index(each.claim.number) for each in shown]) + _BESIDE * side
+        series += at_texts(Series(words, x, middle, "points", low, high, _COLORS[preset]))
+    across = np.array([-0.5, len(numbers) - 0.5])
+    limits = (("a claim matches in between", FACTOR), ("", 1.0 / FACTOR))
+    series += [Series(name, across, np.full(2, factor), "dotted", color=7) for name, factor in limits]
+    names = [str(each) for each in numbers]
+    panel = Panel("", "claim", "simulated over printed", series, y_log=True, x_names=names)
+    return Curves(caption, [panel], 1, origin(found(runs, _RUNS)[0].run))
+
+
+def seeds(given: Sequence[Judged], words: str) -> Measured:
+    """Return by how many seeds the claims are judged."""
+    return Measured(words, max(each.values.size for each in given))
+
+
+def judgements(given: Sequence[Judged]) -> int:
+    """Return how many judgements there are: claims times presets."""
+    return len(given)
+
+
+def drawn(words: str) -> Measured:
+    """Return how many groups of seeds are drawn."""
+    return Measured(words, DRAWN)
+
+
+def of_one_seed(given: Sequence[Judged], claim: int, preset: str, words: str) -> Measured:
+    """Return which share of the seeds alone would judge a claim otherwise, in per cent."""
+    each = _find(given, claim, preset)
+    return Measured(words, each.share_otherwise(each.alone), "%")
+
+
+def of_groups(given: Sequence[Judged], claim: int, preset: str, words: str) -> Measured:
+    """Return which share of judgements by as many seeds as the work's would be another, in per cent."""
+    each = _find(given, claim, preset)
+    return Measured(words, each.share_otherwise(each.drawn), "%")
+
+
+def most_of_groups(given: Sequence[Judged], words: str, but: int = 0) -> Measured:
+    """Return the largest of these shares of all claims but one."""
+    return _largest(words, "%", [each.share_otherwise(each.drawn) for each in given if each.claim.number != but])
+
+
+def unanimous(given: Sequence[Judged], words: str) -> Measured:
+    """Return of how many judgements every seed alone says the same."""
+    return Measured(words, sum(bool(each.alone) and not each.otherwise(each.alone) for each in given))
+
+
+def unseen(given: Sequence[Judged], words: str) -> Measured:
+    """Return up to which share of seeds, in per cent, may judge otherwise where none did."""
+    of = max(each.values.size for each in given)
+    return Measured(words, 100.0 * count_share(0, of).high if of else None, "%")
+
+
+def median_of(given: Sequence[Judged], claim: int, preset: str, words: str) -> Measured:
+    """Return the median of a claim's seeds."""
+    each = _find(given, claim, preset)
+    return Measured(words, float(each.quantiles()[0]) if each.values.size else None, each.claim.unit)
+
+
+def turns_at(given: Sequence[Judged], claim: int, words: str) -> Measured:
+    """Return above which value a claim is judged larger than printed."""
+    chosen = next(each.claim for each in given if each.claim.number == claim)
+    return Measured(words, None if chosen.value is None else FACTOR * chosen.value, chosen.unit)
+
+
+def other_by_plant(given: Sequence[Judged], words: str) -> Measured:
+    """Return how many of the work's own verdicts are not those of the seeds."""
+    return Measured(words, sum(each.verdict != each.own_verdict for each in given))
+
+
+def moved_by_plant(given: Sequence[Judged], words: str, claim: int = 0, preset: str = "") -> Measured:
+    """Return by which factor the work's own median and that of the seeds differ: of one claim, or the most of all."""
+    chosen = [_find(given, claim, preset)] if claim else given
+    return _largest(words, "1", [each.moved_by_plant() for each in chosen])
+
+
+def mostly_moved_by_plant(given: Sequence[Judged], words: str) -> Measured:
+    """Return the median of these factors."""
+    known = [factor for factor in (each.moved_by_plant() for each in given) if factor is not None]
+    return Measured(words, float(np.median(known)) if len(known) == len(given) else None)
+
+
+def _find(given: Sequence[Judged], claim: int, preset: str) -> Judged:
+    return next(each for each in given if (each.claim.number, each.preset) == (claim, preset))
+
+
+def _largest(words: str, unit: str, values: Sequence[float | None]) -> Measured:
+    known = [value for value in values if value is not None]
+    return Measured(words, max(known) if len(known) == len(values) else None, unit)
+
+
+def _distribution(each: Judged) -> list[str]:
+    unit, own = each.claim.unit, each.own_verdict or "failed"
+    if not each.values.size:
+        texts = ["–", "failed", "–", "failed"]
+    else:
+        median, low, high = each.quantiles().tolist()
+        middle, ends, _ = with_ends(median, low, high, unit, each.printed)
+        texts = [quantity(each.printed, unit), middle, ends, each.verdict or "–"]
+    own_median, _, _ = with_ends(each.own, each.own, each.own, unit, each.printed)
+    return [f"claim {each.claim.number}", PRESET[each.preset], *texts, own_median, own]
+
+
+def _turned(each: Judged) -> list[str]:
+    others = [verdict or "–" for verdict in each.alone if verdict != each.verdict]
+    told = ", ".join(f"{others.count(verdict)} {verdict}" for verdict in dict.fromkeys(sorted(others)))
+    drawn_share = f"{number(each.share_otherwise(each.drawn))} %"
+    return [
+        f"claim {each.claim.number}",
+        PRESET[each.preset],
+        each.verdict or "–",
+        told,
+        _with_interval(each.otherwise(each.alone), len(each.alone)),
+        drawn_share,
+        _with_interval(each.otherwise(each.apart), len(each.apart)),
+    ]
+
+
+def _with_interval(count: int, of: int) -> str:
+    if not of:
+        return "–"
+    share = count_share(count, of)
+    low, high = (number(100.0 * end, 2) for end in (share.low, share.high))
+    return f"{number(100.0 * count / of)} % ({low} to {high})"

@@ -1,0 +1,112 @@
+"""What a payload asks of the joints, and which they bear."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from scipy.optimize import minimize
+
+from runner.base.quantities import number
+from runner.report.document import Block, FloatArray, Notice, Series
+from runner.report.figures import columns, joint_columns, model_of
+from runner.reporting.prose.patterns import found
+from runner.store import Run
+from runner.studies.xarm7.figures import SHOULDER
+
+_PLANE = [1, 3, 5]  # the joints that turn in the arm's vertical plane
+_GRID = 12  # angles of each, where the search for the widest posture begins
+
+
+def largest_payloads(torque: FloatArray, per_kilogram: FloatArray, limits: FloatArray) -> FloatArray:
+    """Return the payload at which each joint reaches its limit first, shape (nq,), in kg; inf where it never does.
+
+    Torques without payload and what each kilogram adds have shape (..., nq).
+    """
+    room = limits - np.sign(per_kilogram) * torque
+    slope = np.abs(per_kilogram)
+    masses = np.divide(room, slope, out=np.full(slope.shape, np.inf), where=slope > 1e-9)
+    return np.asarray(masses.reshape(-1, masses.shape[-1]).min(axis=0))
+
+
+def stretched(run: Run) -> tuple[float, FloatArray]:
+    """Return how far the flange is from the first axis with a run's arm stretched out level, and what a joint bears.
+
+    The distance is in m; the payload with which a joint's static torque is its limit in kg, shape (nq,), inf for none.
+    """
+    model = model_of(run)
+    lower, upper = model.position_limits[:, _PLANE]
+
+    def posture(angles: FloatArray) -> FloatArray:
+        q = np.zeros(model.nq)
+        q[_PLANE] = angles
+        return q
+
+    steps = [np.linspace(*span, _GRID) for span in zip(lower, upper, strict=True)]
+    grid = np.stack(np.meshgrid(*steps), axis=-1).reshape(-1, len(_PLANE))
+    reached = model.tip_positions(np.array([posture(angles) for angles in grid]))[:, 0]
+    found = minimize(
+        lambda angles: -model.tip_position(posture(angles))[0],
+        x0=grid[int(np.argmax(reached))],
+        jac=lambda angles: -model.tip_jacobian(posture(angles))[0, _PLANE],
+        bounds=list(zip(lower, upper, strict=True)),
+        options={"ftol": 1e-15, "gtol": 1e-12},
+    )
+    q = posture(found.x)
+    unloaded = model.gravity_torque(q)
+    added = model.with_payload(1.0).gravity_torque(q) - unloaded
+    return -float(found.fun), largest_payloads(unloaded, added, model.effort_limits)
+
+
+def along_the_line(runs: Mapping[str, Run], group: str) -> FloatArray:
+    """Return the payload with which each joint meets its effort limit along a line, shape (nq,), in kg; see asked."""
+    light, torque, added = _torques(runs, group)
+    return largest_payloads(torque, added, model_of(light).effort_limits)
+
+
+def others(payloads: FloatArray) -> float:
+    """Return with which payload the first of the joints other than the shoulder meets its limit, in kg."""
+    return float(np.delete(payloads, SHOULDER).min())
+
+
+def limit_rows(runs: Mapping[str, Run], run: str, *payloads: FloatArray) -> list[list[str]]:
+    """Return the effort limit of each joint of a run's arm and payloads with which it is met: a row for each."""
+    return [
+        [f"q{joint + 1}", f"{limit:g}", *(_kilograms(each[joint]) for each in payloads)]
+        for joint, limit in enumerate(model_of(runs[run]).effort_limits)
+    ]
+
+
+def _kilograms(mass: float) -> str:
+    return number(float(mass)) if np.isfinite(mass) and mass < 100.0 else "above 100"
+
+
+def asked(runs: Mapping[str, Run], group: str, largest: float) -> list[Series]:
+    """Return what the line asks of each joint as a share of its effort limit, over the payload in kg.
+
+    The names of two runs begin so whose joints go where they are told, without payload and with one.
+    """
+    light, torque, added = _torques(runs, group)
+    masses = np.linspace(0.0, largest, 51)
+    shares = np.array([np.abs(torque + m * added).max(axis=0) / model_of(light).effort_limits for m in masses])
+    return [Series(f"q{joint + 1}", masses, share) for joint, share in enumerate(shares.T)]
+
+
+def _torques(runs: Mapping[str, Run], group: str) -> tuple[Run, FloatArray, FloatArray]:
+    """Return the run without payload, the torques asked of it, and what each kilogram adds, shapes (T, nq)."""
+    light, heavy = (one.run for one in found(runs, f"{group}/{{mass}}"))
+    unloaded, loaded = (joint_columns(run.trace, "tau") for run in (light, heavy))
+    rows = min(len(unloaded), len(loaded))
+    kilograms = heavy.config["robot"]["payload"]["mass"] - light.config["robot"]["payload"]["mass"]
+    return light, unloaded[:rows], (loaded[:rows] - unloaded[:rows]) / kilograms
+
+
+def lost_when(run: Run) -> str:
+    """Return when an axis error of the tip leaves the settling band for the first time, in s, as a cell of a table."""
+    beyond = (np.abs(columns(run.trace, "error")) > run.config["robot"]["settling_band"]).any(axis=1)
+    return f"{run.trace['t'].to_numpy()[int(np.argmax(beyond))]:.3g}" if beyond.any() else "not lost"
+
+
+def beyond_the_rating(runs: Mapping[str, Run]) -> list[Block]:
+    """Return a warning that tells of the payloads above the maker's rating; nothing where there are none."""
+    ours = [run for name, run in runs.items() if name.startswith("payload/")]
+    texts = sorted({str(caveat["text"]) for run in ours for caveat in run.caveats if caveat["rule"] == "overload"})
+    return [Notice("warning", "Beyond the rating", f"In these runs {'; '.join(texts)}.")] if texts else []
