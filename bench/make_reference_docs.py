@@ -42,9 +42,9 @@ from runner.plugins.registry import Registry, StrictModel
 from runner.robots.mismatch import MismatchConfig
 from runner.schema.units import WRITTEN
 from runner.sensing import EndpointSensorConfig, ForceTorqueConfig, JointTorqueConfig
+from runner.study.chapters import SHARED
+from runner.study.code import public_functions
 from runner.trajectories import TRAJECTORIES
-from runner.works.chapters import SHARED
-from runner.works.code import public_functions
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "reference.md"
 _HEAD = """\

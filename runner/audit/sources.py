@@ -1,7 +1,7 @@
 """Where printed equations are: the folder of a work, with its entries and the Python that they may name.
 
 A folder has `equations/*.yaml` and, where truths of its own are needed, `equations/truths/*.py` and
-`equations/rollouts/*.py`. Our works are folders of `runner/works/`, known by their names; any other folder is named by
+`equations/rollouts/*.py`. Our works are folders of `runner/study/`, known by their names; any other folder is named by
 its path.
 """
 

@@ -17,7 +17,7 @@ from runner.commands.arguments import ActionParser, Parser
 from runner.plugins.discovery import in_use, use_plugins
 
 if TYPE_CHECKING:
-    from runner.works.given import GivenPart
+    from runner.study.given import GivenPart
 
 WORK = "benchmark"
 
@@ -35,8 +35,8 @@ def main(arguments: Sequence[str]) -> int:
 def _check(options: Namespace) -> int:
     quiet_environment()
     use_plugins([f"controller={options.law}"])
+    from runner.study.given import given_parts
     from runner.sweeps.loading import Loader
-    from runner.works.given import given_parts
 
     (part,) = given_parts(in_use()[-1:])
     workers = Loader().sweeper([]).workers
@@ -59,9 +59,9 @@ def check_law(name: str, profile: str, part: "GivenPart", workers: int) -> Itera
     Raises:
         RunnerError: with all that is wrong, if the law does not fit.
     """
-    from runner.works.estimate import told
-    from runner.works.fit import fit
-    from runner.works.work import load_work
+    from runner.study.estimate import told
+    from runner.study.fit import fit
+    from runner.study.work import load_work
 
     without = load_work(name, profile=profile)
     found = fit(load_work(name, profile=profile, parts=(part,)), without, part)

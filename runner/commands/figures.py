@@ -13,7 +13,7 @@ from runner.base.errors import RunnerError
 from runner.base.quiet import quiet_environment
 from runner.commands.arguments import Parser, Stored
 from runner.config.compose.user_settings import outputs_dir
-from runner.works.names import work_names
+from runner.study.names import work_names
 
 if TYPE_CHECKING:
     from runner.report.document import Document
@@ -96,8 +96,8 @@ def _of_work(name: str, outputs: Path) -> "tuple[Document, Path]":
     folder, mend = outputs / "reports" / name, f"`runner reproduce {name} --outputs {outputs}` makes"
     if not folder.is_dir():
         raise RunnerError(f"no report on {name} in {outputs}; {mend} it")
-    from runner.works.making import count_missing, make_all
-    from runner.works.work import load_work
+    from runner.study.making import count_missing, make_all
+    from runner.study.work import load_work
 
     print(f"looking for the runs of {name} ...", file=sys.stderr)
     work = load_work(name)

@@ -112,8 +112,8 @@ def _list_references(_: Sequence[Path]) -> dict[str, str]:
 
 
 def _list_works(_: Sequence[Path]) -> dict[str, str]:
-    from runner.works.about import read_about
-    from runner.works.names import find_work, work_names
+    from runner.study.about import read_about
+    from runner.study.names import find_work, work_names
 
     found = {name: read_about(find_work(name).folder) for name in work_names()}
     apart = {name: "" if about.in_all else " (not made by `runner reproduce all`)" for name, about in found.items()}

@@ -21,16 +21,16 @@ from runner.base.quiet import quiet_environment
 from runner.commands.arguments import Parser
 from runner.config.compose.user_settings import outputs_dir
 from runner.plugins.discovery import in_use, named
-from runner.reporting.changes import FILE
 from runner.store.latest import note
-from runner.works.names import find_work, work_names
+from runner.study.changes import FILE
+from runner.study.names import find_work, work_names
 
 if TYPE_CHECKING:
     from runner.report.document import Document
-    from runner.reporting.expected_caveats import ExpectedCaveat
     from runner.store import Calibration, Run
-    from runner.works.given import GivenPart
-    from runner.works.work import Work
+    from runner.study.expected_caveats import ExpectedCaveat
+    from runner.study.given import GivenPart
+    from runner.study.work import Work
 
 AUDIT = "audit"
 _FREE = ("hydra.sweeper.", "sweep.", "limits.", "caveats.")
@@ -89,7 +89,7 @@ def main(arguments: Sequence[str]) -> int:
 
 def _parts(work: str) -> "tuple[GivenPart, ...]":
     """Return the parts that --plugin names, for one work that may take them."""
-    from runner.works.given import given_parts
+    from runner.study.given import given_parts
 
     if in_use() and work in (AUDIT, "all"):
         raise RunnerError(f"reproduce {work}: --plugin gives a part to one work; name it")
@@ -104,7 +104,7 @@ def _chosen(text: str, way: _Way) -> "list[Work | None]":
     Raises:
         RunnerError: if there is no such work; names what there is.
     """
-    from runner.works.work import load_work
+    from runner.study.work import load_work
 
     if text == AUDIT:
         return [None]
@@ -117,7 +117,7 @@ def _chosen(text: str, way: _Way) -> "list[Work | None]":
 def _reproduce(work: "Work | None", way: _Way) -> "tuple[str, _Reproduced]":
     from runner import store
     from runner.report.render import write_report
-    from runner.works.gains import write_gains
+    from runner.study.gains import write_gains
 
     name = AUDIT if work is None else work.name
     progress.named(name)
@@ -138,8 +138,8 @@ def _reproduce(work: "Work | None", way: _Way) -> "tuple[str, _Reproduced]":
 
 def _tell_fallen(made: Mapping[str, _Reproduced]) -> bool:
     """Print the findings that no longer hold and the caveats that are not expected; return whether there are any."""
-    from runner.reporting.conclusions import fallen
-    from runner.reporting.expected_caveats import unexpected_caveats
+    from runner.study.conclusions import fallen
+    from runner.study.expected_caveats import unexpected_caveats
 
     lines = [
         f"{work}: {line}"
@@ -152,8 +152,8 @@ def _tell_fallen(made: Mapping[str, _Reproduced]) -> bool:
 
 
 def _write_conclusions(made: Mapping[str, _Reproduced], path: Path) -> None:
-    from runner.reporting.conclusions import conclusions
     from runner.store.atomic import write_atomically
+    from runner.study.conclusions import conclusions
 
     content = {
         work: conclusions(each.document, each.runs, each.calibrations, each.expected) for work, each in made.items()
@@ -164,9 +164,9 @@ def _write_conclusions(made: Mapping[str, _Reproduced], path: Path) -> None:
 def _reproduce_work(work: "Work", way: _Way) -> _Reproduced:
     """Make what a work needs, and its document."""
     from runner.report.markup import literal
-    from runner.works.check import formulas_at
-    from runner.works.late_claims import late_claims
-    from runner.works.making import make_all
+    from runner.study.check import formulas_at
+    from runner.study.late_claims import late_claims
+    from runner.study.making import make_all
 
     progress.plan(of_work(len(work.jobs()) + len(work.calibrations())))
     work.measure(way.outputs)

@@ -19,7 +19,7 @@ from runner.base.quiet import quiet_environment
 from runner.base.texts import one_line
 from runner.commands.arguments import ActionParser, Parser
 from runner.config.compose.user_settings import outputs_dir
-from runner.reporting.changes import KINDS, Change, Value, changes, read_conclusions
+from runner.study.changes import KINDS, Change, Value, changes, read_conclusions
 
 _TOLD = 20  # changes of a kind that are printed without --all
 
@@ -44,7 +44,7 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _new(options: Namespace) -> int:
-    from runner.works.new import write_new
+    from runner.study.new import write_new
 
     for path in write_new(options.folder):
         print(path)
@@ -54,13 +54,13 @@ def _new(options: Namespace) -> int:
 
 def _check(options: Namespace) -> int:
     """Print what is wrong with a work, a line each; exit 1 where something is."""
-    from runner.works.names import find_work
+    from runner.study.names import find_work
 
     find_work(options.work)  # one that is not there is told at once
     quiet_environment()
-    from runner.works.check import problems
-    from runner.works.making import make_all
-    from runner.works.work import load_work
+    from runner.study.check import problems
+    from runner.study.making import make_all
+    from runner.study.work import load_work
 
     work = load_work(options.work, options.code)
     runs, calibrations = make_all(work, options.outputs)

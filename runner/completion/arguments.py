@@ -124,7 +124,7 @@ def metric_names() -> Iterable[str]:
 
 
 def _works(command: str) -> Iterable[str]:
-    from runner.works.names import work_names
+    from runner.study.names import work_names
 
     return (*work_names(), *(("audit", "all") if command == "reproduce" else ()))
 

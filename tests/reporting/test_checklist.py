@@ -5,7 +5,7 @@ from pydantic import ValidationError
 
 from runner.base.paths import works_with
 from runner.report.document import Curves, Origin, Section
-from runner.reporting.checklist import Checklist, load_checklist
+from runner.study.checklist import Checklist, load_checklist
 
 CONTENT = {
     "title": "Checklist",

@@ -3,7 +3,7 @@
 from support.made_up_runs import made_up_run
 
 from runner.report.document import Code
-from runner.reporting.citing import citing_section
+from runner.study.citing import citing_section
 
 
 def codes(section):

@@ -9,8 +9,8 @@ from support.made_up_runs import made_up_metric, made_up_run
 from runner.report.claims import CONTRADICTION, PublishedClaim, PublishedStatement
 from runner.report.document import Verdicts
 from runner.report.words import PRESET
-from runner.reporting.claims import judged_claims, judged_statements, legend, run_name
-from runner.reporting.job import PRESETS, MissingError
+from runner.study.claims import judged_claims, judged_statements, legend, run_name
+from runner.study.job import PRESETS, MissingError
 
 NUMBER = {
     "number": 1,

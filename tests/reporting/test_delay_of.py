@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
-from runner.reporting.run_values import delay_of
+from runner.study.run_values import delay_of
 
 TRACE = pd.DataFrame({"t": [0.0, 0.005, 0.01]})
 

@@ -10,15 +10,15 @@ from support.made_up_runs import made_up_run
 from runner.base.errors import RunnerError
 from runner.metrics.caveats.registry import KEYS
 from runner.report.document import Notice, Table
-from runner.reporting.expected_caveats import (
+from runner.study.expected_caveats import (
     ExpectedCaveat,
     caveats_as_data,
     caveats_section,
     unexpected_caveats,
 )
-from runner.reporting.job import Made
-from runner.reporting.run_values import cell, measured
-from runner.works.work import load_work
+from runner.study.job import Made
+from runner.study.run_values import cell, measured
+from runner.study.work import load_work
 
 
 def run_with(*rules):

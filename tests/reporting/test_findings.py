@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from runner.report.document import Document, Section, Text
-from runner.reporting.findings import finding, findings
-from runner.reporting.measured import Measured
+from runner.study.findings import finding, findings
+from runner.study.measured import Measured
 
 SLOW, FAST = Measured("error of the slow one", 4e-3, "m"), Measured("error of the fast one", 1e-3, "m")
 

@@ -24,9 +24,9 @@ def known(paths, *rooms):
 
 
 def test_drawings_and_numbers_as_text_know_no_report():
-    assert known([*DRAWING, Path(runner.base.quantities.__file__)], "runner.report", "runner.works") == []
+    assert known([*DRAWING, Path(runner.base.quantities.__file__)], "runner.report", "runner.study") == []
 
 
 def test_the_vocabulary_knows_nothing_of_the_audit_and_the_works():
     names = ("document.py", "markup.py", "templating.py", "html.py", "pdf.py", "formulas.py")
-    assert known([FOLDER / name for name in names], "runner.audit", "runner.works") == []
+    assert known([FOLDER / name for name in names], "runner.audit", "runner.study") == []

@@ -4,8 +4,8 @@ import pytest
 
 from runner.base.errors import RunnerError
 from runner.report.document import Section, Text
-from runner.reporting.job import Made, MissingError
-from runner.reporting.work_report import parts
+from runner.study.job import Made, MissingError
+from runner.study.work_report import parts
 
 RUNS = Made({"a": 1, "b": 2}, {"c": "cut short: killed for $5"})
 

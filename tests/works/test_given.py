@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.works.given import given_parts
-from runner.works.grids import Grids
-from runner.works.work import load_work
+from runner.study.given import given_parts
+from runner.study.grids import Grids
+from runner.study.work import load_work
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "own_robot"
 LAW = "gravity_pd"

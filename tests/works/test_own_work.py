@@ -10,11 +10,11 @@ from runner.base.errors import RunnerError
 from runner.base.paths import example_work_dir
 from runner.cli import dispatch
 from runner.report.document import Table
+from runner.study.check import problems
+from runner.study.names import find_work, work_names
+from runner.study.new import write_new
+from runner.study.work import load_work
 from runner.sweeps.execution import run
-from runner.works.check import problems
-from runner.works.names import find_work, work_names
-from runner.works.new import write_new
-from runner.works.work import load_work
 
 ABOUT = "title: T\nsource: S\nabstract: A\nchapters: [one.md]\n"
 RUNS = """\
@@ -164,7 +164,7 @@ def test_code_that_cannot_be_imported_is_told(tmp_path, made):
 
 
 def test_a_run_that_was_not_made_leaves_its_chapter_out(tmp_path, made):
-    from runner.reporting.job import Made
+    from runner.study.job import Made
 
     runs = Made({name: each for name, each in made.items() if name != "goal/slow/0.1"}, {"goal/slow/0.1": "cut short"})
     _, (section,) = read(a_work(tmp_path / "paper"), runs)

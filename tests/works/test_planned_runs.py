@@ -2,8 +2,8 @@
 
 import pytest
 
-from runner.works.names import work_names
-from runner.works.work import load_work
+from runner.study.names import work_names
+from runner.study.work import load_work
 
 SOME = {
     "thesis": {

@@ -7,11 +7,11 @@ import numpy as np
 from runner.base.quantities import number
 from runner.report.document import Block, Section, Table, Text
 from runner.report.words import in_words
-from runner.reporting.prose.patterns import found
 from runner.store import Run
 from runner.studies.benchmark.cells import UNTUNED, tuned
 from runner.studies.benchmark.figures import any_origin, error_words, ratio
 from runner.studies.benchmark.made import ARMS, CONDITIONS, QUESTIONS, all_cells, arms_of, laws_of
+from runner.study.prose.patterns import found
 from runner.sweeps.differing import entries
 
 _MODEL = "mass matrix, Coriolis and gravity terms"

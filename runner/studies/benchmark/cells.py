@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.errors import RunnerError
-from runner.reporting.job import Made
-from runner.reporting.prose.patterns import found
 from runner.store import Run
 from runner.studies.benchmark.leads import Entry, FloatArray, Lead, leads
-from runner.works.alike import difference, setting
+from runner.study.alike import difference, setting
+from runner.study.job import Made
+from runner.study.prose.patterns import found
 
 UNTUNED = ("untuned",)
 """The gains that follow from the arm's bandwidth."""

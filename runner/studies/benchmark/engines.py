@@ -9,11 +9,11 @@ from runner.base.quantities import number
 from runner.report.document import Table
 from runner.report.figures import origin
 from runner.report.words import PLANT, in_words
-from runner.reporting.measured import Measured
-from runner.reporting.prose.patterns import found
 from runner.store import Run
 from runner.studies.benchmark.cells import Cell, cells
 from runner.studies.benchmark.made import CONDITIONS
+from runner.study.measured import Measured
+from runner.study.prose.patterns import found
 
 _ARM = "macro"
 _ENGINE = "engine"

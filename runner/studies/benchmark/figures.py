@@ -9,12 +9,12 @@ from runner.report.charts.figure import Map, Panel, Series
 from runner.report.document import Curves, Maps, Origin, Table, Text
 from runner.report.figures import origin
 from runner.report.words import in_words
-from runner.reporting.measured import Measured
-from runner.reporting.prose.patterns import found
 from runner.store import Run
 from runner.studies.benchmark.cells import ROUND, UNTUNED, Cell, tuned
 from runner.studies.benchmark.leads import Entry, FloatArray, Lead
 from runner.studies.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, laws_of, one_cell, turned
+from runner.study.measured import Measured
+from runner.study.prose.patterns import found
 
 _IN_A_TABLE = 4  # arms
 _NAMED = 5  # tied laws that are named

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from runner.reporting.measured import Measured
 from runner.store import Run
 from runner.studies.benchmark.made import all_cells, arms_of
+from runner.study.measured import Measured
 
 
 def said_again(runs: Mapping[str, Run]) -> Measured:

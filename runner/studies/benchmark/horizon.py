@@ -6,11 +6,11 @@ import numpy as np
 
 from runner.report.document import Table
 from runner.report.words import in_words
-from runner.reporting.measured import Measured
 from runner.store import Run
 from runner.studies.benchmark.cells import ROUND, Cell
 from runner.studies.benchmark.figures import answer, any_origin, error_words
 from runner.studies.benchmark.made import ARMS, CHANGES, CONDITIONS, LATER, all_cells, arms_of, turned
+from runner.study.measured import Measured
 
 _FIRST_TUNING = ("1",)
 

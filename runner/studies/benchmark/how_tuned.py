@@ -11,7 +11,7 @@ from runner.studies.benchmark.by_law import keys_of
 from runner.studies.benchmark.cells import UNTUNED, tuned
 from runner.studies.benchmark.figures import any_origin
 from runner.studies.benchmark.made import ARMS, QUESTIONS, arms_of, laws_of
-from runner.works.tunings import Ranges, key_of
+from runner.study.tunings import Ranges, key_of
 
 
 def at_ends(runs: Mapping[str, Run], ranges: Mapping[str, Ranges], caption: str) -> Table | Text:

@@ -8,12 +8,12 @@ from scipy.optimize import brentq
 from runner.report.charts.figure import Map
 from runner.report.document import Maps
 from runner.report.words import in_words
-from runner.reporting.measured import Measured
-from runner.reporting.prose.patterns import found
 from runner.store import Run
 from runner.studies.benchmark.cells import UNTUNED, tuned
 from runner.studies.benchmark.figures import any_origin, ratio, typical
 from runner.studies.benchmark.made import ARMS, CONDITIONS, arms_of, laws_of, one_cell
+from runner.study.measured import Measured
+from runner.study.prose.patterns import found
 
 _LIMITED = {"limits_150": 1.5, "limits_110": 1.1, "limits_80": 0.8}
 

@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 
 from runner.report.answers import SHARE
 from runner.report.words import in_words
-from runner.reporting.job import LeftOutError, Made
-from runner.reporting.prose.patterns import found
 from runner.store import Run
 from runner.studies.benchmark.cells import ALL_SEEDS, ROUND, Cell, cells
+from runner.study.job import LeftOutError, Made
+from runner.study.prose.patterns import found
 
 ARMS = {
     "macro": "Macro",

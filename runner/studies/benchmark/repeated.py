@@ -8,10 +8,10 @@ from runner.base.quantities import quantity
 from runner.report.document import Table
 from runner.report.figures import origin
 from runner.report.words import in_words
-from runner.reporting.measured import Measured
-from runner.reporting.prose.patterns import found
 from runner.store import Run
 from runner.studies.benchmark.made import ARMS, CONDITIONS
+from runner.study.measured import Measured
+from runner.study.prose.patterns import found
 
 _METRIC = "rms_tracking_error_last_period"
 

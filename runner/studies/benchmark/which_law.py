@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 
 from runner.report.words import in_words
-from runner.reporting.measured import Measured
 from runner.store import Run
 from runner.studies.benchmark.cells import UNTUNED
 from runner.studies.benchmark.figures import ratio
 from runner.studies.benchmark.made import ARMS, CONDITIONS, QUESTIONS, arms_of, one_cell
+from runner.study.measured import Measured
 
 
 def times(runs: Mapping[str, Run], question: str, condition: str, law: str, other: str, *arms: str) -> list[Measured]:

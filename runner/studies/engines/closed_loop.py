@@ -5,10 +5,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.reporting.measured import Measured
-from runner.reporting.prose.patterns import found
 from runner.store import Run
 from runner.studies.engines.figures import measured, tip_distance, tracking_error
+from runner.study.measured import Measured
+from runner.study.prose.patterns import found
 
 
 def plant_step(run: Run) -> float:

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 
 from runner.base.quantities import number
-from runner.reporting.measured import Measured
-from runner.reporting.run_values import apart, median
 from runner.store import Run
+from runner.study.measured import Measured
+from runner.study.run_values import apart, median
 
 Told = Callable[..., float | None]
 

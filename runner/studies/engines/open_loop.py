@@ -3,10 +3,10 @@
 import math
 from collections.abc import Callable, Mapping
 
-from runner.reporting.measured import Measured
-from runner.reporting.prose.patterns import found
 from runner.store import Run
 from runner.studies.engines.figures import measured, share_of, tip_distance
+from runner.study.measured import Measured
+from runner.study.prose.patterns import found
 
 
 def order(coarse: Run, fine: Run, reference: Run) -> float:

@@ -10,8 +10,6 @@ from runner.base.quantities import number
 from runner.plants.compiled_motion import CompiledStep
 from runner.plants.plant import FloatArray
 from runner.report.figures import model_of
-from runner.reporting.measured import Measured
-from runner.reporting.prose.patterns import found
 from runner.robots import RobotModel
 from runner.store import Run
 from runner.studies.engines.figures import arm_words
@@ -24,6 +22,8 @@ from runner.studies.engines.side_by_side import (
     random_states,
     share,
 )
+from runner.study.measured import Measured
+from runner.study.prose.patterns import found
 
 _TEXTBOOK = "planar"
 _LENGTH, _MASS, _RADIUS = 1.0, 1.0, 0.03  # of each of its links, in m and kg

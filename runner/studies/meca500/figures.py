@@ -13,10 +13,10 @@ from runner.base.quantities import number, quantity, with_powers
 from runner.controllers.force.admittance_filter import Admittance
 from runner.report.document import FloatArray
 from runner.report.figures import AXES, columns, joint_columns, model_of
-from runner.reporting.measured import ROUNDING, Measured
-from runner.reporting.prose.tables import Column
 from runner.robots import RobotModel
 from runner.store import Calibration, Run
+from runner.study.measured import ROUNDING, Measured
+from runner.study.prose.tables import Column
 
 Calibrations = Mapping[str, Any]  # of Calibration
 Runs = Mapping[str, Run]

@@ -6,11 +6,11 @@ import numpy as np
 
 from runner.controllers.force.admittance_filter import AXES
 from runner.report.document import FloatArray, Panel, Series
-from runner.reporting.run_values import clock
 from runner.store import Run
 from runner.studies.meca500.admittance_response import ComplexArray, frequency_response, sampled_frequency_response
 from runner.studies.meca500.figures import Runs, displacement, law_of, loads_of, once, servo_compliance
 from runner.studies.meca500.plan import FREQUENCIES, REPORTED, SINE_CASES
+from runner.study.run_values import clock
 
 _SETTLED = 0.6  # s, by which the transient has faded to 1e-4
 

@@ -9,12 +9,12 @@ from runner.calibration.orientations import check_orientations, force_matrix, mo
 from runner.calibration.procedures.gravity import even_postures
 from runner.report.document import FloatArray, Panel, Series, Table
 from runner.report.figures import joint_columns, origin
-from runner.reporting.measured import ROUNDING
-from runner.reporting.prose.patterns import Found, found
-from runner.reporting.prose.tables import Column
 from runner.robots import RobotModel
 from runner.store import Calibration
 from runner.studies.meca500.figures import Calibrations, Runs, degrees, error, flange_of, predicted, refusal, wrenches
+from runner.study.measured import ROUNDING
+from runner.study.prose.patterns import Found, found
+from runner.study.prose.tables import Column
 
 _EXACT = "gravity/noise/0"
 _ORIENTATIONS = 300

@@ -8,10 +8,10 @@ import numpy as np
 from runner.base.quantities import number
 from runner.report.document import FloatArray
 from runner.report.figures import joint_columns, model_of
-from runner.reporting.measured import ROUNDING
-from runner.reporting.run_values import median
 from runner.store import Run
 from runner.studies.meca500.figures import Runs
+from runner.study.measured import ROUNDING
+from runner.study.run_values import median
 
 _COUNT = 1000
 _LIGHT = 0.1  # kg and N m, below which a share means little

@@ -14,11 +14,11 @@ from runner.base.expressions.parser import parse
 from runner.base.quantities import number
 from runner.report.document import Table
 from runner.report.figures import model_of
-from runner.reporting.measured import Measured
 from runner.robots.denavit_hartenberg import modified_frames
 from runner.robots.model import RobotModel
 from runner.studies.meca500.equations.truths.meca500 import TABLE
 from runner.studies.meca500.figures import Runs
+from runner.study.measured import Measured
 
 _COUNT, _SAMPLES = 1000, 200
 _MILLIMETRES = 1000.0

@@ -6,9 +6,9 @@ import numpy as np
 
 from runner.report.document import Series
 from runner.report.figures import joint_columns, model_of
-from runner.reporting.run_values import clock
 from runner.store import Run
 from runner.studies.meca500.figures import Runs
+from runner.study.run_values import clock
 
 
 def joint_speeds(runs: Runs, run: str) -> list[Series]:

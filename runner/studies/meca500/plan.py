@@ -7,10 +7,10 @@ import numpy as np
 
 from runner.controllers.force.admittance_filter import Admittance
 from runner.controllers.force.admittance_stability import stiffest_wall
-from runner.reporting.job import Job, Jobs
 from runner.robots import RobotModel, find_urdf, read_urdf
-from runner.works.grid import Overrides
-from runner.works.grids import FILE, Grids
+from runner.study.grid import Overrides
+from runner.study.grids import FILE, Grids
+from runner.study.job import Job, Jobs
 
 GRIDS = Grids(Path(__file__).with_name(FILE))
 REPORTED = GRIDS.value("step", "reported")  # s, between two reports of the real controller

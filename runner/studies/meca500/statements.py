@@ -7,8 +7,8 @@ from runner.audit.audit import audit
 from runner.report.claim import EquationVerdict
 from runner.report.claims import Verdict, load_statements
 from runner.report.document import Verdicts
-from runner.reporting.claims import judged_statements
-from runner.works.chapters import Concluded
+from runner.study.chapters import Concluded
+from runner.study.claims import judged_statements
 
 _SAMPLES = 200
 _LEGEND = (

@@ -9,10 +9,10 @@ from runner.base.quantities import quantity
 from runner.controllers.force.admittance_filter import AXES
 from runner.report.document import FloatArray, Panel, Series
 from runner.report.figures import joint_columns, model_of
-from runner.reporting.run_values import clock
 from runner.store import Run
 from runner.studies.meca500.admittance_response import step_response
 from runner.studies.meca500.figures import Runs, added_inertia, displacement, law_of, loads_of, once, servo_compliance
+from runner.study.run_values import clock
 
 _SHOWN = ("kinematic, 1 ms", "kinematic, 16.7 ms", "servo, 1 ms", "servo, 16.7 ms")
 

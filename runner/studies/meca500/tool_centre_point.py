@@ -5,11 +5,11 @@ import pinocchio as pin
 
 from runner.calibration import consistency, identify_tool_centre_point, joint_deviation, pose_covariances
 from runner.report.document import FloatArray, Table
-from runner.reporting.measured import Measured
-from runner.reporting.prose.patterns import found
 from runner.sensing.wrench import cross_matrix
 from runner.store import Calibration
 from runner.studies.meca500.figures import Calibrations, fit, flange_of, predicted, refusal
+from runner.study.measured import Measured
+from runner.study.prose.patterns import found
 
 _KIND = "tool_centre_point"
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from runner.calibration.tool_direction import alignment, alignment_angles
-from runner.reporting.measured import Measured
 from runner.studies.meca500.figures import Calibrations, error
+from runner.study.measured import Measured
 
 _INSERTED = 0.02  # m, about the length of a root canal file
 

@@ -7,14 +7,14 @@ from runner.base.quantities import number
 from runner.controllers.force.admittance_filter import AXES, discretise
 from runner.report.document import FloatArray, Series, Table
 from runner.report.figures import joint_columns, origin
-from runner.reporting.measured import Measured
-from runner.reporting.prose.patterns import found
-from runner.reporting.run_values import values
 from runner.sensing.force_torque import AXES as SENSOR_AXES
 from runner.sensing.force_torque import ForceTorqueConfig
 from runner.sensing.wrench import wrench_transform
 from runner.store import Run
 from runner.studies.meca500.figures import Runs, displacement, fit, law_of, wrenches
+from runner.study.measured import Measured
+from runner.study.prose.patterns import found
+from runner.study.run_values import values
 
 
 def reaction(run: Run) -> dict[str, float]:

@@ -7,7 +7,6 @@ import numpy as np
 from runner.base.quantities import number, quantity
 from runner.report.document import Curves, Origin, Panel, Series, Table
 from runner.report.figures import origin
-from runner.reporting.measured import Measured
 from runner.store import Run
 from runner.studies.precision.tried import (
     COMPILED,
@@ -20,6 +19,7 @@ from runner.studies.precision.tried import (
     order,
     solutions,
 )
+from runner.study.measured import Measured
 
 _ARMS = {"macro": "Macro", "combined": "Mini on Macro", "xarm7": "xArm7"}
 _CASES = {"free": "free", "control": "under control"}

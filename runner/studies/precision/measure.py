@@ -28,8 +28,8 @@ from runner.store import provenance
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
 from runner.studies.precision.exact import Adaptive, Collocation, energy_drift
-from runner.works.grids import FILE as RUNS
-from runner.works.grids import Grids
+from runner.study.grids import FILE as RUNS
+from runner.study.grids import Grids
 
 FILE = Path("benchmarks", "precision.json")
 PLANT = "Runge-Kutta"

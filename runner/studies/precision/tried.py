@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from runner.report.figures import columns, joint_columns
-from runner.reporting.job import MissingError
-from runner.reporting.prose.patterns import found
 from runner.store import Run
 from runner.studies.precision.measure import FILE, PLANT, load
+from runner.study.job import MissingError
+from runner.study.prose.patterns import found
 
 BY_PINOCCHIO, COMPILED = "Runge-Kutta, Pinocchio", "Runge-Kutta, compiled"
 PLANTS = ("PyBullet", "MuJoCo", COMPILED, BY_PINOCCHIO)

@@ -7,8 +7,8 @@ import numpy as np
 from runner.report.charts import top_view
 from runner.report.document import FloatArray, Picture
 from runner.report.figures import columns, model_of, origin
-from runner.reporting.measured import Measured
 from runner.store import Run
+from runner.study.measured import Measured
 
 
 def from_above(runs: Mapping[str, Run], name: str, caption: str) -> Picture:

@@ -10,10 +10,10 @@ from runner.report.charts import block_diagram, control_steps
 from runner.report.document import Curves, Picture
 from runner.report.figures import origin
 from runner.report.figures_staged import macro_mini_targets
-from runner.reporting.job import PRESETS
-from runner.reporting.run_values import clock
 from runner.store import Run
 from runner.studies.thesis.folding import singular_value
+from runner.study.job import PRESETS
+from runner.study.run_values import clock
 
 _OF_COUPLED_LAWS = (
     *("coupling", "macro_target", "mini_reference_velocity", "wrist_rotation", "gravity_compensation", "feedforward"),

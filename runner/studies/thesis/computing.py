@@ -6,9 +6,9 @@ import numpy as np
 
 from runner.controllers.force.late_stability import delay_limit, miss_limit, pattern_limit
 from runner.report.document import Series
-from runner.reporting.prose.patterns import found
-from runner.reporting.run_values import clock
 from runner.store import Run
+from runner.study.prose.patterns import found
+from runner.study.run_values import clock
 
 _TOP = 1.0  # m, of the lines in figures
 _LOW = 1e-5

@@ -10,8 +10,8 @@ import pinocchio as pin
 
 from runner.report.document import FloatArray
 from runner.report.figures import joint_columns, model_of
-from runner.reporting.run_values import clock
 from runner.store import Run
+from runner.study.run_values import clock
 
 _MINI = slice(3, 6)
 _JOINTS = {"macro": slice(0, 3), "mini": _MINI}

@@ -5,11 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from runner.report.document import Series
-from runner.reporting.measured import Measured
-from runner.reporting.prose.patterns import found
-from runner.reporting.run_values import values
 from runner.store import Run
 from runner.studies.thesis.figures import printed
+from runner.study.measured import Measured
+from runner.study.prose.patterns import found
+from runner.study.run_values import values
 
 
 def printed_range(claim: int, low: float, high: float) -> list[Series]:

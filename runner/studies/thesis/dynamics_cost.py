@@ -8,10 +8,10 @@ import numpy as np
 
 from runner.base.quantities import number
 from runner.report.document import Curves, Panel, Series, Table
-from runner.reporting.job import MissingError
-from runner.reporting.measured import Measured
 from runner.store import Run
 from runner.studies.thesis.measure import FILE, TERMS, load
+from runner.study.job import MissingError
+from runner.study.measured import Measured
 
 
 def measured_cost(runs: Mapping[str, Run], fitted: int) -> dict[str, Any]:

@@ -8,8 +8,8 @@ from runner.report.claims import judge, load_claims
 from runner.report.metric_titles import title
 from runner.report.plant_step import describe_plant, percent
 from runner.report.words import PLANT
-from runner.reporting.run_values import median
 from runner.store import Run
+from runner.study.run_values import median
 
 _METRICS = {"settling_time": "settles after", "steady_state_error": "rests within", "max_axis_error": "strays by"}
 

@@ -12,15 +12,15 @@ from runner.report.claims import load_claims
 from runner.report.document import Block, Curves, FloatArray, Picture, Table, Text
 from runner.report.figures import columns, joint_columns, model_of, origin
 from runner.report.words import PRESET, in_words
-from runner.reporting.measured import Measured
-from runner.reporting.prose.patterns import found
-from runner.reporting.run_values import median
 from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.store import Run
 from runner.studies.thesis.compared import Compared
 from runner.studies.thesis.engines import parting, step_of_both
 from runner.studies.thesis.equations.truths.thesis_printed import compare
 from runner.studies.thesis.takeaways import takeaway
+from runner.study.measured import Measured
+from runner.study.prose.patterns import found
+from runner.study.run_values import median
 
 _MEANINGS = {
     "M": ("mass matrix, (3.17)", "kg m²"),

@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 from runner.report.document import FloatArray, Series
 from runner.report.figures import columns, joint_columns, model_of
-from runner.reporting.prose.patterns import found
-from runner.reporting.run_values import clock
 from runner.robots.cantilever import frequency_errors
 from runner.robots.modes import Mode
 from runner.store import Run
 from runner.studies.thesis.flexible_map import stable_and_not
+from runner.study.prose.patterns import found
+from runner.study.run_values import clock
 from runner.trajectories.impulses import zero_vibration
 
 _MACRO = 3  # its joints

@@ -10,11 +10,11 @@ import numpy as np
 from runner.base.quantities import number, quantity, ranged
 from runner.report.document import FloatArray
 from runner.report.figures import joint_columns, model_of
-from runner.reporting.measured import ROUNDING
-from runner.reporting.run_values import clock
 from runner.store import Run
 from runner.studies.thesis.figures import at_rest
 from runner.studies.thesis.left_out_gravity import missing_acceleration
+from runner.study.measured import ROUNDING
+from runner.study.run_values import clock
 
 _PARTED = 1.0  # rad
 

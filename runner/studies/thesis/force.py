@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from runner.controllers.force.force_stability import force_loop_limit
 from runner.report.document import FloatArray, Series
 from runner.report.figures import columns, joint_columns, model_of
-from runner.reporting.prose.patterns import found
-from runner.reporting.run_values import clock, delay_of
 from runner.robots.effective_mass import mass_along, tip_mobility
 from runner.store import Run
+from runner.study.prose.patterns import found
+from runner.study.run_values import clock, delay_of
 
 _RISE = 3.3579  # of omega_c times the time from 10 % to 90 % of a critically damped step
 _BOUNCES = 0.05  # of the force that is asked for, from which it differs at the end

@@ -10,11 +10,11 @@ from runner.report.document import Curves, Panel, Series, Table
 from runner.report.figures import origin
 from runner.report.sweep.intervals import at_texts
 from runner.report.words import PRESET
-from runner.reporting.measured import Measured
-from runner.reporting.prose.patterns import found
 from runner.statistics.share import count_share
 from runner.store import Run
 from runner.studies.thesis.judged import DRAWN, Judged, judge_by_seeds
+from runner.study.measured import Measured
+from runner.study.prose.patterns import found
 
 _RUNS = "sure/{figure}/{preset}/{seeds}"
 _BESIDE = 0.12  # of a claim's place, so that the bars of both presets are seen

@@ -10,9 +10,9 @@ from runner.metrics.summary import over_repetitions
 from runner.report.claims import PublishedClaim, Verdict
 from runner.report.claims.judging import compared_with, simulated_by, verdict_on
 from runner.report.document import FloatArray
-from runner.reporting.claims import run_name
-from runner.reporting.run_values import median
 from runner.store import Run
+from runner.study.claims import run_name
+from runner.study.run_values import median
 
 DRAWN = 2000
 """Groups of seeds drawn with replacement."""

@@ -6,8 +6,8 @@ import numpy as np
 
 from runner.report.document import FloatArray
 from runner.report.figures import AXES, columns
-from runner.reporting.run_values import clock
 from runner.store import Run
+from runner.study.run_values import clock
 
 _REST = 0.5  # s, at the end of a run
 

@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping
 
-from runner.reporting.measured import Measured
-from runner.reporting.prose.patterns import found
-from runner.reporting.run_values import measured
 from runner.store import Run
+from runner.study.measured import Measured
+from runner.study.prose.patterns import found
+from runner.study.run_values import measured
 
 
 def ratio(run: Run) -> float:

@@ -5,9 +5,9 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from runner.report.figures import joint_columns
-from runner.reporting.measured import Measured
-from runner.reporting.prose.patterns import found
 from runner.store import Run
+from runner.study.measured import Measured
+from runner.study.prose.patterns import found
 
 
 def final_difference(run: Run, reference: Run) -> float:

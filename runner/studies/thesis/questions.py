@@ -6,9 +6,9 @@ import numpy as np
 
 from runner.report.figures import joint_columns, model_of
 from runner.report.words import PRESET
-from runner.reporting.job import PRESETS
-from runner.reporting.run_values import cell
 from runner.store import Run
+from runner.study.job import PRESETS
+from runner.study.run_values import cell
 
 _REST = "steady_state_error"
 _ARMS = (

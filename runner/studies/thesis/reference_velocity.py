@@ -5,9 +5,9 @@ import pinocchio as pin
 
 from runner.report.document import FloatArray
 from runner.report.figures import columns, joint_columns, model_of
-from runner.reporting.prose.signals import largest_of
-from runner.reporting.run_values import clock, median
 from runner.store import Run
+from runner.study.prose.signals import largest_of
+from runner.study.run_values import clock, median
 
 
 def speed_seen(run: Run) -> FloatArray:

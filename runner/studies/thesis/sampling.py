@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from runner.report.figures import columns
-from runner.reporting.measured import Measured
 from runner.store import Run
+from runner.study.measured import Measured
 
 
 def growth(runs: Mapping[str, Run], name: str, words: str) -> Measured:

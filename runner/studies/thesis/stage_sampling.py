@@ -8,10 +8,10 @@ import numpy as np
 from runner.base.quantities import number
 from runner.report.document import Block, FloatArray, Table, Text
 from runner.report.figures import columns, origin
-from runner.reporting.measured import Condition, Measured
-from runner.reporting.prose.patterns import found
-from runner.reporting.run_values import clock, failures
 from runner.store import Run
+from runner.study.measured import Condition, Measured
+from runner.study.prose.patterns import found
+from runner.study.run_values import clock, failures
 
 _FLOOR, _CEILING = 1e-13, 1e-2  # m, within which a decay or growth is exponential
 _STEP = 1e-3  # m, the goal step

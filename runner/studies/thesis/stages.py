@@ -8,10 +8,10 @@ import numpy as np
 from runner.controllers.force.force_stability import force_loop_limit
 from runner.report.document import FloatArray, Series
 from runner.report.figures import model_of
-from runner.reporting.run_values import median
 from runner.robots.effective_mass import tip_mobility
 from runner.store import Run
 from runner.studies.thesis.force import rise_time
+from runner.study.run_values import median
 
 _BANDWIDTH = float(np.sqrt(np.sqrt(2.0) - 1.0))  # over omega_c, of a critically damped loop, at -3 dB
 _POSTURES = 1000

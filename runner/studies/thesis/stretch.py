@@ -3,10 +3,10 @@
 import numpy as np
 
 from runner.report.figures import columns
-from runner.reporting.run_values import clock
 from runner.store import Run
 from runner.studies.thesis.figures import rest_of_way
 from runner.studies.thesis.left_out_gravity import missing_acceleration
+from runner.study.run_values import clock
 
 _SETTLED = 1e-3  # m, of the tip error, from where on the drift is measured
 _LONGEST = 0.5  # s, over which it is measured, before the reach is lost

@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 
 from runner.base.quantities import number, spread
-from runner.reporting.run_values import median
 from runner.store import Run
+from runner.study.run_values import median
 
 _ALIKE = 1.1  # ratio up to which two values are called the same
 _WORDS = {

@@ -9,9 +9,9 @@ import pinocchio as pin
 
 from runner.base.quantities import number
 from runner.report.figures import columns, joint_columns, model_of
-from runner.reporting.prose.signals import limit_margin
-from runner.reporting.run_values import clock, median, values
 from runner.store import Run
+from runner.study.prose.signals import limit_margin
+from runner.study.run_values import clock, median, values
 
 Told = TypeVar("Told")
 ROWS = {"position": 3, "pose": 6}  # of the Jacobian, by the tip's task

@@ -7,12 +7,12 @@ import numpy as np
 from runner.base.quantities import number
 from runner.report.document import FloatArray, Series
 from runner.report.figures import columns, joint_columns, model_of
-from runner.reporting.measured import Measured
-from runner.reporting.prose.patterns import called, found
-from runner.reporting.prose.reading import Signal, trace_of
-from runner.reporting.prose.signals import manipulability
-from runner.reporting.run_values import clock
 from runner.store import Run
+from runner.study.measured import Measured
+from runner.study.prose.patterns import called, found
+from runner.study.prose.reading import Signal, trace_of
+from runner.study.prose.signals import manipulability
+from runner.study.run_values import clock
 
 _ASIDE = [2, 4]  # the joints that lead the elbow out of the arm's vertical plane
 _ELBOW = 4  # the one of them that shows it

@@ -8,9 +8,9 @@ from scipy.optimize import minimize
 from runner.base.quantities import number
 from runner.report.document import Block, FloatArray, Notice, Series
 from runner.report.figures import columns, joint_columns, model_of
-from runner.reporting.prose.patterns import found
 from runner.store import Run
 from runner.studies.xarm7.figures import SHOULDER
+from runner.study.prose.patterns import found
 
 _PLANE = [1, 3, 5]  # the joints that turn in the arm's vertical plane
 _GRID = 12  # angles of each, where the search for the widest posture begins

@@ -7,8 +7,8 @@ import numpy as np
 from runner.report.charts import arm_motion
 from runner.report.document import FloatArray, Picture
 from runner.report.figures import columns, joint_columns, model_of, origin
-from runner.reporting.prose.reading import trace_of
 from runner.store import Run
+from runner.study.prose.reading import trace_of
 
 _STILLS = (0.0, 0.25, 0.5)  # of the period: at A, half way, at B
 

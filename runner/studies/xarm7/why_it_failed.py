@@ -9,13 +9,13 @@ import numpy as np
 from runner.base.quantities import above_rounding, number
 from runner.report.document import FloatArray, Series
 from runner.report.figures import joint_columns, model_of
-from runner.reporting.prose.patterns import found
-from runner.reporting.run_values import cell, median
 from runner.robots import RobotModel
 from runner.store import Run
 from runner.studies.xarm7.figures import ROWS, line_length, smallest_margin
 from runner.studies.xarm7.parts.xarm7_as_printed import PrintedJacobian
 from runner.studies.xarm7.printed_kinematics import random_postures
+from runner.study.prose.patterns import found
+from runner.study.run_values import cell, median
 
 _COUNT, _SEED = 1000, 7  # of the random postures
 _ZERO = 7  # palette index of singular values that are zero but for rounding

@@ -10,13 +10,13 @@ from runner.audit.audit import audit
 from runner.audit.verdict import VERDICTS
 from runner.commands import reproduce
 from runner.report.document import Document, Section
-from runner.reporting.expected_caveats import ExpectedCaveat
-from runner.reporting.findings import finding
-from runner.reporting.measured import Measured
+from runner.study.expected_caveats import ExpectedCaveat
+from runner.study.findings import finding
+from runner.study.making import make_all
+from runner.study.measured import Measured
+from runner.study.work import load_work
 from runner.sweeps import work as workers
 from runner.sweeps.lock import at_work
-from runner.works.making import make_all
-from runner.works.work import load_work
 
 FILES = {
     "work.yaml": "title: T\nsource: S\nabstract: A\nchapters: [one.md, two.md]\n",

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.reporting.job import Made, MissingError
-from runner.reporting.measured import Measured
-from runner.reporting.prose import read_chapter
-from runner.reporting.prose.blocks import metric, percent, to_digits
-from runner.reporting.prose.plots import over
-from runner.reporting.prose.signals import setting
-from runner.reporting.prose.tables import column, level, table
+from runner.study.job import Made, MissingError
+from runner.study.measured import Measured
+from runner.study.prose import read_chapter
+from runner.study.prose.blocks import metric, percent, to_digits
+from runner.study.prose.plots import over
+from runner.study.prose.signals import setting
+from runner.study.prose.tables import column, level, table
 from runner.sweeps.execution import run
 
 

@@ -14,8 +14,6 @@ from support.work_plans import FULL_ALONE
 from runner.base.errors import RunnerError
 from runner.commands.reproduce import _chosen, _Way
 from runner.report.formulas import faulty
-from runner.reporting.findings import findings
-from runner.reporting.prose.trying import never_failing
 from runner.studies.benchmark import engines
 from runner.studies.benchmark.cells import cells
 from runner.studies.benchmark.figures import said
@@ -24,7 +22,9 @@ from runner.studies.benchmark.horizon import grown
 from runner.studies.benchmark.how_tuned import ends_of
 from runner.studies.benchmark.late_and_limited import bearable
 from runner.studies.benchmark.made import ARMS, CONDITIONS, turned
-from runner.works.work import load_work
+from runner.study.findings import findings
+from runner.study.prose.trying import never_failing
+from runner.study.work import load_work
 
 WORK = load_work("benchmark")
 METRIC = "rms_tracking_error"

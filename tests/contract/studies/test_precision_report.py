@@ -15,12 +15,12 @@ from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.plants.rk4 import Rk4
 from runner.report.document import Table
-from runner.reporting.job import MissingError
 from runner.robots.model import RobotModel
 from runner.store import Run
 from runner.studies.precision import measure, tried
 from runner.studies.precision.exact import Adaptive, Collocation, energy_drift
-from runner.works.work import load_work
+from runner.study.job import MissingError
+from runner.study.work import load_work
 
 WORK = load_work("precision")
 LENGTH, ANGLE = 0.5, 2.0  # m, rad from hanging

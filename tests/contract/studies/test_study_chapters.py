@@ -11,9 +11,9 @@ from support.work_plans import FULL_ALONE, WORKS, chapter_files
 from runner.report import outline
 from runner.report.document import Document, Section
 from runner.report.formulas import faulty
-from runner.reporting.prose.trying import never_failing
 from runner.store import Run
-from runner.works.work import load_work
+from runner.study.prose.trying import never_failing
+from runner.study.work import load_work
 
 FILES = {study: [file for file in chapter_files(study) if file not in FULL_ALONE] for study in WORKS}
 NEEDS = {"engines": pytest.mark.bullet}  # its chapters load arms into PyBullet

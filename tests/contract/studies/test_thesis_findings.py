@@ -8,9 +8,9 @@ from support.study_sections import every_run
 
 from runner.report.document import Document, Section
 from runner.report.formulas import faulty
-from runner.reporting.findings import findings
-from runner.reporting.measured import Measured
 from runner.studies.thesis import dynamics_cost, figures, stage_sampling
+from runner.study.findings import findings
+from runner.study.measured import Measured
 
 
 @pytest.mark.parametrize(("claim", "ends"), [(3, (0.1, 0.15)), (4, (0.007, 0.044))])

@@ -12,7 +12,7 @@ from runner.report.places import Places
 from runner.report.render import write_report
 from runner.report.tally import tallies
 from runner.report.words import PRESET
-from runner.reporting.job import PRESETS
+from runner.study.job import PRESETS
 
 ONCE = (
     *("2.3", "2.4", "3.1", "3.4", "3.6", "3.7", "3.8", "4.1", "4.3"),

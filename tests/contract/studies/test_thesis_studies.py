@@ -11,11 +11,11 @@ from support.study_sections import every_run, texts
 from runner.report import formulas
 from runner.report.document import Document, Section, Table
 from runner.report.figures import torque_and_error
-from runner.reporting.checklist import load_checklist
-from runner.reporting.job import MissingError
 from runner.store import Run
 from runner.studies.thesis import measure
-from runner.works.work import load_work
+from runner.study.checklist import load_checklist
+from runner.study.job import MissingError
+from runner.study.work import load_work
 
 STUDIES = ("coupling", "mass_ratio", "stage_sampling", "folding", "stretch", "reference_velocity", "bandwidth", "turns",
            "whole_body")  # fmt: skip

@@ -10,10 +10,10 @@ from support.thin_plans import make_calibrations, make_runs
 from support.work_plans import RECORDED, meca500_calibrations, meca500_jobs, planned, recorded_jobs, thesis_jobs
 
 from runner.report.formulas import faulty
-from runner.reporting.findings import findings
-from runner.reporting.prose.trying import never_failing
 from runner.store import Run
-from runner.works.work import load_work
+from runner.study.findings import findings
+from runner.study.prose.trying import never_failing
+from runner.study.work import load_work
 
 # True of real numbers, which take minutes; from runs cut to a moment findings do not hold.
 pytestmark = [pytest.mark.slow, pytest.mark.bullet]

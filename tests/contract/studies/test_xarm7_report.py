@@ -9,10 +9,10 @@ from runner.report import outline
 from runner.report.document import Curves, Notice, Picture, Playback, Section, Table, Text, Verdicts
 from runner.report.formulas import faulty
 from runner.report.render import write_report
-from runner.reporting.findings import findings
-from runner.reporting.job import PRESETS
-from runner.works.chapters import Chapters
-from runner.works.work import load_work
+from runner.study.chapters import Chapters
+from runner.study.findings import findings
+from runner.study.job import PRESETS
+from runner.study.work import load_work
 
 STUDIES = ("why_it_failed", "null_space", "rates", "servo", "payload", "torque_level")
 TITLES = {"why_it_failed": "Why the second part failed"}  # of those that the checklist names

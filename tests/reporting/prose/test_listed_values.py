@@ -5,12 +5,12 @@ import pytest
 from support.made_up_runs import made_up_run
 
 from runner.base.errors import RunnerError
-from runner.reporting.measured import Measured
-from runner.reporting.prose import read_chapter, trying
-from runner.reporting.prose.blocks import config, count, each
-from runner.reporting.prose.plots import over, panel
-from runner.reporting.prose.signals import moved, part, scaled, setting
-from runner.reporting.prose.tables import listing
+from runner.study.measured import Measured
+from runner.study.prose import read_chapter, trying
+from runner.study.prose.blocks import config, count, each
+from runner.study.prose.plots import over, panel
+from runner.study.prose.signals import moved, part, scaled, setting
+from runner.study.prose.tables import listing
 
 
 def pressed(stiffness, failed=False):

@@ -5,10 +5,10 @@ import pytest
 from support.made_up_runs import made_up_metric, made_up_run
 
 from runner.base.errors import RunnerError
-from runner.reporting.job import Made, MissingError
-from runner.reporting.measured import Measured
-from runner.reporting.prose import blocks, plots, signals, tables
-from runner.reporting.prose.patterns import found
+from runner.study.job import Made, MissingError
+from runner.study.measured import Measured
+from runner.study.prose import blocks, plots, signals, tables
+from runner.study.prose.patterns import found
 
 
 def run_of(value, failed=False, ends=None, unit="m"):

@@ -4,13 +4,13 @@ import pytest
 from support.made_up_runs import made_up_metric, made_up_run
 
 from runner.base.errors import RunnerError
-from runner.reporting.measured import Measured
-from runner.reporting.prose import read_chapter
-from runner.reporting.prose.blocks import each, named
-from runner.reporting.prose.patterns import found
-from runner.reporting.prose.plots import line
-from runner.reporting.prose.tables import listing
-from runner.reporting.prose.trying import never_failing
+from runner.study.measured import Measured
+from runner.study.prose import read_chapter
+from runner.study.prose.blocks import each, named
+from runner.study.prose.patterns import found
+from runner.study.prose.plots import line
+from runner.study.prose.tables import listing
+from runner.study.prose.trying import never_failing
 
 RUNS = dict.fromkeys(["line/a/1", "line/a/2", "line/b/1", "line/c/1", "circle/a/1"])
 

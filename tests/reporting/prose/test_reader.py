@@ -4,8 +4,8 @@ import pytest
 
 from runner.report.document import Items, Table, Text
 from runner.report.markup import linked, marked
-from runner.reporting.measured import Measured
-from runner.reporting.prose import ProseError, read_chapter
+from runner.study.measured import Measured
+from runner.study.prose import ProseError, read_chapter
 
 TABLE = Table("Caption", ["a"], [["1"]])
 NAMES = {

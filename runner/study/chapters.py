@@ -1,0 +1,207 @@
+"""The chapters of a work from its files: Markdown with the work's own functions, or Python where much is computed."""
+
+import shlex
+from collections import ChainMap
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from inspect import signature
+from pathlib import Path
+from typing import Any
+
+from runner.audit.audit import audit
+from runner.audit.sources import Source
+from runner.base import progress
+from runner.base.errors import RunnerError
+from runner.base.limits import CHAPTER, read_text
+from runner.base.progress.stages import CHAPTERS
+from runner.report.audit.report import rows
+from runner.report.claim import Claim
+from runner.report.claims import CLAIMS, FACTOR, Verdict, load_claims
+from runner.report.document import Equations, Origin, Section, Verdicts
+from runner.report.outline import numbered
+from runner.store import Calibration, Run
+from runner.study.about import About, Part
+from runner.study.claims import judged_claims, legend
+from runner.study.code import Code, public_functions
+from runner.study.findings import Finding
+from runner.study.grids import Grids
+from runner.study.job import Made
+from runner.study.measured import Measured
+from runner.study.prose import blocks, plots, read_chapter, signals, tables
+from runner.study.prose.reader import Reading
+from runner.study.work_report import parts
+
+SHARED = (blocks, signals, tables, plots)
+"""The modules whose functions every chapter may call."""
+_FIGURES = "figures"  # the module whose functions all chapters of a work may call
+_SECTION = "section"  # the function of a chapter that is Python
+
+Concluded = Callable[[str], tuple[list[Finding], Mapping[str, Any]]]
+"""Gives the findings of a chapter in Markdown, and the values to which it gives a name, by that."""
+
+
+class Chapters:
+    """The chapters of a work, made from its stored runs and calibrations; each file is read once.
+
+    Args:
+        folder: The work's folder.
+        about: What work.yaml says.
+        code: Its Python.
+        grids: Its runs.yaml.
+        command: What `runner reproduce` takes for it: its name or its folder.
+        runs: The runs by name.
+        calibrations: The calibrations by name.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        about: About,
+        code: Code,
+        grids: Grids,
+        command: str,
+        runs: Mapping[str, Run],
+        calibrations: Mapping[str, Calibration],
+    ) -> None:
+        self._folder, self._about, self._code, self._grids = folder, about, code, grids
+        self._command = shlex.join(["runner", "reproduce", command])
+        self._runs, self._calibrations = runs, calibrations
+        self._readings: dict[str, Reading] = {}
+
+    def sections(self) -> list[Section]:
+        """Return all chapters; one that needs what was not made says so in its place."""
+        progress.begin(CHAPTERS, None, _count(self._about.chapters), "chapters")
+        return self._each(self._about.chapters)
+
+    def concluded(self, name: str) -> tuple[list[Finding], Mapping[str, Any]]:
+        """Return the findings of a chapter in Markdown, and the values to which it gives a name, by that."""
+        made = self.reading(name)
+        everything = [block for each in numbered([made.section]) for block in each.section.blocks]
+        return [block for block in everything if isinstance(block, Finding)], made.values.named
+
+    def reading(self, stem: str) -> Reading:
+        """Return what the file of a chapter in Markdown makes.
+
+        Args:
+            stem: Name of the file without its ending.
+
+        Raises:
+            ProseError: if it cannot be read.
+            MissingError: if it needs what was not made.
+        """
+        if stem not in self._readings:
+            file = f"{stem}.md"
+            values = self._code.values(_FIGURES) + self._code.values(stem)
+            self._readings[stem] = read_chapter(
+                f"{self._folder.name}/{file}", self._text(file), self.names(stem), values
+            )
+        return self._readings[stem]
+
+    def names(self, stem: str) -> dict[str, Any]:
+        """Return what a chapter in Markdown may call and read, by name.
+
+        These are the shared blocks, which find calibrations among the runs; the public functions of `figures.py` and of
+        the module that bears the chapter's name; and what work.yaml, runs.yaml and claims.yaml hold. A function whose
+        first argument is `runs`, `calibrations` or `concluded` gets the runs, the calibrations, or the method above.
+        """
+        presets, tunings = self._about.presets, self._grids.tunings
+        found: dict[str, Any] = {
+            "level_of": self._grids.level,
+            "value": self._grids.value,
+            "ranges": {name: {key: [*own] for key, own in each.ranges.items()} for name, each in tunings.items()},
+            "presets": presets,
+            "claims": self._claims,
+            "claims_that": self._claims_that,
+            "verdicts": lambda caption: Verdicts(caption, self._claims(), self._legend()),
+            "verdict_rule": self._legend(),
+            "verdict_factor": FACTOR,
+            "equations": self._equations,
+        }
+        for module in SHARED:
+            found |= _filled(public_functions(module), {"runs": self._stored()})
+        own = {"runs": self._runs, "calibrations": self._calibrations, "concluded": self.concluded}
+        for name in (_FIGURES, stem):
+            found |= _filled(self._code.functions(name), own)
+        return found
+
+    def _stored(self) -> Made[Run | Calibration]:
+        """Return runs and calibrations in one."""
+        made = [each for each in (self._runs, self._calibrations) if isinstance(each, Made)]
+        missing = ChainMap(*(each.missing for each in made))
+        dropped = ChainMap(*(each.dropped for each in made))
+        return Made({**self._runs, **self._calibrations}, missing, dropped)
+
+    def _claims(self) -> list[Claim]:
+        return judged_claims(load_claims(self._folder), self._runs, self._about.presets)
+
+    def _legend(self) -> str:
+        """Return what the words of its verdicts mean; nothing where it has no claims."""
+        return legend(load_claims(self._folder)) if (self._folder / CLAIMS).is_file() else ""
+
+    def _claims_that(self, verdict: Verdict, words: str) -> Measured:
+        """Return of how many claims this is the verdict under every preset; conditions call it by the words."""
+        given = [{each.verdict for each in claim.findings} for claim in self._claims()]
+        return Measured(words, float(given.count({verdict})))
+
+    def _equations(self, caption: str) -> Equations:
+        """Return the printed equations of the work with their verdicts."""
+        judged = audit(Source(self._folder, self._code.runs))
+        return Equations(caption, rows(judged), Origin(command=self._command), self._folder.name)
+
+    def _each(self, chapters: Sequence[str | Part]) -> list[Section]:
+        return parts((self._title(each), partial(self._one, each)) for each in chapters)
+
+    def _one(self, chapter: str | Part) -> Section:
+        made = self.section(chapter)
+        if not isinstance(chapter, Part):
+            progress.step()
+        return made
+
+    def section(self, chapter: str | Part) -> Section:
+        """Return the chapter of a file, such as "turns.md", or of several."""
+        if isinstance(chapter, Part):
+            return Section(chapter.title, sections=self._each(chapter.sections))
+        stem, _, suffix = chapter.rpartition(".")
+        if suffix == "md":
+            return self.reading(stem).section
+        make = self._code.functions(stem).get(_SECTION)
+        if make is None:
+            raise RunnerError(f"{self._folder / chapter}: must have a function {_SECTION}(runs)")
+        section: Section = make(self._runs)
+        return section
+
+    def _title(self, chapter: str | Part) -> str:
+        """Return what a chapter is called where it is left out: its title, of one in Python the file."""
+        if isinstance(chapter, Part):
+            return chapter.title
+        heading = self._text(chapter).partition("\n")[0] if chapter.endswith(".md") else ""
+        return heading.removeprefix("# ").strip() if heading.startswith("# ") else chapter
+
+    def _text(self, file: str) -> str:
+        return chapter_text(self._folder / file)
+
+
+def chapter_text(path: Path) -> str:
+    """Return the content of a chapter.
+
+    Raises:
+        RunnerError: if it cannot be read, or is too large.
+    """
+    try:
+        return read_text(path, CHAPTER)
+    except (OSError, ValueError) as error:
+        raise RunnerError(f"cannot read {path}: {error}") from None
+
+
+def _count(chapters: Sequence[str | Part]) -> int:
+    """Return the number of files that some chapters have."""
+    return sum(len(each.sections) if isinstance(each, Part) else 1 for each in chapters)
+
+
+def _filled(functions: Mapping[str, Callable[..., Any]], given: Mapping[str, Any]) -> dict[str, Callable[..., Any]]:
+    """Return functions with their first argument where that is given."""
+    firsts = {name: next(iter(signature(function).parameters), "") for name, function in functions.items()}
+    return {
+        name: partial(function, given[firsts[name]]) if firsts[name] in given else function
+        for name, function in functions.items()
+    }

@@ -1,0 +1,236 @@
+"""A work's published numbers and statements beside the stored runs, with verdicts."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from functools import partial
+
+import numpy as np
+
+from runner.base.quantities import quantity, ranged, spread
+from runner.metrics.positioning import STEADY_WINDOW
+from runner.report.claim import Claim, ClaimResult, EquationVerdict
+from runner.report.claims import CONTRADICTION, FACTOR, PublishedClaim, PublishedStatement, Verdict, judge_motion
+from runner.report.claims.judging import Simulated, scaled, simulated_by, verdict_on
+from runner.report.figures import columns
+from runner.report.words import PLANT
+from runner.store import Run
+from runner.study.job import MissingError
+from runner.study.run_values import median
+
+_DIGITS = 4  # at least as many as a source prints
+
+
+def legend(claims: Sequence[PublishedClaim]) -> str:
+    """Return what the words of the verdicts on a work's claims mean: of the kinds of claims that it has."""
+    numbers, motions = [claim for claim in claims if claim.metric], [claim for claim in claims if claim.extents]
+    told = []
+    if numbers:
+        told += [
+            f"A printed number matches when the simulated median lies within a factor of {FACTOR:g} of it; else that "
+            "is smaller or larger than printed, larger also when most repetitions have no value. A run that failed "
+            "leaves it undecided."
+        ]
+    if any(claim.like for claim in numbers):
+        told += ["A comparison in words matches within the same factor, and differs otherwise."]
+    if any(claim.bound for claim in numbers):
+        told += ["The source contradicts itself where another of its numbers, so widened, stays below the printed one."]
+    if motions:
+        told += [
+            "A stated motion matches when the tip moves as told, to half a unit of the last printed digit, and differs "
+            "otherwise. The source contradicts itself where the path that it prescribes is another motion."
+        ]
+    if any(claim.fails for claim in motions):
+        told += ["A stated failure matches when the simulation fails, too."]
+    return " ".join(told)
+
+
+def judged_claims(claims: Sequence[PublishedClaim], runs: Mapping[str, Run], presets: Mapping[str, str]) -> list[Claim]:
+    """Return each claim with what the runs say of it, under each preset.
+
+    Args:
+        claims: All claims of a work: a bound of one names another.
+        runs: The stored runs of the work, by names such as "figure_3_5/sound"; see `run_name`.
+        presets: Names of the presets under which they are judged, with their words; where there are none, once.
+
+    Raises:
+        MissingError: if a claim's run was not made, or one that it is compared with gave no value.
+    """
+    return [_Claimed(claim, claims, runs, presets).block() for claim in claims]
+
+
+def judged_statements(
+    statements: Sequence[PublishedStatement], judged: Mapping[str, tuple[Verdict | EquationVerdict, str]]
+) -> list[Claim]:
+    """Return each statement with its verdict, numbered in order.
+
+    Args:
+        statements: All statements of a work.
+        judged: Verdict on each by its name, and what was measured.
+
+    Raises:
+        ValueError: if another set of names is judged than is stated.
+    """
+    if {each.name for each in statements} != set(judged):
+        raise ValueError(f"stated: {', '.join(each.name for each in statements)}; judged: {', '.join(judged)}")
+    return [
+        Claim(str(number), each.statement, each.place, "", (ClaimResult("", measured, verdict),), each.reason)
+        for number, each in enumerate(statements, start=1)
+        for verdict, measured in [judged[each.name]]
+    ]
+
+
+def run_name(experiment: str, preset: str) -> str:
+    """Return the name that the run of an experiment has among the runs of a work: "sources/name" is "name/preset"."""
+    name = experiment.rpartition("/")[2]
+    return f"{name}/{preset}" if preset else name
+
+
+class _Claimed:
+    """One claim, with all that it is judged by.
+
+    Args:
+        claim: The claim.
+        claims: All claims of its work.
+        runs: The stored runs of its work, by name.
+        presets: Names of the presets with their words.
+    """
+
+    def __init__(
+        self,
+        claim: PublishedClaim,
+        claims: Sequence[PublishedClaim],
+        runs: Mapping[str, Run],
+        presets: Mapping[str, str],
+    ) -> None:
+        self._claim, self._claims, self._runs = claim, claims, runs
+        self._presets = presets or {"": ""}
+
+    def block(self) -> Claim:
+        """Return it with its verdicts."""
+        claim = self._claim
+        first = self._run(_named(claim), next(iter(self._presets)))
+        findings = [self._finding(preset) for preset in self._presets]
+        return Claim(
+            str(claim.number),
+            claim.statement,
+            claim.place,
+            _printed(claim),
+            findings,
+            self._reason(),
+            str(first.provenance["command"]),
+        )
+
+    def _finding(self, preset: str) -> ClaimResult:
+        claim, run, words = self._claim, self._run(_named(self._claim), preset), self._presets[preset]
+        failed = run.status == "failed"
+        if claim.extents:
+            shown = run.failure_text if failed else self._moved(run)
+            return ClaimResult(preset, shown, self._of_motion(run), words)
+        verdict = self._of_number(partial(self._median, preset), preset)
+        if failed:
+            undecided: Verdict = verdict if verdict == CONTRADICTION else "undecided"
+            return ClaimResult(preset, run.failure_text, undecided, words)
+        return ClaimResult(
+            preset, spread(run.metrics[claim.metric], claim.value), verdict, words, self._hangs(run, preset, verdict)
+        )
+
+    def _hangs(self, run: Run, preset: str, verdict: Verdict) -> dict[str, str]:
+        """Return what a verdict on a number hangs on: what else was made in its place would be judged otherwise."""
+        claim, told = self._claim, dict[str, str]()
+        alone = [self._with(preset, None if np.isnan(value) else value) for value in run.values(claim.metric).tolist()]
+        error = run.plant_error or {}
+        there = error.get("metrics", {}).get(claim.metric)
+        if there is not None and (other := self._with(preset, there["value"])) != alone[0]:
+            told["the engine"] = f"repetition 0 on {PLANT[error['plant']]}: {self._shown(there['value'])}, {other}"
+        others = Counter(other for other in alone if other != verdict)
+        if others:
+            told["the seed"] = ", ".join(
+                f"{count} of {len(alone)} repetitions alone: {other}" for other, count in others.items()
+            )
+        if claim.longer and (text := self._lasting(run, preset, verdict)):
+            told["the end of the run"] = text
+        return told
+
+    def _lasting(self, run: Run, preset: str, verdict: Verdict) -> str:
+        """Return what becomes of a claim's number in a run that lasts longer; nothing where it stays as it is."""
+        longer = self._run(self._claim.longer, preset)
+        value = median(longer, self._claim.metric)
+        (end, lost), (_, own_lost) = map(_reach_lost, (longer, run))
+        over, other = f"over {quantity(end, 's')}", self._with(preset, value)
+        if other != verdict:
+            return f"{over}: {self._shown(value)}, {other}"
+        gone = lost - own_lost > STEADY_WINDOW and verdict != "larger than printed"
+        return f"{over} the target is out of reach for {quantity(lost - own_lost, 's')} more" if gone else ""
+
+    def _shown(self, value: float | None) -> str:
+        return "no value" if value is None else quantity(value, self._claim.unit)
+
+    def _with(self, preset: str, value: float | None) -> Verdict:
+        """Return the verdict with another value in place of the claim's own."""
+        own = simulated_by(self._claim)
+        return self._of_number(lambda *key: value if key == own else self._median(preset, *key), preset)
+
+    def _of_motion(self, run: Run) -> Verdict:
+        tip, desired = columns(run.trace, "tip"), columns(run.trace, "desired")
+        return judge_motion(self._claim.extents, self._claim.fails, tip, desired)
+
+    def _moved(self, run: Run) -> str:
+        """Return where the tip moves along the axes that the claim speaks of."""
+        tip = columns(run.trace, "tip")
+        paths = {extent.axis: tip[:, "xyz".index(extent.axis)] for extent in self._claim.extents}
+        return ", ".join(f"{axis} {path.min():.4f} to {path.max():.4f} m" for axis, path in paths.items())
+
+    def _of_number(self, simulated: Simulated, preset: str) -> Verdict:
+        verdict = verdict_on(self._claim, self._claims, simulated)
+        if verdict is None:
+            raise MissingError(f"claim {self._claim.number}: there is nothing to compare it with under {preset}")
+        return verdict
+
+    def _median(self, preset: str, experiment: str, metric: str) -> float | None:
+        return median(self._run(experiment, preset), metric)
+
+    def _reason(self) -> str:
+        claim, told = self._claim, [self._claim.reason]
+        if claim.bound is not None:
+            found = {
+                preset: scaled(claim.bound, self._claims, partial(self._median, preset)) for preset in self._presets
+            }
+            times = " and ".join(f"{quantity(one, claim.unit)}{self._under(preset)}" for preset, one in found.items())
+            told = [f"{claim.bound.reason} {claim.bound.name} is {times}."]
+        if claim.metric == "steady_state_error":
+            told += [self._late(preset) for preset in self._presets]
+        return " ".join(text for text in told if text)
+
+    def _late(self, preset: str) -> str:
+        """Return how many repetitions have not settled when the error at rest is taken; nothing where all have."""
+        run = self._run(_named(self._claim), preset)
+        band = float(run.config["robot"]["settling_band"])
+        errors = run.values("steady_state_error") if "steady_state_error" in run.metrics else np.zeros(0)
+        late = np.count_nonzero(errors > band)
+        if not late:
+            return ""
+        told = f"{late} of {len(errors)} repetitions{self._under(preset)}"
+        return f"{told} are beyond {quantity(band, 'm')} in the last half second."
+
+    def _under(self, preset: str) -> str:
+        return f" ({self._presets[preset]})" if preset else ""
+
+    def _run(self, experiment: str, preset: str) -> Run:
+        return self._runs[run_name(experiment, preset)]
+
+
+def _named(claim: PublishedClaim) -> str:
+    return simulated_by(claim)[0]
+
+
+def _reach_lost(run: Run) -> tuple[float, float]:
+    """Return when a run ends, and how long its target is out of a stage's reach, in s."""
+    end = float(run.trace["t"].iloc[-1])
+    return end, end * (median(run, "reach_loss_fraction") or 0.0)
+
+
+def _printed(claim: PublishedClaim) -> str:
+    if not claim.printed:
+        return "in words"
+    low, high = claim.printed[0], claim.printed[-1]
+    return quantity(high, claim.unit, _DIGITS) if low == high else ranged(low, high, claim.unit)

@@ -1,0 +1,90 @@
+"""The Python of a work: run where it is installed, and in a folder only when the command says so."""
+
+import ast
+import hashlib
+from collections.abc import Callable
+from dataclasses import is_dataclass
+from inspect import getmembers, isclass, isfunction
+from pathlib import Path
+from types import ModuleType
+from typing import Any, NoReturn
+
+from runner.base.errors import RunnerError
+from runner.plugins.folder_code import folder_module
+from runner.study.job import MissingError
+
+
+class Code:
+    """The modules of a work's folder.
+
+    Args:
+        folder: The folder.
+        package: The installed package that it is, such as "runner.studies.thesis"; None for a folder that is none.
+        allowed: Whether the command allows code of such a folder.
+
+    Attributes:
+        runs: Whether it is run.
+    """
+
+    def __init__(self, folder: Path, package: str | None, allowed: bool) -> None:
+        self._folder, self._package = folder, package or ""
+        self.runs = package is not None or allowed
+
+    def functions(self, stem: str) -> dict[str, Callable[..., Any]]:
+        """Return the public functions that a module of the folder defines, by name; none where there is no such module.
+
+        Where code may not run, each of them says so when it is called.
+
+        Raises:
+            RunnerError: if the module cannot be imported; names the place.
+        """
+        path = self._folder / f"{stem}.py"
+        if not path.is_file():
+            return {}
+        if not self.runs:
+            return {name: _not_run(path) for name in _defined(path)}
+        return public_functions(folder_module(self._folder, stem, self._package))
+
+    def values(self, stem: str) -> tuple[type, ...]:
+        """Return the frozen dataclasses of the folder that a module uses: chapters hand their values on as they are."""
+        if not self.runs or not (self._folder / f"{stem}.py").is_file():
+            return ()
+        module = folder_module(self._folder, stem, self._package)
+        return tuple(
+            each
+            for _, each in getmembers(module, isclass)
+            if is_dataclass(each) and each.__module__.rpartition(".")[0] == module.__name__.rpartition(".")[0]
+        )
+
+    def about(self) -> str:
+        """Return a digest of all Python in the folder, and whether it was run; nothing where there is none."""
+        files = sorted(self._folder.rglob("*.py"))
+        if not files:
+            return ""
+        digest = hashlib.sha256(b"\0".join(path.read_bytes() for path in files)).hexdigest()[:24]
+        return digest if self.runs else f"{digest}, not run: it was made without --code"
+
+
+def public_functions(module: ModuleType) -> dict[str, Callable[..., Any]]:
+    """Return the public functions that a module itself defines, by name."""
+    return {
+        name: function
+        for name, function in getmembers(module, isfunction)
+        if function.__module__ == module.__name__ and not name.startswith("_")
+    }
+
+
+def _not_run(path: Path) -> Callable[..., NoReturn]:
+    def refuse(*_: object, **__: object) -> NoReturn:
+        raise MissingError(f"{path.name} was not run: code in a folder runs with --code alone")
+
+    return refuse
+
+
+def _defined(path: Path) -> list[str]:
+    """Return the public functions of a module without running it."""
+    try:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+    except (SyntaxError, ValueError) as error:
+        raise RunnerError(f"{path.name} cannot be read: {error}") from error
+    return [node.name for node in tree.body if isinstance(node, ast.FunctionDef) and not node.name.startswith("_")]

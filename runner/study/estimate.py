@@ -1,0 +1,115 @@
+"""What tunings and the runs of their laws take, estimated before anything is started."""
+
+import os
+import shlex
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from runner.study.gains import named, without_gains
+from runner.study.grid import Overrides
+from runner.study.items import Way, listed
+from runner.study.tune import ROUNDS
+from runner.study.tunings import Tuning
+from runner.study.work import Work
+from runner.sweeps.listed import Item, Listed
+from runner.sweeps.loading import Loader
+from runner.sweeps.pace import START_UP, Estimate, estimate
+from runner.sweeps.plan import Plan, check
+
+Counts = tuple[int, int, int]
+"""Numbers of trials, of long runs, and of the runs that follow."""
+
+_CHOSEN = 0.05  # s in which the command chooses, composes and checks a trial
+
+
+@dataclass(frozen=True)
+class Amount:
+    """What there is to make with one robot, or with all.
+
+    Attributes:
+        trials: Number of trials of all tunings.
+        longer: Number of long runs of trials, about: a trial in each round of a tuning.
+        runs: Number of the runs that follow.
+        time: The CPU time of all.
+    """
+
+    trials: int
+    longer: int
+    runs: int
+    time: Estimate
+
+    def __add__(self, other: "Amount") -> "Amount":
+        known = other.time.known if self.time.known == "about" else self.time.known
+        time = Estimate(self.time.seconds + other.time.seconds, known)
+        return Amount(self.trials + other.trials, self.longer + other.longer, self.runs + other.runs, time)
+
+    def in_words(self, workers: int) -> str:
+        """Return number and time of all, made by so many processes; 0 stands for the command itself."""
+        processes = max(workers, 1)
+        together = min(processes, os.cpu_count() or 1)
+        sweeps = 1 + ROUNDS * ((self.trials > 0) + (self.longer > 0))
+        start = sweeps * START_UP * workers / together
+        time = self.time.in_words(processes, together, start + _CHOSEN * self.trials)
+        longer = f", some {self.longer:,} long runs" if self.longer else ""
+        tuned = f"{self.trials:,} trials in {ROUNDS} rounds{longer}, then " if self.trials else ""
+        return f"{tuned}{self.runs:,} runs: {time} for all"
+
+
+def counted(work: Work, tunings: Sequence[Tuning], chosen: Collection[str]) -> dict[Overrides, Counts]:
+    """Return how many trials, long runs and runs that follow have some overrides.
+
+    The gains are left out, as they are not known yet. What is stored counts as what is not.
+
+    Args:
+        work: The work.
+        tunings: The tunings.
+        chosen: Overrides by which laws are chosen; the runs are those that have one of them.
+    """
+    trials: Counter[Overrides] = Counter()
+    longer: Counter[Overrides] = Counter()
+    for each in tunings:
+        trials[each.overrides] += each.trials * each.times
+        for own in each.longer:
+            longer[own] += ROUNDS * each.times
+    runs = Counter(map(without_gains, _runs(work, tunings, chosen)))
+    return {own: (trials[own], longer[own], runs[own]) for own in dict.fromkeys([*trials, *longer, *runs])}
+
+
+def planned(cells: Iterable[Overrides], way: Way) -> Listed:
+    """Return runs as a plan, those with the same overrides once."""
+    items = {shlex.join(own): Item(own) for own in cells}
+    return listed(items, way, Loader(way.config_dirs), "never")
+
+
+def estimate_all(plan: Plan, counts: Sequence[Counts]) -> dict[str, Amount]:
+    """Return what the cells of a plan take, by robot, each made as often as its counts say.
+
+    Raises:
+        ConfigError: if one of them cannot be made.
+    """
+    checked, table = check(plan), np.array(counts)
+    robots = [plan.composed(cell).choices["robot"] for cell in range(len(plan))]
+    found = {}
+    for robot in dict.fromkeys(robots):
+        own = table * (np.array(robots) == robot)[:, None]
+        time = estimate(plan, checked, np.repeat(np.arange(len(plan)), own.sum(axis=1)), kept=0.0)
+        trials, longer, runs = own.sum(axis=0).tolist()
+        found[robot] = Amount(trials, longer, runs, time)
+    return found
+
+
+def _runs(work: Work, tunings: Sequence[Tuning], chosen: Collection[str]) -> Iterable[Overrides]:
+    """Return the runs of some laws; where no key is tuned, all gains of a law are the same."""
+    same = {each.name for each in tunings if not each.ranges}
+    runs = (job.overrides for job in work.jobs().values() if not set(chosen).isdisjoint(job.overrides))
+    return dict.fromkeys(without_gains(own) if any(name in same for name, _ in named(own)) else own for own in runs)
+
+
+def told(laws: Sequence[str], amounts: Mapping[str, Amount], workers: int) -> str:
+    """Return which laws there are or how many, on how many arms, and what they take."""
+    total = sum(amounts.values(), start=Amount(0, 0, 0, Estimate(0.0)))
+    named_laws = laws[0] if len(laws) == 1 else f"{len(laws)} laws"
+    return f"{named_laws} on {len(amounts)} arm{'s' if len(amounts) > 1 else ''}: {total.in_words(workers)}"

@@ -1,0 +1,98 @@
+"""Which caveats of its runs a work expects, and why; any other is a finding that nobody has looked at."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from typing import Any
+
+from runner.report.document import Block, Notice, Section, Table, Text
+from runner.report.markup import literal
+from runner.store import Run
+from runner.study.job import distinct
+
+_TOLD = 20  # unexpected caveats that the report names one by one
+
+
+@dataclass(frozen=True)
+class ExpectedCaveat:
+    """A caveat that some runs of a work are to have.
+
+    Attributes:
+        rule: Name of the rule that finds it.
+        runs: Pattern of the names of the runs, such as "figure_5_*/as_reported".
+        why: Why it is there, and why the work's conclusions stand; a sentence.
+    """
+
+    rule: str
+    runs: str
+    why: str
+
+    def covers(self, name: str, caveat: Mapping[str, Any]) -> bool:
+        """Tell whether it speaks of a caveat of the run of that name."""
+        return str(caveat["rule"]) == self.rule and fnmatchcase(name, self.runs)
+
+
+def unexpected_caveats(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> list[str]:
+    """Return the caveats that a work does not expect, a line for each."""
+    return [
+        f"{name}: caveat {caveat['rule']}, which the work does not expect: {caveat['text']}"
+        for name, run in runs.items()
+        for caveat in run.caveats
+        if not any(each.covers(name, caveat) for each in expected)
+    ]
+
+
+def caveats_as_data(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> list[dict[str, object]]:
+    """Return every caveat of a work's runs, with why it is expected, or None, as plain data."""
+    return [
+        {
+            "run": name,
+            **{key: caveat[key] for key in ("rule", "text", "value")},
+            "expected": next((each.why for each in expected if each.covers(name, caveat)), None),
+        }
+        for name, run in runs.items()
+        for caveat in run.caveats
+    ]
+
+
+def caveats_section(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> Section:
+    """Return which caveats a work's runs have, and why; a warning on top where one is not expected."""
+    lines = unexpected_caveats(runs, expected)
+    blocks: list[Block] = []
+    if lines:
+        more = f"; and {len(lines) - _TOLD} more" if len(lines) > _TOLD else ""
+        text = literal(f"{'; '.join(lines[:_TOLD])}{more}.")
+        blocks.append(
+            Notice(
+                "warning", f"{len(lines)} caveat{'s' if len(lines) > 1 else ''} that this work does not expect", text
+            )
+        )
+    reasons = dict.fromkeys((each.rule, each.why) for each in expected)
+    rows = [row for rule, why in reasons if (row := _row(rule, why, expected, runs)) is not None]
+    blocks.append(
+        Table(
+            "Each caveat with the number of runs that have it, the worst of these, and why it was to be expected.",
+            ["caveat", "runs", "the worst of them", "why it is expected"],
+            rows,
+            (1,),
+        )
+        if rows
+        else Text("No rule found anything at the end of the runs.")
+    )
+    return Section("Caveats of the runs", tuple(blocks))
+
+
+def _row(rule: str, why: str, expected: Sequence[ExpectedCaveat], runs: Mapping[str, Run]) -> list[str] | None:
+    """Return the runs in which a rule finds what is expected for one reason, as a row; None where there is none."""
+    patterns = [each for each in expected if (each.rule, each.why) == (rule, why)]
+    found = [
+        (float(caveat["value"]), name, str(caveat["text"]))
+        for name, run in runs.items()
+        for caveat in run.caveats
+        if any(each.covers(name, caveat) for each in patterns)
+    ]
+    if not found:
+        return None
+    _, worst, text = max(found)
+    count = len(distinct({name: runs[name] for _, name, _ in found}))
+    return [literal(rule.replace("_", " ")), str(count), literal(f"{worst}: {text}"), why]

@@ -1,0 +1,174 @@
+"""A law of the user's against a work that takes such: whether it fits, told before hours of runs."""
+
+import shlex
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from runner.base.errors import ConfigError, RunnerError
+from runner.config.compose.compose import Composed, compose
+from runner.config.run import RunConfig
+from runner.config.validation import validate
+from runner.controllers import CONTROLLERS
+from runner.simulation.assembly import assemble
+from runner.simulation.loop import simulate
+from runner.simulation.sensors import make_sensors
+from runner.study.alike import difference, setting
+from runner.study.estimate import Amount, counted, estimate_all, planned
+from runner.study.gains import without_gains
+from runner.study.given import GivenPart
+from runner.study.grid import Overrides
+from runner.study.items import Way
+from runner.study.tune import read_number
+from runner.study.tunings import Tuning, key_of
+from runner.study.work import Work
+from runner.sweeps.job import PROBED_TICKS
+
+
+@dataclass(frozen=True)
+class Tick:
+    """The first control ticks on an arm.
+
+    Attributes:
+        period: Time from one tick to the next, in s.
+        computed: CPU time of one, the median, in s.
+        diverged: When the arm diverged with the values of the config, in s; None where it did not.
+    """
+
+    period: float
+    computed: float
+    diverged: float | None
+
+
+@dataclass
+class Fit:
+    """How a law fits.
+
+    Attributes:
+        problems: What is wrong, each with the first run that has it and the number of them.
+        ticks: The first control ticks, by robot.
+        amounts: What there is to make, by robot; none where something is wrong.
+        tuned: Whether there are ranges to tune it in.
+    """
+
+    tuned: bool
+    ticks: dict[str, Tick] = field(default_factory=dict)
+    amounts: Mapping[str, Amount] = field(default_factory=dict)
+    _found: dict[str, tuple[str, int]] = field(default_factory=dict)
+
+    @property
+    def problems(self) -> list[str]:
+        """What is wrong, a sentence each, with the first run that has it and the number of others."""
+        return [
+            f"{first}{f' and {count - 1} more' if count > 1 else ''}: {text}"
+            for text, (first, count) in self._found.items()
+        ]
+
+    def add(self, name: str, texts: Sequence[str]) -> None:
+        """Take what is wrong in a run."""
+        for text in texts:
+            first, count = self._found.get(text, (name, 0))
+            self._found[text] = first, count + 1
+
+
+def fit(work: Work, without: Work, part: GivenPart) -> Fit:
+    """Return how a law of the user's fits among those of a work; nothing is stored.
+
+    Args:
+        work: The work with the law.
+        without: The same work without it.
+        part: The law.
+    """
+    tunings = [each for each in work.untuned() if each.law == part.name]
+    ranged = {each.overrides: each for each in tunings if each.ranges}
+    found = Fit(bool(ranged))
+    counts = counted(work, tunings, {part.override})
+    compared: dict[Overrides, tuple[str, Overrides]] = {}
+    for name, own, other in work.compared():
+        compared.setdefault(without_gains(own), (name, without_gains(other)))
+    cells = [*dict.fromkeys([*compared, *counts])]
+    plan = planned(cells, Way(Path("outputs"), config_dirs=work.config_dirs))
+    seen: set[str] = set()
+    begun: set[str] = set()
+    ended: set[str] = set()
+    for cell, own in enumerate(cells):
+        name, other = compared.get(own, (shlex.join(own), ()))
+        try:
+            composed = plan.composed(cell)
+            robot, config = composed.choices["robot"], _validated(composed, part)
+            if other and not seen.issuperset(own):  # an override is compared where it comes for the first time
+                seen |= {*own}
+                found.add(name, _unlike((part.name, composed), compose(other, without.config_dirs)))
+            if robot not in begun:
+                begun.add(robot)
+                found.ticks[robot] = _first_ticks(config)
+            if own in ranged and robot not in ended:
+                ended.add(robot)
+                _check_ends(ranged[own], composed, part, found)
+        except ConfigError as error:
+            found.add(name, error.problems)
+    if not found.problems:
+        found.amounts = estimate_all(plan, [counts.get(own, (0, 0, 0)) for own in cells])
+    return found
+
+
+def _validated(composed: Composed, part: GivenPart) -> RunConfig:
+    """Return a checked config.
+
+    Raises:
+        ConfigError: with every problem, or if the law in it is not the user's.
+    """
+    law = composed.resolved["controller"]
+    kind = law.get("kind") if isinstance(law, Mapping) else law
+    if kind != part.name or CONTROLLERS.is_ours(part.name):
+        must = f"must be '{part.name}', as the file is called, and that no name of a law of ours"
+        raise ConfigError([f"controller.kind: {must}; found '{kind}'"])
+    return validate(composed.resolved, composed.config_dirs)
+
+
+def _unlike(own: tuple[str, Composed], other: Composed) -> list[str]:
+    """Return what a law changes beside itself, against another one."""
+    (name, composed), settings = own, setting(other.resolved)
+    text = difference((name, setting(composed.resolved)), (other.choices["controller"], settings))
+    return [text] if text else []
+
+
+def _first_ticks(config: RunConfig) -> Tick:
+    """Return how the first control ticks went.
+
+    Raises:
+        ConfigError: if the law raises, or gives no finite torques of the right shape.
+    """
+    whole = assemble(config)
+    try:
+        some = replace(whole, ticks=min(whole.ticks, PROBED_TICKS))
+        trace = simulate(some, *make_sensors(some, config, 0))
+    finally:
+        whole.close()
+    failure = trace.failure
+    if failure is not None and not failure.reason.startswith("diverged"):
+        raise ConfigError([f"at {failure.time:g} s: {failure.reason}"])
+    return Tick(config.timing.tick, float(np.median(trace.tick_seconds)), None if failure is None else failure.time)
+
+
+def _check_ends(tuning: Tuning, composed: Composed, part: GivenPart, found: Fit) -> None:
+    """Note what is wrong with a law at both ends of each of its ranges."""
+    for name, factors in tuning.ranges.items():
+        try:
+            key = key_of(name, read_number(tuning, name, composed.resolved), factors)
+        except ConfigError as error:
+            found.add(tuning.name, error.problems)
+            continue
+        except RunnerError as error:
+            found.add(tuning.name, [str(error).removeprefix(f"tuning {tuning.name}: ")])
+            continue
+        for value in (key.low, key.high):
+            text = key.override(value)
+            try:
+                end = compose((*tuning.overrides, text), composed.config_dirs)
+                assemble(_validated(end, part)).close()
+                found.add(tuning.name, _unlike((f"{part.name} with {text}", end), composed))
+            except ConfigError as error:
+                found.add(f"{tuning.name} with {text}", error.problems)

@@ -1,0 +1,142 @@
+"""What every chapter may call: values of stored runs, and the blocks that most chapters need.
+
+A function whose first argument is `runs` gets the work's runs filled in by what makes the chapter.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from runner.base.quantities import number, quantity
+from runner.report import figures
+from runner.report.document import Block, Curves, Formula, Notice, Playback
+from runner.report.plant_step import describe_plant
+from runner.report.words import PLANT
+from runner.store import Run
+from runner.study import run_values
+from runner.study.measured import Measured
+from runner.study.prose.patterns import axes_of, called, found
+from runner.study.prose.reading import Signal, config_value, number_of
+
+
+def metric(runs: Mapping[str, Run], run: str, name: str, words: str = "", end: str = "median") -> Measured:
+    """Return a metric of a run, with its unit: the median, or the "min" or "max" of its repetitions.
+
+    Conditions call it by the words, or by run and name.
+    """
+    found = run_values.measured(runs[run], name, words or f"{name} of {run}")
+    return replace(found, value=runs[run].metrics[name][end]) if name in runs[run].metrics else found
+
+
+def percent(share: Measured) -> Measured:
+    """Return a share in per cent."""
+    return Measured(share.name, None if share.value is None else 100.0 * share.value, "%")
+
+
+def to_digits(value: Measured | float, digits: int) -> str:
+    """Return a number, of a measured value with its unit, to so many digits."""
+    return quantity(value.value, value.unit, digits) if isinstance(value, Measured) else number(value, digits)
+
+
+def config(runs: Mapping[str, Run], run: str, key: str) -> Any:
+    """Return a value of a run's config by its dotted key."""
+    return config_value(runs[run], key)
+
+
+def playback(runs: Mapping[str, Run], run: str, caption: str, end: float) -> Playback:
+    """Return the motion of a run up to an instant, in s."""
+    return figures.playback(runs[run], caption, end)
+
+
+def desired_motion(
+    runs: Mapping[str, Run], run: str, caption: str, number: str = "", axes: tuple[str, ...] = ("x", "y", "z")
+) -> Curves:
+    """Return the desired position, velocity and acceleration of a run's tip along some axes."""
+    return figures.desired_motion(runs[run], caption, number, tuple(axes))
+
+
+def failures(runs: Mapping[str, Run], prefix: str) -> list[Block]:
+    """Return a notice that names the failed runs of those whose names begin so; nothing where none failed."""
+    return run_values.failures({name: run for name, run in runs.items() if name.startswith(prefix)})
+
+
+def plant_of(runs: Mapping[str, Run], run: str) -> str:
+    """Return the name of a run's plant, such as "PyBullet", or "MuJoCo" where that one is missing."""
+    kind: str = runs[run].config["plant"]["kind"]
+    return PLANT.get(kind, kind)
+
+
+def step_worth(runs: Mapping[str, Run], run: str, *metrics: str) -> str:
+    """Return a run's plant, its step, and what that is worth in some metrics, in two sentences at most."""
+    return describe_plant(runs[run], metrics)
+
+
+def formula(typst: str, spoken: str, number: str = "") -> Formula:
+    """Return a displayed equation in Typst mathematics, with its words and its number in the source."""
+    return Formula(typst, spoken, number)
+
+
+def notice(title: str, text: str) -> Notice:
+    """Return a warning: a limit of what is compared."""
+    return Notice("warning", title, text)
+
+
+def largest(name: str, *values: Measured) -> Measured:
+    """Return the largest of some measured values by a name of its own; none where one of them has no value."""
+    return _extreme(max, name, values)
+
+
+def smallest(name: str, *values: Measured) -> Measured:
+    """Return the smallest, likewise."""
+    return _extreme(min, name, values)
+
+
+def of_run(runs: Mapping[str, Run], words: str, what: Callable[..., float | None], unit: str, *names: str) -> Measured:
+    """Return what a function gives for a run, or for some runs, as a measured value that conditions call by words."""
+    chosen = [runs[name] for name in names]
+    failed = any(run.status == "failed" for run in chosen)
+    return Measured(words, None if failed else what(*chosen), unit)
+
+
+def named(words: str, value: float | None, unit: str = "1") -> Measured:
+    """Return a number as a measured value, which conditions call by the words."""
+    return Measured(words, value, unit)
+
+
+def each(
+    runs: Mapping[str, Run],
+    words: str,
+    what: Signal,
+    unit: str,
+    *patterns: str,
+    only: Callable[[Run], bool] | None = None,
+    levels: Mapping[str, str] | None = None,
+) -> list[Measured]:
+    """Return a metric, or what a function gives, of each run that patterns stand for; see of_run and largest.
+
+    The words have axes in braces; without any, the name of the run follows them. With `only` it is of the runs of
+    which this function is true alone. `levels` has words for levels of the axes.
+    """
+    return [
+        Measured(
+            called(words, one.levels, levels or {}) if axes_of(words) else f"{words} of {one.name}",
+            None if one.run.status == "failed" else number_of(what, one.run),
+            unit,
+        )
+        for pattern in patterns
+        for one in found(runs, pattern)
+        if only is None or only(one.run)
+    ]
+
+
+def count(runs: Mapping[str, Run], words: str, what: Callable[..., bool] | None, *patterns: str) -> Measured:
+    """Return of how many runs that patterns stand for a function is true, or with none how many there are."""
+    chosen = [one.run for pattern in patterns for one in found(runs, pattern)]
+    return Measured(words, sum(bool(what(run)) if what else True for run in chosen))
+
+
+def _extreme(chosen: Callable[[list[float]], float], name: str, values: Sequence[Measured]) -> Measured:
+    known = [each.value for each in values if each.value is not None and not math.isnan(each.value)]
+    value = chosen(known) if len(known) == len(values) and known else None
+    return Measured(name, value, values[0].unit if values else "1", tuple(values))

@@ -1,0 +1,139 @@
+"""Markdown between containers: headings, paragraphs and lists, as markdown-it reads them, to blocks."""
+
+import dataclasses
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, get_args
+
+from markdown_it import MarkdownIt
+from markdown_it.token import Token
+from mdit_py_plugins.dollarmath import dollarmath_plugin
+
+from runner.report.document import Block, Items, Section, Text
+from runner.report.markup import linked, literal, marked
+from runner.study.prose.expressions import PLACEHOLDER, Values
+from runner.study.prose.problem import ProseError
+from runner.study.prose.shown import filled
+
+_NAMES = {
+    "blockquote_open": "quotations",
+    "ordered_list_open": "numbered lists",
+    "fence": "blocks of code",
+    "code_block": "blocks of code (a line begins with four spaces)",
+    "hr": "rules",
+    "math_block": "formulas between two dollar signs (write {{ formula(typst, spoken) }})",
+    "image": "images",
+    "hardbreak": "line breaks",
+    "strong_open": "strong emphasis (write *so*)",
+}
+
+
+@dataclass(frozen=True)
+class Heading:
+    """A heading.
+
+    Attributes:
+        level: 1 for the chapter's title, 2 for a section of it.
+        title: Its text.
+        line: Where it stands.
+    """
+
+    level: int
+    title: str
+    line: int
+
+
+Piece = Heading | Block | Section
+"""What a chapter is made of, in reading order."""
+
+
+class Paragraphs:
+    """Reads pieces of Markdown.
+
+    Args:
+        file: Name of the chapter's file.
+        values: The values of its expressions.
+    """
+
+    def __init__(self, file: str, values: Values) -> None:
+        self._file, self._values = file, values
+        self._parser = MarkdownIt("commonmark", {"html": False}).use(dollarmath_plugin, allow_space=False)
+
+    def blocks(self, text: str, first_line: int) -> Iterator[Piece]:
+        """Yield the headings and blocks of a piece that begins on a line of the text without expressions.
+
+        Raises:
+            ProseError: for what a report has no block for.
+        """
+        tokens = iter(self._parser.parse(text))
+        for token in tokens:
+            line = self._values.line_of(first_line + (token.map[0] if token.map else 0))
+            if token.type == "heading_open":
+                title = self._inline(next(tokens), line)
+                yield Heading(int(token.tag[1]), title, line)
+                next(tokens)
+            elif token.type == "paragraph_open":
+                yield from self._paragraph(next(tokens), line)
+                next(tokens)
+            elif token.type == "bullet_list_open":
+                yield Items(tuple(self._items(tokens, line)))
+            else:
+                raise self._refused(token, line)
+
+    def _paragraph(self, inline: Token, line: int) -> Iterator[Piece]:
+        alone = PLACEHOLDER.sub("", inline.content).strip() == ""
+        found = [self._values.found[int(number)][0] for number in PLACEHOLDER.findall(inline.content)]
+        if alone and found and all(_is_block(value) for value in found):
+            for value in found:
+                yield from value if isinstance(value, Sequence) else (value,)
+        else:
+            yield Text(self._inline(inline, line))
+
+    def _items(self, tokens: Iterator[Token], line: int) -> Iterator[str]:
+        for token in tokens:
+            if token.type == "bullet_list_close":
+                return
+            if token.type == "inline":
+                yield self._inline(token, line)
+            elif token.type not in ("list_item_open", "list_item_close", "paragraph_open", "paragraph_close"):
+                raise self._refused(token, line)
+
+    def _inline(self, inline: Token, line: int) -> str:
+        """Return the text of a paragraph, marked as Text has it."""
+        parts: list[str] = []
+        children = iter(inline.children or ())
+        for child in children:
+            if child.type == "text":
+                parts.append(filled(literal(child.content), self._values, self._file))
+            elif child.type == "softbreak":
+                parts.append(" ")
+            elif child.type == "code_inline":
+                parts.append(marked(filled(literal(child.content), self._values, self._file), "code"))
+            elif child.type == "math_inline":
+                parts.append(f"${filled(child.content, self._values, self._file, mathematics=True)}$")
+            elif child.type in ("em_open", "link_open"):
+                parts.append(self._around(child, children, line))
+            else:
+                raise self._refused(child, line)
+        return "".join(parts)
+
+    def _around(self, opening: Token, children: Iterator[Token], line: int) -> str:
+        closing, words = opening.type.replace("_open", "_close"), []
+        for child in children:
+            if child.type == closing:
+                break
+            if child.type not in ("text", "softbreak"):
+                raise ProseError(self._file, line, "emphasis and links hold plain words only")
+            words.append(filled(literal(child.content), self._values, self._file) or " ")
+        text = "".join(words)
+        return marked(text, "emphasis") if opening.type == "em_open" else linked(text, str(opening.attrs["href"]))
+
+    def _refused(self, token: Token, line: int) -> ProseError:
+        what = _NAMES.get(token.type, token.type.removesuffix("_open").replace("_", " "))
+        return ProseError(self._file, line, f"a report has no {what}; it has paragraphs, lists, emphasis, code, links")
+
+
+def _is_block(value: Any) -> bool:
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return all(_is_block(each) for each in value)  # of none, as where no run failed, nothing is shown
+    return dataclasses.is_dataclass(value) and isinstance(value, (*get_args(Block), Section))

@@ -1,0 +1,185 @@
+"""A chapter's file to a Section: expressions first, then containers, then Markdown."""
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from runner.base.errors import nearest
+from runner.report.document import Block, Section, Text
+from runner.study.findings import Finding, finding
+from runner.study.measured import Condition
+from runner.study.prose.expressions import Values
+from runner.study.prose.paragraphs import Heading, Paragraphs, Piece
+from runner.study.prose.problem import ProseError
+from runner.study.prose.shown import filled
+
+_CONTAINERS = ("finding",)
+_FENCE = ":::"
+_HOLDS = re.compile(r"\s*holds:(.*)")
+
+
+@dataclass(frozen=True)
+class Stated:
+    """A condition as it stands in a chapter.
+
+    Attributes:
+        expression: Its expression.
+        line: Where it stands.
+    """
+
+    expression: str
+    line: int
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a chapter's file makes.
+
+    Attributes:
+        section: Its section.
+        values: The values of its expressions.
+        stated: The conditions of its findings as they stand.
+    """
+
+    section: Section
+    values: Values
+    stated: list[Stated]
+
+
+@dataclass
+class _Container:
+    """A box that is being read: where it begins in the file and among the lines read, title, lines, conditions."""
+
+    line: int
+    count: int
+    title: str
+    lines: list[str] = field(default_factory=list)
+    conditions: list[Stated] = field(default_factory=list)
+
+
+def read_chapter(file: str, text: str, names: Mapping[str, Any], handed: tuple[type, ...] = ()) -> Reading:
+    """Return what a chapter's file makes.
+
+    Its first line is its title, `# Title`; `## Title` begins a section of it. `{{ CALL }}` in a paragraph of its own is
+    a block, a list of blocks or a section, anywhere else a value in the sentence; `{% set name = EXPRESSION %}` at the
+    begin of a line gives a value a name. A conclusion stands in a box:
+
+        ::: finding Taking turns does harm
+        The error is {{ turns }}, that of both arms at once {{ both }}.
+        holds: turns > 10 * both
+        :::
+
+    Args:
+        file: Name of the file, for messages.
+        text: Its content.
+        names: What expressions may call and read, by name.
+        handed: Further classes whose values they hand on as they are.
+
+    Raises:
+        ProseError: if it cannot be read; names the line, and what to write.
+    """
+    values = Values(file, names, handed)
+    stated: list[Stated] = []
+    pieces = list(_pieces(file, values.put_away(text), values, stated))
+    if not pieces or not isinstance(pieces[0], Heading) or pieces[0].level != 1:
+        raise ProseError(file, 1, "begins without a title; write `# Title` in the first line")
+    return Reading(_section(file, pieces), values, stated)
+
+
+def _pieces(file: str, text: str, values: Values, stated: list[Stated]) -> Iterator[Piece]:
+    """Yield headings, blocks and findings in reading order."""
+    paragraphs = Paragraphs(file, values)
+    plain: list[str] = []
+    first, box = 1, None
+    for count, line in enumerate(text.splitlines(), start=1):
+        number = values.line_of(count)
+        condition = _HOLDS.match(line)
+        if line.startswith(_FENCE):
+            if box is None:
+                yield from paragraphs.blocks("\n".join(plain), first)
+                box = _opened(file, line, number, count)
+            elif line.strip() == _FENCE:
+                yield _finding(file, box, values, paragraphs)
+                stated += box.conditions
+                plain, first, box = [], count + 1, None
+            else:
+                raise ProseError(file, number, f"a box in a box; close that of line {box.line} by `:::` first")
+        elif condition and box is None:
+            raise ProseError(file, number, "a condition outside a box; `holds:` stands between `::: finding` and `:::`")
+        elif condition and box is not None:
+            box.conditions.append(Stated(condition[1].strip(), number))
+            box.lines.append("")
+        else:
+            (plain if box is None else box.lines).append(line)
+    if box is not None:
+        raise ProseError(file, box.line, "a box that is not closed; write `:::` on a line of its own behind it")
+    yield from paragraphs.blocks("\n".join(plain), first)
+
+
+def _opened(file: str, line: str, number: int, count: int) -> _Container:
+    kind, _, title = line.removeprefix(_FENCE).strip().partition(" ")
+    if kind not in _CONTAINERS:
+        boxes = ", ".join(_CONTAINERS)
+        raise ProseError(file, number, f"no box '{kind}'{nearest(kind, _CONTAINERS)}; boxes: {boxes}")
+    if not title:
+        raise ProseError(file, number, f"a box without a title; write `::: {kind} TITLE`")
+    return _Container(number, count, title.strip())
+
+
+def _finding(file: str, box: _Container, values: Values, paragraphs: Paragraphs) -> Finding:
+    conditions = [own for stated in box.conditions for own in conditions_of(file, stated, values)]
+    if not conditions:
+        raise ProseError(file, box.line, "a finding without a condition; write `holds: EXPRESSION` for each sentence")
+    blocks = list(paragraphs.blocks("\n".join(box.lines), box.count + 1))
+    if not blocks or not all(isinstance(block, Text) for block in blocks):
+        raise ProseError(file, box.line, "a finding holds sentences alone; blocks stand before or behind it")
+    text = " ".join(block.text for block in blocks if isinstance(block, Text))
+    return finding(filled(box.title, values, file), text, *conditions)
+
+
+def conditions_of(
+    file: str, stated: Stated, values: Values, instead: Mapping[str, Any] | None = None
+) -> list[Condition]:
+    """Return the condition that an expression states, or each of a list of them.
+
+    Args:
+        file: Name of the chapter's file.
+        stated: The condition as it stands.
+        values: The values of the chapter.
+        instead: Values that some of its names have in place of their own.
+
+    Raises:
+        ProseError: if it states none.
+    """
+    given = values.value(stated.expression, stated.line, instead)
+    conditions = given if isinstance(given, list | tuple) else [given]
+    if not conditions or not all(isinstance(each, Condition) for each in conditions):
+        what = f"gives {type(given).__name__}, no condition; compare measured values"
+        raise ProseError(file, stated.line, f"holds: {stated.expression}: {what}")
+    return list(conditions)
+
+
+def _section(file: str, pieces: list[Piece]) -> Section:
+    """Return the section that begins with a heading, with those below it."""
+    heading = pieces[0]
+    assert isinstance(heading, Heading)  # noqa: S101 - told by the callers
+    blocks: list[Block] = []
+    below: list[list[Piece] | Section] = []
+    for piece in pieces[1:]:
+        if isinstance(piece, Heading) and piece.level <= heading.level:
+            raise ProseError(file, piece.line, f"a second title; sections of a chapter begin with {'#' * 2}")
+        if isinstance(piece, Heading) and piece.level == heading.level + 1:
+            below.append([piece])
+        elif isinstance(piece, Section) and heading.level == 1:
+            below.append(piece)
+        elif below and isinstance(below[-1], list):
+            below[-1].append(piece)
+        elif isinstance(piece, Section) or below:
+            raise ProseError(file, heading.line, f"'{heading.title}': sections stand in the chapter, behind its blocks")
+        elif isinstance(piece, Heading):
+            raise ProseError(file, piece.line, f"leaves out a level; write {'#' * (heading.level + 1)} {piece.title}")
+        else:
+            blocks.append(piece)
+    sections = (each if isinstance(each, Section) else _section(file, each) for each in below)
+    return Section(heading.title, tuple(blocks), tuple(sections))

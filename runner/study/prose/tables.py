@@ -1,0 +1,191 @@
+"""Tables over the runs that a pattern stands for."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from runner.base.errors import RunnerError, nearest
+from runner.base.quantities import Shown, above_rounding, labelled
+from runner.report.document import Origin, Table
+from runner.report.figures import origin
+from runner.report.metric_titles import title
+from runner.store import Run
+from runner.study.measured import Measured
+from runner.study.prose.patterns import Found, axes_of, called, found, other
+from runner.study.prose.reading import Signal
+from runner.study.run_values import cell, median
+
+_DASH, _NEVER = "–", "never"
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table over runs.
+
+    Attributes:
+        title: What stands above it.
+        cell: Gives its text for a run, from the work's runs and the run.
+        metric: The metric that it shows, whose unit its title takes.
+        levels: Axes that it is about, with the levels that it names of them.
+    """
+
+    title: str
+    cell: Callable[[Mapping[str, Run], Found], str]
+    metric: str = ""
+    levels: Mapping[str, Sequence[str]] = field(default_factory=dict)
+
+
+def level(axis: str, title: str = "", words: Mapping[str, str] | None = None, missing: str = _DASH) -> Column:
+    """Return a column with the level of an axis.
+
+    Args:
+        axis: The axis, as the pattern names it.
+        title: What stands above; the axis where it is left out.
+        words: What a level is called; others are called as they are.
+        missing: What stands for runs of a pattern without that axis.
+    """
+
+    def text(_runs: Mapping[str, Run], row: Found) -> str:
+        return called(f"{{{axis}}}", row.levels, words or {}) if axis in row.levels else missing
+
+    return Column(title or axis, text, levels={axis: ()})
+
+
+def column(
+    title: str,
+    what: Signal,
+    *others: str,
+    digits: int = 3,
+    only: Mapping[str, str | Sequence[str]] | None = None,
+    though_failed: bool = False,
+) -> Column:
+    """Return a column with a number of each run.
+
+    A failed run says so; a settling time without a value is "never", another number without one a dash.
+
+    Args:
+        title: What stands above; of a metric it takes the unit unless it has one.
+        what: Name of a metric, or a function of the run, or of these others, that gives a number or a text.
+        others: Names of the runs that it is a number of, with axes in braces; the row's own run where there are none.
+        digits: How many digits.
+        only: Levels by axis of the rows that have it; the others have a dash.
+        though_failed: Whether what a function reads of a run until it failed is shown.
+    """
+
+    def text(runs: Mapping[str, Run], row: Found) -> str:
+        if any(row.levels.get(axis) not in own for axis, own in chosen.items()):
+            return _DASH
+        of = [other(runs, name, row.levels) for name in others] or [row.run]
+        return _text(what, of, digits, though_failed)
+
+    chosen = {axis: [own] if isinstance(own, str) else own for axis, own in (only or {}).items()}
+    return Column(title, text, what if isinstance(what, str) else "", chosen)
+
+
+def table(
+    runs: Mapping[str, Run],
+    caption: str,
+    pattern: str | Sequence[str],
+    *columns: Column,
+    by: Sequence[str] = (),
+    number: str = "",
+) -> Table:
+    """Return a table with a row for each run that a pattern stands for.
+
+    Args:
+        runs: The runs of the work by name.
+        caption: What it lists; inline mathematics as in Text.
+        pattern: Names of the runs, with axes in braces, or several of them.
+        columns: Its columns.
+        by: In which order the axes are gone through, the outermost first.
+        number: Its number in the source.
+    """
+    patterns = [pattern] if isinstance(pattern, str) else pattern
+    rows = [row for each in patterns for row in found(runs, each, [axis for axis in by if axis in axes_of(each)])]
+    for each in columns:
+        _check_levels(each, rows)
+    cells = [[each.cell(runs, row) for each in columns] for row in rows]
+    header = [_header(each, rows) for each in columns]
+    return Table(caption, header, cells, _numeric(cells), origin(rows[0].run, number))
+
+
+def _check_levels(given: Column, rows: Sequence[Found]) -> None:
+    """Refuse a column about an axis or a level that no row has."""
+    for axis, levels in given.levels.items():
+        axes = dict.fromkeys(own for row in rows for own in row.levels)
+        if axis not in axes:
+            raise RunnerError(f"no axis '{axis}'{nearest(axis, axes)}; axes: {', '.join(axes) or 'none'}")
+        there = list(dict.fromkeys(row.levels[axis] for row in rows if axis in row.levels))
+        for level in levels:
+            if level not in there:
+                known = f"{nearest(level, there)}; levels: {', '.join(there)}"
+                raise RunnerError(f"axis '{axis}' has no level '{level}'{known}")
+
+
+def comparison(
+    runs: Mapping[str, Run],
+    caption: str,
+    pattern: str,
+    *metrics: str,
+    words: Mapping[str, str] | None = None,
+    number: str = "",
+) -> Table:
+    """Return a table with a row for each metric and a column for each level of a pattern's axis, such as presets."""
+    if len(axes_of(pattern)) != 1:
+        raise RunnerError(f"'{pattern}': a comparison goes over one axis in braces")
+    shown = found(runs, pattern)
+    rows = [[title(metric), *(_with_unit(metric, each.run) for each in shown)] for metric in metrics]
+    header = ["metric", *(called(f"{{{axes_of(pattern)[0]}}}", each.levels, words or {}) for each in shown)]
+    return Table(caption, header, rows, (), origin(shown[0].run, number))
+
+
+def listing(
+    runs: Mapping[str, Run],
+    caption: str,
+    run: str,
+    header: Sequence[str],
+    *rows: Sequence[str | float | Measured | None],
+    number: str = "",
+) -> Table:
+    """Return a table whose cells stand in the chapter; the command of a run stands under it, if one is named."""
+    cells = [[_told(cell, 3) for cell in row] for row in rows]
+    return Table(caption, header, cells, _numeric(cells), origin(runs[run], number) if run else Origin(number))
+
+
+def _text(what: Signal, runs: Sequence[Run], digits: int, though_failed: bool = False) -> str:
+    if not though_failed and any(run.status == "failed" for run in runs):
+        return "failed"
+    if isinstance(what, str):
+        never = what.startswith("settling_time") and median(runs[0], what) is None
+        return _NEVER if never else cell(runs[0], what, digits)
+    return _told(what(*runs), digits)
+
+
+def _told(value: str | float | Measured | None, digits: int) -> str:
+    if isinstance(value, str):
+        return value
+    return above_rounding(value.value if isinstance(value, Measured) else value, digits=digits)
+
+
+def _with_unit(metric: str, run: Run) -> str:
+    text = _text(metric, [run], 3)
+    return above_rounding(median(run, metric), _unit(run, metric)) if isinstance(text, Shown) else text
+
+
+def _header(given: Column, rows: Sequence[Found]) -> str:
+    if not given.metric or given.title.endswith(")"):
+        return given.title
+    return labelled(given.title, next((_unit(row.run, given.metric) for row in rows if row.run.metrics), "1"))
+
+
+def _unit(run: Run, metric: str) -> str:
+    return str(run.metrics[metric]["unit"]) if metric in run.metrics else "1"
+
+
+def _numeric(cells: Sequence[Sequence[str]]) -> tuple[int, ...]:
+    """Return which columns hold numbers: those in which some cell is one and no cell is another text."""
+    return tuple(index for index, column in enumerate(zip(*cells, strict=True)) if _numbers(column))
+
+
+def _numbers(cells: Sequence[str]) -> bool:
+    told = [text for text in cells if text not in (_DASH, _NEVER, "failed")]
+    return bool(told) and all(text[0].isdigit() or (text[0] in "-−" and text[1:2].isdigit()) for text in told)

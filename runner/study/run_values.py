@@ -1,0 +1,95 @@
+"""What the sections of all works read from stored runs, of which some may have failed."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from runner.base.errors import RunnerError, nearest
+from runner.base.quantities import above_rounding, with_powers
+from runner.report.document import Block, FloatArray, Notice
+from runner.report.figures import columns
+from runner.report.words import in_words
+from runner.store import Run
+from runner.study.measured import Measured
+
+
+def median(run: Run, metric: str) -> float | None:
+    """Return the median of a metric; None where the run failed or the metric has no value.
+
+    Raises:
+        RunnerError: if the run has metrics, and none of that name.
+    """
+    stored = _stored(run, metric)
+    return None if stored is None or stored["median"] is None else float(stored["median"])
+
+
+def measured(run: Run, metric: str, name: str) -> Measured:
+    """Return the median of a metric as a measured value, of which findings state conditions.
+
+    Args:
+        run: The run.
+        metric: Name of the metric.
+        name: What the value is called in conditions.
+
+    Raises:
+        RunnerError: if the run has metrics, and none of that name.
+    """
+    stored = _stored(run, metric)
+    return Measured(name, median(run, metric), "1" if stored is None else str(stored["unit"]))
+
+
+def _stored(run: Run, metric: str) -> Mapping[str, Any] | None:
+    """Return a metric as stored; None where the run failed."""
+    if run.metrics and metric not in run.metrics:
+        raise RunnerError(f"run {run.hash} has no metric '{metric}'{nearest(metric, run.metrics)}")
+    return run.metrics.get(metric)
+
+
+def cell(run: Run, metric: str, digits: int = 3) -> str:
+    """Return the median of a metric for a table: "failed" for a failed run, a dash for a value that is missing."""
+    return "failed" if run.status == "failed" else above_rounding(median(run, metric), digits=digits)
+
+
+def values(runs: Iterable[Run], metric: str) -> FloatArray:
+    """Return the medians of a metric, NaN where there is none."""
+    return np.array([np.nan if (m := median(run, metric)) is None else m for run in runs])
+
+
+def clock(run: Run) -> FloatArray:
+    """Return the times of a trace's rows, in s."""
+    return np.asarray(run.trace["t"].to_numpy())
+
+
+def delay_of(run: Run) -> int:
+    """Return how late the commands of a run's last control loop act, without jitter, in ticks of the fastest loop.
+
+    Runs that were stored before `plant.computation` have `plant.command_delay`, in s.
+    """
+    plant, t = run.config["plant"], clock(run)
+    if "computation" not in plant:
+        return round(float(plant.get("command_delay", 0.0)) / float(t[1] - t[0]))
+    delay = plant["computation"]["delay"]
+    return int(list(delay.values())[-1] if isinstance(delay, Mapping) else delay)
+
+
+def apart(first: Run, second: Run, signal: str) -> FloatArray:
+    """Return the distance between a tip signal of two runs at their common ticks, shape (T,), in m."""
+    rows = min(len(first.trace), len(second.trace))
+    difference = columns(first.trace[:rows], signal) - columns(second.trace[:rows], signal)
+    return np.asarray(np.linalg.norm(difference, axis=1))
+
+
+def failures(runs: Mapping[str, Run]) -> list[Block]:
+    """Return a notice that names each failed run with its failure; nothing where none failed."""
+    reasons: dict[str, list[str]] = {}
+    for name, run in runs.items():
+        if run.failure is not None:
+            joint = f", {run.failure['joint']}" if run.failure["joint"] else ""
+            where = f"{in_words(name.partition('/')[2])} (at {run.failure['time']:.4g} s{joint})"
+            reasons.setdefault(with_powers(str(run.failure["reason"])), []).append(where)
+    if not reasons:
+        return []
+    count = sum(map(len, reasons.values()))
+    text = ". ".join(f"{reason}: {'; '.join(names)}" for reason, names in reasons.items())
+    return [Notice("failure", f"{count} of {len(runs)} runs failed", f"{text[0].upper()}{text[1:]}.")]

@@ -1,0 +1,252 @@
+"""A published work: which runs it needs, what is expected of them, and the report that is made of them."""
+
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from runner.base.errors import RunnerError, nearest
+from runner.base.paths import check_inside
+from runner.plugins.discovery import use_plugins
+from runner.report.claims import CLAIMS, load_claims
+from runner.store import Calibration, Run
+from runner.study.about import read_about
+from runner.study.caveats import read_expected
+from runner.study.code import Code
+from runner.study.expected_caveats import ExpectedCaveat
+from runner.study.gains import Gains, named, put_in, read_gains
+from runner.study.given import GivenPart
+from runner.study.grid import Overrides
+from runner.study.grids import FILE as RUNS
+from runner.study.grids import Grids
+from runner.study.job import Job, Jobs, distinct
+from runner.study.names import Place, find_work
+from runner.study.profiles import Profile
+from runner.study.tunings import Tuning
+
+if TYPE_CHECKING:  # drawing comes with these
+    from runner.report.document import Cover, Document, Section
+    from runner.study.chapters import Chapters
+
+Calibrations = Mapping[str, tuple[str, ...]]
+"""Overrides of each calibration by its name."""
+_PLAN = "plan"  # module whose computed_runs() and calibrations(given) add to runs.yaml
+_MEASURE = "measure"  # module and function that measures what no run does
+
+
+class Work:
+    """A published work, read from its folder; docs/paper.md tells what stands in it.
+
+    Args:
+        place: Where it is.
+        allow_code: Whether Python of a folder that is no installed package may run.
+        profile: Name of the profile by which it is made; empty for the one that work.yaml names, or the whole work.
+        parts: Parts of the user's that stand beside its own.
+
+    Attributes:
+        name: What it is called.
+        folder: Its folder.
+        about: What work.yaml says.
+        installed: Whether it is an installed package.
+        profile: The profile by which it is made; empty for the whole work.
+        expected: The caveats that its runs are to have.
+        tuned: The gains that were tuned and not read from its folder.
+
+    Raises:
+        RunnerError: with file and place of every problem in its data, or if it does not take a part.
+    """
+
+    def __init__(
+        self, place: Place, allow_code: bool = False, profile: str = "", parts: Sequence[GivenPart] = ()
+    ) -> None:
+        self.name, self.folder = place.name, place.folder
+        for path in () if place.package else place.folder.rglob("*"):
+            if path.is_symlink():
+                check_inside(path, [place.folder])
+        self.about = read_about(place.folder)
+        self.installed = place.package is not None
+        self._ours = place.ours
+        self.profile = profile or self.about.default_profile
+        self._profile = self._chosen(self.profile)
+        self._code = Code(place.folder, place.package, allow_code)
+        self._given = tuple(parts)
+        self._gains: Gains = {} if self._profile and self._profile.tuned_anew else read_gains(place.folder)
+        self.tuned: Gains = {}
+        self._grids = Grids(place.folder / RUNS, self._profile, parts)
+        self._check_given()
+        self.expected: tuple[ExpectedCaveat, ...] = read_expected(place.folder)
+        if (place.folder / CLAIMS).is_file():
+            load_claims(place.folder)  # told before anything is simulated
+        self._plugins = self._parts()
+        if self._plugins and not self._code.runs:
+            named = ", ".join(self.about.plugins)
+            raise RunnerError(f"{self.name}: its runs need {named}: code in a folder runs with --code alone")
+        if self._plugins:
+            use_plugins(self._plugins)
+
+    @property
+    def config_dirs(self) -> tuple[Path, ...]:
+        """Folders of configs: its own, but for ours without robots, and those of parts that were given."""
+        return (*self._own_dirs, *dict.fromkeys(part.folder for part in self._given))
+
+    @property
+    def _own_dirs(self) -> tuple[Path, ...]:
+        return () if self._ours and not (self.folder / "robot").is_dir() else (self.folder,)
+
+    def options(self, overrides: Sequence[str]) -> tuple[str, ...]:
+        """Return what a command that makes one of its runs has before the overrides."""
+        folders = (word for folder in self._own_dirs for word in ("--config-dir", os.path.relpath(folder)))
+        parts = (text.partition("=") for text in self._plugins)
+        named = (word for group, _, file in parts for word in ("--plugin", f"{group}={os.path.relpath(file)}"))
+        given = (word for part in self._given if part.override in overrides for word in part.options)
+        return (*folders, *named, *given)
+
+    def jobs(self) -> Jobs:
+        """Return the runs that it needs, by name: those of runs.yaml, and those that `plan.py` works out."""
+        more: Jobs = self._planned("computed_runs", dict)
+        if self._profile is not None:
+            more = {name: Job(self._profile.repeated(job.overrides)) for name, job in more.items()}
+        own = {name: Job(put_in(overrides, self._gains)) for name, overrides in self._grids.runs.items()}
+        return {**own, **more}
+
+    def untuned(self) -> list[Tuning]:
+        """Return the tunings whose gains its runs take and that are not known, each as many times as they ask for."""
+        times: dict[str, int] = {}
+        for overrides in self._grids.runs.values():
+            for name, number in named(overrides):
+                times[name] = max(number, times.get(name, 0))
+        return [
+            replace(self._grids.tunings[name], times=most) for name, most in times.items() if name not in self._gains
+        ]
+
+    def compared(self) -> Iterator[tuple[str, Overrides, Overrides]]:
+        """Yield name and overrides of what parts of the user's are to make, and what it is compared with.
+
+        See Grids.compared.
+        """
+        for part in self._given:
+            yield from self._grids.compared(part)
+
+    def take(self, gains: Gains) -> None:
+        """Take gains that were tuned beside those that are known."""
+        self.tuned = gains
+        self._gains = {**self._gains, **gains}
+
+    def dropped(self) -> dict[str, str]:
+        """Return the runs and calibrations of the whole work that its profile does without, each with why."""
+        if not self.profile:
+            return {}
+        whole, kept = Grids(self.folder / RUNS), {**self._grids.runs, **self._grids.calibrations}
+        return {
+            name: f"the profile {self.profile} has no such run"
+            for name in (*whole.runs, *whole.calibrations)
+            if name not in kept
+        }
+
+    def calibrations(self) -> Calibrations:
+        """Return the calibrations that it needs, by name, as `plan.py` changes those of runs.yaml."""
+        changed: Calibrations = self._planned("calibrations", lambda given: given, self._grids.calibrations)
+        return changed
+
+    def chapters(self, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -> "Chapters":
+        """Return what makes its chapters from its stored runs and calibrations, by name."""
+        from runner.study.chapters import Chapters
+
+        command = self.name if self.installed else os.path.relpath(self.folder)
+        return Chapters(self.folder, self.about, self._code, self._grids, command, runs, calibrations)
+
+    def measure(self, outputs: Path) -> None:
+        """Measure what no run does, such as computing times, into an outputs folder, where the work does so."""
+        function = self._code.functions(_MEASURE).get(_MEASURE)
+        if function is not None:
+            function(outputs)
+
+    def document(
+        self, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration], chapters: "Chapters | None" = None
+    ) -> "Document":
+        """Return its report.
+
+        Args:
+            runs: Its stored runs by name.
+            calibrations: Its stored calibrations by name.
+            chapters: What makes its chapters from these, if some have been read.
+        """
+        from runner.study.checklist import load_checklist
+        from runner.study.work_report import work_document
+
+        made = work_document(
+            title=self.about.title,
+            subtitle=self.about.source,
+            abstract=self.about.abstract,
+            chapters=(chapters or self.chapters(runs, calibrations)).sections(),
+            runs=runs,
+            calibrations=calibrations,
+            expected=self.expected,
+            checklist=load_checklist(self.folder),
+            code=self._code.about(),
+            cover=self._cover(runs),
+            bibtex=self.about.bibtex,
+        )
+        return replace(made, sections=[*self._by_profile(runs), *made.sections])
+
+    def _by_profile(self, runs: Mapping[str, Run]) -> "Iterator[Section]":
+        """Yield what the profile makes otherwise than the whole work; nothing where that is nothing."""
+        from runner.report.document import Section, Text
+
+        dropped, repetitions = self.dropped(), self._profile.repetitions if self._profile else None
+        if not (dropped or repetitions):
+            return
+        less = " and leaves out some of the whole work" if dropped else ""
+        each = f" Every run has {repetitions} repetitions." if repetitions else ""
+        text = f"The profile {self.profile} takes {len(distinct(runs)):,} runs{less}.{each}"
+        yield Section("Made with a profile", (Text(text),))
+
+    def _cover(self, runs: Mapping[str, Run]) -> "Cover | None":
+        """Return the picture of the first screen; None where there is none, or its run was not made."""
+        from runner.report.cover import cover
+
+        wanted = self.about.cover
+        if wanted is None or wanted.run not in runs or runs[wanted.run].status == "failed":
+            return None
+        return cover(runs[wanted.run], wanted.caption, wanted.end)
+
+    def _parts(self) -> list[str]:
+        """Return its plug-ins, GROUP=FILE each, files by their whole paths."""
+        named = [text.partition("=") for text in self.about.plugins]
+        for _, _, file in named:
+            check_inside(self.folder / file, [self.folder])
+        return [f"{group}={self.folder / file}" for group, _, file in named]
+
+    def _check_given(self) -> None:
+        for part in self._given:
+            if part.group not in self._grids.plugins:
+                raise RunnerError(
+                    f"{self.name}: --plugin {part.override}: none of its runs takes a {part.group} of yours; a grid of "
+                    f"{RUNS} that does names the axis, as in plugins: {{law: controller}}"
+                )
+
+    def _planned(self, name: str, otherwise: Callable[..., Any], *given: Any) -> Any:
+        return self._code.functions(_PLAN).get(name, otherwise)(*given)
+
+    def _chosen(self, profile: str) -> Profile | None:
+        profiles = self.about.profiles
+        if profile and profile not in profiles:
+            there = f"; profiles: {', '.join(profiles)}" if profiles else "; it has none"
+            raise RunnerError(f"{self.name}: no profile '{profile}'{nearest(profile, profiles)}{there}")
+        return profiles[profile] if profile else None
+
+
+def load_work(
+    name: str,
+    allow_code: bool = False,
+    profile: str = "",
+    others: Sequence[str] = (),
+    parts: Sequence[GivenPart] = (),
+) -> Work:
+    """Return a work by its name, or by its folder; see Work and find_work.
+
+    Raises:
+        RunnerError: if there is none, or its data do not fit.
+    """
+    return Work(find_work(name, others), allow_code, profile, parts)
