@@ -12,7 +12,7 @@ from pathlib import Path
 
 from runner import store
 from runner.base.errors import StoreError
-from runner.cli import dispatch
+from runner.cli.main import dispatch
 from runner.config.compose.compose import compose
 from runner.metrics.summary import MOST_LISTED
 from runner.store.atomic import write_atomically

@@ -19,7 +19,7 @@ from bench.allowed_values import describe
 from bench.compiled_table import compiled_section
 from runner.base.paths import conf_dir
 from runner.calibration.procedures import CALIBRATIONS
-from runner.cli import COMMANDS
+from runner.cli.main import COMMANDS
 from runner.config.calibration import CalibrationSettings
 from runner.config.caveats import CaveatsConfig
 from runner.config.compose.meanings import meanings, nested_model
@@ -275,7 +275,7 @@ def _parser(command: str) -> argparse.ArgumentParser:
         patch.object(argparse.ArgumentParser, "parse_intermixed_args", stop),
     ):
         try:
-            importlib.import_module(f"runner.commands.{command}").main([])
+            importlib.import_module(f"runner.cli.{command}").main([])
         except _MadeError as made:
             parser: argparse.ArgumentParser = made.args[0]
             return parser

@@ -1,5 +1,5 @@
 """`python -m runner` does what `runner` does."""
 
-from runner.cli import main
+from runner.cli.main import main
 
 main()

@@ -16,7 +16,7 @@ SCRIPT = """\
 import sys
 from pathlib import Path
 import runner
-from runner.cli import dispatch
+from runner.cli.main import dispatch
 from runner.base.paths import conf_dir, robots_dir, templates_dir
 site = Path(sys.prefix)
 for folder in (Path(runner.__file__).parent, conf_dir(), robots_dir(), templates_dir()):

@@ -37,7 +37,7 @@ def mine(tmp_path):
 @pytest.fixture
 def composed(monkeypatch):
     """Count the runs that are composed and checked."""
-    from runner.commands import run
+    from runner.cli import run
 
     count, main = [], run.main
     monkeypatch.setattr(run, "main", lambda *given: count.append(1) or main(*given))
@@ -192,7 +192,7 @@ def test_answers_are_bounded(tmp_path, monkeypatch):
 @pytest.mark.costs(2)
 def test_a_stored_run_imports_no_simulator(tmp_path):
     heavy = "{'hydra', 'omegaconf', 'pinocchio', 'scipy', 'pandas', 'llvmlite', 'pyarrow', 'pybullet', 'mujoco'}"
-    lines = f"import sys; from runner.cli import dispatch; dispatch({LINE}); print({heavy} & {{*sys.modules}})"
+    lines = f"import sys; from runner.cli.main import dispatch; dispatch({LINE}); print({heavy} & {{*sys.modules}})"
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "own")}
     told = [
         subprocess.run(

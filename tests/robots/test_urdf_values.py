@@ -5,7 +5,7 @@ from support import strangers
 from support.strangers import Y, Z
 
 from runner.base.errors import ConfigError
-from runner.commands.doctor import main as doctor
+from runner.cli.doctor import main as doctor
 from runner.robots import RobotModel, read_urdf
 
 ARM = strangers.chain("arm", [("revolute", Z), ("revolute", Y), ("revolute", Y)])

@@ -56,7 +56,7 @@ def counted(*given):
 
 setattr(owner, name, counted)
 
-from runner.cli import main
+from runner.cli.main import main
 
 main()
 """

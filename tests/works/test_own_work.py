@@ -8,7 +8,7 @@ import pytest
 
 from runner.base.errors import RunnerError
 from runner.base.paths import example_work_dir
-from runner.cli import dispatch
+from runner.cli.main import dispatch
 from runner.report.document import Table
 from runner.study.check import problems
 from runner.study.names import find_work, work_names

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from runner.completion import answer, is_asked
+from runner.cli.completion import answer, is_asked
 
 LINES = (
     "", "r", "robot", "robot=", "robot=macro,", "robot=nosuch ", "robot=nosuch controller.", "controller..", ".", "=",
@@ -25,7 +25,7 @@ LINES = (
 
 
 def tab(line, monkeypatch, arguments=("-sc", "query=bash")):
-    from runner.cli import dispatch
+    from runner.cli.main import dispatch
 
     monkeypatch.setenv("COMP_LINE", f"runner {line}")
     return dispatch(arguments)
@@ -73,7 +73,7 @@ def test_a_fault_of_ours_is_no_words(monkeypatch, capfd):
         print("err", file=sys.stderr)
         raise KeyError
 
-    monkeypatch.setattr("runner.completion.complete.complete", fail)
+    monkeypatch.setattr("runner.cli.completion.complete.complete", fail)
     assert tab("rob", monkeypatch) == 0
     assert capfd.readouterr() == ("\n", "")
 
@@ -89,7 +89,7 @@ def test_only_words_that_stand_for_configs_import_hydra(tmp_path):
     heavy = "{'hydra', 'omegaconf', 'numpy', 'pydantic', 'yaml', 'importlib.metadata'}"
     for line in ("", "rep", "list ", "robot=m", "experiment=thesis/", "report ", "table --", "tune --min", "work c"):
         lines = (
-            f"import sys; from runner.cli import dispatch; dispatch(['-sc', 'query=bash']); "
+            f"import sys; from runner.cli.main import dispatch; dispatch(['-sc', 'query=bash']); "
             f"assert not {heavy} & {{*sys.modules}}, {heavy} & {{*sys.modules}}"
         )
         environment = {**os.environ, "COMP_LINE": f"runner {line}"}

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.commands.benchmark import check_law
+from runner.cli.benchmark import check_law
 from runner.study.given import given_parts
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "own_robot"

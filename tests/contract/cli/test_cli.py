@@ -13,7 +13,7 @@ import yaml
 from support.engines import ASKED
 from support.printed import without_caveats
 
-from runner.cli import COMMANDS, GUIDE, HELP
+from runner.cli.main import COMMANDS, GUIDE, HELP
 from runner.config.compose.options import group_options
 from runner.store import open_sweep
 from runner.sweeps import job
@@ -266,7 +266,7 @@ LIGHT = [
 ]  # fmt: skip
 IMPORTS = """\
 import sys
-from runner.cli import dispatch
+from runner.cli.main import dispatch
 heavy = {"numpy", "scipy", "pandas", "pydantic", "yaml", "pinocchio", "pybullet", "hydra", "omegaconf", "pyarrow"}
 found = []
 for arguments in LIGHT:

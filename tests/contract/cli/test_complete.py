@@ -2,10 +2,10 @@
 
 import pytest
 
-from runner.cli import COMMANDS
-from runner.commands.list import TOPICS
-from runner.completion.complete import complete
-from runner.completion.line import read_line
+from runner.cli.completion.complete import complete
+from runner.cli.completion.line import read_line
+from runner.cli.list import TOPICS
+from runner.cli.main import COMMANDS
 from runner.config.compose.options import group_options
 from runner.metrics.summary import units
 

@@ -16,7 +16,7 @@ LINES = (
 CHILD = """
 import json, sys
 import scipy
-from runner.cli import dispatch
+from runner.cli.main import dispatch
 
 large = {"dask", "distributed", "jinja2", "matplotlib", "optuna", "pandas", "plotly"}
 codes = [dispatch(line) for line in json.loads(sys.argv[1])]

@@ -1,6 +1,6 @@
 """`runner list`: every topic, own options, unknown names."""
 
-from runner.commands.list import TOPICS
+from runner.cli.list import TOPICS
 from runner.config.compose.options import group_options
 from runner.metrics import units
 

@@ -8,7 +8,7 @@ import pytest
 
 from runner.audit.audit import audit
 from runner.audit.verdict import VERDICTS
-from runner.commands import reproduce
+from runner.cli import reproduce
 from runner.report.document import Document, Section
 from runner.study.expected_caveats import ExpectedCaveat
 from runner.study.findings import finding

@@ -12,7 +12,7 @@ import pytest
 from support.printed import without_caveats, without_results
 
 from runner.base.errors import RunnerError
-from runner.cli import dispatch
+from runner.cli.main import dispatch
 from runner.plugins import discovery as plugins
 
 SPRING = '''\

@@ -3,7 +3,7 @@
 import pytest
 
 from bench.fuzz_stores import damage_files, files_of, flip_bits, make_store, read_all
-from runner.commands.verify import verify
+from runner.cli.verify import verify
 
 CASES = 200  # `python -m bench.fuzz stores` takes thousands
 

@@ -12,7 +12,7 @@ from support.study_sections import texts
 from support.work_plans import FULL_ALONE
 
 from runner.base.errors import RunnerError
-from runner.commands.reproduce import _chosen, _Way
+from runner.cli.reproduce import _chosen, _Way
 from runner.report.formulas import faulty
 from runner.studies.benchmark import engines
 from runner.studies.benchmark.cells import cells

@@ -10,7 +10,7 @@ from scipy.special import ellipk
 from support.precision_runs import error
 from support.work_plans import cut
 
-from runner.commands.reproduce import _chosen, _Way
+from runner.cli.reproduce import _chosen, _Way
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.plants.rk4 import Rk4

@@ -78,7 +78,7 @@ def test_the_table_counts_by_package_and_shows_what_was_not_found():
             ("runner/plants/rk4.py", "killed"),
             ("runner/plants/rk4.py", "timeout"),
             ("runner/studies/thesis/a.py", "survived"),
-            ("runner/cli.py", "not covered"),
+            ("runner/cli/main.py", "not covered"),
         ]
     ]
     lines = list(table(results))
@@ -91,5 +91,5 @@ def test_the_table_counts_by_package_and_shows_what_was_not_found():
     }
     assert lines[5:] == [
         "survived: runner/studies/thesis/a.py:7 f", "  - a < b", "  + a <= b",
-        "not covered: runner/cli.py:7 f", "  - a < b", "  + a <= b",
+        "not covered: runner/cli/main.py:7 f", "  - a < b", "  + a <= b",
     ]  # fmt: skip

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.commands.columns import COMPARED, aligned, answer_cells, letter
+from runner.cli.columns import COMPARED, aligned, answer_cells, letter
 from runner.report.answers import Asked, judge
 from runner.statistics import compare_paired
 

@@ -1,0 +1,70 @@
+"""`runner audit URDF --tip FRAME --jacobian FILE`: your own formulas against a robot's true kinematics and dynamics.
+
+FILE is YAML: `elements` names each element with its expression (J_11 to J_6n, linear rows first; P_x, P_y, P_z; M_11
+to M_nn; G_1 to G_n), in SI units and the base frame. An expression knows q1, s1 = sin(q1), c1 = cos(q1) and so on, and
+what `symbols` gives a name.
+"""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from runner.base.errors import RunnerError
+from runner.cli.arguments import Parser
+from runner.cli.columns import aligned, number
+
+if TYPE_CHECKING:
+    from runner.audit.own_formulas import Difference
+
+_MOST = 100_000
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Compare the formulas of the files given; return 1 when one of them differs."""
+    parser = Parser("audit", __doc__)
+    parser.add_argument(
+        "urdf", metavar="URDF", help="a file, one of our URDFs such as xarm7.urdf, or a robot such as xarm7"
+    )
+    parser.add_argument("--tip", required=True, metavar="FRAME", help="link whose origin is the tip")
+    for name, words in (
+        ("position", "the tip's position [m]"),
+        ("jacobian", "the tip's Jacobian [m/rad and 1]"),
+        ("mass-matrix", "the mass matrix [kg m^2]"),
+        ("gravity", "the gravity torques [N m]"),
+    ):
+        parser.add_argument(f"--{name}", type=Path, metavar="FILE", help=f"formulas of {words}")
+    parser.add_argument("--samples", type=int, default=1000, help="how many random configurations (1000)")
+    parser.add_argument("--tolerance", type=float, default=1e-6, help="largest error that is none, in SI units (1e-6)")
+    options = parser.parse_args(arguments)
+    from runner.audit.model_truths import audited_arm
+    from runner.audit.own_formulas import QUANTITIES, compare
+
+    files = {name: getattr(options, name.replace("-", "_")) for name in QUANTITIES}
+    given = {name: path for name, path in files.items() if path is not None}
+    if not given:
+        raise RunnerError(f"nothing to compare: give one of {', '.join('--' + name for name in QUANTITIES)}")
+    if not 1 <= options.samples <= _MOST:
+        raise RunnerError(f"--samples is {options.samples}; allowed: 1 to {_MOST}")
+    if not 0 < options.tolerance < math.inf:
+        raise RunnerError(f"--tolerance is {options.tolerance:g}; allowed: above 0")
+    urdf = str(Path(options.urdf).resolve()) if Path(options.urdf).is_file() else options.urdf
+    model = audited_arm(urdf, options.tip, (), Path()).model
+    differ = 0
+    for name, path in given.items():
+        differ += _report(name, compare(model, name, path, options.samples), options.tolerance)
+    return 1 if differ else 0
+
+
+def _report(quantity: str, differences: "list[Difference]", tolerance: float) -> int:
+    """Print the comparison of one file; return how many formulas differ."""
+    wrong = [each for each in differences if each.largest > tolerance]
+    print(f"{quantity}: {len(differences) - len(wrong)} of {len(differences)} formulas agree")
+    if wrong:
+        rows = [["element", "largest error", "typical", "formula gives", "true", "at q [rad]", ""]]
+        for each in wrong:
+            at = " ".join(f"{angle:.3f}" for angle in each.at)
+            hint = f"it is the true {each.instead}" if each.instead else ""
+            rows.append([each.element, *map(number, (each.largest, each.typical, each.found, each.true)), at, hint])
+        print(aligned(rows))
+    return len(wrong)

@@ -1,0 +1,80 @@
+"""`runner benchmark check LAW.py`: tell in seconds if a law of yours fits in the benchmark, before hours of runs.
+
+LAW.py is what `--plugin controller=LAW.py` takes; its config controller/LAW.yaml and its ranges LAW.ranges.yaml stand
+next to it. Every run of it is composed and held against one of a law of ours, a few control ticks are made on each arm,
+and the time of all is estimated. Nothing is stored. Exit code 2 where it does not fit.
+"""
+
+import shlex
+from argparse import Namespace
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from runner.base.errors import RunnerError
+from runner.base.quiet import quiet_environment
+from runner.base.texts import one_line
+from runner.cli.arguments import ActionParser, Parser
+from runner.plugins.discovery import in_use, use_plugins
+
+if TYPE_CHECKING:
+    from runner.study.given import GivenPart
+
+WORK = "benchmark"
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Do one of them; there is one."""
+    parser = Parser("benchmark", __doc__)
+    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=ActionParser)
+    check = actions.add_parser("check", help="does a law of yours fit?")
+    check.add_argument("law", metavar="FILE", help="your law, a Python file")
+    check.add_argument("--profile", default="", metavar="P", help="a smaller or larger making of the benchmark")
+    return _check(parser.parse_args(arguments))
+
+
+def _check(options: Namespace) -> int:
+    quiet_environment()
+    use_plugins([f"controller={options.law}"])
+    from runner.study.given import given_parts
+    from runner.sweeps.loading import Loader
+
+    (part,) = given_parts(in_use()[-1:])
+    workers = Loader().sweeper([]).workers
+    for line in check_law(WORK, options.profile, part, workers):
+        print(one_line(line))
+    profile = ("--profile", options.profile) if options.profile else ()
+    print(shlex.join(["runner", "reproduce", WORK, *profile, "--plugin", f"controller={options.law}"]))
+    return 0
+
+
+def check_law(name: str, profile: str, part: "GivenPart", workers: int) -> Iterator[str]:
+    """Yield how a law fits in a work that takes such: a line for each arm, and what all takes.
+
+    Args:
+        name: The work.
+        profile: Its profile; empty for the one that it makes otherwise.
+        part: The law.
+        workers: Number of processes that are to make its runs.
+
+    Raises:
+        RunnerError: with all that is wrong, if the law does not fit.
+    """
+    from runner.study.estimate import told
+    from runner.study.fit import fit
+    from runner.study.work import load_work
+
+    without = load_work(name, profile=profile)
+    found = fit(load_work(name, profile=profile, parts=(part,)), without, part)
+    if found.problems:
+        raise RunnerError("\n".join([f"{part.name} does not fit:", *(f"  - {text}" for text in found.problems)]))
+    for robot, tick in found.ticks.items():
+        amount, ended = found.amounts[robot], ""
+        if tick.diverged is not None:
+            ended = f"; with the values of its config it diverges at {tick.diverged:g} s"
+        yield (
+            f"{robot}: a control tick of {1e3 * tick.period:g} ms computed in {1e6 * tick.computed:.0f} us; "
+            f"{amount.trials:,} trials, {amount.longer:,} long runs, {amount.runs:,} runs{ended}"
+        )
+    if not found.tuned:
+        yield f"no ranges in {part.name}.ranges.yaml: the law is compared with the values of its config alone"
+    yield told([part.name], found.amounts, workers)

@@ -1,0 +1,49 @@
+"""`runner calibrate [OVERRIDES]`: calibrate a tool or a sensor in simulation, judge it by the truth, and store it."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from runner.base.quiet import quiet_environment
+from runner.base.texts import one_line
+from runner.cli.arguments import Parser
+from runner.cli.columns import aligned, number
+
+if TYPE_CHECKING:
+    from runner.store import Calibration
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Carry out one calibration; print a table of its errors, and its folder as the last line."""
+    parser = Parser("calibrate", __doc__)
+    parser.add_argument("overrides", nargs="*", metavar="OVERRIDE", help="such as calibration=gravity, repetitions=10")
+    parser.add_argument("--config-dir", type=Path, action="append", default=[], metavar="DIR", help="folder of yours")
+    options = parser.parse_args(arguments)
+    quiet_environment()
+    from runner.sweeps.calibration_job import calibrate
+
+    done = calibrate(*options.overrides, config_dirs=options.config_dir)
+    for warning in done.provenance["warnings"]:
+        print(one_line(f"runner: warning: {warning}"), file=sys.stderr)
+    print(_report(done))
+    print(done.folder)
+    return 0
+
+
+def _report(done: "Calibration") -> str:
+    rows = [["error of", "unit", "median", "min", "max", "standard deviation"]]
+    for name, summary in done.record["errors"].items():
+        deviation = done.summary("deviations", name)["median"]
+        values = (summary["median"], summary["min"], summary["max"], deviation)
+        rows.append([name, summary["unit"], *map(number, values)])
+    judged = done.consistency
+    if judged is None:
+        return aligned(rows)
+    band = f"{number(judged['lower'])} to {number(judged['upper'])}"
+    verdict = "as large as" if judged["holds"] else "not as large as"
+    share = f"{100.0 * judged['level']:g} %"
+    text = (
+        f"errors are {verdict} predicted: mean normalised error squared {number(judged['mean'])}, {share} band {band}"
+    )
+    return f"{aligned(rows)}\n{text}"

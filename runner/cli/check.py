@@ -1,0 +1,155 @@
+"""`runner check DIR [--reference FILE]`: do the metrics of a run or sweep lie where a spec or a reference has them?
+
+A run with a spec is checked by that where no reference is given: no repetition may break a bound, or with `--at-most P`
+the whole 95 % interval of the probability of failing has to lie below P.
+
+With `--learn FILE` a sweep becomes a reference itself; what moved since is told by `--reference FILE [--markdown]`.
+"""
+
+import argparse
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from runner.base.quiet import quiet_environment
+from runner.base.texts import one_line
+from runner.cli.arguments import Parser, stored
+from runner.cli.columns import aligned, number
+
+if TYPE_CHECKING:
+    from runner.store import Run, Sweep
+    from runner.store.references import Band, Finding, Learned, Move, Reference
+
+_MOVE_COLUMNS = ("cell", "metric", "was", "is", "moved", "beyond the seeds' spread")
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Check a run or sweep against a reference, or learn one."""
+    parser = Parser("check", __doc__)
+    parser.add_argument(
+        "folder",
+        type=stored("run", "sweep", "tuning"),
+        metavar="DIR",
+        help="folder of a run or a sweep, or latest",
+    )
+    parser.add_argument(
+        "--reference",
+        type=Path,
+        metavar="FILE",
+        help="reference file; default: the spec, or that of the experiment",
+    )
+    parser.add_argument(
+        "--at-most", type=_probability, metavar="P", help="probability of failing a bound of the spec that is allowed"
+    )
+    parser.add_argument("--learn", type=Path, metavar="FILE", help="write a reference of the whole sweep")
+    parser.add_argument("--markdown", action="store_true", help="tell what moved as a Markdown table")
+    options = parser.parse_args(arguments)
+    quiet_environment()
+    from runner import store
+    from runner.store.references import cell_names, learn, load_learned
+
+    if options.learn:
+        count = learn(store.open_sweep(options.folder), options.learn)
+        print(f"learned: {count} metrics of {options.folder} are now in {options.learn}")
+        return 0
+    learned = load_learned(options.reference) if options.reference else None
+    if learned is not None:
+        return _check_sweep(store.open_sweep(options.folder), learned, options.markdown)
+    if options.markdown:
+        parser.error("--markdown needs a reference of a sweep, made by --learn")
+    runs = store.open_runs(options.folder)
+    judged = options.reference is None and runs[0].spec is not None
+    if options.at_most is not None and not judged:
+        parser.error("--at-most needs a run with a spec, as by spec.metrics.settling_time.max=1.6, no --reference")
+    if judged:
+        from runner.cli.check_spec import check_spec
+
+        cells = cell_names(store.open_sweep(options.folder)) if store.is_sweep(options.folder) else []
+        return check_spec(runs, cells, options.at_most)
+    return _check_bands(runs, options.reference)
+
+
+def _probability(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value < 1.0:
+        raise argparse.ArgumentTypeError(f"must be a number above 0 and below 1; found '{text}'")
+    return value
+
+
+def _check_sweep(sweep: "Sweep", learned: "Learned", markdown: bool) -> int:
+    """Print what moved since a sweep's reference was learned; return 1 where it is more than the seeds' spread."""
+    from runner.store.references import find_moves
+
+    moves = find_moves(sweep, learned)
+    beyond = sum(move.beyond for move in moves)
+    total = sum(map(len, learned.values()))
+    summary = f"{total} metrics of {len(learned)} cells: {len(moves)} moved, {beyond} beyond the seeds' spread"
+    rows = [list(_MOVE_COLUMNS), *map(_move_row, moves)]
+    if markdown:
+        lines = [f"**{summary}**", "", *_markdown(rows)] if moves else [f"**{summary}**"]
+        print("\n".join(lines))
+    else:
+        print("\n".join([summary, aligned(rows)]) if moves else f"good: {summary}")
+    return 1 if beyond else 0
+
+
+def _move_row(move: "Move") -> list[str]:
+    beyond = "yes" if move.beyond else "no"
+    if not move.metric:
+        return [move.cell, "(all)", "", "", move.remark, beyond]
+    was, unit = "-", ""
+    if move.was is not None:
+        unit = "" if move.was.unit == "1" else f" {move.was.unit}"
+        was = number(move.was.median)
+        if move.was.seeds > 1:
+            was += f" ({number(move.was.min)} to {number(move.was.max)})"
+    return [move.cell, move.metric, was + unit, number(move.value) + unit, _direction(move), beyond]
+
+
+def _direction(move: "Move") -> str:
+    """Return which way a metric moved, and by how much of what it was; no value counts as beyond every number."""
+    old, new = None if move.was is None else move.was.median, move.value
+    if old is None or new is None:
+        return "new" if move.was is None else "up" if new is None else "down"
+    share = f" {100.0 * abs(new - old) / abs(old):.2g} %" if old else ""
+    return ("up" if new > old else "down") + share
+
+
+def _markdown(rows: "Sequence[Sequence[str]]") -> list[str]:
+    head, *others = ["| " + " | ".join(one_line(cell).replace("|", "\\|") for cell in row) + " |" for row in rows]
+    return [head, "|" + "---|" * len(rows[0]), *others]
+
+
+def _check_bands(runs: "Sequence[Run]", path: Path | None) -> int:
+    """Check the medians of all runs; print one line if all hold, else a table of those that do not."""
+    from runner.store.references import check_run, find_shipped, load_reference
+
+    given = load_reference(path) if path else None
+    pairs = [(run, given or find_shipped(run)) for run in runs]
+    results = [(run, reference, check_run(run, reference)) for run, reference in pairs]
+    short = [result for result in results if not all(finding.good for finding in result[2])]
+    if short:
+        print("\n\n".join(_report(*result) for result in short))
+        return 1
+    names = ", ".join(dict.fromkeys(reference.name for _, reference in pairs))
+    count = sum(len(findings) for _, _, findings in results)
+    print(f"good: {count} metrics of {len(runs)} {'run' if len(runs) == 1 else 'runs'} lie in the bands of {names}")
+    return 0
+
+
+def _report(run: "Run", reference: "Reference", findings: "Sequence[Finding]") -> str:
+    wrong = [finding for finding in findings if not finding.good]
+    head = f"{run.folder}: {len(wrong)} of {len(findings)} metrics fall short of {reference.name}"
+    rows = [[f.metric, number(f.value), _range(f.band), f.band.reason] for f in wrong]
+    failure = [f"  {run.failure_text}"] if run.failure else []
+    return "\n".join([head, *failure, aligned([["metric", "found", "band", "reason"], *rows])])
+
+
+def _range(band: "Band") -> str:
+    if band.min is None or band.max is None:
+        return f"up to {number(band.max)}" if band.min is None else f"{number(band.min)} or more"
+    return f"{number(band.min)} to {number(band.max)}"

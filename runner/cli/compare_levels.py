@@ -1,0 +1,76 @@
+"""The levels of an axis of one sweep side by side, for `runner compare SWEEP --by AXIS`."""
+
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from runner.base.texts import one_line
+from runner.cli.columns import COMPARED, aligned, answer_cells
+from runner.report.answers import EXPLAINED, Asked, judge
+from runner.report.comparison.caveats import caveats_of
+from runner.report.comparison.cells import label_text
+from runner.report.comparison.levels import levels
+from runner.report.comparison.side import Side, open_side, stored_part
+from runner.report.comparison.words import NOISE_ALONE, counted, noise_alone
+from runner.report.sweep.subject import first_screen, whole_metrics
+from runner.store import open_sweep
+from runner.sweeps.finer_step import work_out_sweep
+
+
+def print_levels(folder: Path, axis: str, within: Sequence[str] | None, metrics: Sequence[str]) -> None:
+    """Print how the levels of an axis differ from the first one.
+
+    Args:
+        folder: Folder of the sweep.
+        axis: The axis.
+        within: Axes within whose levels they are compared; None for over all others, and within all of them.
+        metrics: Names of metrics; empty for all.
+
+    Raises:
+        RunnerError: If the sweep has no such axis or metric.
+        StoreError: If it cannot be read.
+    """
+    work_out_sweep(stored_part(open_sweep(folder))[0])
+    side = open_side("A", folder)
+    for damage in side.damage:
+        print(f"runner: {damage}", file=sys.stderr)
+    print("\n".join(_lines(side, axis, within, metrics)))
+
+
+def _lines(side: Side, axis: str, within: Sequence[str] | None, metrics: Sequence[str]) -> Iterator[str]:
+    measurements = side.measurements
+    found = levels(measurements, axis, within, metrics)
+    cells = len(measurements.hashes)
+    yield one_line(f"{side.folder}  {cells} cells, by {axis}; repetitions in each: {measurements.repetitions}")
+    if side.missing:
+        yield one_line(f"{counted(side.missing, 'cell is', 'cells are')} not stored; continue with: {side.command}")
+    if side.failed:
+        yield f"{counted(side.failed, 'cell', 'cells')} failed; a failed repetition counts as beyond every number"
+    along = [difference for difference in measurements.differences if axis in difference.axes or not difference.axes]
+    if along:
+        yield f"the levels of {axis} differ in more than {axis}; what follows may be due to any of these:"
+        rows = [
+            [difference.key, "; ".join(f"{levels_}: {text}" for levels_, text in difference.values)]
+            for difference in along
+        ]
+        yield aligned(rows)
+    else:
+        yield f"the levels of {axis} differ in {axis} alone"
+    caveats = [[one.rule, f"{one.count} of {one.cells} cells", one.worst] for one in caveats_of(side)]
+    yield f"caveats:\n{aligned(caveats)}" if caveats else "no caveats"
+    yield ""
+    first = first_screen(metrics or whole_metrics({one.metric: None for one in found}))
+    answers = judge([Asked(one.metric, one.unit, one.comparison) for one in found], first)
+    for one, answer in zip(found, answers, strict=True):
+        if one.metric in first and not one.pair.at:
+            yield one_line(answer.sentence(one.pair.first, one.pair.second))
+    header = ["at", axis, "metric", "unit", "difference", *COMPARED, "the second is"]
+    rows = []
+    for one, answer in zip(found, answers, strict=True):
+        names = [label_text(one.pair.at) if one.pair.at else "all", f"{one.pair.first}, {one.pair.second}"]
+        rows.append([*names, one.metric, one.unit, *answer_cells(answer)])
+    yield aligned([header, *rows], indent="")
+    yield ""
+    yield EXPLAINED
+    if measurements.repetitions > 1 and noise_alone(config for config, _ in measurements.configs):
+        yield NOISE_ALONE

@@ -1,0 +1,46 @@
+"""`runner example DIR`: copy the examples into a folder: an arm, a controller, a trajectory, a paper, a notebook."""
+
+import shutil
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from runner.base.errors import RunnerError
+from runner.base.paths import examples_dir
+from runner.cli.arguments import Parser
+from runner.store.atomic import write_atomically
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Copy them; print the folder as the last line."""
+    parser = Parser("example", __doc__)
+    parser.add_argument("folder", type=Path, metavar="DIR", help="a folder that is not there yet, or empty")
+    folder: Path = parser.parse_args(arguments).folder
+    copied = copy_examples(folder)
+    print(f"runner: {len(copied)} files copied; {folder / 'own_robot' / 'README.md'} is a start", file=sys.stderr)
+    print(folder)
+    return 0
+
+
+def copy_examples(folder: Path) -> list[Path]:
+    """Copy all examples that come with the package; return the copies.
+
+    Args:
+        folder: Where; made if it is not there.
+
+    Raises:
+        RunnerError: if there is something in the folder already, or it cannot be written.
+    """
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise RunnerError(f"{folder}: is there already, and not empty; name a new folder")
+    source = examples_dir()
+    found = sorted(path for path in source.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
+    copies = [folder / path.relative_to(source) for path in found]
+    try:
+        for path, copied in zip(found, copies, strict=True):
+            copied.parent.mkdir(parents=True, exist_ok=True)
+            write_atomically(copied, path.read_bytes())
+            shutil.copymode(path, copied)
+    except OSError as error:
+        raise RunnerError(f"{folder}: cannot be written: {error.strerror}") from error
+    return copies

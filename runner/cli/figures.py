@@ -1,0 +1,124 @@
+"""`runner figures DIR`: each figure of a report as SVG, PDF and CSV, in the width of a journal's column.
+
+DIR is a run, a sweep, a tuning, or a work that `runner reproduce` made: its name, or its report's folder.
+"""
+
+import math
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from runner.base.errors import RunnerError
+from runner.base.quiet import quiet_environment
+from runner.cli.arguments import Parser, Stored
+from runner.config.compose.user_settings import outputs_dir
+from runner.study.names import work_names
+
+if TYPE_CHECKING:
+    from runner.report.document import Document
+    from runner.store import Run
+
+_COLUMNS = {"single": 88.0, "double": 180.0}  # mm
+_NARROWEST, _WIDEST = 60.0, 400.0  # mm
+
+
+class _Drawn(Stored):
+    """The type of an argument that is the folder of something stored, or a work: its name, or its report's folder."""
+
+    def __call__(self, text: str) -> Path:
+        path = Path(text)
+        return path if _work_of(path) else super().__call__(text)
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Write the figures; print their folder as the last line."""
+    parser = Parser("figures", __doc__)
+    parser.add_argument(
+        "folder",
+        type=_Drawn(("run", "sweep", "tuning")),
+        metavar="DIR",
+        help="a run, sweep or tuning; a work; or latest",
+    )
+    parser.add_argument("--output", type=Path, metavar="FOLDER", help="where to write; figures/ beside the report")
+    parser.add_argument("--width", default="single", metavar="W", help="single (88 mm), double (180 mm) or millimetres")
+    parser.add_argument("--only", metavar="NAME", help="one figure, or those whose names begin so")
+    options = parser.parse_args(arguments)
+    width = _millimetres(options.width)
+    quiet_environment()
+    from runner.report.charts.sheet import column
+    from runner.report.export.figures import chosen, figures_of, write_figures
+
+    document, report = _document(options.folder)
+    figures = chosen(figures_of(document), options.only)
+    folder = report / "figures" if options.output is None else options.output
+    for name in write_figures(figures, folder, column(width)):
+        print(name)
+    print(folder)
+    return 0
+
+
+def _millimetres(text: str) -> float:
+    try:
+        width = _COLUMNS.get(text) or float(text.removesuffix("mm"))
+    except ValueError:
+        width = math.nan
+    if not _NARROWEST <= width <= _WIDEST:
+        raise RunnerError(
+            f"--width {text}: allowed are single (88 mm), double (180 mm) or {_NARROWEST:g} to {_WIDEST:g} in mm"
+        )
+    return width
+
+
+def _work_of(path: Path) -> tuple[str, Path] | None:
+    """Return the work that a name, or the folder of a report, is of, and its outputs folder; None where it is none."""
+    if path.name not in work_names():
+        return None
+    if not path.is_dir() and path == Path(path.name):
+        return path.name, outputs_dir()
+    return (path.name, path.parent.parent) if path.resolve().parent.name == "reports" else None
+
+
+def _document(path: Path) -> "tuple[Document, Path]":
+    """Return a report and the folder that it is written to."""
+    work = _work_of(path)
+    if work is not None:
+        return _of_work(*work)
+    from runner import store
+    from runner.cli.report import compose_report
+
+    if store.is_run(path) and not store.is_sweep(path):
+        _tell_failure(store.open_run(path))
+    return compose_report([path])
+
+
+def _of_work(name: str, outputs: Path) -> "tuple[Document, Path]":
+    folder, mend = outputs / "reports" / name, f"`runner reproduce {name} --outputs {outputs}` makes"
+    if not folder.is_dir():
+        raise RunnerError(f"no report on {name} in {outputs}; {mend} it")
+    from runner.study.making import count_missing, make_all
+    from runner.study.work import load_work
+
+    print(f"looking for the runs of {name} ...", file=sys.stderr)
+    work = load_work(name)
+    missing = count_missing(work, outputs)
+    if missing:
+        raise RunnerError(f"{missing} runs of {name} are not stored in {outputs} as they are made today; {mend} them")
+    work.measure(outputs)
+    return work.document(*make_all(work, outputs)), folder
+
+
+def _tell_failure(run: "Run") -> None:
+    """Tell that a run failed where its trace goes up to then.
+
+    Raises:
+        RunnerError: If it has no trace to draw.
+    """
+    if run.status == "ok":
+        return
+    times = run.trace["t"] if (run.folder / "trace.parquet").exists() else ()
+    if len(times) < 2:
+        raise RunnerError(f"{run.folder}: the run {run.failure_text}; it has no trace to draw")
+    print(
+        f"runner: the run {run.failure_text}; its figures show repetition 0, up to {max(times):.4g} s", file=sys.stderr
+    )

@@ -1,0 +1,149 @@
+"""`runner list [TOPIC]`: what there is to choose from, and what it is judged by."""
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from runner.base import engines
+from runner.base.errors import RunnerError, nearest
+from runner.base.texts import escaped, one_line
+from runner.cli.arguments import Parser
+from runner.config.compose.options import group_options
+
+if TYPE_CHECKING:
+    from runner.report.claims import PublishedClaim
+
+_GROUPS = {
+    "robots": "robot",
+    "controllers": "controller",
+    "trajectories": "trajectory",
+    "experiments": "experiment",
+    "plants": "plant",
+    "environments": "environment",
+    "wrist_sensors": "wrist_sensor",
+    "mismatch": "mismatch",
+    "disturbance_observers": "disturbance_observer",
+    "input_shapers": "input_shaper",
+    "notches": "notch",
+    "joint_torque_sensors": "joint_torque_sensor",
+    "endpoint_sensors": "endpoint_sensor",
+    "noise": "noise",
+    "presets": "preset",
+    "torque_limits": "torque_limits",
+    "calibrations": "calibration",
+}
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Print one topic with descriptions, or an overview of all."""
+    parser = Parser("list", __doc__)
+    parser.add_argument("topic", nargs="?", metavar="TOPIC", help=", ".join(TOPICS))
+    parser.add_argument("--config-dir", type=Path, metavar="DIR", help="a config folder of yours, listed too")
+    options = parser.parse_args(arguments)
+    own = [] if options.config_dir is None else [options.config_dir]
+    for folder in own:
+        if not folder.is_dir():
+            raise RunnerError(f"--config-dir: no folder {folder}")
+    if options.topic is None:
+        _print_overview(own)
+    elif options.topic in TOPICS:
+        _print_table(TOPICS[options.topic](own))
+    else:
+        raise RunnerError(
+            f"list: no topic '{options.topic}'{nearest(options.topic, TOPICS)}; topics: {', '.join(TOPICS)}"
+        )
+    return 0
+
+
+def _list_group(group: str) -> Callable[[Sequence[Path]], dict[str, str]]:
+    return lambda config_dirs: group_options(group, config_dirs)
+
+
+def _list_plants(config_dirs: Sequence[Path]) -> dict[str, str]:
+    found = group_options("plant", config_dirs)
+    return found if engines.has_pybullet() else {**found, "bullet": f"not here, PyBullet is missing: {found['bullet']}"}
+
+
+def _list_metrics(_: Sequence[Path]) -> dict[str, str]:
+    from runner.metrics.summary import families  # numpy, which the other topics answer without
+
+    found: dict[str, str] = {}
+    for family in families():
+        meanings = _read_bullets(family.evaluate.__doc__ or "")
+        found |= {name: f"[{unit}] {meanings.get(name, '')}".rstrip() for name, unit in family.UNITS.items()}
+    return found
+
+
+def _read_bullets(docstring: str) -> dict[str, str]:
+    """Return what a docstring's bullets `- name, name: meaning; more` say of each name, up to the semicolon."""
+    meanings = {}
+    for names, meaning in re.findall(r"^\s*- ([\w, ]+): (.+?)(?:;|\.?\s*(?=^\s*- |\Z))", docstring, re.M | re.S):
+        for name in names.split(","):
+            meanings[name.strip()] = " ".join(meaning.split())
+    return meanings
+
+
+def _list_claims(_: Sequence[Path]) -> dict[str, str]:
+    from runner.report.claims import claimed, load_claims, load_statements, stated
+
+    claims = {
+        f"{source} {claim.number}": f"{claim.statement}{_printed(claim)} ({claim.place})"
+        for source in claimed()
+        for claim in load_claims(source)
+    }
+    statements = {
+        f"{source} {number}": f"{each.statement} ({each.place})"
+        for source in stated()
+        for number, each in enumerate(load_statements(source), start=1)
+    }
+    return claims | statements
+
+
+def _printed(claim: "PublishedClaim") -> str:
+    """Return a claim's value as printed; nothing where the source compares in words."""
+    return f": {' to '.join(f'{value:g}' for value in claim.printed)} {claim.unit}" if claim.printed else ""
+
+
+def _list_references(_: Sequence[Path]) -> dict[str, str]:
+    from runner.store.references.shipped import described_references
+
+    return described_references()
+
+
+def _list_works(_: Sequence[Path]) -> dict[str, str]:
+    from runner.study.about import read_about
+    from runner.study.names import find_work, work_names
+
+    found = {name: read_about(find_work(name).folder) for name in work_names()}
+    apart = {name: "" if about.in_all else " (not made by `runner reproduce all`)" for name, about in found.items()}
+    return {name: f"{about.title}. {about.source}{apart[name]}" for name, about in found.items()}
+
+
+TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {
+    **{topic: _list_group(group) for topic, group in _GROUPS.items()},
+    "plants": _list_plants,
+    "metrics": _list_metrics,
+    "claims": _list_claims,
+    "references": _list_references,
+    "works": _list_works,
+}
+"""What can be listed: each gives names and one-line descriptions."""
+
+
+def _print_overview(own: Sequence[Path]) -> None:
+    import shutil
+    import textwrap
+
+    width = shutil.get_terminal_size().columns
+    for topic, entries in TOPICS.items():
+        names = escaped(", ".join(entries(own))) or "none"
+        indent = " " * 15
+        print(textwrap.fill(f"{topic:<13}  {names}", width, subsequent_indent=indent, break_on_hyphens=False))
+    print("\n`runner list TOPIC` tells more; an option is chosen by its group, as in robot=macro")
+
+
+def _print_table(entries: Mapping[str, str]) -> None:
+    width = max(map(len, entries), default=0)
+    for name, description in entries.items():
+        print(one_line(f"{name:<{width}}  {description}".rstrip()))

@@ -1,0 +1,196 @@
+"""`runner reproduce [NAME|FOLDER] [OVERRIDES]`: run what is missing for a published work, and write its report.
+
+FOLDER is a work of your own: `runner work new FOLDER` writes a first one. OVERRIDES say how the runs are made:
+hydra.sweeper.workers and .address, sweep.time_limit, .attempts, .retry and .on_failure, limits.cpu_hours and .memory;
+caveats.RULE.KEY, what is told of them. What is simulated is the work's own, and what
+--plugin names for an axis of the work that takes it.
+"""
+
+import json
+import shlex
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from runner.base import progress
+from runner.base.errors import RunnerError
+from runner.base.progress.stages import of_audit, of_work
+from runner.base.quiet import quiet_environment
+from runner.cli.arguments import Parser
+from runner.config.compose.user_settings import outputs_dir
+from runner.plugins.discovery import in_use, named
+from runner.store.latest import note
+from runner.study.changes import FILE
+from runner.study.names import find_work, work_names
+
+if TYPE_CHECKING:
+    from runner.report.document import Document
+    from runner.store import Calibration, Run
+    from runner.study.expected_caveats import ExpectedCaveat
+    from runner.study.given import GivenPart
+    from runner.study.work import Work
+
+AUDIT = "audit"
+_FREE = ("hydra.sweeper.", "sweep.", "limits.", "caveats.")
+
+
+@dataclass(frozen=True)
+class _Way:
+    """How a work is made: folder of runs and reports, overrides of the engine, command, profile, code, user's parts."""
+
+    outputs: Path
+    overrides: Sequence[str]
+    command: str
+    profile: str = ""
+    code: bool = False
+    parts: "Sequence[GivenPart]" = ()
+
+
+@dataclass(frozen=True)
+class _Reproduced:
+    """What came of a work: its report, the runs behind it by name, why others are missing, and caveats it expects."""
+
+    document: "Document"
+    runs: "Mapping[str, Run]"
+    missing: Mapping[str, str]
+    expected: "Sequence[ExpectedCaveat]" = ()
+    calibrations: "Mapping[str, Calibration]" = field(default_factory=dict)
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Reproduce one work or all; print the report's folder as the last line."""
+    works = (*work_names(), AUDIT)
+    parser = Parser("reproduce", __doc__)
+    parser.add_argument("work", nargs="?", default="all", metavar="NAME", help=f"{', '.join(works)}, all or a folder")
+    parser.add_argument("overrides", nargs="*", metavar="OVERRIDE", help="such as hydra.sweeper.workers=1")
+    parser.add_argument("--outputs", type=Path, default=outputs_dir(), help="folder of runs and reports")
+    parser.add_argument("--check", action="store_true", help="exit 1 where a finding fell or a caveat is unexpected")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write verdicts, findings, caveats, numbers")
+    parser.add_argument("--profile", default="", metavar="P", help="a smaller or larger making that work.yaml names")
+    parser.add_argument("--code", action="store_true", help="run the Python of FOLDER")
+    options = parser.parse_intermixed_args(arguments)
+    others = [text for text in options.overrides if not text.startswith(_FREE) or text.startswith("sweep.trace")]
+    if others:
+        raise RunnerError(f"reproduce: {others[0]}: the work decides what it simulates; you may set {', '.join(_FREE)}")
+    if options.work not in (AUDIT, "all"):
+        find_work(options.work, (AUDIT, "all"))  # one that is not there is told at once
+    quiet_environment()
+    plugins = [word for text in named() for word in ("--plugin", text)]
+    command = shlex.join(["runner", *plugins, "reproduce", *arguments])
+    way = _Way(options.outputs, options.overrides, command, options.profile, options.code, _parts(options.work))
+    made = dict(_reproduce(work, way) for work in _chosen(options.work, way))
+    if options.json is not None:
+        _write_conclusions(made, options.json)
+    fallen = _tell_fallen(made) if options.check else False
+    return 1 if fallen or any(each.missing for each in made.values()) else 0
+
+
+def _parts(work: str) -> "tuple[GivenPart, ...]":
+    """Return the parts that --plugin names, for one work that may take them."""
+    from runner.study.given import given_parts
+
+    if in_use() and work in (AUDIT, "all"):
+        raise RunnerError(f"reproduce {work}: --plugin gives a part to one work; name it")
+    return given_parts(in_use())
+
+
+def _chosen(text: str, way: _Way) -> "list[Work | None]":
+    """Return the work that is meant, or all in the order of the number of their runs; None stands for the audit.
+
+    So there is something to read soon.
+
+    Raises:
+        RunnerError: if there is no such work; names what there is.
+    """
+    from runner.study.work import load_work
+
+    if text == AUDIT:
+        return [None]
+    if text != "all":
+        return [load_work(text, way.code, way.profile, (AUDIT, "all"), way.parts)]
+    works = [work for name in work_names() if (work := load_work(name, way.code, way.profile)).about.in_all]
+    return [None, *sorted(works, key=lambda work: len(work.jobs()))]
+
+
+def _reproduce(work: "Work | None", way: _Way) -> "tuple[str, _Reproduced]":
+    from runner import store
+    from runner.report.render import write_report
+    from runner.study.gains import write_gains
+
+    name = AUDIT if work is None else work.name
+    progress.named(name)
+    folder = way.outputs / "reports" / name
+    store.prepare(way.outputs)
+    made = _audit(folder) if work is None else _reproduce_work(work, way)
+    print("writing the report ...", file=sys.stderr)
+    write_report(made.document, folder)
+    if work is not None and work.tuned:
+        write_gains(folder, work.tuned)
+    _write_conclusions({name: made}, folder / FILE)
+    note(folder)
+    for run, why in made.missing.items():
+        print(f"runner: {name}: {run} is missing in the report: {why}", file=sys.stderr)
+    print(folder)
+    return name, made
+
+
+def _tell_fallen(made: Mapping[str, _Reproduced]) -> bool:
+    """Print the findings that no longer hold and the caveats that are not expected; return whether there are any."""
+    from runner.study.conclusions import fallen
+    from runner.study.expected_caveats import unexpected_caveats
+
+    lines = [
+        f"{work}: {line}"
+        for work, each in made.items()
+        for line in (*fallen(each.document), *unexpected_caveats(each.runs, each.expected))
+    ]
+    for line in lines:
+        print(f"runner: {line}", file=sys.stderr)
+    return bool(lines)
+
+
+def _write_conclusions(made: Mapping[str, _Reproduced], path: Path) -> None:
+    from runner.store.atomic import write_atomically
+    from runner.study.conclusions import conclusions
+
+    content = {
+        work: conclusions(each.document, each.runs, each.calibrations, each.expected) for work, each in made.items()
+    }
+    write_atomically(path, (json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())
+
+
+def _reproduce_work(work: "Work", way: _Way) -> _Reproduced:
+    """Make what a work needs, and its document."""
+    from runner.report.markup import literal
+    from runner.study.check import formulas_at
+    from runner.study.late_claims import late_claims
+    from runner.study.making import make_all
+
+    progress.plan(of_work(len(work.jobs()) + len(work.calibrations())))
+    work.measure(way.outputs)
+    runs, calibrations = make_all(work, way.outputs, way.overrides, way.command)
+    missing = runs.missing | calibrations.missing
+    document = work.document(runs, calibrations)
+    late = late_claims(way.outputs, work, runs)
+    document = replace(document, notes=[*document.notes, *map(literal, late)])
+    for line in late:
+        print(f"runner: {work.name}: {line}", file=sys.stderr)
+    for line in formulas_at(work, document):
+        print(f"runner: {line}", file=sys.stderr)
+    return _Reproduced(document, runs, missing, work.expected, calibrations)
+
+
+def _audit(folder: Path) -> _Reproduced:
+    """Judge the equations of all works; write their table, and return the report."""
+    from runner.audit.audit import as_csv, audit_all
+    from runner.report.audit.report import audit_document
+    from runner.store.atomic import write_atomically
+
+    print("auditing the equations ...", file=sys.stderr)
+    progress.plan(of_audit())
+    judged = audit_all()
+    table = as_csv([each for source in judged.values() for each in source])
+    write_atomically(folder / "equations.csv", table.encode())
+    return _Reproduced(audit_document(judged), {}, {})

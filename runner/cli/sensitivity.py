@@ -1,0 +1,132 @@
+"""`runner sensitivity RUN`: how the metrics of a run change with its parameters, the one that matters most first.
+
+The derivatives are exact, by forward differentiation of the compiled run: by each number of the config, with the keys
+that take its value, and by masses, armature and lengths of links. The start, the desired motion and the ticks are held.
+A run on bullet or mujoco has the derivatives of the same run on rk4.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from runner.base import progress
+from runner.base.quiet import quiet_environment
+from runner.cli.arguments import Parser, stored
+from runner.cli.columns import aligned, number
+
+if TYPE_CHECKING:
+    from runner.analysis.sensitivity import Sensitivity
+    from runner.analysis.sensitivity.differences import Differences
+    from runner.store import Run
+
+_SHOWN = (
+    "rms_tracking_error", "max_tracking_error", "steady_state_error", "overshoot", "peak_torque", "peak_joint_force",
+    "energy",
+)  # fmt: skip
+_AGREES, _SURE = 1e-6, 1e-7  # of a derivative: how far differences may be off, and how sure they must be to count
+_GROUPS = (
+    "gains", "masses", "armature", "lengths", "payload", "friction", "gravity", "limits", "noise", "mismatch", "others",
+)  # fmt: skip
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Print a table for each metric; return 1 where differences disagree."""
+    parser = Parser("sensitivity", __doc__)
+    parser.add_argument("run", type=stored("run"), metavar="RUN", help="folder of a run, or latest")
+    parser.add_argument("--metric", action="append", metavar="NAME", help="which metric; again for the next one")
+    parser.add_argument(
+        "--of", action="append", metavar="GROUP", choices=_GROUPS, help=f"which parameters: {', '.join(_GROUPS)}; again"
+        " for the next"
+    )  # fmt: skip
+    parser.add_argument("--repetition", type=int, default=0, metavar="N", help="which repetition (0)")
+    parser.add_argument("--check", action="store_true", help="compare with central differences")
+    options = parser.parse_args(arguments)
+    quiet_environment()
+    from runner import store
+    from runner.analysis.sensitivity import check_smooth, differences, of_run
+
+    run = store.open_run(options.run)
+    progress.begin("differentiating", total=None, unit="parameters")
+    found = of_run(run, options.of or _GROUPS, options.repetition)
+    names = options.metric or [name for name in _SHOWN if name in found.metrics]
+    for name in names:
+        check_smooth(name, found.metrics)
+    compared = differences(found, names) if options.check else {}
+    print(_about(run, found))
+    for name in names:
+        print(f"\n{name}: {number(found.metrics[name])} {_unit(name)}")
+        print(aligned(_rows(found, name, compared.get(name))))
+    print(*_notes(found), sep="\n")
+    return _compare(found, compared) if options.check else 0
+
+
+def _about(run: "Run", found: "Sensitivity") -> str:
+    config = found.scene.config
+    text = f"{config.robot.name}, {config.controller.kind}, repetition {found.scene.repetition}"
+    kind = run.config["plant"]["kind"]
+    if kind != config.plant.kind:
+        text += f": derivatives of the same run on rk4, because those of {kind} are not available; so are the metrics"
+    return f"{text}\nheld: the start, the desired motion, the ticks"
+
+
+def _notes(found: "Sensitivity") -> Iterator[str]:
+    """Yield the lines on keys that follow a parameter, and on parameters that are not in the tables."""
+    yield ""
+    for parameter in found.parameters:
+        if parameter.followers:
+            yield f"{parameter.name} also changes {', '.join(parameter.followers)}"
+    for reason, names in found.left_out.items():
+        yield f"not in the tables: {', '.join(names)}: {reason}"
+
+
+def _unit(name: str) -> str:
+    from runner.metrics import unit_of
+
+    return unit_of(name) or "1"
+
+
+def _rows(found: "Sensitivity", name: str, compared: "Differences | None") -> list[list[str]]:
+    """Return a table: a row for each parameter, the one that matters most first."""
+    unit = _unit(name)
+    head = ["parameter", "value", "unit", "derivative", "its unit", "elasticity"]
+    if compared is not None:
+        head += ["differences", "sure to", "gap"]
+    rows = [head]
+    elasticities, derivatives = found.elasticities(name), found.derivatives[name]
+    for place in found.ranked(name):
+        parameter, elasticity, derivative = found.parameters[place], elasticities[place], derivatives[place]
+        below = f"({parameter.unit})" if set(parameter.unit) & set(" /") else parameter.unit
+        by = unit if below == "1" else f"{unit} / {below}"
+        rows.append(
+            [
+                *(parameter.name, number(parameter.value), parameter.unit, number(derivative), by),
+                "-" if np.isnan(elasticity) else number(elasticity),
+            ]
+        )
+        if compared is not None:
+            doubt = _relative(compared.doubts[place], derivative)
+            gap = _relative(compared.derivatives[place] - derivative, derivative)
+            rows[-1] += [number(compared.derivatives[place]), f"{doubt:.1g}", f"{gap:.1g}"]
+    return rows
+
+
+def _relative(difference: float, derivative: float) -> float:
+    return abs(difference / derivative) if derivative else float("inf") if difference else 0.0
+
+
+def _compare(found: "Sensitivity", compared: "Mapping[str, Differences]") -> int:
+    """Print how far derivatives and differences agree; return 1 if they do not."""
+    gaps = [
+        _relative(by.derivatives[place] - derivative, derivative)
+        for name, by in compared.items()
+        for place, derivative in enumerate(found.derivatives[name])
+        if _relative(by.doubts[place], derivative) <= _SURE
+    ]
+    count = sum(len(by.derivatives) for by in compared.values())
+    print(f"\n{len(gaps)} of {count} central differences are sure to {_SURE:g} of the derivative or better")
+    if not gaps:
+        return 0
+    agrees = max(gaps) <= _AGREES
+    print(f"largest gap among these: {max(gaps):.2g}, {'within' if agrees else 'above'} {_AGREES:g}")
+    return 0 if agrees else 1

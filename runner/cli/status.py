@@ -1,0 +1,33 @@
+"""`runner status DIR`: how far a sweep is, from what is stored."""
+
+import sys
+from collections.abc import Sequence
+
+from runner.base.quiet import quiet_environment
+from runner.cli.arguments import Parser, stored
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Print how many runs are done, failed or have caveats, what is left and for how long, and how to go on."""
+    parser = Parser("status", __doc__)
+    parser.add_argument("folder", type=stored("sweep", "tuning"), metavar="DIR", help="folder of a sweep, or latest")
+    options = parser.parse_args(arguments)
+    quiet_environment()
+    from runner.base.progress import in_words
+    from runner.store import open_sweep
+    from runner.sweeps.status import find_status
+
+    sweep = open_sweep(options.folder)
+    status = find_status(sweep)
+    for damage in status.damage:
+        print(f"runner: {damage}", file=sys.stderr)
+    failed = f" ({status.failed} of them failed)" if status.failed else ""
+    print(f"{status.done + status.left} runs: {status.done} done{failed}, {status.left} left")
+    if any(status.caveats):
+        with_some = sum(count > 0 for count in status.caveats)
+        print(f"{with_some} of {len(status.caveats)} stored cells have caveats; `runner table` says which")
+    if status.left and status.at_work:
+        print("at work" + ("" if status.seconds is None else f", about {in_words(status.seconds)} to go"))
+    elif status.left:
+        print(f"not at work; continue with: {sweep.command}")
+    return 0

@@ -1,0 +1,156 @@
+"""`runner table DIR`: a sweep or run as a table: to work with (Parquet, CSV), or for a paper (Markdown, LaTeX).
+
+Without options, all cells of a sweep go into table.parquet and table.csv in its folder.
+"""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from runner.base.errors import RunnerError, StoreError
+from runner.base.quiet import quiet_environment
+from runner.base.texts import one_line
+from runner.cli.arguments import Parser, stored
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+    from runner.report.export.paper_table import PaperTable
+    from runner.store import Sweep
+    from runner.sweeps.measurements import Measurements
+
+_ENDINGS = {".csv": "csv", ".parquet": "parquet", ".md": "markdown", ".tex": "latex"}
+FORMATS = tuple(_ENDINGS.values())
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Write the whole table into the sweep's folder, and print that as the last line; or what the options ask for."""
+    parser = Parser("table", __doc__)
+    parser.add_argument(
+        "folder", type=stored("sweep", "run", "tuning"), metavar="DIR", help="folder of a sweep or run, or latest"
+    )
+    parser.add_argument("--format", metavar="FORMAT", choices=FORMATS, help=", ".join(FORMATS))
+    parser.add_argument("--metrics", type=_names, metavar="A,B", help="which metrics")
+    parser.add_argument("--by", type=_names, metavar="A,B", help="a row for each combination of these axes")
+    parser.add_argument(
+        "--where", action="append", default=[], metavar="KEY=VALUE", help="only the cells with this value; again for "
+        "the next"
+    )  # fmt: skip
+    parser.add_argument("--output", type=Path, metavar="FILE", help="in place of standard output")
+    options = parser.parse_args(arguments)
+    chosen = _format(options)
+    quiet_environment()
+    from runner import store
+
+    if store.is_run(options.folder) and not store.is_sweep(options.folder):
+        return _of_run(options, chosen)
+    sweep = store.open_sweep(options.folder)
+    measurements = _measure(sweep)
+    if not (chosen or options.metrics or options.by or options.where):
+        return _whole(options.folder, measurements)
+    if chosen in ("markdown", "latex"):
+        from runner.report.export.paper_table import of_sweep
+
+        table = of_sweep(measurements, sweep.command, options.metrics, options.by, options.where)
+        return _put(_for_paper(table, chosen), options.output)
+    from runner.report.export.tidy import as_csv, as_parquet, selection
+
+    frame = selection(measurements, options.metrics, options.by, options.where)
+    return _put(as_parquet(frame, measurements) if chosen == "parquet" else as_csv(frame), options.output)
+
+
+def _names(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
+def _format(options: "Namespace") -> str:
+    """Return the format asked for, by name or by the ending of the file; nothing where none is.
+
+    Raises:
+        RunnerError: If there is no such format, or Parquet would go to a terminal.
+    """
+    chosen: str = options.format or ""
+    if not chosen and options.output is not None:
+        chosen = _ENDINGS.get(options.output.suffix.lower(), "")
+        if not chosen:
+            endings = ", ".join(_ENDINGS)
+            raise RunnerError(f"--output {options.output}: write --format, or a name that ends in {endings}")
+    if chosen == "parquet" and options.output is None:
+        raise RunnerError("--format parquet is no text: write --output FILE as well")
+    return chosen
+
+
+def _measure(sweep: "Sweep") -> "Measurements":
+    from runner import store
+    from runner.sweeps.measurements import measure_sweep
+    from runner.sweeps.status import find_status
+
+    try:
+        return measure_sweep(sweep)
+    except store.DamagedError:
+        raise
+    except StoreError as error:
+        left = find_status(sweep).left
+        if not left:
+            raise
+        raise StoreError(
+            f"{left} of {len(sweep.hashes)} cells of {sweep.folder} are missing; continue with: {sweep.command}"
+        ) from error
+
+
+def _whole(folder: Path, measurements: "Measurements") -> int:
+    from runner.sweeps.differing import in_words
+    from runner.sweeps.table import write_table
+
+    columns = write_table(measurements, folder)
+    failed = sum(status != "ok" for status in measurements.statuses)
+    doubted = sum(map(bool, measurements.caveats))
+    count = f"{len(measurements.hashes)} cells, {failed} of them failed, {doubted} with caveats"
+    print(f"{count}; {columns} columns: table.parquet, table.csv")
+    also = in_words(measurements.differences)
+    if also:
+        print(one_line(f"{also}; `runner report {folder}` lists their values"))
+    print(folder)
+    return 0
+
+
+def _of_run(options: "Namespace", chosen: str) -> int:
+    """Print or write the table of a run, a row for each metric; without options, in Markdown and with its folder."""
+    from runner import store
+
+    if options.by or options.where:
+        raise RunnerError(f"--by and --where are for sweeps; {options.folder} is a run")
+    run = store.open_run(options.folder)
+    if not run.metrics:
+        raise RunnerError(f"the run has no metrics: it {run.failure_text}")
+    if chosen in ("", "markdown", "latex"):
+        from runner.report.export.paper_table import of_run
+
+        _put(_for_paper(of_run(run, options.metrics), chosen or "markdown"), options.output)
+        if not chosen:
+            print(options.folder)
+        return 0
+    from runner.report.export.paper_table import measured
+    from runner.report.export.tidy import as_csv, as_parquet, of_one
+
+    frame = of_one(measured(run), options.metrics)
+    return _put(as_parquet(frame, measured(run)) if chosen == "parquet" else as_csv(frame), options.output)
+
+
+def _for_paper(table: "PaperTable", chosen: str) -> bytes:
+    from runner.report.export.latex import latex
+    from runner.report.export.markdown import markdown
+
+    return (latex if chosen == "latex" else markdown)(table).encode("utf-8", errors="replace")
+
+
+def _put(content: bytes, output: Path | None) -> int:
+    from runner.store.atomic import write_atomically
+
+    if output is None:
+        sys.stdout.write(content.decode())
+    else:
+        write_atomically(output, content)
+        print(output)
+    return 0

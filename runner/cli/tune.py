@@ -1,0 +1,105 @@
+"""`runner tune OVERRIDES --minimize METRIC`: choose numeric keys so that metrics get better, and report on it.
+
+A key is tuned by its range in place of a value: controller.natural_frequency="interval(5,50)", on a logarithmic scale
+"tag(log, interval(5,50))", whole numbers "int(interval(1,9))", a grid "range(0.01,0.05,0.01)". An interrupted
+command continues when it is given again; with more --trials it adds to them.
+"""
+
+import argparse
+import shlex
+import sys
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from runner.base import progress
+from runner.base.errors import RunnerError
+from runner.base.progress.stages import PREPARING, READING, REPORT_CODE, SIMULATING, SOON, of_report
+from runner.base.quiet import quiet_environment
+from runner.cli import report
+from runner.cli.arguments import Parser
+
+if TYPE_CHECKING:
+    from runner.sweeps.tuning.study import Tuning
+
+_TRIALS = 100
+_AT_ONCE = 4
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Make the trials that are missing and write the report; print its folder as the last line."""
+    parser = Parser("tune", __doc__)
+    parser.add_argument("overrides", nargs="*", metavar="OVERRIDE", help="as for a run; a range where a key is tuned")
+    for direction in ("minimize", "maximize"):
+        parser.add_argument(
+            f"--{direction}",
+            action="append",
+            dest="objectives",
+            metavar="METRIC",
+            type=partial(_objective, direction),
+            help="of several objectives the report shows the Pareto front",
+        )
+    parser.add_argument("--trials", type=_count, default=_TRIALS, metavar="N", help=f"in all; default {_TRIALS}")
+    parser.add_argument(
+        "--at-once",
+        type=_count,
+        default=_AT_ONCE,
+        metavar="N",
+        help=f"trials under way at once, at least as many as processes; default {_AT_ONCE}",
+    )
+    parser.add_argument("--config-dir", type=Path, action="append", default=[], metavar="DIR", help="of your own YAML")
+    options = parser.parse_intermixed_args(arguments)
+    objectives = dict.fromkeys(options.objectives or ())
+    if not objectives:
+        parser.error("name a metric to --minimize or --maximize")
+    if len({metric for _, metric in objectives}) < len(objectives):
+        raise RunnerError("a metric cannot be minimized and maximized at once")
+    for folder in options.config_dir:
+        if not folder.is_dir():
+            raise RunnerError(f"--config-dir: no folder {folder}")
+    quiet_environment()
+    from runner.sweeps.tuning.objective import Objective
+    from runner.sweeps.tuning.run import tune
+
+    progress.plan({SIMULATING: None, PREPARING: REPORT_CODE, READING: SOON, **of_report(("html", "pdf"))})
+    tuning = tune(
+        options.overrides,
+        [Objective(metric, direction) for direction, metric in objectives],
+        options.trials,
+        options.at_once,
+        shlex.join(["runner", "tune", *arguments]),
+        options.config_dir,
+    )
+    return _tell(tuning)
+
+
+def _tell(tuning: "Tuning") -> int:
+    from runner.report.answers import CHOSEN
+    from runner.sweeps.tuning.study import at_ends
+    from runner.sweeps.tuning.trial import best
+
+    trials, objectives = tuning.trials, tuning.study.objectives
+    failed = sum(bool(trial.failure) for trial in trials)
+    print(f"runner: {len(trials)} trials, {failed} of them failed", file=sys.stderr)
+    for number in best(trials, objectives):
+        values = ", ".join(
+            f"{objective.metric} {value:.5g} {objective.unit}".strip()
+            for objective, value in zip(objectives, trials[number].values, strict=True)
+        )
+        print(f"chosen: {values} with {shlex.join(tuning.study.trial_overrides(trials[number]))}")
+    for sentence in (*at_ends(tuning), *([CHOSEN] if failed < len(trials) else [])):
+        print(f"runner: {sentence}", file=sys.stderr)
+    progress.begin(PREPARING)
+    report.main([str(tuning.folder)])
+    return 0 if failed < len(trials) else 1
+
+
+def _objective(direction: str, metric: str) -> tuple[str, str]:
+    return direction, metric
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"must be a whole number, 1 or more; found '{text}'")
+    return int(text)

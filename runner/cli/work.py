@@ -1,0 +1,102 @@
+"""`runner work new DIR`, `check DIR`, `diff OLD NEW`: write, check and compare published works.
+
+new writes a first work into a folder: it runs at once, and you change it. check makes what is missing and looks through
+the work: every expression, every condition tried both ways, numbers typed in findings, caveats that nobody expects.
+diff tells what changed between two makings; OLD and NEW are files that `runner reproduce --json` wrote, or folders of
+the works' reports.
+"""
+
+import json
+import shlex
+import sys
+from argparse import Namespace
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from runner.base.quiet import quiet_environment
+from runner.base.texts import one_line
+from runner.cli.arguments import ActionParser, Parser
+from runner.config.compose.user_settings import outputs_dir
+from runner.study.changes import KINDS, Change, Value, changes, read_conclusions
+
+_TOLD = 20  # changes of a kind that are printed without --all
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Do one of them."""
+    parser = Parser("work", __doc__)
+    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=ActionParser)
+    new = actions.add_parser("new", help="write a first work into a folder")
+    new.add_argument("folder", type=Path, metavar="DIR", help="a folder that is not there yet, or empty")
+    check = actions.add_parser("check", help="look through a work")
+    check.add_argument("work", metavar="DIR", help="the work's folder, or the name of an installed one")
+    check.add_argument("--outputs", type=Path, default=outputs_dir(), help="folder of runs")
+    check.add_argument("--code", action="store_true", help="run the Python of DIR")
+    diff = actions.add_parser("diff", help="what changed between two makings")
+    diff.add_argument("old", type=Path, metavar="OLD", help="file or folder of the earlier making")
+    diff.add_argument("new", type=Path, metavar="NEW", help="file or folder of the later one")
+    diff.add_argument("--all", action="store_true", help=f"print all changes, not {_TOLD} of a kind")
+    diff.add_argument("--json", type=Path, metavar="FILE", help="write them to a file, too")
+    options = parser.parse_args(arguments)
+    return {"new": _new, "check": _check, "diff": _diff}[options.action](options)
+
+
+def _new(options: Namespace) -> int:
+    from runner.study.new import write_new
+
+    for path in write_new(options.folder):
+        print(path)
+    print(f"runner: `runner reproduce {shlex.quote(str(options.folder))}` makes its report", file=sys.stderr)
+    return 0
+
+
+def _check(options: Namespace) -> int:
+    """Print what is wrong with a work, a line each; exit 1 where something is."""
+    from runner.study.names import find_work
+
+    find_work(options.work)  # one that is not there is told at once
+    quiet_environment()
+    from runner.study.check import problems
+    from runner.study.making import make_all
+    from runner.study.work import load_work
+
+    work = load_work(options.work, options.code)
+    runs, calibrations = make_all(work, options.outputs)
+    found = [*problems(work, runs, calibrations)]
+    for line in found:
+        print(one_line(line))
+    print("nothing is wrong" if not found else f"{len(found)} problem{'s' if len(found) > 1 else ''}")
+    return 1 if found else 0
+
+
+def _diff(options: Namespace) -> int:
+    """Print what moved, a line each, those that matter most first."""
+    found = changes(read_conclusions(options.old), read_conclusions(options.new))
+    counts = Counter(change.kind for change in found)
+    for kind in KINDS:
+        of_kind = [change for change in found if change.kind == kind]
+        shown = of_kind if options.all else of_kind[:_TOLD]
+        for change in shown:
+            print(one_line(_told(change)))
+        if len(shown) < len(of_kind):
+            print(f"{kind}: {len(of_kind) - len(shown)} more; --all prints them")
+    print("; ".join(f"{kind}: {counts[kind]} changed" for kind in KINDS if counts[kind]) or "nothing changed")
+    if options.json is not None:
+        from runner.store.atomic import write_atomically
+
+        text = json.dumps([asdict(change) for change in found], indent=1, ensure_ascii=False)
+        write_atomically(options.json, f"{text}\n".encode())
+    return 0
+
+
+def _told(change: Change) -> str:
+    moved = f" ({100.0 * change.size:.3g} %)" if change.size < float("inf") else ""
+    return f"{change.kind}: {change.name}: {_value(change.old)} -> {_value(change.new)}{moved}"
+
+
+def _value(value: Value) -> str:
+    if value is None:
+        return "none"
+    return f"{value:.6g}" if isinstance(value, float) else value
