@@ -6,7 +6,7 @@ from textwrap import dedent
 import pytest
 from support.habits_of_tests import offences
 
-TESTS = Path(__file__).resolve().parents[1]
+TESTS = Path(__file__).resolve().parents[2]
 
 SLEEP = "sleep"  # written apart, so that this file is looked through as all others are
 BAD = {

@@ -10,7 +10,7 @@ from runner.config.compose.compose import compose
 from runner.config.compose.options import group_options
 from runner.config.validation import validate
 
-PAGE = (Path(__file__).parents[2] / "docs" / "robots.md").read_text()
+PAGE = (Path(__file__).parents[3] / "docs" / "robots.md").read_text()
 ROWS = {
     name: [cell.strip() for cell in line.strip("|\n").split("|")]
     for line in PAGE.partition("## Add a robot")[0].splitlines()

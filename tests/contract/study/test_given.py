@@ -11,7 +11,7 @@ from runner.study.given import given_parts
 from runner.study.grids import Grids
 from runner.study.work import load_work
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "own_robot"
+EXAMPLE = Path(__file__).parents[3] / "examples" / "own_robot"
 LAW = "gravity_pd"
 GRIDS = """\
 grids:

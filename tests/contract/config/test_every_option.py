@@ -9,7 +9,7 @@ from support.printed import without_caveats, without_results
 from runner.config.compose.options import group_options, groups
 from runner.sweeps.execution import run
 
-SWING = Path(__file__).parents[2] / "examples" / "swing.csv"
+SWING = Path(__file__).parents[3] / "examples" / "swing.csv"
 
 
 def options_of(group):
