@@ -148,7 +148,7 @@ def test_numbers_are_parameters_and_zeros_are_not(monkeypatch):
     config = configured("macro", "operational_space", "controller.natural_frequency=25.0")
     measured = states(config.arm.model, config.arm.home)
     compiled_torques(law, measured)
-    monkeypatch.setattr("runner.symbolic.closed_loop.Expressed", None)  # nothing is expressed any more
+    monkeypatch.setattr("runner.simulation.compiled.closed_loop.Expressed", None)  # nothing is expressed any more
     assert_agree(other, other, measured)
 
 
