@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 
 from runner import store
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
 from runner.base.quantities import spread
-from runner.base.trace import FloatArray
 
 
 @dataclass(frozen=True)

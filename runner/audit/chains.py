@@ -5,7 +5,7 @@ from functools import lru_cache, reduce
 
 import numpy as np
 
-from runner.audit.truth import FloatArray
+from runner.base.arrays import FloatArray
 
 _STEP = 1e-3
 _IDENTITY = np.eye(3)

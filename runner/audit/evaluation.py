@@ -6,15 +6,13 @@ from unicodedata import normalize  # Python reads names so
 
 import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
-from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.base.expressions.evaluator import Budget, Scope
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import FUNCTIONS, PRIME, Expression, as_written, parse
 from runner.base.expressions.tree import symbols as names_in
-
-FloatArray = NDArray[np.float64]
 
 _SHOWN = 6
 

@@ -28,8 +28,9 @@ from pathlib import Path
 import numpy as np
 
 from runner.audit.chains import jacobian_by_differences
-from runner.audit.truth import FloatArray, Symbols, Truth, along, columns, coordinates, whole_and_elements
+from runner.audit.truth import Symbols, Truth, along, columns, coordinates, whole_and_elements
 from runner.audit.urdf_chain import UrdfChain
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import conf_dir
 from runner.config.compose.compose import compose

@@ -9,7 +9,8 @@ from pydantic import Field
 from runner.audit.entry import Written
 from runner.audit.evaluation import evaluate_all, with_symbols
 from runner.audit.model_truths import by_model, sample
-from runner.audit.truth import Elements, FloatArray, columns
+from runner.audit.truth import Elements, columns
+from runner.base.arrays import FloatArray
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.plugins.registry import StrictModel

@@ -18,7 +18,7 @@ from operator import itemgetter
 import numpy as np
 
 from runner.audit.sources import Where, rollout_of, source_of
-from runner.audit.truth import FloatArray
+from runner.base.arrays import FloatArray
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.base.expressions.evaluator import Budget, Scope

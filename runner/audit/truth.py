@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from runner.base.arrays import FloatArray
+
 Symbols = Mapping[str, FloatArray]
 """Values of each symbol at the samples, by name; the first axis counts the samples."""
 

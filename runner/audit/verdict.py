@@ -11,7 +11,8 @@ from runner.audit.entry import Entry, Form, Part
 from runner.audit.evaluation import evaluate_all, with_symbols
 from runner.audit.model_truths import AuditedArm, audited_arm, sample
 from runner.audit.sources import Source, truth_of
-from runner.audit.truth import Elements, FloatArray, Symbols, Truth
+from runner.audit.truth import Elements, Symbols, Truth
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.calibration.gravity import GravityCalibration
 from runner.calibration.tool import Motion, Tool
-from runner.robots.model import FloatArray
 
 
 class WrenchCompensation:

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtri
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.calibration.orientations import check_orientations, force_matrix, moment_matrix
-from runner.robots.model import FloatArray
 from runner.sensing.wrench import cross_matrix
 
 PARAMETERS = ("mass", "theta", "r_x", "r_y", "r_z", "F_x0", "F_y0", "F_z0", "M_x0", "M_y0", "M_z0")

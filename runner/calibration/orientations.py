@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.robots.model import FloatArray
 from runner.sensing.wrench import cross_matrix
 
 MAX_CONDITION_NUMBER = 100.0

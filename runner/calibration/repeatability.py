@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from runner.robots.model import FloatArray, RobotModel
+from runner.base.arrays import FloatArray
+from runner.robots.model import RobotModel
 
 
 def joint_deviation(model: RobotModel, postures: FloatArray, repeatability: float) -> float:

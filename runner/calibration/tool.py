@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from runner.robots.model import FloatArray
+from runner.base.arrays import FloatArray
 
 
 @dataclass(frozen=True)

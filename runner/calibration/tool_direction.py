@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.calibration.tool_centre_point import ToolCentrePoint
-from runner.robots.model import FloatArray
 
 _MIN_RATIO = 5.0  # of the tips' distance to its standard deviation
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir
 from runner.config.robot import ArmConfig, RobotConfig, StageConfig
@@ -14,7 +15,7 @@ from runner.robots.description import find_file, find_urdf, mjcf_of, read_arm, r
 from runner.robots.inertials import Payload, set_file
 from runner.robots.joint_dynamics import dynamics_of
 from runner.robots.mjcf_files import is_mjcf
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 from runner.robots.mounting import Mount, mount
 from runner.robots.robot import Robot, Stage
 from runner.robots.tool_link import TOOL_TIP, ToolBody, mount_tool

@@ -7,8 +7,8 @@ from typing import cast
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, SimulationError
-from runner.base.trace import FloatArray
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop, PositionController
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers import Loop
 from runner.plants import PLANTS, PlantConfig
@@ -17,7 +18,6 @@ from runner.trajectories import Trajectory
 from runner.trajectories.impulses import in_turn, zero_vibration
 from runner.trajectories.joint_motion import TipOfJoints
 from runner.trajectories.shaped import Shaped, ShapedJoints
-from runner.trajectories.trajectory import FloatArray
 
 _KEY = "input_shaper.frequency"
 _MODE = re.compile(r"mode_([1-9]\d?)")

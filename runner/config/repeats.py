@@ -4,9 +4,10 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.config.run import RunConfig
-from runner.trajectories.trajectory import FloatArray, joint_reference
+from runner.trajectories.trajectory import joint_reference
 
 _SAMPLES = 4096  # of the motion in a run, at ticks
 _SAME = 1e-6  # of the motion's extent: splines at rest at both ends repeat less well than that between rows

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from runner.base.arrays import FloatArray
 from runner.config.caveats import CaveatsConfig
 from runner.config.limits import LimitsConfig
 from runner.config.robot import RobotConfig
@@ -16,7 +17,7 @@ from runner.controllers.notch_config import NotchConfig
 from runner.plants import PLANTS, PlantConfig
 from runner.plugins.registry import Commands, KindConfig
 from runner.robots.mismatch import MismatchConfig
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise, EndpointSensorConfig, ForceTorqueConfig
 from runner.trajectories import Trajectory

@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers import CONTROLLERS, ControllerConfig
 from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.robot import Robot, end_points
-from runner.trajectories.trajectory import FloatArray
 
 
 def start_posture(controller: ControllerConfig, arm: Robot, start: FloatArray, parallel: bool) -> FloatArray:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.base.trace import FloatArray
+from runner.base.arrays import FloatArray
 from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.schema.per_joint import expand

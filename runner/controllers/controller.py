@@ -3,10 +3,7 @@
 from dataclasses import dataclass
 from typing import Protocol, cast
 
-import numpy as np
-from numpy.typing import NDArray
-
-FloatArray = NDArray[np.float64]
+from runner.base.arrays import FloatArray
 
 
 class Controller(Protocol):

@@ -7,8 +7,9 @@ from typing import Any, Literal, NamedTuple, Protocol, cast
 import numpy as np
 from pydantic import PositiveFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import Controller, FloatArray, Loop
+from runner.controllers.controller import Controller, Loop
 from runner.controllers.torque_law import Arm, PinocchioArm, TorqueLaw, structure_of
 from runner.plugins.guard import WatchedController
 from runner.plugins.registry import StrictModel

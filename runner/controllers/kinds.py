@@ -4,8 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Protocol, runtime_checkable
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import Controller, FloatArray, Loop, PositionController
+from runner.controllers.controller import Controller, Loop, PositionController
 from runner.controllers.force.admittance_filter import Admittance
 from runner.plugins.guard import WatchedController, watch_loops
 from runner.plugins.guard.faults import find_fault

@@ -7,7 +7,8 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from runner.controllers.controller import Controller, FloatArray, Loop
+from runner.base.arrays import FloatArray
+from runner.controllers.controller import Controller, Loop
 from runner.controllers.torque_law import Arm, TorqueLaw, structure_of
 from runner.plugins.guard import WatchedController
 from runner.symbolic.maths import FLOATS, Array, Maths, Scalar

@@ -3,8 +3,8 @@
 import numpy as np
 from pydantic import PositiveFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import FloatArray
 from runner.plugins.registry import StrictModel
 from runner.robots.by_joint import by_joint
 from runner.robots.robot import Robot

@@ -9,7 +9,7 @@ from typing import Any, Generic, NamedTuple, Protocol, Self, TypeVar
 import numpy as np
 import pinocchio as pin
 
-from runner.controllers.controller import FloatArray
+from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import FLOATS, Array, Maths, Scalar
 

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import yaml
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, StoreError
 from runner.doctor.examination import Examination
 from runner.robots.joint_dynamics import FileDynamics
-from runner.robots.model import FloatArray
 from runner.store.atomic import write_atomically
 
 _ROBOT = """\

@@ -5,11 +5,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.engines import has_pybullet
 from runner.base.errors import ConfigError
 from runner.doctor.finding import Finding
 from runner.plants.mujoco import Mujoco
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 
 if TYPE_CHECKING:
     from runner.plants.bullet import Bullet

@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.texts import few
 from runner.doctor.finding import Finding
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 from runner.robots.task_space import task_directions
 from runner.robots.tree import UrdfTree
 from runner.robots.urdf_values import number

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.doctor.finding import Finding
 from runner.doctor.postures import SINGULAR, smallest_singular_values
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 from runner.robots.task_space import distance_beside, task_directions
 
 _STEP = 0.15  # of the reach, from home to goal

@@ -3,10 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
-import numpy as np
-from numpy.typing import NDArray
-
-FloatArray = NDArray[np.float64]
+from runner.base.arrays import FloatArray
 
 
 class Environment(Protocol):

@@ -5,7 +5,8 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
-from runner.environments.environment import Environment, FloatArray
+from runner.base.arrays import FloatArray
+from runner.environments.environment import Environment
 from runner.plugins.registry import StrictModel
 from runner.trajectories.blend import quintic_blend
 

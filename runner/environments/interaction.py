@@ -3,7 +3,7 @@
 import numpy as np
 import pinocchio as pin
 
-from runner.base.trace import FloatArray
+from runner.base.arrays import FloatArray
 from runner.environments import Environment, LoadsJoints, PushesLinks
 from runner.environments.pushed_links import PushedLinks
 from runner.robots.robot import Robot

@@ -6,8 +6,9 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.environments.environment import Environment, FloatArray
+from runner.environments.environment import Environment
 from runner.plugins.registry import StrictModel
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]

@@ -3,9 +3,9 @@
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, nearest
 from runner.base.texts import quoted
-from runner.base.trace import FloatArray
 from runner.environments import PushesLinks
 from runner.sensing.wrench import cross_matrix
 

@@ -5,7 +5,8 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 
-from runner.environments.environment import Environment, FloatArray
+from runner.base.arrays import FloatArray
+from runner.environments.environment import Environment
 from runner.plugins.registry import StrictModel
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]

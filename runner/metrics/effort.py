@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.base.trace import FloatArray, Traces, by_rows
+from runner.base.arrays import FloatArray
+from runner.base.trace import Traces, by_rows
 from runner.metrics.context import MetricContext
 
 _AT_LIMIT = 1.0 - 1e-12

@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from typing import Protocol, runtime_checkable
 
-from runner.base.trace import FloatArray, Trace, Traces
+from runner.base.arrays import FloatArray
+from runner.base.trace import Trace, Traces
 from runner.metrics.context import MetricContext
 
 

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from runner.base.trace import FloatArray, Traces
+from runner.base.arrays import FloatArray
+from runner.base.trace import Traces
 from runner.metrics.context import MetricContext
 from runner.trajectories.vectors import component
 

@@ -7,8 +7,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.base.trace import FloatArray, Trace, Traces
+from runner.base.trace import Trace, Traces
 from runner.metrics import contact, effort, positioning, reaching, tracking
 from runner.metrics.context import MetricContext
 from runner.metrics.family import MetricFamily, OwnFamily

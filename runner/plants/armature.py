@@ -2,7 +2,7 @@
 
 import pinocchio as pin
 
-from runner.plants.plant import FloatArray
+from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
 from runner.simulation.compiled.compile import compile_links_torque
 

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.plants.compiled_motion import ArmCode, Mover
 from runner.robots.model import RobotModel
 from runner.symbolic.algebra import ArmAlgebra
@@ -12,7 +13,6 @@ from runner.symbolic.arm import known
 from runner.symbolic.code import ROWS, STATE, Part
 from runner.symbolic.engine import MOST_JOINTS, evaluator
 from runner.symbolic.places import Places
-from runner.symbolic.program import FloatArray
 from runner.symbolic.structure import any_number, arm_pattern
 from runner.symbolic.vectors import Vector
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
 from runner.robots.robot import StageBase
 from runner.symbolic.algebra import ArmAlgebra, Factors
@@ -12,7 +13,7 @@ from runner.symbolic.arm import ArmConstants, constants_of, known
 from runner.symbolic.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repeat
 from runner.symbolic.expression import Value, absolute, both, equal, less, places, select
 from runner.symbolic.places import Places
-from runner.symbolic.program import Expressed, FloatArray, Frame, program
+from runner.symbolic.program import Expressed, Frame, program
 from runner.symbolic.structure import Values, any_number, arm_pattern
 from runner.symbolic.vectors import Matrix, Vector, add, product, scale, subtract, times, transpose
 

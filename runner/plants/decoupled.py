@@ -7,10 +7,11 @@ from typing import Literal
 import numpy as np
 from pydantic import PositiveFloat
 
+from runner.base.arrays import FloatArray
 from runner.plants.computation import ComputationConfig
 from runner.plants.friction import friction_of, with_friction
 from runner.plants.motion import find_motion
-from runner.plants.plant import FloatArray, Plant
+from runner.plants.plant import Plant
 from runner.plants.servo import ServoConfig
 from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel

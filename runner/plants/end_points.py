@@ -2,7 +2,7 @@
 
 from typing import Protocol, runtime_checkable
 
-from runner.plants.plant import FloatArray
+from runner.base.arrays import FloatArray
 
 
 @runtime_checkable

@@ -4,11 +4,12 @@ from collections.abc import Callable
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints, links_of
 from runner.plants.motion import friction_by_joint
 from runner.plants.motor_friction import MotorFriction
-from runner.plants.plant import FloatArray, Plant
+from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.schema.per_joint import FrictionConfig

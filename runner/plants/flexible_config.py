@@ -5,10 +5,10 @@ from typing import Literal
 import numpy as np
 from pydantic import NonNegativeFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, nearest
 from runner.base.texts import quoted
 from runner.plants.flexible_joints import Flexibility, links_of
-from runner.plants.plant import FloatArray
 from runner.plugins.registry import StrictModel
 from runner.robots.by_joint import by_joint
 from runner.robots.modes import Mode, find_modes

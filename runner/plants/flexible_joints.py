@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.plants.compiled_flexible import compile_flexible
-from runner.plants.plant import FloatArray
 from runner.robots.model import RobotModel
 
 

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
-from runner.plants.plant import FloatArray
 from runner.robots.chain import Chain
 
 _MOST_STEPS = 50

@@ -6,7 +6,8 @@ import numpy as np
 import pinocchio as pin
 from scipy.linalg.lapack import dposv
 
-from runner.plants.plant import FloatArray, Plant, PlantAround, TellsContact
+from runner.base.arrays import FloatArray
+from runner.plants.plant import Plant, PlantAround, TellsContact
 from runner.robots.model import RobotModel
 
 _NO_CONTACT = np.zeros(6)

@@ -5,11 +5,12 @@ from types import ModuleType
 from typing import Literal, Protocol, runtime_checkable
 
 from runner.base import engines
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.plants.computation import ComputationConfig
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.motion import Motion
-from runner.plants.plant import FloatArray, Plant
+from runner.plants.plant import Plant
 from runner.plants.servo import ServoConfig
 from runner.plugins.guard import watch_plant
 from runner.plugins.registry import KindConfig, Registry

@@ -5,8 +5,9 @@ from typing import Literal
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.plants.computation import ComputationConfig
-from runner.plants.plant import FloatArray, Plant
+from runner.plants.plant import Plant
 from runner.plants.set_points import SetPoints
 from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel

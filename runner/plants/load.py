@@ -2,7 +2,8 @@
 
 from typing import Protocol, runtime_checkable
 
-from runner.plants.plant import FloatArray, Plant
+from runner.base.arrays import FloatArray
+from runner.plants.plant import Plant
 
 
 @runtime_checkable

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.plants.plant import FloatArray
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.schema.per_joint import FrictionConfig, expand

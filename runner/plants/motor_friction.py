@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.plants.flexible_joints import FlexibleJoints
-from runner.plants.plant import FloatArray
 
 
 class MotorFriction:

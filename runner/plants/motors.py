@@ -1,7 +1,8 @@
 """What drives and encoders know of flexible joints: encoders that turn with the motors, and those on both sides."""
 
+from runner.base.arrays import FloatArray
 from runner.plants.flexible_joints import FlexibleJoints
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 
 
 class MotorSide:

@@ -7,12 +7,13 @@ import numpy as np
 import pinocchio as pin
 from pydantic import Field
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
 from runner.plants.flexible_around import flexible_around
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.mujoco_model import FORCE, MOMENT, WALL, compiled, read_spec
-from runner.plants.plant import FloatArray, Plant
+from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.modes import Mode
 from runner.robots.robot import Robot

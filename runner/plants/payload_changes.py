@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from runner.plants.plant import FloatArray, Plant
+from runner.base.arrays import FloatArray
+from runner.plants.plant import Plant
 
 
 class PayloadChanges:

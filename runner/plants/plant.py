@@ -2,10 +2,7 @@
 
 from typing import Protocol, runtime_checkable
 
-import numpy as np
-from numpy.typing import NDArray
-
-FloatArray = NDArray[np.float64]
+from runner.base.arrays import FloatArray
 
 
 class Plant(Protocol):

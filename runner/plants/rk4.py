@@ -5,12 +5,13 @@ from typing import Literal
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_joints import FlexibleJoints, links_of
 from runner.plants.motion import Motion, find_motion
 from runner.plants.motor_friction import MotorFriction
-from runner.plants.plant import FloatArray, Plant
+from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.modes import Mode
 from runner.robots.robot import Robot

@@ -6,10 +6,11 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 from scipy.linalg import eigh
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, nearest
 from runner.plants.computation import ComputationConfig
 from runner.plants.flexible_links import FlexibleLinks
-from runner.plants.plant import FloatArray, Plant
+from runner.plants.plant import Plant
 from runner.plugins.registry import StrictModel
 from runner.robots.beams import Beam, moving_links, span
 from runner.robots.by_joint import by_joint

@@ -5,7 +5,8 @@ import pinocchio as pin
 from pydantic import NonNegativeFloat, PositiveFloat
 from scipy.linalg.lapack import dposv
 
-from runner.plants.plant import FloatArray, Plant
+from runner.base.arrays import FloatArray
+from runner.plants.plant import Plant
 from runner.plants.set_points import SetPoints
 from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel

@@ -13,7 +13,7 @@ import numpy as np
 import pinocchio as pin
 from scipy.linalg import expm
 
-from runner.base.trace import FloatArray
+from runner.base.arrays import FloatArray
 from runner.controllers.force.admittance_filter import Admittance, discretise
 from runner.plants.servo import ServoLaw
 from runner.robots.robot import Robot

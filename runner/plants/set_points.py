@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.plants.plant import FloatArray
+from runner.base.arrays import FloatArray
 
 
 class SetPoints:

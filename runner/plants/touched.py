@@ -5,9 +5,10 @@ from typing import Protocol
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.plants.friction import friction_of
 from runner.plants.load import push
-from runner.plants.plant import FloatArray, Plant
+from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 
 

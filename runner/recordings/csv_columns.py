@@ -8,13 +8,11 @@ from pathlib import Path
 from typing import TextIO
 
 import numpy as np
-from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
 from runner.base.limits import RECORDING, RECORDING_ROW, RECORDING_ROWS, ExcessError
 from runner.base.texts import few, quoted
-
-FloatArray = NDArray[np.float64]
 
 _SEPARATORS = ",;\t"
 _MISSING = ("", "nan", "na", "null", "none")

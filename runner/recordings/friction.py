@@ -23,7 +23,8 @@ import pinocchio as pin
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from runner.recordings.smoothing import FloatArray, cutoff, derivative, low_pass
+from runner.base.arrays import FloatArray
+from runner.recordings.smoothing import cutoff, derivative, low_pass
 from runner.robots.model import RobotModel
 
 if TYPE_CHECKING:

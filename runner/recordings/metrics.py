@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.trace import Trace, Traces
 from runner.metrics import effort, positioning, tracking
 from runner.metrics.summary import measure, of_run
 from runner.recordings.columns_map import Signal
 from runner.recordings.setting import AXES, Setting
-from runner.recordings.smoothing import FloatArray
 from runner.robots.robot import end_points
 
 _OF_POSITIONS = ("max_joint_error", "rms_joint_error", "peak_joint_speed", "peak_sliding_speed")

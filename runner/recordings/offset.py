@@ -16,8 +16,9 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import linear_sum_assignment, minimize_scalar
 from scipy.signal import correlate, find_peaks
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
-from runner.recordings.smoothing import FloatArray, cutoff, derivative, evenly, low_pass
+from runner.recordings.smoothing import cutoff, derivative, evenly, low_pass
 
 RESEMBLES = 0.5
 """Correlation of speeds below which a recording is not one of the run's motion."""

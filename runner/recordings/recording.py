@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.recordings import BAGS, is_bag
 from runner.recordings.columns_map import ColumnsMap, Factor, Signal
-from runner.recordings.csv_columns import FloatArray, read_csv_columns
+from runner.recordings.csv_columns import read_csv_columns
 from runner.recordings.ros_bag import read_bag_columns
 from runner.recordings.smoothing import CUTOFF, evenly
 from runner.schema.magnitudes import LARGEST

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.recordings.columns_map import Signal
-from runner.recordings.smoothing import FloatArray
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,12 @@ from typing import Any
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
 from runner.base.limits import BAG_MEMORY, RECORDING, RECORDING_ROWS, ExcessError, bounded_memory
 from runner.base.texts import few, quoted
 from runner.recordings import files_of
-from runner.recordings.csv_columns import FloatArray, places_of
+from runner.recordings.csv_columns import places_of
 
 STAMP = "stamp"
 _JOINT_STATE = "sensor_msgs/msg/JointState"

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.trace import Trace
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.metrics import MetricContext
 from runner.recordings.columns_map import Signal
-from runner.recordings.smoothing import FloatArray
 from runner.robots.robot import end_points
 from runner.simulation.assembly import metric_context
 from runner.store import Run

@@ -1,11 +1,10 @@
 """Signals without their noise and without delay, and their derivatives."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.signal import butter, sosfiltfilt
 
-FloatArray = NDArray[np.float64]
+from runner.base.arrays import FloatArray
 
 CUTOFF = 10.0
 """Of the low-pass, in Hz: above what arms follow, below most of what encoders and motors add."""

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.recordings.columns_map import Factor, Signal
-from runner.recordings.smoothing import FloatArray
 from runner.schema.units import WRITTEN
 
 _ALIKE = 0.8  # correlation about zero, from which on a signal is a multiple of the run's

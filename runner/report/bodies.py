@@ -5,8 +5,9 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.report.document import Body
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 
 Point = tuple[float, float, float]
 Segment = tuple[Point, Point, float]

@@ -10,13 +10,14 @@ from typing import Any
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.texts import plain
 from runner.report.charts import palette
 from runner.report.charts.figure import shares_legend, upright
 from runner.report.charts.thinning import band, thin, usable
 from runner.report.charts.ticks import marks
 from runner.report.charts.units import in_readable_units
-from runner.report.document import Curves, FloatArray, Panel, Series
+from runner.report.document import Curves, Panel, Series
 
 Json = dict[str, Any]
 

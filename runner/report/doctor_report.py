@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.doctor.examination import Examination
 from runner.doctor.finding import GRADES
@@ -9,7 +10,7 @@ from runner.report.bodies import playback_bodies
 from runner.report.charts import arm_motion
 from runner.report.document import Document, Notice, Playback, Provenance, Section, Table
 from runner.report.markup import literal, literals
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 from runner.store.provenance import versions
 
 _SWING = 0.3  # rad, or share of the travel, by which each joint is shown

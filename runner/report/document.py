@@ -13,7 +13,7 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.report.charts.figure import FloatArray as FloatArray
+from runner.base.arrays import FloatArray as FloatArray
 from runner.report.charts.figure import Map as Map
 from runner.report.charts.figure import Panel as Panel
 from runner.report.charts.figure import Series as Series

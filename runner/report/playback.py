@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from viser import FrameHandle
 
+from runner.base.arrays import FloatArray
 from runner.report.charts import palette
-from runner.report.document import Body, FloatArray, Playback
+from runner.report.document import Body, Playback
 from runner.report.recorder import Recorder, recorder
 
 FRAME_RATE = 30.0

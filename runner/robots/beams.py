@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from runner.robots.model import FloatArray, RobotModel
+from runner.base.arrays import FloatArray
+from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, with_models
 
 

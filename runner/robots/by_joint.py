@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.plants.plant import FloatArray
+from runner.base.arrays import FloatArray
 from runner.robots.robot import Robot
 from runner.schema.per_joint import expand
 from runner.schema.per_stage import OptionalPerStage, by_stage

@@ -6,9 +6,10 @@ from itertools import islice
 import numpy as np
 from scipy.optimize import brentq
 
+from runner.base.arrays import FloatArray
 from runner.robots.beams import Beam
 from runner.robots.chain import Chain, cut
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 from runner.robots.modes import find_modes
 
 _NONE = '<inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/>'

@@ -7,8 +7,9 @@ from itertools import pairwise
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.robots.beams import Beam, moving_links, parts_of, span
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,9 @@ from itertools import accumulate, pairwise
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 
 _TOLERANCE = 1e-9  # of a sine (axes that are parallel) and of the arm's size (points that coincide)
 

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from runner.robots.model import FloatArray, RobotModel
+from runner.base.arrays import FloatArray
+from runner.robots.model import RobotModel
 
 
 def tip_mobility(model: RobotModel, q: FloatArray, first: int = 0) -> FloatArray:

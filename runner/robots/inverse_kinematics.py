@@ -8,8 +8,9 @@ import numpy as np
 import pinocchio as pin
 from scipy.linalg.lapack import dgesv
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 from runner.robots.task_space import task_directions
 
 TOLERANCE = 1e-12  # m; Newton's last step squares it, so that an arm starts at its trajectory's start to rounding

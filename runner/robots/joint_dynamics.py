@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.base.texts import few
 from runner.robots.inertials import place_of
-from runner.robots.model import FloatArray
 from runner.robots.tree import UrdfTree
 from runner.robots.urdf_values import number, wrong_places
 

@@ -7,9 +7,10 @@ import numpy as np
 import pinocchio as pin
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
+from runner.base.arrays import FloatArray
 from runner.plugins.guard import watch_belief
 from runner.plugins.registry import KindConfig, Registry, StrictModel
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, with_models
 
 

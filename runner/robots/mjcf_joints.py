@@ -6,8 +6,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.robots.mjcf_urdf import joint_name
-from runner.robots.model import FloatArray
 
 HOME = "home"  # the keyframe that is taken
 ON_JOINTS = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)

@@ -8,8 +8,8 @@ import mujoco
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.robots.inertials import make_massless, write_inertial
-from runner.robots.model import FloatArray
 
 _NO_LIMIT = 1e6  # what the runner takes for none, in SI units
 _LINKS = (mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_SITE)

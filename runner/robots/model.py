@@ -7,12 +7,10 @@ from functools import cached_property
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.engine_output import caught_output
 from runner.base.errors import ConfigError, nearest
-
-FloatArray = NDArray[np.float64]
 
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value (its G(q) shows 9.81 and 19.62)
 

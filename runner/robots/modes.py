@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.robots.model import FloatArray
+from runner.base.arrays import FloatArray
 
 
 class Mode(NamedTuple):

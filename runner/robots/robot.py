@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.robots.joint_dynamics import FileDynamics
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,8 @@ from functools import lru_cache
 import numpy as np
 from scipy.linalg import block_diag
 
-from runner.robots.model import FloatArray, RobotModel
+from runner.base.arrays import FloatArray
+from runner.robots.model import RobotModel
 
 _POSTURES = 20  # random ones, which together show every direction
 _NONE = 1e-9  # of the largest singular value: a direction in which nothing moves

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runner.robots.model import FloatArray, RobotModel
+from runner.base.arrays import FloatArray
+from runner.robots.model import RobotModel
 
 _REFINED = 5  # samples that are followed to the nearest extremum
 

@@ -5,12 +5,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.sensing.streams import generators
 from runner.sensing.velocity import DEFAULT_BANDWIDTH, State, Velocity, first_state, gains, next_velocity
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

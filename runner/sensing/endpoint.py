@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import NonNegativeFloat, PositiveFloat
 
+from runner.base.arrays import FloatArray
 from runner.plugins.registry import StrictModel
 from runner.sensing.velocity import State, Velocity, first_state, gains, next_velocity
-
-FloatArray = NDArray[np.float64]
 
 
 class EndpointSensorConfig(StrictModel):

@@ -5,8 +5,8 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
+from runner.base.arrays import FloatArray
 from runner.plugins.registry import StrictModel
-from runner.robots.model import FloatArray
 from runner.sensing.wrench import wrench_transform
 
 AXES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")

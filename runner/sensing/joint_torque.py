@@ -1,14 +1,12 @@
 """Torque sensors in the joints, behind their friction."""
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import FiniteFloat, NonNegativeFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
-
-FloatArray = NDArray[np.float64]
 
 
 class JointTorqueConfig(StrictModel):

@@ -3,12 +3,10 @@
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.plugins.guard import WatchedEncoders, WatchedTorqueSensors, WatchedWristSensor
 from runner.plugins.registry import KindConfig, Registry
-
-FloatArray = NDArray[np.float64]
 
 
 class Encoders(Protocol):

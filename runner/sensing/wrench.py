@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.robots.model import FloatArray
+from runner.base.arrays import FloatArray
 
 
 def cross(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.base.trace import FloatArray
+from runner.base.arrays import FloatArray
 
 
 class Acting:

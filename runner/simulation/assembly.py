@@ -5,7 +5,7 @@ from contextlib import ExitStack
 
 import numpy as np
 
-from runner.base.trace import FloatArray
+from runner.base.arrays import FloatArray
 from runner.config.feasibility import check_path
 from runner.config.flexible_joints import believe_motors, find_motor_side
 from runner.config.flexible_links import believe_links, is_flexible

@@ -10,9 +10,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.memory import Memory
 from runner.base.progress.ticks import add_ticks
-from runner.base.trace import FloatArray, Trace, Traces
+from runner.base.trace import Trace, Traces
 from runner.config.run import RunConfig
 from runner.config.timing import Timing
 from runner.metrics import MetricContext

@@ -10,7 +10,8 @@ from itertools import groupby
 import numpy as np
 
 from runner import store
-from runner.base.trace import Failure, FloatArray, Trace
+from runner.base.arrays import FloatArray
+from runner.base.trace import Failure, Trace
 from runner.config.compose.compose import Composed
 from runner.config.run import RunConfig
 from runner.metrics import measure, summarize_arrays

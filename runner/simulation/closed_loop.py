@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from runner.base.trace import FloatArray
+from runner.base.arrays import FloatArray
 from runner.controllers import Loop
 from runner.environments.interaction import Interaction
 from runner.plants import Plant, PositionPlant

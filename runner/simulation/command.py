@@ -5,7 +5,7 @@ from typing import cast
 
 import numpy as np
 
-from runner.base.trace import FloatArray
+from runner.base.arrays import FloatArray
 from runner.controllers import Controller, Loop, PositionController
 from runner.sensing import Encoders
 from runner.simulation.closed_loop import ClosedLoop

@@ -4,7 +4,8 @@ from dataclasses import fields
 
 import numpy as np
 
-from runner.base.trace import ContactSignals, FloatArray
+from runner.base.arrays import FloatArray
+from runner.base.trace import ContactSignals
 from runner.environments.interaction import Interaction
 from runner.plants import TellsContact, ToolReactionPlant, innermost
 from runner.sensing import WristSensor

@@ -2,7 +2,7 @@
 
 from typing import Protocol, cast
 
-from runner.base.trace import FloatArray
+from runner.base.arrays import FloatArray
 from runner.plants import Plant, PositionPlant
 from runner.plants.load import push
 from runner.simulation.closed_loop import ClosedLoop

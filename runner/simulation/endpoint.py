@@ -4,10 +4,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.config.endpoint_sensor import endpoint_ticks
 from runner.config.run import RunConfig
 from runner.plants import Plant, PositionPlant, TellsEndPoints, innermost
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 from runner.sensing.endpoint import EndpointSensor
 from runner.simulation.closed_loop import ClosedLoop
 

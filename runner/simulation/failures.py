@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
-from runner.base.trace import Failure, FloatArray
+from runner.base.trace import Failure
 from runner.robots.model import RobotModel
 from runner.simulation.compiled.closed_loop import Signals
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runner.base.trace import FloatArray
+from runner.base.arrays import FloatArray
 from runner.config.run import RunConfig
 from runner.controllers.kinds import ReadsJointTorques
 from runner.plants.friction import friction_of

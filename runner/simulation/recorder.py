@@ -5,8 +5,9 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
-from runner.base.trace import Failure, FloatArray, Trace
+from runner.base.trace import Failure, Trace
 from runner.plants import TellsEndPoints, innermost
 from runner.robots.robot import end_points
 from runner.simulation.acting import Acting

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runner.statistics.interval import FloatArray
+from runner.base.arrays import FloatArray
 from runner.statistics.permutation import Levels, Sample, Tested, recoded
 
 PERMUTATIONS = 999

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from runner.statistics.interval import FloatArray
+from runner.base.arrays import FloatArray
 
 
 def holm(p_values: Sequence[float]) -> FloatArray:

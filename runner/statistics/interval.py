@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, stdtrit
 
-FloatArray = NDArray[np.float64]
+from runner.base.arrays import FloatArray
 
 CONFIDENCE = 0.95
 RESAMPLES = 9999

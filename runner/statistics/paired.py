@@ -7,7 +7,8 @@ from statistics import NormalDist
 
 import numpy as np
 
-from runner.statistics.interval import SMALLEST_SAMPLE, FloatArray
+from runner.base.arrays import FloatArray
+from runner.statistics.interval import SMALLEST_SAMPLE
 from runner.statistics.signed_rank import SignedRanks
 
 _POWER = 0.8  # probability of showing a difference, for which pairs are counted

@@ -7,7 +7,8 @@ from math import lgamma, log
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.statistics.interval import CONFIDENCE, FloatArray
+from runner.base.arrays import FloatArray
+from runner.statistics.interval import CONFIDENCE
 
 Levels = NDArray[np.intp]
 

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import betaincinv
 
-from runner.statistics.interval import CONFIDENCE, FloatArray
+from runner.base.arrays import FloatArray
+from runner.statistics.interval import CONFIDENCE
 
 IntArray = NDArray[np.integer]
 

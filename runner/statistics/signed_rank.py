@@ -6,7 +6,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from scipy.special import ndtr
 
-from runner.statistics.interval import FloatArray
+from runner.base.arrays import FloatArray
 
 EXACT_UP_TO = 200
 """Differences up to which the distribution is summed up; beyond, the normal law stands in for it."""

@@ -4,15 +4,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
 
 FOLDER = "finer"
 _REMEDY = "delete it: `runner compare` works it out again"
-
-FloatArray = NDArray[np.float64]
 
 
 def write_finer(outputs: Path, name: str, reason: str, metrics: Mapping[str, FloatArray]) -> None:

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
 from runner.store.record import find_faults
 from runner.store.seal import DamagedError
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from runner.config.spec import Bound
     from runner.statistics.spec import Spec
     from runner.statistics.spec.history import Histories
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
 from runner.base.limits import ExcessError, open_parquet
 from runner.store.arrow_columns import list_column, text_column, truth_column, whole_column
@@ -26,8 +26,6 @@ from runner.store.names import Names
 from runner.store.record import find_faults
 from runner.store.run import Run, describe_failure
 from runner.store.seal import SCHEMA, DamagedError, SchemaError, digest
-
-FloatArray = NDArray[np.float64]
 
 _COLUMNS = ("run", "failure", "cut_short", "config", "urdf", "record", "caveats")
 _SHARED = ["failure", "urdf"]  # columns of which many rows are the same

@@ -6,14 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from runner.base import limits
+from runner.base.arrays import FloatArray
 from runner.store.arrow_columns import optional_column
 from runner.store.seal import DamagedError
 from runner.store.stored import MEND
-
-FloatArray = NDArray[np.float64]
 
 VALUES_FILE = "values.parquet"
 

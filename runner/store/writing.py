@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import yaml
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
-from runner.base.trace import Failure, FloatArray, Trace
+from runner.base.trace import Failure, Trace
 from runner.metrics.caveats import Found
 from runner.metrics.plant_error import PlantError
 from runner.metrics.summary import Summary, over_repetitions, units_of

@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
 from runner.base.quantities import above_rounding, with_powers
-from runner.report.document import Block, FloatArray, Notice
+from runner.report.document import Block, Notice
 from runner.report.figures import columns
 from runner.report.words import in_words
 from runner.store import Run

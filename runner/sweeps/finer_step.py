@@ -12,6 +12,7 @@ import numpy as np
 
 from runner import store
 from runner.base import progress
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.config.compose.compose import Composed
 from runner.config.run import RunConfig
@@ -20,7 +21,7 @@ from runner.metrics.plant_error import COMPARED, PLANT, hindrance, on_runge_kutt
 from runner.simulation.batch_blocks import simulate_blocks, threads_allowed
 from runner.statistics.interval import SMALLEST_SAMPLE
 from runner.store import Run, Sweep
-from runner.store.finer import FloatArray, finer_names, write_finer
+from runner.store.finer import finer_names, write_finer
 from runner.sweeps.measurements import axes_of
 
 DRAWS = 8

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.metrics.caveats import changes_since
 from runner.store import Run
 from runner.store.shards import open_row
 from runner.sweeps.resolved import Resolver
 from runner.sweeps.shard_columns import Columns, read_shard
 
-FloatArray = NDArray[np.float64]
 Cells = NDArray[np.intp]
 
 

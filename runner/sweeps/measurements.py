@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base import progress
+from runner.base.arrays import FloatArray
 from runner.base.progress.stages import READING
 from runner.store import Run, Sweep
 from runner.store.axes import GridOverrides
@@ -19,8 +20,6 @@ from runner.sweeps.differing import Difference, Resolved
 from runner.sweeps.gathering import Gathered
 from runner.sweeps.metric_names import check_metrics
 from runner.sweeps.swept import is_simulated
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

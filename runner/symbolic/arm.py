@@ -6,12 +6,11 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
 from runner.symbolic.vectors import Matrix, Scalar, Vector
 
-FloatArray = NDArray[np.float64]
 _ROUNDING = 1e-14  # a right angle's cosine is 6e-17
 _AXES = np.eye(3)
 

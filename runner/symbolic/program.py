@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from functools import cache, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.paths import package_dir
 from runner.symbolic import cache as kept
 from runner.symbolic.code import GIVEN, PARS, ROWS, SCRATCH, STATE, TABLE, Part, written
 from runner.symbolic.engine import Function, evaluator, load, machine_code, processor
 
-FloatArray = NDArray[np.float64]
 LANES = 8
 """Runs that are computed together in a batch; each has the bits that it has alone."""
 # The classical Runge-Kutta scheme: the next stage's part of the step, and the weights of two sums.

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.trajectories.trajectory import FloatArray
+from runner.base.arrays import FloatArray
 
 
 def quintic_blend(u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -5,8 +5,8 @@ from typing import Literal, Protocol
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.trajectories.blend import quintic_blend
-from runner.trajectories.trajectory import FloatArray
 
 Easing = Literal["quintic", "none"]
 

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, PositiveFloat, ValidationInfo, field_validator
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
@@ -13,7 +14,7 @@ from runner.trajectories.interpolation import Interpolated, Interpolation, inter
 from runner.trajectories.joint_motion import JointMotion
 from runner.trajectories.nearest import distance_to_curve
 from runner.trajectories.table import parts_of, wrong_columns
-from runner.trajectories.trajectory import FloatArray, Trajectory
+from runner.trajectories.trajectory import Trajectory
 
 
 def _check_interpolation(value: Any) -> Any:

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from runner.trajectories.trajectory import FloatArray
+from runner.base.arrays import FloatArray
 
 ShaperKind = Literal["zv", "zvd"]
 

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from scipy.interpolate import BPoly, CubicSpline
 
-from runner.trajectories.trajectory import FloatArray
+from runner.base.arrays import FloatArray
 
 Interpolation = Literal["spline", "hermite"]
 

@@ -7,11 +7,11 @@ from typing import Protocol
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, StageBase
 from runner.trajectories.nearest import distance_to_curve
 from runner.trajectories.sampled_curve import SampledCurve
-from runner.trajectories.trajectory import FloatArray
 
 
 class JointMotion(Protocol):

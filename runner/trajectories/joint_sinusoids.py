@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, PositiveFloat, ValidationInfo, field_validator
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
@@ -13,7 +14,6 @@ from runner.schema.per_joint import NonNegativePerJoint, expand
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.joint_motion import JointMotion
 from runner.trajectories.posture import Posture, start_of
-from runner.trajectories.trajectory import FloatArray
 
 _SAMPLES = 64  # in a period of the highest harmonic
 _AT_ONCE = 2_000_000  # sines that are in memory at the same time

@@ -3,9 +3,10 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
+from runner.base.arrays import FloatArray
 from runner.plugins.guard import WatchedTrajectory
 from runner.plugins.registry import KindConfig, Registry
-from runner.trajectories.trajectory import FloatArray, Trajectory
+from runner.trajectories.trajectory import Trajectory
 
 if TYPE_CHECKING:  # they import Pinocchio, which who reads a stored run does not need
     from runner.robots.robot import Robot

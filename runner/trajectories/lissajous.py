@@ -6,10 +6,11 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat, ValidationInfo, field_validator
 
+from runner.base.arrays import FloatArray
 from runner.plugins.registry import StrictModel
 from runner.trajectories.closed_figure import ClosedFigure, Easing
 from runner.trajectories.nearest import distance_to_curve
-from runner.trajectories.trajectory import FloatArray, Trajectory
+from runner.trajectories.trajectory import Trajectory
 from runner.trajectories.vectors import Point
 
 _SAMPLES = 64  # per sine of the highest frequency, from which the nearest point is refined

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.trajectories.trajectory import FloatArray
+from runner.base.arrays import FloatArray
 
 _TABLE = 50_000  # distances of points to samples at a time
 _SEARCHED = 20_000  # points whose nearest places are searched together

@@ -6,9 +6,9 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BeforeValidator
 
+from runner.base.arrays import FloatArray
 from runner.robots.robot import Robot
 from runner.schema.per_joint import expand
-from runner.trajectories.trajectory import FloatArray
 
 
 def _posture(value: Any) -> float | list[float]:

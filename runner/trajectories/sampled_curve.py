@@ -4,7 +4,7 @@ from math import comb
 
 import numpy as np
 
-from runner.trajectories.trajectory import FloatArray
+from runner.base.arrays import FloatArray
 
 _DEGREE = 5
 

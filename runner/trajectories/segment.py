@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.trajectories.trajectory import FloatArray
+from runner.base.arrays import FloatArray
 
 
 def distance_to_segment(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:

@@ -6,9 +6,10 @@ from math import ceil
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.trajectories.impulses import Impulses
 from runner.trajectories.joint_motion import JointMotion
-from runner.trajectories.trajectory import FloatArray, Trajectory
+from runner.trajectories.trajectory import Trajectory
 
 
 @dataclass(frozen=True)

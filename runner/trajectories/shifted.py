@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from runner.trajectories.trajectory import FloatArray, Trajectory
+from runner.base.arrays import FloatArray
+from runner.trajectories.trajectory import Trajectory
 
 
 @dataclass(frozen=True)

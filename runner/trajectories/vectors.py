@@ -5,7 +5,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import AfterValidator, Field, ValidationInfo
 
-from runner.trajectories.trajectory import FloatArray
+from runner.base.arrays import FloatArray
 
 _PERPENDICULAR = 1e-6  # largest cosine of an angle that counts as right
 

@@ -8,10 +8,11 @@ import numpy as np
 from pydantic import PositiveFloat, ValidationInfo, field_validator
 from scipy.interpolate import BSpline, make_interp_spline
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.plugins.registry import StrictModel
 from runner.trajectories.nearest import distance_to_curve
-from runner.trajectories.trajectory import FloatArray, Trajectory
+from runner.trajectories.trajectory import Trajectory
 from runner.trajectories.vectors import Point
 
 _SAMPLES = 64  # between two way-points, from which the nearest point is refined

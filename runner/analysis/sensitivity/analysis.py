@@ -10,8 +10,9 @@ import numpy as np
 from runner.analysis.sensitivity.parameters import GROUPS, Parameter, find_keys, find_links
 from runner.analysis.sensitivity.slopes import Scene, Slopes
 from runner.analysis.sensitivity.smooth_metrics import Change, derivatives
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
-from runner.base.trace import FloatArray, Trace
+from runner.base.trace import Trace
 from runner.config.compose.compose import Composed, compose
 from runner.config.flexible_joints import find_flexibility
 from runner.config.flexible_links import is_flexible

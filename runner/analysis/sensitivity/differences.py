@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.analysis.sensitivity.analysis import Sensitivity
-from runner.base.trace import FloatArray
+from runner.base.arrays import FloatArray
 from runner.metrics import measure
 from runner.simulation.batch import Batcher, Together
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from runner.analysis.sensitivity.parameters import Key, Parameter
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
-from runner.base.trace import FloatArray
 from runner.config.run import RunConfig
 from runner.sensing.encoders import encoder_errors
 from runner.simulation.assembly import describe_loop, find_start

@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
-from runner.base.trace import FloatArray, Trace
+from runner.base.trace import Trace
 from runner.metrics import MetricContext
 from runner.metrics.positioning import STEADY_WINDOW
 from runner.trajectories.shifted import Shifted

@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.limits import READINGS
 from runner.calibration.compensation import WrenchCompensation
@@ -16,7 +17,7 @@ from runner.calibration.procedures.bench import Bench
 from runner.calibration.procedures.procedure import Outcome, Procedure
 from runner.calibration.tool import REST
 from runner.plugins.registry import StrictModel
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 from runner.sensing.force_torque import ForceTorqueSensor
 from runner.sensing.wrench import wrench_transform
 

@@ -6,7 +6,7 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
-from runner.robots.model import FloatArray
+from runner.base.arrays import FloatArray
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,12 @@ import numpy as np
 import pinocchio as pin
 from pydantic import Field, NonNegativeFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.texts import quoted
 from runner.calibration.procedures.bench import Bench
 from runner.plugins.registry import StrictModel
 from runner.robots.inverse_kinematics import solve_tip_pose
-from runner.robots.model import FloatArray
 
 
 class TouchingConfig(StrictModel):

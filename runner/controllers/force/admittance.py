@@ -6,7 +6,8 @@ import numpy as np
 import pinocchio as pin
 from pydantic import Field, PositiveFloat
 
-from runner.controllers.controller import FloatArray, Loop
+from runner.base.arrays import FloatArray
+from runner.controllers.controller import Loop
 from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter
 from runner.controllers.force.wrist import Compensation, ToolCompensation
 from runner.controllers.kinematic.approach import Approach

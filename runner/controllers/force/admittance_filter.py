@@ -6,8 +6,8 @@ import numpy as np
 import pinocchio as pin
 from scipy.linalg import expm
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import FloatArray
 
 AXES = ("x", "y", "z", "rotation x", "rotation y", "rotation z")
 

@@ -5,8 +5,8 @@ Behind joint servos the arm's masses and the servos' springs decide with it; see
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import FloatArray
 from runner.controllers.force.admittance_filter import AXES, Admittance, discretise
 
 

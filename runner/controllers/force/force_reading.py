@@ -4,7 +4,7 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-from runner.controllers.controller import FloatArray
+from runner.base.arrays import FloatArray
 from runner.controllers.force.wrist import ToolCompensation
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots.robot import Robot

@@ -5,7 +5,7 @@ from typing import Protocol
 import numpy as np
 from scipy.linalg import expm
 
-from runner.controllers.controller import FloatArray
+from runner.base.arrays import FloatArray
 
 
 class ForceLaw(Protocol):

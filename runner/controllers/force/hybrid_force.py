@@ -5,8 +5,9 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.controller import Loop
 from runner.controllers.force.force_reading import ForceReading, JointTorqueReading, ReadingName, WristReading
 from runner.controllers.force.tip_force import Acting, TipForceConfig, find_acting
 from runner.controllers.sampled_stability import VelocityGain

@@ -5,7 +5,8 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat
 
-from runner.controllers.controller import FloatArray, Loop
+from runner.base.arrays import FloatArray
+from runner.controllers.controller import Loop
 from runner.controllers.force.tip_force import TipForce, TipForceConfig, find_acting
 from runner.robots.robot import Robot
 

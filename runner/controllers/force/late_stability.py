@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.optimize import brentq
 
-from runner.controllers.controller import FloatArray
+from runner.base.arrays import FloatArray
 from runner.controllers.force.force_stability import force_loop_limit
 
 

@@ -5,8 +5,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 from pydantic import NonNegativeFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import Controller, FloatArray, Loop
+from runner.controllers.controller import Controller, Loop
 from runner.controllers.macro_mini.macro_mini import MacroMiniConfig
 from runner.controllers.macro_mini.macro_mini import build as build_stages
 from runner.controllers.operational_space.tip_task import TipTask

@@ -5,7 +5,7 @@ from typing import Literal
 import numpy as np
 import pinocchio as pin
 
-from runner.controllers.controller import FloatArray
+from runner.base.arrays import FloatArray
 from runner.robots.robot import Robot
 from runner.robots.tool_link import find_tool, holding_wrench
 from runner.sensing.force_torque import ForceTorqueConfig

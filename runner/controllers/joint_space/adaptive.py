@@ -5,7 +5,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from pydantic import PositiveFloat
 
-from runner.controllers.controller import FloatArray
+from runner.base.arrays import FloatArray
 from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
 from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers

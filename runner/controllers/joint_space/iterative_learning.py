@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, PositiveFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import FloatArray
 from runner.controllers.joint_space.computed_torque import ComputedTorque, ComputedTorqueConfig
 from runner.controllers.joint_space.joint_law import JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture

@@ -7,7 +7,8 @@ from typing import Any, TypeVar
 import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
-from runner.controllers.controller import Controller, FloatArray, Loop
+from runner.base.arrays import FloatArray
+from runner.controllers.controller import Controller, Loop
 from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion
 from runner.controllers.operational_space.tip_task import TaskName, task_start
 from runner.controllers.torque_law import Arm, TorqueLaw

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from runner.controllers.controller import FloatArray
+from runner.base.arrays import FloatArray
 from runner.controllers.operational_space.tip_task import TaskName, TipNumbers, TipTask, held_orientation
 from runner.controllers.operational_space.whole_body_posture import HeldPosture, PostureNumbers, drawn_to
 from runner.controllers.torque_law import Arm, structure_of

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.controllers.controller import FloatArray
+from runner.base.arrays import FloatArray
 from runner.trajectories.blend import quintic_blend
 
 

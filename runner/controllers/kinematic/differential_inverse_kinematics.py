@@ -6,8 +6,9 @@ import numpy as np
 import pinocchio as pin
 from pydantic import NonNegativeFloat, PositiveFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.controller import Loop
 from runner.controllers.kinematic.resolved_rate import ResolvedRate
 from runner.controllers.operational_space.null_space import NullSpaceConfig, NullSpaceTask
 from runner.controllers.operational_space.tip_task import TaskName, held_orientation, task_start

@@ -3,8 +3,8 @@
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import FloatArray
 from runner.controllers.kinematic.resolved_rate import ResolvedRate
 from runner.robots.model import RobotModel
 

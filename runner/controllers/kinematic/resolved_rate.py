@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.linalg.lapack import dgesv, dpotrf
 
-from runner.controllers.controller import FloatArray
+from runner.base.arrays import FloatArray
 
 
 class ResolvedRate:

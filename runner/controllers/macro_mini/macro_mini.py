@@ -6,8 +6,9 @@ from typing import Literal
 import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import Controller, FloatArray, Loop
+from runner.controllers.controller import Controller, Loop
 from runner.controllers.macro_mini.inertial_damping import InertialDamping
 from runner.controllers.macro_mini.stage_law import StageLaw
 from runner.controllers.macro_mini.stage_loops import Aim, CarrierController, HeldController, RiderController

@@ -2,7 +2,7 @@
 
 from typing import Any, NamedTuple
 
-from runner.controllers.controller import FloatArray
+from runner.base.arrays import FloatArray
 from runner.controllers.operational_space.operational_space import tip_law
 from runner.controllers.operational_space.whole_body import WholeBodyLaw
 from runner.controllers.torque_law import Arm, structure_of

@@ -5,7 +5,7 @@ from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
 
-from runner.controllers.controller import FloatArray
+from runner.base.arrays import FloatArray
 from runner.controllers.macro_mini.stage_law import StageLaw, StageNumbers
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm, TorqueLaw

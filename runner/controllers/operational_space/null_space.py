@@ -5,7 +5,7 @@ from typing import Literal
 import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
-from runner.controllers.controller import FloatArray
+from runner.base.arrays import FloatArray
 from runner.plugins.registry import StrictModel
 
 

@@ -6,8 +6,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 from pydantic import NonNegativeFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.controller import Loop
 from runner.controllers.operational_space.tip_task import TaskName, held_orientation, task_start
 from runner.controllers.operational_space.whole_body import WholeBody, WholeBodyLaw
 from runner.controllers.sampled_stability import VelocityGain

@@ -4,8 +4,8 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import FloatArray
 from runner.controllers.torque_law import Tip
 from runner.robots.inverse_kinematics import solve_tip_pose
 from runner.robots.model import RobotModel

@@ -5,8 +5,9 @@ from typing import Literal, NamedTuple
 
 from pydantic import NonNegativeFloat, PositiveFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.controller import Loop
 from runner.controllers.operational_space.tip_task import TipNumbers, TipTask
 from runner.controllers.operational_space.whole_body_posture import HeldJoints, HeldPosture, Posture, PostureNumbers
 from runner.controllers.sampled_stability import VelocityGain

@@ -4,7 +4,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from runner.controllers.controller import FloatArray
+from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Maths, Scalar
 

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from runner.base.trace import FloatArray, by_rows
+from runner.base.arrays import FloatArray
+from runner.base.trace import by_rows
 from runner.metrics.caveats.rule import TraceRule, called, percent
 from runner.metrics.caveats.setting import Setting
 from runner.metrics.caveats.signals import Signals

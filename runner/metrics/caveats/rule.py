@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from runner.base.trace import FloatArray
+from runner.base.arrays import FloatArray
 from runner.metrics.caveats.setting import Setting
 from runner.metrics.caveats.signals import Signals
 

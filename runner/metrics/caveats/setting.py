@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.base.trace import FloatArray
+from runner.base.arrays import FloatArray
 
 if TYPE_CHECKING:  # the store knows caveats, and is to be imported without rigid-body models
     from runner.config.robot import RobotConfig

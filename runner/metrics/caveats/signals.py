@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runner.base.trace import FloatArray, Trace, Traces
+from runner.base.arrays import FloatArray
+from runner.base.trace import Trace, Traces
 
 
 @dataclass(frozen=True)

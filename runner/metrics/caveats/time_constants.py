@@ -6,7 +6,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from runner.base.trace import FloatArray
+from runner.base.arrays import FloatArray
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS
 from runner.controllers.force.admittance import AdmittanceConfig

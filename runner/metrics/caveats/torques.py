@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.base.trace import FloatArray
+from runner.base.arrays import FloatArray
 from runner.metrics.caveats.rule import TraceRule, called, percent
 from runner.metrics.caveats.setting import Setting
 from runner.metrics.caveats.signals import Signals

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from runner.base.trace import FloatArray
+from runner.base.arrays import FloatArray
 from runner.config.run import RunConfig
 from runner.controllers.force.force_stability import touch_radius
 from runner.controllers.force.hybrid_force import HybridForceConfig

@@ -8,8 +8,8 @@ from operator import attrgetter
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.memory import Memory
-from runner.base.trace import FloatArray
 from runner.config.caveats import CaveatsConfig
 from runner.metrics.caveats import plant_error
 from runner.metrics.caveats.caveat import Caveat, Found

@@ -4,9 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, SimulationError
 from runner.plugins.guard.faults import ask, checked
 from runner.plugins.guard.read_only import read_only
@@ -14,8 +12,6 @@ from runner.plugins.guard.read_only import read_only
 if TYPE_CHECKING:
     from runner.controllers.controller import Loop
     from runner.robots.robot import Robot
-
-FloatArray = NDArray[np.float64]
 
 
 class WatchedController:

@@ -4,14 +4,12 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.texts import quoted
 from runner.plugins.guard.faults import ask, checked, find_fault, told_of_part
 from runner.plugins.guard.read_only import read_only
-
-FloatArray = NDArray[np.float64]
 
 
 class WatchedEnvironment:

@@ -3,13 +3,12 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, SimulationError
 from runner.plugins.guard.faults import ask, checked, told_of_part
 from runner.plugins.guard.read_only import read_only
 
-FloatArray = NDArray[np.float64]
 _WHENEVER = float("nan")  # the loop knows the time, and puts it in
 
 

@@ -2,14 +2,11 @@
 
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.plugins.guard.faults import ask, checked, place
 from runner.plugins.guard.read_only import read_only
 
-FloatArray = NDArray[np.float64]
 _WHENEVER = float("nan")  # the loop knows the time, and puts it in
 
 

@@ -4,13 +4,11 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
 from runner.plugins.guard.faults import ask, checked, find_fault, place, told_of_part
 from runner.plugins.guard.read_only import read_only
-
-FloatArray = NDArray[np.float64]
 
 
 class WatchedTrajectory:

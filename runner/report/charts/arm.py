@@ -7,10 +7,11 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.report.charts import palette
 from runner.report.charts.canvas import GREY, INK, PALE, Camera, drawing, pair, scene, triad
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 
 _LONG = 5.2  # long side of the view from above, in inches
 _PATH, _GOAL = palette.LIGHT[1], palette.LIGHT[2]

@@ -10,10 +10,10 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Circle, FancyBboxPatch
 from matplotlib.textpath import TextPath
 
+from runner.base.arrays import FloatArray
 from runner.controllers.graph import ControlGraph, Edge, Node, Side
 from runner.report.charts import palette
 from runner.report.charts.canvas import INK, arrow, drawing, scene, write
-from runner.robots.model import FloatArray
 
 # Measures in inches, at the size on paper.
 _COLUMN, _ROW = 0.64, 0.56

@@ -12,8 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
+from runner.base.arrays import FloatArray
 from runner.report.charts import palette
-from runner.robots.model import FloatArray
 
 INK, GREY, PALE = "#20242a", "#7d8590", "#d3d8de"
 AXIS_COLORS = (palette.LIGHT[1], palette.LIGHT[2], palette.LIGHT[0])

@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch, Polygon
 
+from runner.base.arrays import FloatArray
 from runner.report.charts import palette
 from runner.report.charts.canvas import INK, arrow, drawing, scene, write
-from runner.robots.model import FloatArray
 
 # Measures in inches, at the size on paper.
 _COLUMN, _ROW = 2.75, 0.96

@@ -7,7 +7,7 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from runner.base.arrays import FloatArray
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import digits_between, number
-from runner.report.charts.figure import FloatArray, Map, MapFigure
+from runner.report.charts.figure import Map, MapFigure
 
 OVERLAY = 1
 """Palette index of what lies over the cells, red, which their colours do not hold."""

@@ -8,8 +8,9 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from runner.base.arrays import FloatArray
 from runner.report.charts import palette
-from runner.report.charts.figure import FloatArray, Map, MapFigure
+from runner.report.charts.figure import Map, MapFigure
 from runner.report.charts.map_scale import (
     CONTOURS,
     MOST_PARTED,

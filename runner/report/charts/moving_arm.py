@@ -4,9 +4,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.report.charts import palette
 from runner.report.charts.canvas import GREY, INK, PALE, Camera
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 
 _WIDTH, _HEIGHT, _MARGIN = 420.0, 300.0, 18.0
 _FASTEST, _SLOWEST = 3.0, 5.0  # s; what moves longer by itself keeps readers from reading

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.report.charts.figure import FloatArray, Series
+from runner.base.arrays import FloatArray
+from runner.report.charts.figure import Series
 
 POINTS = 2000
 """Most points of a drawn curve: more than a screen or a printed page can tell apart."""

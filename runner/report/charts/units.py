@@ -7,8 +7,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import fitting
-from runner.report.charts.figure import FloatArray, MapFigure, Panel, Series
+from runner.report.charts.figure import MapFigure, Panel, Series
 
 MapOf = TypeVar("MapOf", bound=MapFigure)
 _UNIT = re.compile(r"\((m|s)\)$")

@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
 
+from runner.base.arrays import FloatArray
 from runner.report.charts import palette
 from runner.report.charts.canvas import GREY, INK, Camera, arrow, circle, drawing, triad, write
-from runner.robots.model import FloatArray
 from runner.robots.workspace import Workspace
 
 _SHOWN = 2500  # tip positions drawn in the sphere

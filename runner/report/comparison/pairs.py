@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.statistics import Comparison, subtract
-from runner.sweeps.measurements import FloatArray, Measurements
+from runner.sweeps.measurements import Measurements
 
 MOST_PAIRS = 1_000
 """Of more draws so many are taken at random: a million means of two are sorted in a tenth of a second."""

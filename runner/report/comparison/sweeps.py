@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.base.quantities import ROUNDING
 from runner.report.comparison.beyond import Beyond, beyond
@@ -14,7 +15,6 @@ from runner.report.comparison.pairs import CellPairs, compare
 from runner.report.comparison.side import Side
 from runner.report.comparison.words import noise_alone
 from runner.statistics import Comparison
-from runner.sweeps.measurements import FloatArray
 from runner.sweeps.metric_names import check_metrics, is_part
 
 MOST_MOVEMENTS = 12

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import ROUNDING, fewest_powers, fitting, smaller_units
 from runner.statistics import Interval, median_interval
-from runner.sweeps.measurements import FloatArray
 
 _SMALLEST, _LARGEST = 1e-2, 1e5  # outside of these the head of a column has a power of ten
 _PLAIN = 1e-4  # in a smaller unit, such as mm, plain decimals are read down to this

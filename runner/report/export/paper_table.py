@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import ROUNDING
 from runner.report.export.columns import Column, Unit, column
 from runner.report.export.pooling import Pooled, failed_cells, pool
@@ -14,7 +15,7 @@ from runner.statistics import SMALLEST_SAMPLE
 from runner.statistics.interval import RESAMPLES
 from runner.store import Run
 from runner.sweeps.differing import in_words
-from runner.sweeps.measurements import FloatArray, Measurements
+from runner.sweeps.measurements import Measurements
 
 Label = str | Unit
 

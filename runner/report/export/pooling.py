@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
 from runner.report.sweep.subject import value_names
-from runner.sweeps.measurements import Axis, FloatArray, Measurements
+from runner.sweeps.measurements import Axis, Measurements
 
 SEED = "seed"
 

@@ -2,11 +2,12 @@
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.report.charts.thinning import POINTS, spaced
 from runner.report.document import Block, Curves, Panel, Section, Series
 from runner.report.metric_titles import title
 from runner.report.sweep.subject import QUANTILE_RULE, Subject, grouped, spans_decades
-from runner.sweeps.measurements import Axis, FloatArray
+from runner.sweeps.measurements import Axis
 
 _MOST_LINES = 8
 

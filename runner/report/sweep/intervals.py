@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.report.charts.map_scale import EQUAL, widened
 from runner.report.document import Curves, Panel, Series
 from runner.report.sweep.subject import Subject, axis_label, spans_decades, value_names
-from runner.sweeps.measurements import Axis, FloatArray
+from runner.sweeps.measurements import Axis
 
 _MOST_LINES = 6
 _APART = 0.1  # of curves at one text, so that their bars are seen

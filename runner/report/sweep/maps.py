@@ -5,13 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.report import metric_titles
 from runner.report.charts.thinning import spaced
 from runner.report.document import Block, Map, Maps, Section
 from runner.report.markup import literal
 from runner.report.sweep import theory
 from runner.report.sweep.subject import Subject, axis_label, spans_decades, value_names
-from runner.sweeps.measurements import Axis, FloatArray
+from runner.sweeps.measurements import Axis
 
 POOLED = "seed"  # the one axis over which maps take a median: its values mean nothing
 _FEWEST_FOR_CONTOURS = 3

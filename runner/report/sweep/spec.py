@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.config.spec import Bound
 from runner.report.charts.thinning import spaced
 from runner.report.document import Block, Curves, Map, Maps, Notice, Panel, Section, Series, Table, Text
@@ -19,7 +20,7 @@ from runner.statistics.spec import bounds_of
 from runner.statistics.spec.history import merged, settings
 from runner.statistics.spec.kept import within
 from runner.store import Sweep
-from runner.sweeps.measurements import Axis, FloatArray
+from runner.sweeps.measurements import Axis
 
 _WIDE = 10.0  # times the lower end: of a probability with a higher upper end not even the magnitude is known
 _FEW = "too few repetitions to tell"

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import labelled, quantity
 from runner.config.compose.key_units import key_unit
 from runner.report.metric_titles import metric_label, title
-from runner.sweeps.measurements import Axis, FloatArray, Measurements
+from runner.sweeps.measurements import Axis, Measurements
 from runner.sweeps.metric_names import is_part
 
 if TYPE_CHECKING:

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.report.document import Block, Formula, Series, Text
-from runner.sweeps.measurements import Axis, FloatArray
+from runner.sweeps.measurements import Axis
 
 _FREQUENCY, _PERIOD = "controller.natural_frequency", "controller.period"
 _POINTS = 400

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.report.charts.thinning import POINTS, spaced
 from runner.report.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.report.markup import literal
 from runner.report.metric_titles import title
 from runner.report.sweep.subject import COSTS, Subject, spans_decades
-from runner.sweeps.measurements import FloatArray
 
 _MOST_ROWS = 12
 

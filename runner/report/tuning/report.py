@@ -7,11 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.config.compose.key_units import key_unit
 from runner.report.answers import CHOSEN
 from runner.report.cover import cover
-from runner.report.document import Document, FloatArray, Notice, Origin, Provenance, RunList, Section, Table, Text
+from runner.report.document import Document, Notice, Origin, Provenance, RunList, Section, Table, Text
 from runner.report.markup import literal, literals
 from runner.report.metric_titles import title
 from runner.report.tuning import best_trials, front, history, keys

@@ -6,9 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import labelled, number, quantity
 from runner.config.compose.key_units import key_unit
-from runner.report.document import FloatArray
 from runner.report.metric_titles import metric_label, title
 from runner.sweeps.tuning.key import Key
 from runner.sweeps.tuning.objective import Objective

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.plants.compiled_motion import MotionScalars, expressed_motion, motion_pattern, motion_scalars
 from runner.plants.motion import Motion
 from runner.simulation.compiled.commands import Commands, CommandScalars, expressed_commands
@@ -14,7 +15,7 @@ from runner.symbolic.arm import Unfolded
 from runner.symbolic.code import ACTING
 from runner.symbolic.expression import places
 from runner.symbolic.places import Places
-from runner.symbolic.program import LANES, Expressed, FloatArray, Frame, Program, program
+from runner.symbolic.program import LANES, Expressed, Frame, Program, program
 from runner.symbolic.structure import Values
 
 _AT_ONCE = 10_000  # ticks without a look at interruptions

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
-from runner.controllers.controller import FloatArray
 from runner.controllers.torque_law import TorqueLaw
 from runner.plugins.guard.faults import find_fault, place
 from runner.robots.robot import Robot

@@ -5,8 +5,9 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
+from runner.base.arrays import FloatArray
 from runner.config.timing import Timing
-from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.controller import Loop
 from runner.controllers.torque_law import TorqueLaw
 from runner.plants.compiled_motion import CompiledLinksTorque, CompiledStep
 from runner.plants.motion import Motion

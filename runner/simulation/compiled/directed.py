@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.simulation.compiled.closed_loop import Whole
 from runner.symbolic.arm import Unfolded
 from runner.symbolic.code import GIVEN, PARS, ROWS, STATE
 from runner.symbolic.places import Places
-from runner.symbolic.program import LANES, Expressed, FloatArray, Frame, program
+from runner.symbolic.program import LANES, Expressed, Frame, program
 from runner.symbolic.tangent import with_tangents
 
 _FOLDED = (0.0, 1.0, -1.0)

@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.config.spec import Bound
 from runner.statistics.spec.history import History
 
 if TYPE_CHECKING:
     from runner.statistics.share import Share
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

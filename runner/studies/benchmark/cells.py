@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.store import Run
-from runner.studies.benchmark.leads import Entry, FloatArray, Lead, leads
+from runner.studies.benchmark.leads import Entry, Lead, leads
 from runner.study.alike import difference, setting
 from runner.study.job import Made
 from runner.study.prose.patterns import found

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import number, quantity
 from runner.report.charts.figure import Map, Panel, Series
 from runner.report.document import Curves, Maps, Origin, Table, Text
@@ -11,7 +12,7 @@ from runner.report.figures import origin
 from runner.report.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import ROUND, UNTUNED, Cell, tuned
-from runner.studies.benchmark.leads import Entry, FloatArray, Lead
+from runner.studies.benchmark.leads import Entry, Lead
 from runner.studies.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, laws_of, one_cell, turned
 from runner.study.measured import Measured
 from runner.study.prose.patterns import found

@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.report.answers import ALPHA, SHARE
 from runner.statistics import Comparison, compare_paired, holm, holm_levels
-
-FloatArray = NDArray[np.float64]
 
 _LEAST = 1.0 / (1.0 - SHARE)  # ratio of errors; less is no lead
 

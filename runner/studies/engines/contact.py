@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from runner.report.document import FloatArray
+from runner.base.arrays import FloatArray
 from runner.report.figures import columns, joint_columns, model_of
 from runner.store import Run
 

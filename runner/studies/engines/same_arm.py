@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.plants.compiled_motion import CompiledStep
-from runner.plants.plant import FloatArray
 from runner.report.figures import model_of
 from runner.robots import RobotModel
 from runner.store import Run

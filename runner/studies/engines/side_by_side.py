@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.plants.bullet import Bullet
 from runner.plants.mujoco import Mujoco
-from runner.plants.plant import FloatArray
 from runner.report.figures import model_of
 from runner.robots import RobotModel
 from runner.store import Run

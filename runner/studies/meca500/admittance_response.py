@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.controllers.controller import FloatArray
+from runner.base.arrays import FloatArray
 from runner.controllers.force.admittance_filter import Admittance, discretise
 
 ComplexArray = NDArray[np.complex128]

@@ -8,10 +8,10 @@ from typing import Any, TypeVar
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.quantities import number, quantity, with_powers
 from runner.controllers.force.admittance_filter import Admittance
-from runner.report.document import FloatArray
 from runner.report.figures import AXES, columns, joint_columns, model_of
 from runner.robots import RobotModel
 from runner.store import Calibration, Run

@@ -3,11 +3,12 @@
 import numpy as np
 import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import number, quantity, with_interval
 from runner.calibration import identify_gravity
 from runner.calibration.orientations import check_orientations, force_matrix, moment_matrix
 from runner.calibration.procedures.gravity import even_postures
-from runner.report.document import FloatArray, Panel, Series, Table
+from runner.report.document import Panel, Series, Table
 from runner.report.figures import joint_columns, origin
 from runner.robots import RobotModel
 from runner.store import Calibration

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import number
-from runner.report.document import FloatArray
 from runner.report.figures import joint_columns, model_of
 from runner.store import Run
 from runner.studies.meca500.figures import Runs

@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.controllers.force.admittance_filter import AXES
-from runner.report.document import FloatArray, Panel, Series
+from runner.report.document import Panel, Series
 from runner.report.figures import joint_columns, model_of
 from runner.store import Run
 from runner.studies.meca500.admittance_response import step_response

@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 from scipy.integrate import solve_ivp
 
-from runner.plants.plant import FloatArray
+from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
 
 _LEAST = 100.0 * np.finfo(float).eps  # the relative tolerance that SciPy takes

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import pinocchio as pin
 
-from runner.report.document import FloatArray
+from runner.base.arrays import FloatArray
 from runner.report.figures import joint_columns, model_of
 from runner.store import Run
 from runner.study.run_values import clock

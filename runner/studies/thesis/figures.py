@@ -5,11 +5,12 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import above_rounding
 from runner.controllers.operational_space.operational_space_graph import operational_space_graph
 from runner.report.charts import block_diagram, frame_assignment
 from runner.report.claims import load_claims
-from runner.report.document import Block, Curves, FloatArray, Picture, Table, Text
+from runner.report.document import Block, Curves, Picture, Table, Text
 from runner.report.figures import columns, joint_columns, model_of, origin
 from runner.report.words import PRESET, in_words
 from runner.robots.denavit_hartenberg import denavit_hartenberg

@@ -6,7 +6,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.report.document import FloatArray, Series
+from runner.base.arrays import FloatArray
+from runner.report.document import Series
 from runner.report.figures import columns, joint_columns, model_of
 from runner.robots.cantilever import frequency_errors
 from runner.robots.modes import Mode

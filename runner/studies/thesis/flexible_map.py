@@ -5,11 +5,12 @@ from typing import Any, cast
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.config.validation import validate
 from runner.controllers import Controller
 from runner.plants.flexible_joints import FlexibleJoints
 from runner.plants.plant import innermost
-from runner.report.document import FloatArray, Series
+from runner.report.document import Series
 from runner.simulation.assembly import assemble
 from runner.store import Run
 

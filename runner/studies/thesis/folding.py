@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import number, quantity, ranged
-from runner.report.document import FloatArray
 from runner.report.figures import joint_columns, model_of
 from runner.store import Run
 from runner.studies.thesis.figures import at_rest

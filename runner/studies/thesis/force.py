@@ -5,8 +5,9 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.controllers.force.force_stability import force_loop_limit
-from runner.report.document import FloatArray, Series
+from runner.report.document import Series
 from runner.report.figures import columns, joint_columns, model_of
 from runner.robots.effective_mass import mass_along, tip_mobility
 from runner.store import Run

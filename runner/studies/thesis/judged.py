@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.metrics.summary import over_repetitions
 from runner.report.claims import PublishedClaim, Verdict
 from runner.report.claims.judging import compared_with, simulated_by, verdict_on
-from runner.report.document import FloatArray
 from runner.store import Run
 from runner.study.claims import run_name
 from runner.study.run_values import median

@@ -3,7 +3,7 @@
 import numpy as np
 import pinocchio as pin
 
-from runner.report.document import FloatArray
+from runner.base.arrays import FloatArray
 from runner.report.figures import columns, joint_columns, model_of
 from runner.store import Run
 from runner.study.prose.signals import largest_of

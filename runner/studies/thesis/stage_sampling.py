@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import number
-from runner.report.document import Block, FloatArray, Table, Text
+from runner.report.document import Block, Table, Text
 from runner.report.figures import columns, origin
 from runner.store import Run
 from runner.study.measured import Condition, Measured

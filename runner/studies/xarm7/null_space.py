@@ -4,8 +4,9 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import number
-from runner.report.document import FloatArray, Series
+from runner.report.document import Series
 from runner.report.figures import columns, joint_columns, model_of
 from runner.store import Run
 from runner.study.measured import Measured

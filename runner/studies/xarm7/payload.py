@@ -5,8 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.optimize import minimize
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import number
-from runner.report.document import Block, FloatArray, Notice, Series
+from runner.report.document import Block, Notice, Series
 from runner.report.figures import columns, joint_columns, model_of
 from runner.store import Run
 from runner.studies.xarm7.figures import SHOULDER

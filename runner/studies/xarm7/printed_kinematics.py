@@ -7,8 +7,9 @@ import numpy as np
 
 from runner.audit.entry import Entry, entries
 from runner.audit.evaluation import evaluate
+from runner.base.arrays import FloatArray
 from runner.base.expressions.parser import parse
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 from runner.studies.xarm7.equations.truths.xarm7 import JOINTS, constants
 
 CENTIMETRES = 100.0

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import above_rounding, number
-from runner.report.document import FloatArray, Series
+from runner.report.document import Series
 from runner.report.figures import joint_columns, model_of
 from runner.robots import RobotModel
 from runner.store import Run

@@ -6,8 +6,9 @@ from typing import Literal
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
-from runner.report.document import Curves, FloatArray, Map, Maps, Panel, Series
+from runner.report.document import Curves, Map, Maps, Panel, Series
 from runner.report.figures import AXES, joint_columns, origin
 from runner.store import Run
 from runner.study.prose.patterns import axes_of, called, found, other

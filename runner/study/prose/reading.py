@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
-from runner.report.document import FloatArray
 from runner.store import Run
 from runner.study import run_values
 from runner.study.measured import Measured

@@ -5,7 +5,8 @@ from typing import Literal
 import numpy as np
 from pydantic import PositiveFloat
 
-from runner.controllers.controller import FloatArray, Loop
+from runner.base.arrays import FloatArray
+from runner.controllers.controller import Loop
 from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.schema.per_joint import expand

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.robots.model import FloatArray
+from runner.base.arrays import FloatArray
 
 JOINTS = 6
 

@@ -4,7 +4,8 @@ from typing import Literal
 
 from pydantic import PositiveFloat
 
-from runner.controllers.controller import FloatArray, Loop
+from runner.base.arrays import FloatArray
+from runner.controllers.controller import Loop
 from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
 from runner.studies.xarm7.parts.three_joint_kinematics import Branch, ThreeJointArm

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.robots.model import FloatArray, RobotModel
+from runner.robots.model import RobotModel
 
 MOVING = (0, 1, 3)
 """The joints that move: 1, 2 and 4."""

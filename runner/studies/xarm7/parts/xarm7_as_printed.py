@@ -6,8 +6,9 @@ import numpy as np
 import pinocchio as pin
 from pydantic import NonNegativeFloat, PositiveFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import FloatArray, Loop
+from runner.controllers.controller import Loop
 from runner.controllers.operational_space.tip_task import TaskName, task_start
 from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel

@@ -8,7 +8,8 @@ from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
 from runner.audit.chains import derivative, jacobian_by_differences, rotation
-from runner.audit.truth import Elements, FloatArray, Symbols, Truth, along, columns, elements
+from runner.audit.truth import Elements, Symbols, Truth, along, columns, elements
+from runner.base.arrays import FloatArray
 from runner.studies.meca500.equations.truths import meca500
 
 _STEPS = 400

@@ -5,7 +5,8 @@ from collections.abc import Callable
 import numpy as np
 
 from runner.audit.rollout import Run
-from runner.audit.truth import FloatArray, along
+from runner.audit.truth import along
+from runner.base.arrays import FloatArray
 from runner.studies.thesis.equations.truths import thesis_jacobians, thesis_measures
 from runner.studies.thesis.equations.truths.thesis import symbols_at
 from runner.studies.thesis.equations.truths.thesis_arms import COMBINED, MACRO, MINI, Arm

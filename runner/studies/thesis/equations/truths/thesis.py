@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.audit.truth import FloatArray
+from runner.base.arrays import FloatArray
 
 JOINTS = 6
 _SUMS = ("1", "2", "3", "4", "5", "6", "12", "23", "123", "45", "56", "456", "1_2", "1_2_3", "4_5", "4_5_6")

@@ -12,7 +12,8 @@ from itertools import combinations_with_replacement, product
 
 import numpy as np
 
-from runner.audit.truth import Elements, FloatArray, Symbols, Way
+from runner.audit.truth import Elements, Symbols, Way
+from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
 from runner.studies.thesis.equations.appendix import JOINTS, Appendix, Harmonic, Term, evaluate, read_appendix
 from runner.studies.thesis.equations.truths.thesis_arms import COMBINED

@@ -6,7 +6,8 @@ from functools import lru_cache
 import numpy as np
 
 from runner.audit.model_truths import AuditedArm, Dynamics, by_model
-from runner.audit.truth import Elements, FloatArray, Symbols, Truth, Way
+from runner.audit.truth import Elements, Symbols, Truth, Way
+from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
 from runner.studies.thesis.equations.truths.thesis_arms import MACRO, MINI, Arm
 

@@ -7,7 +7,8 @@ import numpy as np
 from runner.audit.entry import entries
 from runner.audit.evaluation import evaluate
 from runner.audit.model_truths import by_model
-from runner.audit.truth import FloatArray, along
+from runner.audit.truth import along
+from runner.base.arrays import FloatArray
 from runner.base.expressions.parser import Expression, parse
 from runner.robots.model import RobotModel
 from runner.studies.thesis.equations.truths.thesis import symbols_at

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from runner.audit.rollout import Run
-from runner.audit.truth import FloatArray
+from runner.base.arrays import FloatArray
 from runner.studies.xarm7.equations.truths.xarm7 import (
     BY_MODEL,
     left_inverse_of,
