@@ -4,7 +4,7 @@ from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from runner.config.robot import Armature
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.schema.per_stage import FinitePerStage, NonNegativePerStage, PositivePerStage, TorquePerStage
 from runner.trajectories.posture import Posture
 

@@ -38,8 +38,9 @@ from runner.controllers.notch_config import NotchConfig
 from runner.environments import ENVIRONMENTS
 from runner.metrics.summary import families
 from runner.plants import PLANTS
-from runner.plugins.registry import Registry, StrictModel
+from runner.plugins.registry import Registry
 from runner.robots.mismatch import MismatchConfig
+from runner.schema.model import StrictModel
 from runner.schema.units import WRITTEN
 from runner.sensing import EndpointSensorConfig, ForceTorqueConfig, JointTorqueConfig
 from runner.study.chapters import SHARED

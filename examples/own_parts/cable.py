@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat
 
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 

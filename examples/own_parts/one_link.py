@@ -5,9 +5,9 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
-from runner.plugins.registry import StrictModel
 from runner.robots.mismatch import scaled
 from runner.robots.robot import with_models
+from runner.schema.model import StrictModel
 
 
 class OneLinkConfig(StrictModel):

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.controllers import Loop
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 
 class GravityPDConfig(StrictModel):

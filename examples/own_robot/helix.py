@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, PositiveFloat, PositiveInt
 
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.nearest import distance_to_curve
 

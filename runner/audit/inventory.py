@@ -17,7 +17,7 @@ from pydantic import Field
 from runner.audit.entry import entries
 from runner.audit.sources import Where, source_of
 from runner.base.data_file import read_data
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 
 class Place(StrictModel):

@@ -13,8 +13,8 @@ from runner.audit.truth import Elements, columns
 from runner.base.arrays import FloatArray
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
-from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
+from runner.schema.model import StrictModel
 
 _EQUAL = 1e-9
 QUANTITIES = ("position", "jacobian", "mass-matrix", "gravity")

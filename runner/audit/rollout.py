@@ -24,7 +24,7 @@ from runner.base.errors import RunnerError, nearest
 from runner.base.expressions.evaluator import Budget, Scope
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.insertions import fill
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,10 @@ from runner.config.compose.compose import Composed
 from runner.config.compose.problems import Problems, sure
 from runner.config.parsing import group_of, parse, parse_kind, parse_robot
 from runner.config.robot import RobotConfig
-from runner.plugins.registry import KindConfig, StrictModel
+from runner.plugins.registry import KindConfig
 from runner.robots import RobotModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.sensing import ForceTorqueConfig
 
 

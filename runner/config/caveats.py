@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 

@@ -23,8 +23,9 @@ from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.controllers.notch_config import NotchConfig
 from runner.environments import ENVIRONMENTS
 from runner.plants import PLANTS, PlantConfig
-from runner.plugins.registry import KindConfig, Kinds, StrictModel
+from runner.plugins.registry import KindConfig, Kinds
 from runner.robots.mismatch import MismatchConfig
+from runner.schema.model import StrictModel
 from runner.sensing import EndpointSensorConfig, ForceTorqueConfig, JointTorqueConfig
 from runner.trajectories import TRAJECTORIES
 

@@ -11,9 +11,9 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers import Loop
 from runner.plants import PLANTS, PlantConfig
-from runner.plugins.registry import StrictModel
 from runner.robots.modes import Mode
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.trajectories import Trajectory
 from runner.trajectories.impulses import in_turn, zero_vibration
 from runner.trajectories.joint_motion import TipOfJoints

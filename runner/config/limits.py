@@ -7,8 +7,8 @@ from pydantic import PositiveFloat
 from runner.base.errors import ConfigError
 from runner.base.limits import half_of_memory
 from runner.config.timing import Timing
-from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 
 _GB = 1e9  # bytes
 _NUMBER = 8  # bytes

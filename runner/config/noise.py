@@ -9,8 +9,8 @@ from pydantic import PositiveFloat
 
 from runner.base.errors import ConfigError
 from runner.config.compose.problems import Problems
-from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.schema.per_stage import FinitePerStage, NonNegativePerStage, by_stage
 from runner.sensing import EncoderNoise
 from runner.sensing.velocity import DEFAULT_BANDWIDTH, Velocity

@@ -9,8 +9,9 @@ from runner.base.errors import ConfigError
 from runner.base.texts import quoted
 from runner.config.compose.messages import describe
 from runner.config.robot import OneArmConfig, RobotConfig, StagedRobotConfig
-from runner.plugins.registry import Kinds, StrictModel
+from runner.plugins.registry import Kinds
 from runner.schema.magnitudes import absurd
+from runner.schema.model import StrictModel
 
 M = TypeVar("M", bound=StrictModel)
 

@@ -7,10 +7,11 @@ import numpy as np
 
 from runner.config.compose.problems import Problems
 from runner.config.parsing import group_of, parse, parse_kind
-from runner.plugins.registry import KindConfig, Kinds, StrictModel
+from runner.plugins.registry import KindConfig, Kinds
 from runner.robots.mismatch import MISMATCHES
 from runner.robots.mismatch import NONE as NO_MISMATCH
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, EncoderNoise, JointTorqueConfig
 from runner.sensing.force_torque import IDEAL
 

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 
 class PresetConfig(StrictModel):

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat, field_validator
 
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.schema.per_joint import FrictionConfig
 from runner.schema.per_stage import NonNegativePerStage, PositivePerStage, TorquePerStage
 

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveFloat, PositiveInt
 
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 
 class RunSettings(StrictModel):

@@ -9,7 +9,7 @@ from pydantic import field_validator, model_validator
 from runner.base.errors import nearest
 from runner.base.texts import quoted
 from runner.config.compose.meanings import Units
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 _METRICS = "metrics"
 

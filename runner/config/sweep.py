@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import PositiveFloat, PositiveInt
 
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 
 class SweepConfig(StrictModel):

@@ -3,8 +3,8 @@
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.schema.per_joint import expand
 from runner.schema.per_stage import TorquePerStage, by_stage
 

@@ -12,8 +12,8 @@ from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, Loop
 from runner.controllers.torque_law import Arm, PinocchioArm, TorqueLaw, structure_of
 from runner.plugins.guard import WatchedController
-from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.symbolic.maths import Array, Scalar
 
 

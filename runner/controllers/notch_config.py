@@ -5,9 +5,9 @@ from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.plugins.registry import StrictModel
 from runner.robots.by_joint import by_joint
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.schema.per_stage import NotchPerStage
 
 

@@ -3,7 +3,7 @@
 from typing import Literal
 
 from runner.environments.environment import Environment
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 
 class FreeConfig(StrictModel):

@@ -7,7 +7,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.environments.environment import Environment
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.trajectories.blend import quintic_blend
 
 

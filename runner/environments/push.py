@@ -9,7 +9,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.environments.environment import Environment
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 

@@ -7,7 +7,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 
 from runner.base.arrays import FloatArray
 from runner.environments.environment import Environment
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 

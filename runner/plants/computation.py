@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from pydantic import Field, NonNegativeInt, model_validator
 
 from runner.base.errors import ConfigError, nearest
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 Probability = Annotated[float, Field(ge=0.0, le=1.0)]
 Rows = NDArray[np.int64]

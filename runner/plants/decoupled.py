@@ -13,9 +13,9 @@ from runner.plants.friction import friction_of, with_friction
 from runner.plants.motion import find_motion
 from runner.plants.plant import Plant
 from runner.plants.servo import ServoConfig
-from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, StageBase
+from runner.schema.model import StrictModel
 from runner.schema.per_joint import FrictionConfig
 
 

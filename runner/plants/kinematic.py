@@ -9,9 +9,9 @@ from runner.base.arrays import FloatArray
 from runner.plants.computation import ComputationConfig
 from runner.plants.plant import Plant
 from runner.plants.set_points import SetPoints
-from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 
 COMMANDS = "position"
 

@@ -8,8 +8,8 @@ from scipy.linalg.lapack import dposv
 from runner.base.arrays import FloatArray
 from runner.plants.plant import Plant
 from runner.plants.set_points import SetPoints
-from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
+from runner.schema.model import StrictModel
 from runner.schema.per_joint import PositivePerJoint, expand
 
 

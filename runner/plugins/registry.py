@@ -11,16 +11,9 @@ from functools import lru_cache
 from types import ModuleType
 from typing import Concatenate, Generic, Literal, ParamSpec, Protocol, TypeVar, runtime_checkable
 
-from pydantic import BaseModel, ConfigDict
-
 from runner.base.errors import ConfigError, RunnerError, nearest, told
 from runner.plugins.discovery import added, load
-
-
-class StrictModel(BaseModel):
-    """Base of every config model: no unknown key, no silent conversion, no NaN or infinity, unchangeable."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+from runner.schema.model import StrictModel
 
 
 @runtime_checkable
@@ -90,7 +83,7 @@ class Kinds:
             raise ConfigError(
                 [
                     f"{self.group}.kind: module {module.__name__} of '{kind}' needs CONFIG, a class derived from "
-                    f"runner.plugins.registry.StrictModel; found {model!r}"
+                    f"runner.schema.model.StrictModel; found {model!r}"
                 ]
             )
         return model

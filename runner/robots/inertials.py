@@ -16,7 +16,7 @@ from runner.base.bounded_yaml import STORED, YamlError, read_yaml
 from runner.base.errors import ConfigError, nearest
 from runner.base.limits import ExcessError, read_text
 from runner.base.texts import quoted
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,10 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.plugins.guard import watch_belief
-from runner.plugins.registry import KindConfig, Registry, StrictModel
+from runner.plugins.registry import KindConfig, Registry
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, with_models
+from runner.schema.model import StrictModel
 
 
 class MismatchConfig(StrictModel):

@@ -6,7 +6,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.errors import ConfigError
 from runner.base.texts import quoted
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 PositivePerJoint = PositiveFloat | list[PositiveFloat]
 NonNegativePerJoint = NonNegativeFloat | list[NonNegativeFloat]

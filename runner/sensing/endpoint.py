@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.sensing.velocity import State, Velocity, first_state, gains, next_velocity
 
 

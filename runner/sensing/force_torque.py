@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.sensing.wrench import wrench_transform
 
 AXES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")

@@ -5,8 +5,8 @@ from pydantic import FiniteFloat, NonNegativeFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 
 
 class JointTorqueConfig(StrictModel):

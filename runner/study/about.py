@@ -9,7 +9,7 @@ from pydantic import Field
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import WORK_FILE
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.study.profiles import Profile
 
 _SUFFIXES = (".md", ".py")

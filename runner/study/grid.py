@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, PlainValidator, model_validator
 
 from runner.base.errors import RunnerError, nearest
 from runner.base.limits import GRID
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.study.arithmetic import Level, alone, fill, names_in
 from runner.study.given import GivenPart
 

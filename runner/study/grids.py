@@ -33,7 +33,7 @@ from runner.base.errors import RunnerError, nearest
 from runner.base.limits import read_text
 from runner.config.compose.messages import describe
 from runner.config.compose.user_settings import refuse_settings
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.study.arithmetic import Level
 from runner.study.gains import check_named
 from runner.study.given import GivenPart

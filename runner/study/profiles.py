@@ -6,7 +6,7 @@ from typing import Annotated, TypeVar
 from pydantic import Field, PositiveInt
 
 from runner.base.errors import nearest
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.study.arithmetic import Level
 from runner.study.grid import Grid, Overrides
 

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import PositiveFloat, PositiveInt
 
 from runner.base.arrays import FloatArray
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.trajectories.closed_figure import ClosedFigure, Easing
 from runner.trajectories.trajectory import Trajectory
 from runner.trajectories.vectors import Direction, InPlane, Point, component, plane_axes

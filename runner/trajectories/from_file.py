@@ -8,8 +8,8 @@ from pydantic import BeforeValidator, PositiveFloat, ValidationInfo, field_valid
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.trajectories.interpolation import Interpolated, Interpolation, interpolate
 from runner.trajectories.joint_motion import JointMotion
 from runner.trajectories.nearest import distance_to_curve

@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.trajectories.segment import distance_to_segment
 from runner.trajectories.trajectory import Trajectory
 from runner.trajectories.vectors import Point

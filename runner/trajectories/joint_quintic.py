@@ -7,8 +7,8 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
-from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.joint_motion import JointMotion
 from runner.trajectories.posture import Posture, posture_of, start_of

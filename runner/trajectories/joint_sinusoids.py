@@ -8,8 +8,8 @@ from pydantic import Field, PositiveFloat, ValidationInfo, field_validator
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.schema.per_joint import NonNegativePerJoint, expand
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.joint_motion import JointMotion

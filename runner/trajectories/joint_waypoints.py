@@ -9,8 +9,8 @@ from scipy.interpolate import BSpline
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.trajectories.joint_motion import JointMotion
 from runner.trajectories.posture import Posture, posture_of, start_of
 from runner.trajectories.waypoints import check_time_shares, least_jerk_spline

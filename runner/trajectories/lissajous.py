@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat, ValidationInfo, field_validator
 
 from runner.base.arrays import FloatArray
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.trajectories.closed_figure import ClosedFigure, Easing
 from runner.trajectories.nearest import distance_to_curve
 from runner.trajectories.trajectory import Trajectory

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.segment import distance_to_segment
 from runner.trajectories.trajectory import Trajectory

@@ -10,7 +10,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.trajectories.nearest import distance_to_curve
 from runner.trajectories.trajectory import Trajectory
 from runner.trajectories.vectors import Point

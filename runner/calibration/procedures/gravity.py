@@ -16,8 +16,8 @@ from runner.calibration.orientations import choose_orientations
 from runner.calibration.procedures.bench import Bench
 from runner.calibration.procedures.procedure import Outcome, Procedure
 from runner.calibration.tool import REST
-from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
+from runner.schema.model import StrictModel
 from runner.sensing.force_torque import ForceTorqueSensor
 from runner.sensing.wrench import wrench_transform
 

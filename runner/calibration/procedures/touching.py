@@ -10,8 +10,8 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.texts import quoted
 from runner.calibration.procedures.bench import Bench
-from runner.plugins.registry import StrictModel
 from runner.robots.inverse_kinematics import solve_tip_pose
+from runner.schema.model import StrictModel
 
 
 class TouchingConfig(StrictModel):

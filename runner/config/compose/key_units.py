@@ -11,7 +11,8 @@ from runner.config.groups import GROUPS
 from runner.config.plugged import PLUGGED
 from runner.config.robot import OneArmConfig, StageConfig
 from runner.config.settings import RunSettings
-from runner.plugins.registry import Kinds, StrictModel
+from runner.plugins.registry import Kinds
+from runner.schema.model import StrictModel
 
 
 def key_unit(key: str) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, get_args, runtime_checkable
 
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 _ONE = r"(N m s/rad|N m/rad|N s/m|N/m|N m|N|kg m\^2|kg|m/s\^2|m/s|rad/s\^2|rad/s|rad|m|1/s|s|Hz)(?![\w/^])"
 _UNIT = re.compile(rf"\b[Ii]n {_ONE}")

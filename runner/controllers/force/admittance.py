@@ -13,8 +13,8 @@ from runner.controllers.force.wrist import Compensation, ToolCompensation
 from runner.controllers.kinematic.approach import Approach
 from runner.controllers.kinematic.limited_motion import LimitedMotion
 from runner.controllers.operational_space.tip_task import task_start
-from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.sensing.force_torque import ForceTorqueConfig
 
 COMMANDS = "position"

@@ -15,8 +15,8 @@ from runner.controllers.operational_space.whole_body import WholeBodyLaw
 from runner.controllers.operational_space.whole_body_posture import HeldJoints, HeldPosture
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import PinocchioArm
-from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.schema.per_stage import PositivePerStage, by_stage
 from runner.symbolic.maths import FLOATS
 

@@ -12,9 +12,9 @@ from runner.controllers.controller import Controller, Loop
 from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion
 from runner.controllers.operational_space.tip_task import TaskName, task_start
 from runner.controllers.torque_law import Arm, TorqueLaw
-from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.symbolic.maths import Array, Scalar
 
 

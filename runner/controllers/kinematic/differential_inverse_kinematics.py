@@ -12,10 +12,10 @@ from runner.controllers.controller import Loop
 from runner.controllers.kinematic.resolved_rate import ResolvedRate
 from runner.controllers.operational_space.null_space import NullSpaceConfig, NullSpaceTask
 from runner.controllers.operational_space.tip_task import TaskName, held_orientation, task_start
-from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.task_space import task_directions
+from runner.schema.model import StrictModel
 from runner.schema.per_joint import PositivePerJoint, expand
 
 COMMANDS = "position"

@@ -12,8 +12,8 @@ from runner.controllers.controller import Controller, Loop
 from runner.controllers.macro_mini.inertial_damping import InertialDamping
 from runner.controllers.macro_mini.stage_law import StageLaw
 from runner.controllers.macro_mini.stage_loops import Aim, CarrierController, HeldController, RiderController
-from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot, end_points
+from runner.schema.model import StrictModel
 from runner.schema.per_stage import PositivePerStage, by_stage
 
 

@@ -13,10 +13,10 @@ from runner.controllers.operational_space.tip_task import TaskName, held_orienta
 from runner.controllers.operational_space.whole_body import WholeBody, WholeBodyLaw
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm, TorqueLaw
-from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.task_space import task_directions
+from runner.schema.model import StrictModel
 from runner.schema.per_stage import NonNegativePerStage, PositivePerStage, by_stage
 from runner.symbolic.maths import Array, Scalar
 

@@ -12,9 +12,9 @@ from runner.controllers.operational_space.tip_task import TipNumbers, TipTask
 from runner.controllers.operational_space.whole_body_posture import HeldJoints, HeldPosture, Posture, PostureNumbers
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm, TorqueLaw
-from runner.plugins.registry import StrictModel
 from runner.robots import RobotModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.symbolic.maths import Array, Scalar
 
 

@@ -10,7 +10,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError
 from runner.base.paths import works_dir, works_with
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 FILE = "claims.yaml"
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from runner.base.data_file import read_data
 from runner.base.paths import works_dir, works_with
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 _FILE = "statements.yaml"
 

@@ -14,7 +14,7 @@ from runner.base.errors import StoreError
 from runner.base.limits import Limit, read_text
 from runner.base.texts import escaped
 from runner.config.compose.messages import describe
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 from runner.store import Run, Sweep
 from runner.store.atomic import write_atomically
 

@@ -4,7 +4,7 @@ import pytest
 
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError
-from runner.plugins.registry import StrictModel
+from runner.schema.model import StrictModel
 
 
 class Entry(StrictModel):

@@ -10,7 +10,8 @@ from pydantic import ValidationError
 
 from runner.base.errors import ConfigError
 from runner.plugins import registry
-from runner.plugins.registry import Registry, StrictModel
+from runner.plugins.registry import Registry
+from runner.schema.model import StrictModel
 
 
 class Config(StrictModel):

@@ -7,8 +7,8 @@ from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import Loop
-from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.schema.per_joint import expand
 
 

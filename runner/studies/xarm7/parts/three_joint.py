@@ -6,8 +6,8 @@ from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import Loop
-from runner.plugins.registry import StrictModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 from runner.studies.xarm7.parts.three_joint_kinematics import Branch, ThreeJointArm
 
 COMMANDS = "position"

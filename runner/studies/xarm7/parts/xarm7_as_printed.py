@@ -10,9 +10,9 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Loop
 from runner.controllers.operational_space.tip_task import TaskName, task_start
-from runner.plugins.registry import StrictModel
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
+from runner.schema.model import StrictModel
 
 COMMANDS = "position"
 
